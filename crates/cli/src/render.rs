@@ -30,7 +30,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         name: args.package.display().to_string(),
         size_px: args.size,
         roads: args.look.road_options(roads),
-        camera: args.camera.request(),
+        camera: args.from_above.request(&args.camera),
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,

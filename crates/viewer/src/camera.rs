@@ -13,6 +13,10 @@
 //! The GPU never sees world positions: it gets positions *relative to the eye* in f32, taken as
 //! differences of f64 (Cozzi & Ring 2011, ch. 5). Depth is reversed with an infinite far plane, which
 //! distributes the precision of a float evenly over distance (Reed 2015, *Depth Precision Visualized*).
+//!
+//! A camera from above has parallel rays, straight down. Its depth is linear: 1 above all ground, 0 beneath it, and w is 1. All
+//! that depends on the distance from the eye (levels of detail, widths, classes) is in a view from above what it is at the
+//! distance at which a perspective camera has pixels of the same size: [`Camera::seeing_distance_m`].
 
 use corniche_geom::Bounds;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
@@ -75,10 +79,23 @@ pub struct Orientation {
     pub pitch_deg: f64,
 }
 
-/// A perspective camera.
+/// How the rays of a camera run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// All through the eye.
+    Perspective,
+    /// All straight down, from a level plane through the eye.
+    FromAbove {
+        /// Depth beneath all ground; the near plane is above all of it.
+        far_m: f64,
+    },
+}
+
+/// A camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     eye_in_world: DVec3,
+    projection: Projection,
     /// Columns: right, up, backward in world space. Orthonormal.
     world_from_view: DMat3,
     fov_y_rad: f64,
@@ -105,6 +122,7 @@ impl Camera {
         let world_from_view = world_from_view(orientation);
         Self {
             eye_in_world: target_in_world + world_from_view.z_axis * distance_m,
+            projection: Projection::Perspective,
             world_from_view,
             fov_y_rad: FOV_Y_RAD,
             size_px,
@@ -155,22 +173,108 @@ impl Camera {
         Self::look_at(target, distance_m, orientation, size_px)
     }
 
+    /// Looks straight down with parallel rays. `place_in_world` is in the middle of the picture, a pixel is `pixel_m` world metres
+    /// wide, and all ground lies between `heights_in_world`; the eye is above it. `size_px` must not hold a 0.
+    #[must_use]
+    pub fn from_above(
+        place_in_world: DVec2,
+        pixel_m: f64,
+        heading_deg: f64,
+        heights_in_world: [f64; 2],
+        size_px: [u32; 2],
+    ) -> Self {
+        let orientation = Orientation { heading_deg, pitch_deg: 0.0 };
+        let distance_m = pixel_m / pixel_at_unit_depth_m(FOV_Y_RAD, size_px);
+        // Ground at the very end of the range would have the depth of nothing.
+        let [lowest, highest] = heights_in_world;
+        let margin_m = 0.01 * (highest - lowest) + 1.0;
+        let eye_in_world = place_in_world.extend(highest + 2.0 * margin_m);
+        Self {
+            eye_in_world,
+            projection: Projection::FromAbove { far_m: eye_in_world.z - lowest + margin_m },
+            near_m: margin_m,
+            ..Self::look_at(eye_in_world, distance_m, orientation, size_px)
+        }
+    }
+
+    /// Looks straight down with parallel rays on all of `subject`, centred, with a small margin. All ground lies between
+    /// `heights_in_world`.
+    #[must_use]
+    pub fn framing_from_above(
+        subject: WorldBox,
+        heading_deg: f64,
+        heights_in_world: [f64; 2],
+        size_px: [u32; 2],
+    ) -> Self {
+        let axes = world_from_view(Orientation { heading_deg, pitch_deg: 0.0 });
+        let half = subject
+            .corners()
+            .map(|corner| (axes.transpose() * (corner - subject.center())).truncate().abs())
+            .fold(DVec2::ZERO, DVec2::max);
+        let [width, height] = size_px.map(f64::from);
+        let pixel_m = (2.0 * half / DVec2::new(width, height)).max_element().max(1e-3);
+        let pixel_m = pixel_m * (1.0 + FRAME_MARGIN);
+        Self::from_above(
+            subject.center().truncate(),
+            pixel_m,
+            heading_deg,
+            heights_in_world,
+            size_px,
+        )
+    }
+
+    /// How the rays run.
+    #[must_use]
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// The distance from the eye that decides how large things look at a place, and so what is shown there. In a view from above it
+    /// is the same everywhere.
+    #[must_use]
+    pub fn seeing_distance_m(&self, point_in_world: DVec3) -> f64 {
+        match self.projection {
+            Projection::Perspective => self.eye_in_world.distance(point_in_world),
+            Projection::FromAbove { .. } => self.focus_m,
+        }
+    }
+
+    /// The least [`Camera::seeing_distance_m`] of the points of a box.
+    #[must_use]
+    pub fn seeing_distance_of_box_m(&self, subject: &WorldBox) -> f64 {
+        self.seeing_distance_m(self.eye_in_world.clamp(subject.min, subject.max))
+    }
+
+    /// The side of a pixel, in metres, of ground at a view depth.
+    #[must_use]
+    pub fn pixel_at_depth_m(&self, depth_m: f64) -> f64 {
+        self.pixel_at_unit_depth_m()
+            * match self.projection {
+                Projection::Perspective => depth_m,
+                Projection::FromAbove { .. } => self.focus_m,
+            }
+    }
+
     /// The eye, world metres.
     #[must_use]
     pub fn eye_in_world(&self) -> DVec3 {
         self.eye_in_world
     }
 
-    /// Distance to the point that the camera looks at.
+    /// Distance to the point that the camera looks at; from above, that at which a perspective camera has pixels of this size.
     #[must_use]
     pub fn focus_m(&self) -> f64 {
         self.focus_m
     }
 
-    /// The point that the camera looks at.
+    /// The point that the camera looks at; from above, one in the middle of the heights.
     #[must_use]
     pub fn target_in_world(&self) -> DVec3 {
-        self.eye_in_world - self.world_from_view.z_axis * self.focus_m
+        let depth_m = match self.projection {
+            Projection::Perspective => self.focus_m,
+            Projection::FromAbove { far_m } => f64::midpoint(self.near_m, far_m),
+        };
+        self.eye_in_world - self.world_from_view.z_axis * depth_m
     }
 
     /// Depth of the near plane.
@@ -205,18 +309,49 @@ impl Camera {
     /// Side of a pixel at depth 1, in metres.
     #[must_use]
     pub fn pixel_at_unit_depth_m(&self) -> f64 {
-        2.0 * (self.fov_y_rad / 2.0).tan() / f64::from(self.size_px[1])
+        pixel_at_unit_depth_m(self.fov_y_rad, self.size_px)
+    }
+
+    /// Half width and half height of what is seen at depth 1, or from above at any depth.
+    pub(crate) fn half_extent(&self) -> DVec2 {
+        self.half_extent_at_unit_depth()
+            * match self.projection {
+                Projection::Perspective => 1.0,
+                Projection::FromAbove { .. } => self.focus_m,
+            }
+    }
+
+    /// The view depth that a value in the depth buffer stands for.
+    #[must_use]
+    pub fn depth_m(&self, depth_buffer: f64) -> f64 {
+        match self.projection {
+            Projection::Perspective => self.near_m / depth_buffer,
+            Projection::FromAbove { far_m } => far_m - depth_buffer * (far_m - self.near_m),
+        }
     }
 
     /// Clip space from positions relative to the eye (world axes).
     pub(crate) fn clip_from_relative(&self) -> DMat4 {
-        let tan = self.half_extent_at_unit_depth();
-        // Rows: x / tan.x, y / tan.y, near, −z.
+        let half = self.half_extent();
+        let columns = match self.projection {
+            // Rows: x / tan.x, y / tan.y, near, −z.
+            Projection::Perspective => {
+                [DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, self.near_m, 0.0)]
+            }
+            // Rows: x / half width, y / half height, (far + z) / (far − near), 1.
+            Projection::FromAbove { far_m } => {
+                let range_m = far_m - self.near_m;
+                [
+                    DVec4::new(0.0, 0.0, 1.0 / range_m, 0.0),
+                    DVec4::new(0.0, 0.0, far_m / range_m, 1.0),
+                ]
+            }
+        };
         let clip_from_view = DMat4::from_cols(
-            DVec4::new(1.0 / tan.x, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, 1.0 / tan.y, 0.0, 0.0),
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, self.near_m, 0.0),
+            DVec4::new(1.0 / half.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, 1.0 / half.y, 0.0, 0.0),
+            columns[0],
+            columns[1],
         );
         clip_from_view * DMat4::from_mat3(self.world_from_view.transpose())
     }
@@ -225,33 +360,68 @@ impl Camera {
     /// `None` behind the near plane.
     #[must_use]
     pub fn project(&self, point_in_world: DVec3) -> Option<(DVec2, f64)> {
-        let clip = self.clip_from_relative() * (point_in_world - self.eye_in_world).extend(1.0);
+        let from_eye = point_in_world - self.eye_in_world;
+        let clip = self.clip_from_relative() * from_eye.extend(1.0);
+        let depth_m = match self.projection {
+            Projection::Perspective => clip.w,
+            Projection::FromAbove { .. } => -from_eye.dot(self.world_from_view.z_axis),
+        };
         let [width, height] = self.size_px.map(f64::from);
-        (clip.w >= self.near_m).then(|| {
+        (depth_m >= self.near_m).then(|| {
             let x_px = (0.5 + 0.5 * clip.x / clip.w) * width;
             let y_px = (0.5 - 0.5 * clip.y / clip.w) * height;
-            (DVec2::new(x_px, y_px), clip.w)
+            (DVec2::new(x_px, y_px), depth_m)
         })
     }
 
     /// Direction in world space through a pixel position, scaled so that its depth is 1: a point at depth d
-    /// along it is `eye + d · ray`.
+    /// along it is `ray_start + d · ray`.
     #[must_use]
     pub fn ray_in_world(&self, pixel: DVec2) -> DVec3 {
-        let tan = self.half_extent_at_unit_depth();
+        match self.projection {
+            Projection::Perspective => self.world_from_view * self.in_picture(pixel).extend(-1.0),
+            Projection::FromAbove { .. } => -self.world_from_view.z_axis,
+        }
+    }
+
+    /// Where the ray through a pixel position begins, at depth 0.
+    #[must_use]
+    pub fn ray_start_in_world(&self, pixel: DVec2) -> DVec3 {
+        match self.projection {
+            Projection::Perspective => self.eye_in_world,
+            Projection::FromAbove { .. } => {
+                self.eye_in_world + self.world_from_view * self.in_picture(pixel).extend(0.0)
+            }
+        }
+    }
+
+    /// A pixel position along the right and up axes of the view, from the middle of the picture; metres at depth 1, from above at any
+    /// depth.
+    fn in_picture(&self, pixel: DVec2) -> DVec2 {
+        let half = self.half_extent();
         let [width, height] = self.size_px.map(f64::from);
-        let x = (2.0 * pixel.x / width - 1.0) * tan.x;
-        let y = (1.0 - 2.0 * pixel.y / height) * tan.y;
-        self.world_from_view * DVec3::new(x, y, -1.0)
+        DVec2::new((2.0 * pixel.x / width - 1.0) * half.x, (1.0 - 2.0 * pixel.y / height) * half.y)
     }
 
     /// What the picture can show.
     pub(crate) fn frustum(&self) -> Frustum {
-        let tan = self.half_extent_at_unit_depth();
         let plane = |normal_in_view: DVec3, offset: f64| {
             let normal = self.world_from_view * normal_in_view;
             normal.extend(offset - normal.dot(self.eye_in_world))
         };
+        if self.projection != Projection::Perspective {
+            let half = self.half_extent();
+            return Frustum {
+                planes: [
+                    plane(DVec3::X, half.x),
+                    plane(DVec3::NEG_X, half.x),
+                    plane(DVec3::Y, half.y),
+                    plane(DVec3::NEG_Y, half.y),
+                    plane(DVec3::NEG_Z, -self.near_m),
+                ],
+            };
+        }
+        let tan = self.half_extent_at_unit_depth();
         Frustum {
             planes: [
                 plane(DVec3::new(1.0, 0.0, -tan.x), 0.0),
@@ -276,6 +446,10 @@ impl Frustum {
             normal.dot(farthest) + plane.w >= 0.0
         })
     }
+}
+
+fn pixel_at_unit_depth_m(fov_y_rad: f64, [_, height]: [u32; 2]) -> f64 {
+    2.0 * (fov_y_rad / 2.0).tan() / f64::from(height)
 }
 
 fn half_extent_at_unit_depth(fov_y_rad: f64, [width, height]: [u32; 2]) -> DVec2 {

@@ -44,6 +44,62 @@ fn a_tilted_camera_stands_behind_and_above_its_target() {
     assert!((eye.z - (800.0 + 5_000.0)).abs() < 1e-6);
 }
 
+/// x = width / 2 + east / pixel, y = height / 2 − north / pixel, whatever the height.
+#[test]
+fn a_place_seen_from_above_is_where_the_scale_says() {
+    let target = DVec3::new(500_000.0, 5_000_000.0, 800.0);
+    let camera = Camera::from_above(target.truncate(), 2.5, 0.0, [0.0, 3000.0], SIZE);
+    for height_m in [0.0, 800.0, 3000.0] {
+        let at = DVec3::new(500_250.0, 5_000_100.0, height_m);
+        let (pixel, _) = camera.project(at).unwrap();
+        assert!(pixel.distance(DVec2::new(320.0 + 100.0, 240.0 - 40.0)) < 1e-9, "{pixel}");
+        assert!((camera.seeing_distance_m(at) - camera.focus_m()).abs() < 1e-12);
+    }
+    assert!((camera.pixel_at_depth_m(1.0) - 2.5).abs() < 1e-12);
+    let turned = Camera::from_above(target.truncate(), 2.5, 90.0, [0.0, 3000.0], SIZE);
+    let (east, _) = turned.project(target + DVec3::X * 250.0).unwrap();
+    assert!(east.distance(DVec2::new(320.0, 240.0 - 100.0)) < 1e-9, "heading east: {east}");
+}
+
+#[test]
+fn depths_from_above_are_between_nothing_and_one_and_come_back() {
+    let target = DVec3::new(0.0, 0.0, 800.0);
+    let camera = Camera::from_above(target.truncate(), 2.5, 0.0, [-100.0, 3000.0], SIZE);
+    for height_m in [-100.0, 800.0, 3000.0] {
+        let at = DVec3::new(10.0, 20.0, height_m);
+        let clip = camera.clip_from_relative() * (at - camera.eye_in_world()).extend(1.0);
+        assert!(
+            (clip.w - 1.0).abs() < 1e-12 && clip.z > 0.0 && clip.z < 1.0,
+            "{height_m} m: {clip}"
+        );
+        let depth_m = camera.depth_m(clip.z);
+        assert!((camera.eye_in_world().z - depth_m - height_m).abs() < 1e-9);
+        let (pixel, _) = camera.project(at).unwrap();
+        let back = camera.ray_start_in_world(pixel) + camera.ray_in_world(pixel) * depth_m;
+        assert!(back.distance(at) < 1e-9, "{back}");
+    }
+}
+
+#[test]
+fn a_view_from_above_sees_boxes_in_its_rectangle_alone_and_frames_what_it_is_to_show() {
+    let plan = |x: f64| Bounds { min_x: x, min_y: -10.0, max_x: x + 10.0, max_y: 10.0 };
+    let target = DVec3::new(0.0, 0.0, 800.0);
+    let camera = Camera::from_above(target.truncate(), 2.5, 0.0, [0.0, 3000.0], SIZE);
+    let sees = |x: f64| camera.frustum().may_see(&WorldBox::new(plan(x), [0.0, 3000.0]));
+    assert!(sees(0.0) && sees(799.0) && sees(-809.0));
+    assert!(!sees(801.0) && !sees(-811.0));
+
+    let subject =
+        WorldBox::new(Bounds { min_x: 4e5, min_y: 5e6, max_x: 4.6e5, max_y: 5.02e6 }, [0.0, 900.0]);
+    for heading_deg in [0.0, 30.0, 90.0] {
+        let camera = Camera::framing_from_above(subject, heading_deg, [0.0, 900.0], SIZE);
+        let pixels: Vec<DVec2> =
+            subject.corners().map(|corner| camera.project(corner).unwrap().0).collect();
+        let least = pixels.iter().fold(DVec2::INFINITY, |a, b| a.min(*b)).min_element();
+        assert!((0.0..20.0).contains(&least), "{heading_deg}: {least}");
+    }
+}
+
 #[test]
 fn depth_runs_from_one_at_the_near_plane_to_zero() {
     let camera = camera(0.0, 0.0);

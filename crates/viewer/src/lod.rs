@@ -243,7 +243,7 @@ impl Walk<'_> {
         let Quality { screen_space_error_px: most_error_px, cell_px, vertical_scale, .. } =
             self.quality;
         let world_box = self.world_box(id, range_m);
-        let distance_m = world_box.distance_m(self.camera.eye_in_world());
+        let distance_m = self.camera.seeing_distance_of_box_m(&world_box);
         let error_m = ground.geometric_error_m * vertical_scale;
         let by_error = screen_space_error_px(error_m, distance_m, self.camera) / most_error_px;
         // An infinite cell over an infinite limit is no number, and `max` passes over it.

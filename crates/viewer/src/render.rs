@@ -268,16 +268,15 @@ fn camera(
     };
     let no_ground = || RenderError::NoGround { name: request.name.clone() };
     let data = package.manifest().data_bounds;
-    let extent = match request.camera {
-        CameraRequest::Overview => {
-            TileStore::new(package).map_extent(data)?.ok_or_else(no_ground)?
-        }
-        CameraRequest::LookAt { .. } => MapExtent::of_data(data, height_range_m),
+    let extent = if request.camera.is_overview() {
+        TileStore::new(package).map_extent(data)?.ok_or_else(no_ground)?
+    } else {
+        MapExtent::of_data(data, height_range_m)
     };
-    let ground = SightedGround { extent, at_place_m };
+    let ground = SightedGround { extent, heights_m: height_range_m, at_place_m };
     let camera =
         request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
-    if request.camera != CameraRequest::Overview {
+    if matches!(request.camera, CameraRequest::LookAt { .. }) {
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }
     Ok(camera)

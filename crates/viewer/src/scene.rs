@@ -68,8 +68,8 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
         tile.plan_bounds(),
         summary.height_range_m.map(|m| m * view.vertical_scale()),
     );
-    let eye = view.camera.eye_in_world();
-    let far_m = ground.corners().map(|corner| corner.distance(eye)).fold(0.0, f64::max);
+    let far_m =
+        ground.corners().map(|corner| view.camera.seeing_distance_m(corner)).fold(0.0, f64::max);
     let scaling = view.roads.width_scaling(view.style);
     FunctionalRoadClass::all()
         .filter(|class| view.roads.classes.contains(*class))

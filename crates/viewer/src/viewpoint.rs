@@ -1,7 +1,7 @@
 //! The camera that a picture or a new window is asked to begin with.
 
 use corniche_tileset::Manifest;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     camera::{Camera, Orientation, WorldBox},
@@ -26,6 +26,19 @@ pub enum CameraRequest {
         /// Direction of view.
         orientation: Orientation,
     },
+    /// Where the roads are, or the whole package, straight from above with parallel rays and north up.
+    OverviewFromAbove,
+    /// A place straight from above with parallel rays. It needs no ground.
+    FromAbove {
+        /// Longitude of the place, WGS84.
+        lon_deg: f64,
+        /// Latitude of the place, WGS84.
+        lat_deg: f64,
+        /// Side of a pixel, true metres.
+        pixel_m: f64,
+        /// What is at the top of the picture, clockwise from north.
+        heading_deg: f64,
+    },
 }
 
 /// The place to look at has no ground.
@@ -48,6 +61,8 @@ pub struct OffGround {
 pub struct SightedGround {
     /// What [`CameraRequest::Overview`] shows.
     pub extent: MapExtent,
+    /// All ground of the package lies between these true heights.
+    pub heights_m: [f64; 2],
     /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place. It does not count where a height
     /// is given.
     pub at_place_m: Option<f64>,
@@ -60,16 +75,28 @@ impl CameraRequest {
         match self {
             Self::Overview => Orientation { heading_deg: 0.0, pitch_deg: 45.0 },
             Self::LookAt { orientation, .. } => orientation,
+            Self::OverviewFromAbove => Orientation { heading_deg: 0.0, pitch_deg: 0.0 },
+            Self::FromAbove { heading_deg, .. } => Orientation { heading_deg, pitch_deg: 0.0 },
         }
     }
 
+    /// Whether it shows where the roads are, and not a place that was named.
+    #[must_use]
+    pub fn is_overview(self) -> bool {
+        matches!(self, Self::Overview | Self::OverviewFromAbove)
+    }
+
     /// The place to look at, in the working CRS: [`CameraRequest::camera`] needs the height of the ground there. `None` for
-    /// the overview.
+    /// an overview.
     ///
     /// # Errors
     /// When it lies too far away from the package to have a position in the working CRS.
     pub fn place(self, manifest: &Manifest) -> Result<Option<[f64; 2]>, OffGround> {
-        let Self::LookAt { lon_deg, lat_deg, .. } = self else { return Ok(None) };
+        let (Self::LookAt { lon_deg, lat_deg, .. } | Self::FromAbove { lon_deg, lat_deg, .. }) =
+            self
+        else {
+            return Ok(None);
+        };
         let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
         at.map(Some).ok_or(off_ground(lon_deg, lat_deg, manifest))
     }
@@ -85,12 +112,20 @@ impl CameraRequest {
         vertical_scale: f64,
         size_px: [u32; 2],
     ) -> Result<Camera, OffGround> {
+        let in_world =
+            |heights_m: [f64; 2]| heights_m.map(|height_m: f64| height_m * vertical_scale);
+        let subject = WorldBox::new(ground.extent.plan, in_world(ground.extent.heights_m));
+        let all = in_world(ground.heights_m);
         match self {
-            Self::Overview => {
-                let MapExtent { plan, heights_m } = ground.extent;
-                let subject =
-                    WorldBox::new(plan, heights_m.map(|height_m| height_m * vertical_scale));
-                Ok(Camera::framing(subject, self.orientation(), size_px))
+            Self::Overview => Ok(Camera::framing(subject, self.orientation(), size_px)),
+            Self::OverviewFromAbove => Ok(Camera::framing_from_above(subject, 0.0, all, size_px)),
+            Self::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => {
+                let Some([x, y]) = self.place(manifest)? else {
+                    return Err(off_ground(lon_deg, lat_deg, manifest));
+                };
+                let target = DVec2::new(x, y);
+                let pixel_in_world_m = pixel_m * manifest.point_scale;
+                Ok(Camera::from_above(target, pixel_in_world_m, heading_deg, all, size_px))
             }
             Self::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
                 let height_m = height_m.or(ground.at_place_m);

@@ -165,7 +165,7 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let on_disk = PackageSource::open(&path).unwrap();
     let manifest = on_disk.manifest();
     let extent = TileStore::new(&on_disk).map_extent(manifest.data_bounds).unwrap().unwrap();
-    let ground = SightedGround { extent, at_place_m: None };
+    let ground = SightedGround { extent, heights_m: extent.heights_m, at_place_m: None };
     let camera = CameraRequest::Overview.camera(manifest, ground, 1.0, [640, 480]).unwrap();
     let expected =
         settled(&on_disk, &camera, |ids| ids.iter().map(|id| on_disk.load(*id).unwrap()).collect());

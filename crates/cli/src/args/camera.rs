@@ -5,6 +5,9 @@ use corniche_viewer::{CameraRequest, camera::Orientation};
 
 use super::values::parse_position;
 
+/// Side of a pixel of a view from above unless --pixel says otherwise.
+const DEFAULT_PIXEL_M: f64 = 5.0;
+
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
     /// Look at this longitude and latitude (degrees, WGS84) instead of where the roads are
@@ -40,6 +43,33 @@ impl CameraArgs {
             height_m: self.height,
             distance_m: self.distance,
             orientation: Orientation { heading_deg: self.heading, pitch_deg: self.pitch },
+        }
+    }
+}
+
+/// A view from above, for commands that make one picture.
+#[derive(Debug, Args)]
+pub(crate) struct FromAboveArgs {
+    /// Look straight down with parallel rays, as on a map: every place at the same scale, north up unless --heading says otherwise
+    #[arg(long, conflicts_with_all = ["height", "distance", "pitch"])]
+    ortho: bool,
+    /// With --ortho and --look-at: side of a pixel on the ground, in metres [default: 5]
+    #[arg(long, value_name = "METRES", requires = "ortho", requires = "look_at")]
+    pixel: Option<f64>,
+}
+
+impl FromAboveArgs {
+    /// What is asked of the viewer, which checks it.
+    pub(crate) fn request(&self, camera: &CameraArgs) -> CameraRequest {
+        match (self.ortho, camera.look_at) {
+            (false, _) => camera.request(),
+            (true, None) => CameraRequest::OverviewFromAbove,
+            (true, Some([lon_deg, lat_deg])) => CameraRequest::FromAbove {
+                lon_deg,
+                lat_deg,
+                pixel_m: self.pixel.unwrap_or(DEFAULT_PIXEL_M),
+                heading_deg: camera.heading,
+            },
         }
     }
 }

@@ -6,6 +6,33 @@ use super::*;
 struct Line {
     #[command(flatten)]
     camera: CameraArgs,
+    #[command(flatten)]
+    from_above: FromAboveArgs,
+}
+
+#[test]
+fn a_view_from_above_has_a_scale_and_no_distance() {
+    let check = |line: &str, expected: Option<CameraRequest>| {
+        let line = Line::try_parse_from(line.split_whitespace());
+        assert_eq!(line.ok().map(|line| line.from_above.request(&line.camera)), expected);
+    };
+    let place = |pixel_m, heading_deg| CameraRequest::FromAbove {
+        lon_deg: -9.5,
+        lat_deg: 47.0,
+        pixel_m,
+        heading_deg,
+    };
+    check("corniche", Some(CameraRequest::Overview));
+    check("corniche --ortho", Some(CameraRequest::OverviewFromAbove));
+    check("corniche --ortho --look-at -9.5,47", Some(place(5.0, 0.0)));
+    let all = "corniche --ortho --look-at -9.5,47 --pixel 0.5 --heading -30";
+    check(all, Some(place(0.5, -30.0)));
+    for lacking in ["--pixel 2", "--pixel 2 --look-at 1,2", "--ortho --pixel 2"] {
+        check(&format!("corniche {lacking}"), None);
+    }
+    for senseless in ["--distance 20", "--pitch 10", "--height 5"] {
+        check(&format!("corniche --ortho --look-at 1,2 {senseless}"), None);
+    }
 }
 
 #[test]
@@ -32,7 +59,7 @@ fn a_place_is_looked_at_from_where_the_options_say() {
             let height_m = Some(-12.5);
             CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation }
         }
-        CameraRequest::Overview => panic!("no place"),
+        _ => panic!("no place"),
     };
     check("corniche --look-at -9.5,47 --height -12.5", Some(high));
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use corniche_presets::parse_bytes;
 
 use super::{
-    camera::CameraArgs,
+    camera::{CameraArgs, FromAboveArgs},
     ground::GroundArgs,
     look::{LookArgs, Roads},
     values::parse_size,
@@ -32,6 +32,8 @@ pub(crate) struct RenderArgs {
     pub(crate) size: [u32; 2],
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
+    #[command(flatten)]
+    pub(crate) from_above: FromAboveArgs,
     #[command(flatten)]
     pub(crate) ground: GroundArgs,
     /// Samples per pixel along each side, averaged

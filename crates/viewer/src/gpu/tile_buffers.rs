@@ -15,7 +15,7 @@ use super::{
     uniforms::TileUniforms,
 };
 use crate::{
-    camera::WorldBox,
+    camera::{Projection, WorldBox},
     class_scale,
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
@@ -153,7 +153,13 @@ impl DrawTile<'_> {
             WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
         // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
         let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
-        (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
+        match view.camera.projection() {
+            Projection::Perspective => {
+                (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
+            }
+            // The same for all ground.
+            Projection::FromAbove { .. } => view.camera.focus_m(),
+        }
     }
 
     /// Its areas with its index in the list of tiles of the frame, and how they are counted; `None` without areas.
@@ -170,7 +176,9 @@ impl DrawTile<'_> {
         let reach_m = 1.01
             * view.camera.near_m()
             * view.camera.half_extent_at_unit_depth().extend(1.0).length();
-        let is_near = volumes.distance_m(view.camera.eye_in_world()) <= reach_m;
+        // From above no face is cut off by the near plane.
+        let is_near = view.camera.projection() == Projection::Perspective
+            && volumes.distance_m(view.camera.eye_in_world()) <= reach_m;
         Some((index, areas, if is_near { Counting::Behind } else { Counting::InFront }))
     }
 

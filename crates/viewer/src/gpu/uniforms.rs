@@ -8,6 +8,7 @@ use glam::{DVec3, DVec4};
 use corniche_styles::{OwnWidths, RoadBands};
 
 use crate::{
+    camera::Projection,
     class_scale,
     frame_view::FrameView,
     options::{CapTest, Caps, Quads, RoadMethod},
@@ -26,7 +27,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     // The passes know samples only: for them the picture has as many pixels as there are samples.
     let camera = view.camera.supersampled(samples_per_side);
     let axes = camera.world_from_view();
-    let tan = camera.half_extent_at_unit_depth();
+    let half = camera.half_extent();
     let [width_px, height_px] = camera.size_px().map(f64::from);
     let samples = samples_per_side as f32;
     // Without roads there are no outlines.
@@ -43,8 +44,8 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         .to_vec();
     rows.extend(
         [
-            (axes.x_axis * tan.x).extend(width_px),
-            (axes.y_axis * tan.y).extend(height_px),
+            (axes.x_axis * half.x).extend(width_px),
+            (axes.y_axis * half.y).extend(height_px),
             (-axes.z_axis).extend(camera.near_m()),
         ]
         .map(row),
@@ -72,7 +73,11 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     ]);
     let is_level = view.roads.quads == Quads::Level;
     let part_distance_m = class_scale::part_distance_m(style, view.camera) as f32;
-    rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, 0.0, 0.0]);
+    let parallel = match camera.projection() {
+        Projection::Perspective => [0.0, 0.0],
+        Projection::FromAbove { far_m } => [far_m as f32, camera.focus_m() as f32],
+    };
+    rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, parallel[0], parallel[1]]);
     rows.extend(style.roads.iter().map(|road| {
         let bands = road.bands.all().len() as f32;
         let half_width_m = road.width_m / 2.0 * scaling.constant;

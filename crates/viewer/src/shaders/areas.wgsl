@@ -33,6 +33,16 @@ fn height_of(heights: vec2<f32>, is_top: bool) -> f32 {
     return height - select(tile.offset.w, 0.0, is_top);
 }
 
+// From above no face may be cut off above or beneath all ground, and depths are not compared. Walls are then seen edge-on and cover
+// nothing.
+fn clip_of(position: vec3<f32>) -> vec4<f32> {
+    var clip = frame.clip_from_relative * vec4(position, 1.0);
+    if is_from_above() {
+        clip.z = 0.5;
+    }
+    return clip;
+}
+
 @vertex
 fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2<f32>, @location(1) end: vec2<f32>,
     @location(2) heights: vec2<f32>) -> Face {
@@ -41,7 +51,7 @@ fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2<f32>
     //  0 ── 1
     let plan = tile.offset.xy + select(start, end, (corner & 1u) == 1u);
     var out: Face;
-    out.clip = frame.clip_from_relative * vec4(plan, height_of(heights, corner > 1u), 1.0);
+    out.clip = clip_of(vec3(plan, height_of(heights, corner > 1u)));
     out.ends = vec4(tile.offset.xy + start, tile.offset.xy + end);
     return out;
 }
@@ -51,7 +61,7 @@ fn cap_vertex(@location(0) place: vec2<f32>, @location(1) heights: vec2<f32>) ->
     let plan = tile.offset.xy + place;
     let height = height_of(heights, IS_TOP == 1u);
     var out: Face;
-    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    out.clip = clip_of(vec3(plan, height));
     out.ends = vec4(0.0, 0.0, height, 0.0);
     return out;
 }
@@ -101,7 +111,7 @@ fn wall_fragment(in: Face) {
 fn cap_fragment(in: Face) {
     let ground = own_ground(in.clip.xy);
     let height = in.ends.z;
-    let is_beyond = (height < 0.0) != (height < ground.z);
+    let is_beyond = (is_from_above() || height < 0.0) != (height < ground.z);
     if ground.w == 0.0 || is_beyond == (IS_FAIL == 1u) {
         discard;
     }
@@ -129,7 +139,7 @@ fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @l
         + vec2(select(low.x, high.x, (corner & 1u) != 0u), select(low.y, high.y, (corner & 2u) != 0u));
     let height = height_of(vec2(low.z, high.z), (corner & 4u) != 0u);
     var out: Covered;
-    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    out.clip = clip_of(vec3(plan, height));
     out.color = colors[area_class];
     return out;
 }

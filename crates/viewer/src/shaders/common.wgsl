@@ -2,6 +2,9 @@
 //
 // Positions are relative to the eye, along the world's axes (x east, y north, z up), in metres.
 // Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
+//
+// In a view from above all rays run straight down, and depth is linear from 1 above all ground to 0 beneath it. Whatever depends on
+// the distance from the eye then has one value in the whole picture: `distance_to`, `scale_depth_of`.
 
 const CLASSES = 9u;
 // The most bands of a road.
@@ -9,9 +12,9 @@ const BANDS = 16u;
 
 struct Frame {
     clip_from_relative: mat4x4<f32>,
-    // xyz: the view's right axis × half width at depth 1; w: width of the picture in pixels.
+    // xyz: the view's right axis × half width at depth 1, from above at any depth; w: width of the picture in pixels.
     right: vec4<f32>,
-    // xyz: the view's up axis × half height at depth 1; w: height of the picture in pixels.
+    // xyz: the view's up axis × half height, likewise; w: height of the picture in pixels.
     up: vec4<f32>,
     // xyz: the direction of view; w: depth of the near plane.
     forward: vec4<f32>,
@@ -25,7 +28,8 @@ struct Frame {
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
     // x: distance from the eye up to which roads of a part of the network are shown in full, for each metre of that part;
-    // y: 1 for the paper's level quads of geometry.
+    // y: 1 for the paper's level quads of geometry; z: from above the depth of the far plane; w: from above the distance at which a
+    // perspective view has such pixels, else 0.
     network: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
     // w: distance from the eye up to which the class is shown in full.
@@ -39,15 +43,51 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
+// Whether the view is one from above.
+fn is_from_above() -> bool {
+    return frame.network.w > 0.0;
+}
+
 // Direction through a pixel position, scaled to depth 1.
 fn ray_at(pixel: vec2<f32>) -> vec3<f32> {
+    if is_from_above() {
+        return frame.forward.xyz;
+    }
     let x = 2.0 * pixel.x / frame.right.w - 1.0;
     let y = 1.0 - 2.0 * pixel.y / frame.up.w;
     return frame.forward.xyz + x * frame.right.xyz + y * frame.up.xyz;
 }
 
+// Where the ray through a pixel position begins: in the eye, or from above in the level plane through the eye.
+fn ray_start_at(pixel: vec2<f32>) -> vec3<f32> {
+    if !is_from_above() {
+        return vec3(0.0);
+    }
+    let x = 2.0 * pixel.x / frame.right.w - 1.0;
+    let y = 1.0 - 2.0 * pixel.y / frame.up.w;
+    return x * frame.right.xyz + y * frame.up.xyz;
+}
+
 fn view_depth_of(depth_buffer: f32) -> f32 {
+    if is_from_above() {
+        return frame.network.z - depth_buffer * (frame.network.z - frame.forward.w);
+    }
     return frame.forward.w / depth_buffer;
+}
+
+// Where the ground at a pixel is, relative to the eye.
+fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
+    return ray_start_at(pixel) + ray_at(pixel) * view_depth_of(depth_buffer);
+}
+
+// The distance from the eye to a place, as far as it decides how large things look there.
+fn distance_to(position: vec3<f32>) -> f32 {
+    return select(length(position), frame.network.w, is_from_above());
+}
+
+// The depth to which the size of a pixel belongs.
+fn scale_depth_of(depth_buffer: f32) -> f32 {
+    return select(view_depth_of(depth_buffer), frame.network.w, is_from_above());
 }
 
 // How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL or SERVICE), half its width near the eye, and the length of its

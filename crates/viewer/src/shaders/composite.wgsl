@@ -33,7 +33,7 @@ struct PictureColors {
 // Pixels on each side of a block.
 override BLOCK: u32 = 16u;
 
-// Ground that is this many times farther away than its neighbour in the picture lies behind it.
+// Ground that is this many times farther away than its neighbour in the picture lies behind it. From above none does.
 const FARTHER = 1.1;
 
 // The label that a value in the target stands for.
@@ -94,13 +94,13 @@ fn hatch(along: f32, spacing: f32, footprint: f32) -> f32 {
 }
 
 // The plane of voids: neutral, with oblique lines that keep their place on the ground. From far away there are fewer lines.
-fn void_at(ray: vec3<f32>) -> vec3<f32> {
+fn void_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     let plane = colors.void_plane;
     let down = max(-ray.z, 1e-4);
     let distance = max(plane.z, 0.0) / down;
-    let place = plane.xy + distance * ray.xy;
+    let place = plane.xy + ray_start_at(position).xy + distance * ray.xy;
     // As long as it is on the plane in the direction of view.
-    let footprint = pixel_m_at(distance) * inverseSqrt(down) + 1e-9;
+    let footprint = pixel_m_at(select(distance, frame.network.w, is_from_above())) * inverseSqrt(down) + 1e-9;
     let octave = log2(HATCH_PX * footprint);
     let spacing = exp2(ceil(octave));
     let along = place.x + place.y;
@@ -120,7 +120,7 @@ fn noise_at(position: vec2<f32>) -> f32 {
 fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
     let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    let color = mix(void_at(ray), above, smoothstep(-0.2, 0.0, elevation));
+    let color = mix(void_at(ray, position), above, smoothstep(-0.2, 0.0, elevation));
     // Steps between the 256 values of a channel would be seen as bands. Averaging samples makes the noise weaker, so it is
     // wider than one step.
     let grain = (noise_at(position) - 0.5) * 1.5 / 255.0;
@@ -156,7 +156,7 @@ fn sight_at(position: vec2<f32>) -> Sight {
         sight.color = background_at(ray, position);
         return sight;
     }
-    sight.depth = view_depth_of(sight.depth_buffer);
+    sight.depth = scale_depth_of(sight.depth_buffer);
     sight.distance_m = sight.depth * length(ray);
     let reach = sight.distance_m / colors.haze.w;
     sight.haze = 1.0 - exp(-reach * reach);
@@ -180,7 +180,8 @@ const LEAST_FACING = 0.3;
 // keeps its edge there. It must be asked for every pixel, in the sky too.
 fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
     let ray = ray_at(position);
-    let ground = ray * sight.depth;
+    let depth = select(sight.depth, view_depth_of(sight.depth_buffer), is_from_above());
+    let ground = ray_start_at(position) + ray * depth;
     let normal = cross(dpdx(ground), dpdy(ground));
     let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
     return clamp(3.0 * sine, LEAST_FACING, 1.0);
@@ -235,7 +236,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
-    let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
+    let most = label_of(largest_around(pixel, own, select(sight.depth_buffer / FARTHER, 0.0, is_from_above())));
     // The edge of a tunnel is dashed.
     if rank_of(most) > rank_of(label) && (!is_tunnel(most) || (most & 1u) == 1u) {
         let road_class = class_of(most);

@@ -54,6 +54,9 @@ const NOTHING = 0u;
 // How many times wider a level road must be in plan to look as wide as one seen from above.
 fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     // The factor 1.5 is for slopes that face away from the eye.
+    if is_from_above() {
+        return 1.5;
+    }
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
@@ -140,7 +143,7 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
 fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
-    let distance_m = length(position);
+    let distance_m = distance_to(position);
     if !is_shown(road, distance_m) {
         return NOTHING;
     }
@@ -153,7 +156,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     let part = part_share(road, distance_m);
     let half_m = part * scaled_half_width_m(road, distance_m);
     let looks_m = part * stretch_of(distance_m, position.z)
-        * least_half_width_m(road, view_depth_of(depth_buffer));
+        * least_half_width_m(road, scale_depth_of(depth_buffer));
     // How many bands are known to be there.
     var within = 0u;
     while within < bands && plan_m <= band_share(road.class_number, within) * half_m {
@@ -208,7 +211,7 @@ fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     }
     let segment_m = max(length(in.start_to_end), 1e-6);
     let along_m = in.dash_m + dot(position.xy - in.start, in.start_to_end) / segment_m;
-    let period_m = exp2(ceil(log2(DASH_PX * pixel_m_at(length(position)))));
+    let period_m = exp2(ceil(log2(DASH_PX * pixel_m_at(distance_to(position)))));
     let is_dash = fract(along_m / period_m) < 0.5;
     return (CLASSES - road.class_number) * 2u + select(0u, 1u, is_dash);
 }

@@ -15,8 +15,3 @@ struct Tile {
 // These bits of an owner say that the pixel shows a skirt, and the wall along the edge of the data, which has the bit of skirts too.
 const SKIRT = 0x80000000u;
 const WALL = 0x40000000u;
-
-// Where the ground at a pixel is, relative to the eye.
-fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
-    return ray_at(pixel) * view_depth_of(depth_buffer);
-}

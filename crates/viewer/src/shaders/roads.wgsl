@@ -147,6 +147,20 @@ fn shown_from_its_end(bed: RoadBed) -> Shown {
     return out;
 }
 
+// In a view from above the quad that hides a bed is the bed's plan.
+fn shown_from_above(bed: RoadBed) -> Shown {
+    var out: Shown;
+    out.u = vec3(bed.along.xy, 0.0);
+    // As the cross product of the normal and u.
+    out.v = vec3(-bed.across.xy, 0.0);
+    out.normal = frame.forward.xyz;
+    let start = vec2(dot(bed.start.xy, out.u.xy), dot(bed.start.xy, out.v.xy));
+    out.least = start + vec2(bed.x.x, -bed.y.y);
+    out.most = start + vec2(bed.x.y, -bed.y.x);
+    out.nearest = 1.0;
+    return out;
+}
+
 fn least_of(values: vec4<f32>) -> f32 {
     return min(min(values.x, values.y), min(values.z, values.w));
 }
@@ -167,10 +181,10 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     let along = vec3(direction, slopes.x);
     let b = a + along * length_m;
 
-    let far_m = max(length(a), length(b));
+    let far_m = max(distance_to(a), distance_to(b));
     // The quad is made a little larger, so that rounding of positions does not cut off ground at the edge. The fragment
     // shader decides for each pixel.
-    let pad_m = 1e-6 * far_m + 0.01;
+    let pad_m = 1e-6 * max(length(a), length(b)) + 0.01;
     // No wider than the tile's margin, as for volumes: neighbouring tiles have no roads from farther away.
     let widest_m = min(bounding_radius_m(road, far_m, 0.0), tile.base.y) + pad_m;
     // The fragment shader uses the ground at its pixel, which may be nearer to the eye's height than the piece, or farther.
@@ -193,9 +207,14 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     bed.x = ends;
     bed.y = vec2(-radius_m, radius_m);
     bed.z = vec2(-leaving.x, leaving.y);
-    var shown = shown_about_axis(bed);
-    if shown.nearest < LEAST_NEAREST {
-        shown = shown_from_its_end(bed);
+    var shown: Shown;
+    if is_from_above() {
+        shown = shown_from_above(bed);
+    } else {
+        shown = shown_about_axis(bed);
+        if shown.nearest < LEAST_NEAREST {
+            shown = shown_from_its_end(bed);
+        }
     }
     let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
     let at = mix(shown.least, shown.most, side);
@@ -212,7 +231,12 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     }
 
     var out: RoadFragment;
-    out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
+    if is_from_above() {
+        out.clip = frame.clip_from_relative * vec4(position, 1.0);
+        out.clip.z = 0.5;
+    } else {
+        out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
+    }
     out.start = start;
     out.start_to_end = start_to_end;
     // Look and flat ends.

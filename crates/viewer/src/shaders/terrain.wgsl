@@ -53,7 +53,11 @@ fn vertex(in: VertexIn) -> VertexOut {
     out.position = tile.offset.xyz + in_tile;
     out.clip = frame.clip_from_relative * vec4(out.position, 1.0);
     // depth_buffer = z / w, greater is nearer.
-    out.clip.z *= 1.0 + PULL_PX * frame.scale.x;
+    if is_from_above() {
+        out.clip.z += PULL_PX * frame.scale.x * frame.network.w / (frame.network.z - frame.forward.w);
+    } else {
+        out.clip.z *= 1.0 + PULL_PX * frame.scale.x;
+    }
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
@@ -68,7 +72,7 @@ fn owner_of_pixel() -> u32 {
 
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
-    let distance_m = length(in.position);
+    let distance_m = distance_to(in.position);
     let normal = ground_normal(in.normal, in.plan_in_tile, distance_m);
     let photo = photo_at(in.plan_in_tile);
     let photo_share = photo.a * colors.water.w;
@@ -87,7 +91,7 @@ fn wall_fragment(in: VertexOut) -> Pixel {
     let across = cross(dpdx(in.position), dpdy(in.position));
     let facing = abs(dot(normalize(across.xy + vec2(1e-20, 0.0)), normalize(colors.light.xy + vec2(0.0, 1e-20))));
     let color = colors.wall.rgb * (0.85 + 0.2 * facing);
-    return Pixel(vec4(hazy(color, in.height_m, length(in.position)), 0.5), owner_of_pixel());
+    return Pixel(vec4(hazy(color, in.height_m, distance_to(in.position)), 0.5), owner_of_pixel());
 }
 
 @fragment

@@ -49,7 +49,7 @@ struct Reach {
 
 // Half the width of a road whose ground lies between these heights, and these heights.
 fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
-    let far_m = length(vec2(plan_m, max(abs(heights.x), abs(heights.y))));
+    let far_m = distance_to(vec3(plan_m, 0.0, max(abs(heights.x), abs(heights.y))));
     let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
     // Heights are known within the margin only.
     return Reach(min(bounding_radius_m(road, far_m, near_height_m), tile.base.y), heights);
@@ -101,6 +101,10 @@ fn vertex(in: VolumeIn) -> RoadFragment {
 
     var out: RoadFragment;
     out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    if is_from_above() {
+        // Boxes reach beyond the planes between which all ground is, and must not be cut there. Their depth is not tested.
+        out.clip.z = 0.5;
+    }
     out.start = a;
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
@@ -111,9 +115,12 @@ fn vertex(in: VolumeIn) -> RoadFragment {
 }
 
 // The distances at which a ray from the eye along the unit vector `ray` enters and leaves the cap around an end, as the
-// paper computes them. If it misses the cap, the entry is behind the exit.
+// paper computes them. If it misses the cap, the entry is behind the exit. `cap` is relative to the ray's start.
 fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
     let c = -cap;
+    if is_from_above() {
+        return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), dot(c, c) <= radius_m * radius_m);
+    }
     let vv = dot(ray.xy, ray.xy);
     let vc = dot(ray.xy, c);
     let d = 4.0 * vc * vc - 4.0 * vv * (dot(c, c) - radius_m * radius_m);
@@ -133,13 +140,16 @@ fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
 }
 
 // The paper's test, section 5.2: z0 < zt < z1. `share` of the road's width.
-fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
+fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start_from_eye: vec2<f32>, start_to_end: vec2<f32>,
     road: Road, share: f32) -> bool {
     let position = position_at(center, depth_buffer);
-    let ground = length(position);
+    let ray_start = ray_start_at(center);
+    let start = start_from_eye - ray_start.xy;
+    let ground = length(position - ray_start);
+    let distance_m = distance_to(position);
     let ray = normalize(ray_at(center));
     let radius_m = min(tile.base.y, share
-        * max(scaled_half_width_m(road, ground), least_half_width_m(road, view_depth_of(depth_buffer))));
+        * max(scaled_half_width_m(road, distance_m), least_half_width_m(road, scale_depth_of(depth_buffer))));
 
     let length_m = length(start_to_end);
     let direction = select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
@@ -160,10 +170,10 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road) -> u32 {
-    if !is_shown(road, length(position_at(center, depth_buffer))) {
+    if !is_shown(road, distance_to(position_at(center, depth_buffer))) {
         return NOTHING;
     }
-    let part = part_share(road, length(position_at(center, depth_buffer)));
+    let part = part_share(road, distance_to(position_at(center, depth_buffer)));
     let bands = band_count(road);
     var within = 0u;
     while within < bands && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road,

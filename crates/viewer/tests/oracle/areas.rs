@@ -118,8 +118,8 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
             continue;
         }
         found.painted += usize::from(drawn.is_some());
-        let depth_m = camera.near_m() / f64::from(drawing.depth[index]);
-        let ground = camera.eye_in_world() + camera.ray_in_world(pixel) * depth_m;
+        let depth_m = camera.depth_m(f64::from(drawing.depth[index]));
+        let ground = camera.ray_start_in_world(pixel) + camera.ray_in_world(pixel) * depth_m;
         let far_m = ground.distance(camera.eye_in_world());
         // The depth is an f32, and so are places relative to the eye. At a pixel's width of a thousandth of the distance, this is a
         // hundredth of a pixel.
@@ -168,6 +168,15 @@ fn square([west, south]: [f64; 2], side: f64) -> Vec<[f64; 2]> {
 fn circle([x, y]: [f64; 2], radius: f64, points: u32) -> Vec<[f64; 2]> {
     let angle = |k: u32| f64::from(k) / f64::from(points) * std::f64::consts::TAU;
     (0..points).map(|k| [x + radius * angle(k).cos(), y + radius * angle(k).sin()]).collect()
+}
+
+/// From above, with parallel rays, also turned.
+#[test]
+fn areas_agree_with_both_references_in_a_view_from_above() {
+    for heading_deg in [0.0, 33.0] {
+        let camera = Camera::from_above(center(), 4.0, heading_deg, [-3000.0, 3000.0], SIZE);
+        check("from above", &on_hills(), &areas(), &camera, 1000);
+    }
 }
 
 /// A star: concave, with sharp points.

@@ -70,7 +70,7 @@ impl<'a> Caster<'a> {
         let bin =
             |at: f64, count: usize| ((at / BIN_PX as f64).floor().max(0.0) as usize).min(count - 1);
         let list = &self.bins[bin(at.y, self.rows) * self.columns + bin(at.x, self.columns)];
-        let (eye, ray) = (self.camera.eye_in_world(), self.camera.ray_in_world(at));
+        let (eye, ray) = (self.camera.ray_start_in_world(at), self.camera.ray_in_world(at));
         let mut nearest: Option<Hit> = None;
         for (tile, triangle) in list {
             if let Some(depth_m) = cast(eye, ray, std::slice::from_ref(triangle))
@@ -96,7 +96,7 @@ pub(crate) fn compare(
     let look = Look { style: &scene.style, options, camera };
     let label = |at: DVec2| {
         let Some(hit) = caster.hit(at) else { return 0 };
-        let distance_m = hit.at.distance(camera.eye_in_world());
+        let distance_m = camera.seeing_distance_m(hit.at);
         let class = scene.tiles[hit.tile]
             .segments
             .iter()

@@ -17,6 +17,7 @@ mod support;
 mod agreement;
 mod areas;
 mod class_scale;
+mod from_above;
 mod ground_rays;
 mod level_steps;
 mod measures;

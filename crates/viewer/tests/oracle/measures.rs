@@ -2,7 +2,10 @@
 
 use corniche_roads::OwnWidth;
 use corniche_viewer::{
-    RoadMethod, RoadOptions, camera::Camera, for_tests::GroundLine, tiles::RoadLook,
+    RoadMethod, RoadOptions,
+    camera::{Camera, Projection},
+    for_tests::GroundLine,
+    tiles::RoadLook,
 };
 use glam::{DVec2, DVec3};
 
@@ -67,10 +70,11 @@ pub(crate) fn walk(
     drawing: &Drawing,
 ) -> CenterLines {
     let options = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let scale_m = |depth_m| camera.pixel_at_depth_m(depth_m) / camera.pixel_at_unit_depth_m();
     let half_px = |(class, own, kind): (u8, OwnWidth, RoadLook), depth_m: f64| {
         let look = Look { style: &scene.style, options, camera };
-        let (half_m, least_px) = half_width(look, (class, own), narrowing(kind), depth_m);
-        (half_m / (camera.pixel_at_unit_depth_m() * depth_m)).max(least_px)
+        let (half_m, least_px) = half_width(look, (class, own), narrowing(kind), scale_m(depth_m));
+        (half_m / camera.pixel_at_depth_m(depth_m)).max(least_px)
     };
     let mut sum = CenterLines::default();
     let [width, height] = drawing.size_px;
@@ -93,12 +97,16 @@ pub(crate) fn walk(
             if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {
                 continue;
             }
-            // Depths along a line are linear in their reciprocals.
-            let depth_m = 1.0 / ((1.0 - share) / from_m + share / to_m);
+            let depth_m = match camera.projection() {
+                // Depths along a line are linear in their reciprocals.
+                Projection::Perspective => 1.0 / ((1.0 - share) / from_m + share / to_m),
+                Projection::FromAbove { .. } => (1.0 - share) * from_m + share * to_m,
+            };
             let in_view = |at: DVec2| {
                 caster.hit(at).is_none_or(|hit| hit.depth_m >= depth_m * (1.0 - 1e-6) - 1e-3)
             };
-            let distance_m = depth_m * camera.ray_in_world(at).length();
+            let place = camera.ray_start_in_world(at) + camera.ray_in_world(at) * depth_m;
+            let distance_m = camera.seeing_distance_m(place);
             let (class, _, kind) = line.0;
             let seen_from_m = lateness(kind) * distance_m;
             let is_shown = shows(&scene.style, camera, class, seen_from_m) == Tri::Yes;

@@ -4,7 +4,7 @@ use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, Style};
 use corniche_viewer::{
     Caps, RoadOptions, WidthGrowth,
-    camera::Camera,
+    camera::{Camera, Projection},
     for_tests::{Owner, road_label, service_label, tunnel_label},
     tiles::RoadLook,
 };
@@ -126,7 +126,7 @@ impl PixelOracle<'_> {
     pub(crate) fn verdict(&self, index: usize, tile: &Tile) -> Verdict {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
-        let distance_m = ground.distance(self.camera.eye_in_world());
+        let distance_m = self.camera.seeing_distance_m(ground);
         // What is on the ground hides what is beneath it, and service roads are hidden by all others.
         let layers: [fn(RoadLook) -> bool; 3] = [
             |look| matches!(look, RoadLook::Plain | RoadLook::Link),
@@ -183,11 +183,12 @@ impl PixelOracle<'_> {
         let widest_m = tile.geometry.width_margin_m;
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
         let from_eye = ground - self.camera.eye_in_world();
-        let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
+        let distance_m = self.camera.seeing_distance_m(ground);
+        let pixel_m = self.camera.pixel_at_depth_m(depth_m);
         // A step of a pixel on the screen moves the plan position by at least this much.
         let band_m = self.band_px * pixel_m;
         let look = Look { style: self.style, options: self.options, camera: self.camera };
-        let parts = part_m.map(|m| part_share(look, m, from_eye.length()));
+        let parts = part_m.map(|m| part_share(look, m, distance_m));
         if parts[1] == 0.0 {
             return Tri::No;
         }
@@ -195,9 +196,13 @@ impl PixelOracle<'_> {
         let without_cap = without_caps(self.options.caps, flat);
         let plan_m = distance(ground.truncate(), ends, without_cap);
         let (half_m, least_px) =
-            half_width(look, (class, own), factor * narrowing(kind), from_eye.length());
+            half_width(look, (class, own), factor * narrowing(kind), distance_m);
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
-        let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
+        let slant = match self.camera.projection() {
+            Projection::Perspective => from_eye.length() / from_eye.z.abs(),
+            Projection::FromAbove { .. } => 1.0,
+        };
+        let stretch = (1.5 * slant).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
         let thin = if near == Tri::No || wide == Tri::Yes {
             Tri::No
@@ -220,7 +225,7 @@ impl PixelOracle<'_> {
     fn is_dash(&self, index: usize, road: &PlanSegment) -> Tri {
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
         let unit_m = self.camera.pixel_at_unit_depth_m();
-        let octave = (12.0 * unit_m * ground.distance(self.camera.eye_in_world())).log2();
+        let octave = (12.0 * unit_m * self.camera.seeing_distance_m(ground)).log2();
         if (octave - octave.round()).abs() < 1e-5 {
             return Tri::Perhaps;
         }
@@ -230,7 +235,7 @@ impl PixelOracle<'_> {
         let within_m = along_m.rem_euclid(period_m);
         let off_m = [0.0, 0.5, 1.0].map(|share| (within_m - share * period_m).abs());
         // Lengths are f32 of up to 65 km.
-        let band_m = self.band_px * unit_m * depth_m + 0.02;
+        let band_m = self.band_px * self.camera.pixel_at_depth_m(depth_m) + 0.02;
         if off_m.into_iter().any(|off_m| off_m <= band_m) {
             Tri::Perhaps
         } else if within_m < 0.5 * period_m {
@@ -321,8 +326,9 @@ impl PixelOracle<'_> {
         (depth > 0.0).then(|| {
             let width = self.drawing.size_px[0] as usize;
             let at = DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5);
-            let depth_m = self.camera.near_m() / f64::from(depth);
-            (self.camera.eye_in_world() + self.camera.ray_in_world(at) * depth_m, depth_m)
+            let depth_m = self.camera.depth_m(f64::from(depth));
+            let start = self.camera.ray_start_in_world(at);
+            (start + self.camera.ray_in_world(at) * depth_m, depth_m)
         })
     }
 }

@@ -24,13 +24,19 @@ pub(crate) fn first_view(
     let panel_px = panel::first_width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
     let part_px = match camera {
         // All of it must be visible, so it is framed in the part beside the panel.
-        CameraRequest::Overview => [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]],
-        CameraRequest::LookAt { .. } => size_px,
+        CameraRequest::Overview | CameraRequest::OverviewFromAbove => {
+            [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]]
+        }
+        CameraRequest::LookAt { .. } | CameraRequest::FromAbove { .. } => size_px,
     };
     let orientation = camera.orientation();
     let camera = camera.camera(
         package.manifest(),
-        SightedGround { extent: package.extent(), at_place_m: place_height_m },
+        SightedGround {
+            extent: package.extent(),
+            heights_m: package.height_range_m(),
+            at_place_m: place_height_m,
+        },
         package.vertical_scale(exaggeration),
         part_px,
     )?;

@@ -34,9 +34,10 @@ impl OpenedPackage {
         let mut store = TileStore::new(tiles.as_ref());
         let ground = store.coarsest_ground()?.ok_or_else(no_ground)?;
         let data = tiles.manifest().data_bounds;
-        let extent = match request.camera {
-            CameraRequest::Overview => store.map_extent(data)?.ok_or_else(no_ground)?,
-            CameraRequest::LookAt { .. } => MapExtent::of_data(data, ground.height_range_m),
+        let extent = if request.camera.is_overview() {
+            store.map_extent(data)?.ok_or_else(no_ground)?
+        } else {
+            MapExtent::of_data(data, ground.height_range_m)
         };
         let root = store.get(TileId::ROOT).ok_or_else(no_ground)?;
         let package: Arc<dyn MapPackage> = Arc::<dyn BlockingPackage + Send + Sync>::clone(&tiles);
