@@ -129,6 +129,11 @@ fn a_photo_that_lies_beside_the_roads() {
     let [.., confidence] = all(&ran.out);
     println!("{}", ran.out);
     assert!(confidence < 6.0, "{}", ran.out);
+    // The package may stand behind the photos.
+    let again = succeed(corniche(["match", "--photo", text(&bare), text(&package)]));
+    assert_eq!(again.out, ran.out);
+    let ran = corniche(["match", "--photo", text(&bare)]);
+    assert!(ran.code == 2 && ran.err.contains("write it first"), "{}", ran.err);
     // Nothing is replaced unasked.
     let ran = corniche(["match", text(&package), "--photo", text(&bare), "--csv", text(&list)]);
     assert_eq!(ran.code, 3, "{}", ran.err);

@@ -14,7 +14,7 @@ pub(crate) fn cells() -> impl Strategy<Value = BTreeSet<(i64, i64)>> {
 }
 
 /// The borders between cells inside and outside as ways, cut and turned by chance: bit by bit `seed` decides.
-pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Vec<LatticePoint>> {
+pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, seed: u64) -> Vec<Vec<LatticePoint>> {
     let mut edges: Vec<[(i64, i64); 2]> = Vec::new();
     for &(x, y) in cells {
         for (beside, edge) in [
@@ -28,12 +28,7 @@ pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Ve
             }
         }
     }
-    let mut random = move |below: usize| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed % below as u64) as usize
-    };
+    let mut random = random(seed);
     let mut ways = Vec::new();
     while !edges.is_empty() {
         let [mut from, to] = edges.swap_remove(random(edges.len()));
@@ -54,6 +49,16 @@ pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Ve
         ways.push(way);
     }
     ways.into_iter().map(|way| way.into_iter().map(placed).collect()).collect()
+}
+
+/// Numbers below the one that is asked for (Marsaglia 2003, *Xorshift RNGs*).
+pub(crate) fn random(mut seed: u64) -> impl FnMut(usize) -> usize {
+    move |below: usize| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed % below as u64) as usize
+    }
 }
 
 /// Corners of cells in a place where no side is level or upright.

@@ -3,6 +3,7 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 
 use super::*;
+use crate::chessboard::random;
 
 fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
     Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }
@@ -90,7 +91,7 @@ fn coasts_that_contradict_each_other_are_left_out_and_told() {
 const CELL: i64 = 10;
 
 /// Coasts around cells of land, which lie anywhere: of a field of 9 × 9 cells around a rectangle that ends within cells.
-fn coasts_around(land: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Coastline> {
+fn coasts_around(land: &BTreeSet<(i64, i64)>, seed: u64) -> Vec<Coastline> {
     let mut edges = Vec::new();
     for &(x, y) in land {
         let corner = |dx: i64, dy: i64| LatticePoint::new((x + dx) * CELL, (y + dy) * CELL);
@@ -106,12 +107,7 @@ fn coasts_around(land: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Coastline> {
             }
         }
     }
-    let mut random = move |below: usize| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed % below as u64) as usize
-    };
+    let mut random = random(seed);
     let mut coasts = Vec::new();
     while !edges.is_empty() {
         let [from, to] = edges.swap_remove(random(edges.len()));

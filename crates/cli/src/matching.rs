@@ -28,13 +28,14 @@ use crate::{
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
-    let package = FilePackage::open(&args.package)?;
+    let (path, photos) = args.files()?;
+    let package = FilePackage::open(&path)?;
     let manifest = package.manifest();
-    let photos = corniche_pipeline::photo_names(&args.photo)?;
+    let photos = corniche_pipeline::photo_names(&photos)?;
     let existing = existing_of(args.overwrite);
     let others = |own: &Path| -> Vec<&Path> {
         let targets = args.svg.iter().chain(&args.csv).filter(|&target| *target != *own);
-        let inputs = photos.iter().chain([&args.package]);
+        let inputs = photos.iter().chain([&path]);
         inputs.chain(targets).map(AsRef::as_ref).collect()
     };
     if args.svg.is_some() && args.svg == args.csv {

@@ -15,10 +15,9 @@ use corniche_tileset::{
     AreaRecord, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas, payload_sizes,
     pmtiles_order, with_areas,
 };
-use sha2::{Digest as _, Sha256};
 use support::{
     Options,
-    parts::{Against, MAX_ERROR_M, assert_broken, encode_in, report_on, sample},
+    parts::{Against, MAX_ERROR_M, assert_broken, encode_in, rehash, report_on, sample},
     settings,
 };
 use tempfile::TempDir;
@@ -122,14 +121,6 @@ impl Apart {
             threads: 2,
         };
         verify(&settings, &Silent)
-    }
-
-    /// Corrects the hash of the settings.
-    fn rehash(&mut self) {
-        let json = serde_json::to_string(&self.manifest.settings).unwrap();
-        let digest = Sha256::digest(json);
-        self.manifest.settings_sha256 =
-            digest.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
     }
 
     /// A finest tile beside another one, an area on the border between both, and the numbers of polygon, ring and two points there.
@@ -281,7 +272,7 @@ fn fields_of_areas_in_the_manifest() {
     for change in changes {
         let mut apart = Apart::sound();
         change(&mut apart.manifest);
-        apart.rehash();
+        rehash(&mut apart.manifest);
         apart.assert_breaks(&[CheckId::AreaSums]);
     }
     // Levels in another order are refused by readers, as are classes that there are not.

@@ -49,6 +49,8 @@ fn every_command_takes_the_options_of_messages() {
         "export" => "roads a.pmtiles -o a.gpkg",
         "render" => "a.pmtiles -o a.png",
         "fly" => "a.pmtiles -o a.csv",
+        "profile" => "a.pmtiles --way 1,-2",
+        "match" => "a.pmtiles --slope",
         "completions" => "bash",
         _ => "a.pmtiles",
     };
@@ -139,6 +141,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Match(args) => args.files().unwrap(),
         Command::Verify(args) => {
             let files = args.files().unwrap();
             (files.package, [files.dem, files.photo, files.osm].concat())
@@ -148,6 +151,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     // What follows the option, what is meant by the positional argument, and what else the command needs.
     let known = [
         ("jobs --store", "p.json", "--slots 2"),
+        ("match --photo", "p.pmtiles", "--radius 20"),
         ("merge --store", "p.json", "-o c.pmtiles"),
         ("part --store", "p.json", "--step top"),
         ("verify --dem", "p.pmtiles", "--threads 1"),

@@ -3,17 +3,21 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 use corniche_presets::Classes;
 
+use crate::{failure::Failure, names::is_package_name};
+
 #[derive(Debug, Args)]
 #[command(
     group = ArgGroup::new("target").args(["photo", "slope"]).required(true),
+    override_usage = "corniche match [OPTIONS] <--photo <FILE>...|--slope> <PACKAGE>",
     group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
 )]
 pub(crate) struct MatchArgs {
     /// The package
-    pub(crate) package: PathBuf,
+    #[arg(required_unless_present = "photo")]
+    package: Option<PathBuf>,
     /// Photos of the ground that roads are compared with, as for build --photo: any format and CRS that GDAL reads; the first lies on top
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) photo: Vec<PathBuf>,
+    photo: Vec<PathBuf>,
     /// Compare with the slope of the ground, in which roads are flat across; for lidar of some metres, of a package with relief
     #[arg(long)]
     pub(crate) slope: bool,
@@ -35,6 +39,26 @@ pub(crate) struct MatchArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
     pub(crate) overwrite: bool,
+}
+
+impl MatchArgs {
+    /// The package and the photos. `--photo` takes all that follows it, also a package, which is told from other files by its name.
+    ///
+    /// # Errors
+    /// When no package is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+        if let Some(package) = &self.package {
+            return Ok((package.clone(), self.photo.clone()));
+        }
+        let (mut packages, photos): (Vec<PathBuf>, Vec<PathBuf>) =
+            self.photo.iter().cloned().partition(|file| is_package_name(file));
+        match (packages.pop(), packages.is_empty()) {
+            (Some(package), true) if !photos.is_empty() => Ok((package, photos)),
+            _ => Err(Failure::unusable(
+                "which file is the package is not clear; write it first: corniche match PACKAGE --photo FILE...",
+            )),
+        }
+    }
 }
 
 fn parse_radius(text: &str) -> Result<f64, String> {

@@ -8,7 +8,13 @@ pub(crate) struct ProfileArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
-    #[arg(long, value_name = "ID", required = true, value_delimiter = ',', num_args = 1.., allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "ID",
+        required = true,
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     pub(crate) way: Vec<i64>,
     /// The level on whose ground they lie [default: the finest]
     #[arg(long, value_name = "Z")]

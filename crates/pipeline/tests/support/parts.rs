@@ -15,6 +15,7 @@ use corniche_tileset::{
     encode, payload_sizes,
 };
 use corniche_tin::{Placement, Surface, Tin};
+use sha2::{Digest as _, Sha256};
 
 use super::Options;
 
@@ -73,6 +74,14 @@ pub(crate) fn build_sample() -> Sound {
         .map(|tile| (tile.id, package.tile(tile.id).expect("a tile").expect("a listed tile")))
         .collect();
     Sound { bytes: fs::read(&path).expect("the package can be read"), encoded, parts }
+}
+
+/// Corrects the hash of the settings.
+pub(crate) fn rehash(manifest: &mut Manifest) {
+    let json = serde_json::to_string(&manifest.settings).expect("settings have a JSON form");
+    let digest = Sha256::digest(json);
+    let digits: Vec<String> = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    manifest.settings_sha256 = digits.concat();
 }
 
 pub(crate) fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
