@@ -73,10 +73,10 @@ impl AreaTable {
         Ok(Self { name, keys, has_sea: false })
     }
 
-    /// The same table with the sea, which is made of coastlines.
+    /// The same table with or without the sea, which is made of coastlines.
     #[must_use]
-    pub fn with_sea(self) -> Self {
-        Self { has_sea: true, ..self }
+    pub fn with_sea(self, has_sea: bool) -> Self {
+        Self { has_sea, ..self }
     }
 
     /// Whether the sea is wanted.

@@ -61,7 +61,7 @@ impl Chain {
 pub(crate) fn join(mut coastlines: Vec<Coastline>) -> Vec<Chain> {
     coastlines.retain(|coastline| coastline.points.len() >= 2);
     coastlines.sort_unstable();
-    coastlines.dedup_by_key(|coastline| coastline.way_id);
+    coastlines.dedup();
     let mut beginning: HashMap<LatticePoint, VecDeque<usize>> = HashMap::new();
     for (index, coastline) in coastlines.iter().enumerate() {
         beginning.entry(coastline.points[0]).or_default().push_back(index);

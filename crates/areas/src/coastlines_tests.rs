@@ -29,6 +29,13 @@ fn ways_in_any_order_make_chains_and_rings() {
     assert_eq!(points(&chains[1]), [(55, 20), (50, 10), (60, 10), (55, 20)]);
 }
 
+/// Where points of a way cannot be placed, it comes in several runs.
+#[test]
+fn all_runs_of_a_way_count() {
+    let chains = join(vec![coast(5, &[(1, 1), (2, 2)]), coast(5, &[(8, 8), (9, 9)])]);
+    assert_eq!(chains.iter().map(points).collect::<Vec<_>>(), [[(1, 1), (2, 2)], [(8, 8), (9, 9)]]);
+}
+
 #[test]
 fn a_chain_is_cut_where_it_crosses_the_edge() {
     let chain = |points: &[(i64, i64)]| join(vec![coast(1, points)]).remove(0);

@@ -17,14 +17,8 @@ use corniche_tileset::FilePackage;
 
 use self::compare::Compared;
 use crate::{
-    args::GrowthArgs,
-    documents::to_line,
-    exit::ExitCode,
-    failure::Failure,
-    messages,
-    names::Format,
-    output::{Output, existing_of},
-    table::Digits,
+    args::GrowthArgs, documents::to_line, exit::ExitCode, failure::Failure, messages,
+    output::existing_of, report_files::ReportFiles, table::Digits,
 };
 
 pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
@@ -69,28 +63,17 @@ fn write_files(
     packages: &[FilePackage],
     compared: &[Compared<'_>],
 ) -> Result<(), Failure> {
-    let existing = existing_of(args.overwrite);
-    let others = |own: &Path| -> Vec<&Path> {
-        let targets = args.svg.iter().chain(&args.per_way).filter(|&target| *target != *own);
-        args.packages.iter().chain(targets).map(AsRef::as_ref).collect()
-    };
-    if args.svg.is_some() && args.svg == args.per_way {
-        return Err(Failure::unusable("--svg and --per-way name one file; give each its own"));
+    if args.per_way.is_some() && packages.len() != 1 {
+        return Err(Failure::unusable(
+            "--per-way tells of one package; run it once for each, with a file of its own",
+        ));
     }
-    let begin = |path: &Path| Output::create(path, existing, &others(path));
+    let inputs: Vec<&Path> = args.packages.iter().map(AsRef::as_ref).collect();
+    let list = ("--per-way", args.per_way.as_deref());
     // Both places are looked at before any work is done.
-    let svg = args.svg.as_deref().map(begin).transpose()?;
-    args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
-    let per_way = match (&args.per_way, packages) {
-        (Some(path), [package]) => Some((package, path, begin(path)?)),
-        (Some(_), _) => {
-            return Err(Failure::unusable(
-                "--per-way tells of one package; run it once for each, with a file of its own",
-            ));
-        }
-        (None, _) => None,
-    };
-    if let Some(output) = svg {
+    let files =
+        ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
+    if let Some(output) = files.svg {
         let svg = match compared {
             [one] => chart::growth(one.manifest),
             several => chart::comparison(several),
@@ -98,7 +81,7 @@ fn write_files(
         let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }
-    if let Some((package, path, output)) = per_way {
+    if let (Some(path), Some(output), [package]) = (&args.per_way, files.list, packages) {
         per_way::write(package, path, output)?;
     }
     Ok(())

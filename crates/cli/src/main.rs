@@ -32,6 +32,7 @@ mod presets;
 mod profile;
 mod progress;
 mod render;
+mod report_files;
 mod settings;
 mod styles;
 mod table;

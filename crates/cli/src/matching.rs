@@ -17,14 +17,8 @@ use corniche_tileset::FilePackage;
 use indicatif::ProgressBar;
 
 use crate::{
-    args::MatchArgs,
-    exit::ExitCode,
-    failure::Failure,
-    interrupt,
-    names::Format,
-    output::{Output, existing_of},
-    progress,
-    table::Digits,
+    args::MatchArgs, exit::ExitCode, failure::Failure, interrupt, output::existing_of, progress,
+    report_files::ReportFiles, table::Digits,
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
@@ -32,20 +26,11 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&path)?;
     let manifest = package.manifest();
     let photos = corniche_pipeline::photo_names(&photos)?;
-    let existing = existing_of(args.overwrite);
-    let others = |own: &Path| -> Vec<&Path> {
-        let targets = args.svg.iter().chain(&args.csv).filter(|&target| *target != *own);
-        let inputs = photos.iter().chain([&path]);
-        inputs.chain(targets).map(AsRef::as_ref).collect()
-    };
-    if args.svg.is_some() && args.svg == args.csv {
-        return Err(Failure::unusable("--svg and --csv name one file; give each its own"));
-    }
-    args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+    let inputs: Vec<&Path> = photos.iter().chain([&path]).map(AsRef::as_ref).collect();
+    let list = ("--csv", args.csv.as_deref());
     // Both places are looked at before any work is done.
-    let begin = |path: &Path| Output::create(path, existing, &others(path));
-    let svg = args.svg.as_deref().map(begin).transpose()?;
-    let list = args.csv.as_deref().map(begin).transpose()?;
+    let files =
+        ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
     let request = MatchRequest {
         classes: args.classes.classes(),
         radius_m: args.radius,
@@ -62,10 +47,10 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     };
     bar.end();
     let report = report?;
-    if let Some(output) = list {
+    if let Some(output) = files.list {
         output.write_whole(csv::to_csv(&report).as_bytes())?;
     }
-    if let Some(output) = svg {
+    if let Some(output) = files.svg {
         output.write_whole(map::to_svg(&report, manifest).as_bytes())?;
     }
     let text = text::to_text(&report, manifest, Digits::on(&io::stdout()));

@@ -3,7 +3,6 @@
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
-    path::Path,
 };
 
 use corniche_export::{Profile, ProfilePoint, profile};
@@ -16,8 +15,8 @@ use crate::{
     exit::ExitCode,
     export::Bars,
     failure::Failure,
-    names::Format,
-    output::{Output, existing_of},
+    output::existing_of,
+    report_files::ReportFiles,
 };
 
 const HEIGHT: RGBColor = RGBColor(90, 60, 30);
@@ -25,27 +24,18 @@ const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&args.package)?;
+    let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
-    if args.svg.is_some() && args.svg == args.csv {
-        return Err(Failure::unusable("--svg and --csv name one file; give each its own"));
-    }
-    args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
-    let others = |own: &Path| -> Vec<&Path> {
-        let targets = args.svg.iter().chain(&args.csv).filter(|&target| *target != *own);
-        targets.chain([&args.package]).map(AsRef::as_ref).collect()
-    };
     // Both places are looked at before any work is done.
-    let begin = |path: &Path| Output::create(path, existing, &others(path));
-    let svg = args.svg.as_deref().map(begin).transpose()?;
-    let list = args.csv.as_deref().map(begin).transpose()?;
+    let files = ReportFiles::begin(args.svg.as_deref(), list, &[&args.package], existing)?;
     let bars = Bars::default();
     let found = profile(&package, &args.way, args.level, &bars);
     bars.end();
     let found = found?;
-    if let Some(output) = list {
+    if let Some(output) = files.list {
         output.write_whole(to_csv(&found).as_bytes())?;
     }
-    if let Some(output) = svg {
+    if let Some(output) = files.svg {
         let credits = package.manifest().attribution.join(", ");
         let svg = to_svg(&found, &args.way, &credits);
         let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;

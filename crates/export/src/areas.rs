@@ -4,12 +4,13 @@ use std::path::Path;
 
 use corniche_areas::{AreaClass, OutlineWay, Polygon, assemble};
 use corniche_geom::{LatticePoint, TileId, wgs84};
-use corniche_store::{Sorted, Sorter};
+use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 
 use crate::{
     area_piece::AreaPiece,
     error::ExportError,
+    groups::Groups,
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
@@ -65,12 +66,6 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// The fields of exported areas.
-#[must_use]
-pub fn area_fields() -> &'static [Field] {
-    FIELDS
-}
-
 /// Writes the areas of a package to a new file at `path`: a feature for each object, joined again over borders of tiles. Beside
 /// the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
 ///
@@ -107,12 +102,12 @@ pub fn export_areas(
             sorter.push(piece).map_err(sort)?;
         }
     }
-    let mut sorted = sorter.finish().map_err(sort)?;
+    let mut sorted = Groups::of(sorter.finish().map_err(sort)?);
     let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
     let mut summary =
         AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
-    let (mut next, mut done) = (None, 0);
-    while let Some(pieces) = next_area(&mut sorted, &mut next).map_err(sort)? {
+    let mut done = 0;
+    while let Some(pieces) = sorted.next_by(|piece| piece.object).map_err(sort)? {
         stop_if_asked(observer)?;
         observer.done(Stage::Pieces, done, count);
         done += pieces.len() as u64;
@@ -142,30 +137,6 @@ fn pieces(
             rings: area.polygons.into_iter().flat_map(|polygon| polygon.rings).collect(),
         })
         .collect())
-}
-
-/// All pieces of the next object; `None` after the last.
-fn next_area(
-    sorted: &mut Sorted<'_, AreaPiece>,
-    next: &mut Option<AreaPiece>,
-) -> std::io::Result<Option<Vec<AreaPiece>>> {
-    let first = match next.take() {
-        Some(first) => first,
-        None => match sorted.next().transpose()? {
-            Some(first) => first,
-            None => return Ok(None),
-        },
-    };
-    let object = first.object;
-    let mut pieces = vec![first];
-    while let Some(piece) = sorted.next().transpose()? {
-        if piece.object != object {
-            *next = Some(piece);
-            break;
-        }
-        pieces.push(piece);
-    }
-    Ok(Some(pieces))
 }
 
 fn feature(

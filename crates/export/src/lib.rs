@@ -28,6 +28,7 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
+mod groups;
 mod growth;
 mod join;
 mod measures;
@@ -42,7 +43,7 @@ mod scratch;
 mod vector;
 mod ways;
 
-pub use areas::{AreasSummary, area_fields, export_areas};
+pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
 pub use error::ExportError;
 pub use feature::road_fields;

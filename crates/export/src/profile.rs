@@ -157,8 +157,9 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<Part> {
             }
         }
         for line in lines {
+            let begin = line.vertices.first().map(|vertex| vertex.at);
+            let goes_on = end.is_some() && begin == end;
             let vertices = line.vertices.into_iter().map(|vertex| (way_id, vertex));
-            let goes_on = end.is_some() && line_begin(&vertices) == end;
             match parts.last_mut().filter(|_| goes_on) {
                 Some(part) => part.extend(vertices.skip(1)),
                 None => parts.push(vertices.collect()),
@@ -167,10 +168,6 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<Part> {
         }
     }
     parts
-}
-
-fn line_begin(vertices: &(impl Iterator<Item = (i64, Vertex)> + Clone)) -> Option<[f64; 2]> {
-    vertices.clone().next().map(|(_, vertex)| vertex.at)
 }
 
 fn points(part: &Part, begin_m: f64, places: &Places<'_>) -> Vec<ProfilePoint> {

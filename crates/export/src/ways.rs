@@ -1,14 +1,15 @@
 //! The pieces of all tiles, sorted by way.
 
-use std::{io, path::Path};
+use std::path::Path;
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
-use corniche_store::{Sorted, Sorter};
+use corniche_store::Sorter;
 use corniche_tileset::FilePackage;
 
 use crate::{
     error::ExportError,
+    groups::Groups,
     observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, SortedPiece},
     read,
@@ -16,9 +17,7 @@ use crate::{
 
 /// The pieces of one way after the other.
 pub(crate) struct Ways<'a> {
-    sorted: Sorted<'a, SortedPiece>,
-    /// The first piece of the next way.
-    next: Option<Piece>,
+    sorted: Groups<'a, SortedPiece>,
     /// How many pieces there are.
     count: u64,
     /// Where they were sorted.
@@ -45,7 +44,7 @@ impl<'a> Ways<'a> {
                 sorter.push(SortedPiece(piece)).map_err(failed)?;
             }
         }
-        Ok(Self { sorted: sorter.finish().map_err(failed)?, next: None, count, folder })
+        Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, folder })
     }
 
     /// How many pieces there are.
@@ -62,33 +61,14 @@ impl<'a> Ways<'a> {
         let folder = self.folder;
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
         let mut done = 0;
-        while let Some(pieces) = self.next_way().map_err(failed)? {
+        while let Some(pieces) =
+            self.sorted.next_by(|SortedPiece(piece)| piece.key.way_id).map_err(failed)?
+        {
             stop_if_asked(observer)?;
             observer.done(Stage::Pieces, done, self.count);
             done += pieces.len() as u64;
-            each(pieces)?;
+            each(pieces.into_iter().map(|SortedPiece(piece)| piece).collect())?;
         }
         Ok(())
-    }
-
-    /// All pieces of the next way, in the order of their keys; `None` after the last way.
-    fn next_way(&mut self) -> io::Result<Option<Vec<Piece>>> {
-        let first = match self.next.take() {
-            Some(first) => first,
-            None => match self.sorted.next().transpose()? {
-                Some(SortedPiece(first)) => first,
-                None => return Ok(None),
-            },
-        };
-        let way_id = first.key.way_id;
-        let mut pieces = vec![first];
-        while let Some(SortedPiece(piece)) = self.sorted.next().transpose()? {
-            if piece.key.way_id != way_id {
-                self.next = Some(piece);
-                break;
-            }
-            pieces.push(piece);
-        }
-        Ok(Some(pieces))
     }
 }

@@ -3,7 +3,7 @@
 use corniche_dem::GridPlan;
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, TexelWindow};
-use corniche_tileset::{FilePackage, Sections};
+use corniche_tileset::{FilePackage, Manifest, Relief, Sections};
 
 use crate::{error::MatchError, grey::Grey, response::TexelScale};
 
@@ -21,50 +21,70 @@ const FINE_M: f64 = 1.0;
 /// Largest side of an image, texels.
 pub(crate) const MOST_TEXELS: usize = 4096;
 
+/// The photos of a target, as they are read.
+pub(crate) fn photos_of(target: &Target<'_>) -> Result<Option<PhotoGrid>, MatchError> {
+    match target {
+        Target::Photos(photos, grid) => {
+            Ok(Some(photos.on(grid, LevelChoice::NotCoarserThan(FINE_M))?))
+        }
+        Target::Slope => Ok(None),
+    }
+}
+
 /// Gives images.
 pub(crate) struct Images<'a> {
     package: &'a FilePackage,
     pub(crate) scale: TexelScale,
-    source: Source,
-    photos: Option<PhotoGrid>,
+    source: Source<'a>,
 }
 
-enum Source {
-    Photos,
-    Slope,
+enum Source<'a> {
+    Photos {
+        grid: &'a PhotoGrid,
+        reader: PhotoReader<'a>,
+    },
+    /// With the tile looked at last: windows come tile by tile.
+    Slope(Option<(TileId, Option<Relief>)>),
 }
 
 impl<'a> Images<'a> {
-    pub(crate) fn new(package: &'a FilePackage, target: &Target<'_>) -> Result<Self, MatchError> {
+    /// Images of photos, or of slopes if there are none.
+    pub(crate) fn new(package: &'a FilePackage, photos: Option<&'a PhotoGrid>) -> Self {
         let frame = &package.manifest().frame;
-        let (photos, source, per_cell) = match target {
-            Target::Photos(photos, grid) => {
-                let grid = photos.on(grid, LevelChoice::NotCoarserThan(FINE_M))?;
+        let (source, per_cell) = match photos {
+            Some(grid) => {
                 let per_cell = f64::from(1_u32 << grid.texels().levels());
-                (Some(grid), Source::Photos, per_cell)
+                (Source::Photos { grid, reader: PhotoReader::new(grid) }, per_cell)
             }
-            Target::Slope => (None, Source::Slope, 1.0),
+            None => (Source::Slope(None), 1.0),
         };
         let cell = frame.cell();
         let texel_m = [cell.east_m / per_cell, cell.north_m / per_cell];
         let scale = TexelScale { origin_m: frame.origin_m(), texel_m };
-        Ok(Self { package, scale, source, photos })
+        Self { package, scale, source }
     }
 
     /// Whether there may be an image of a tile.
     pub(crate) fn has(&self, id: TileId) -> bool {
-        let bounds = self.frame().tile_bounds(id);
-        self.photos.as_ref().is_none_or(|photos| photos.touches(&bounds))
+        match &self.source {
+            Source::Photos { grid, .. } => grid.touches(&self.frame().tile_bounds(id)),
+            Source::Slope(_) => true,
+        }
     }
 
     /// The image in a window of texels, which lies in tile `id` or around a part of it; NaN where there is none.
-    pub(crate) fn window(&self, id: TileId, window: TexelWindow) -> Result<Grey, MatchError> {
+    pub(crate) fn window(&mut self, id: TileId, window: TexelWindow) -> Result<Grey, MatchError> {
         let first = [window.u, window.v];
         let columns = window.columns;
-        let values = match (&self.source, &self.photos) {
-            (Source::Photos, Some(photos)) => brightness(photos, window)?,
-            (Source::Photos, None) => vec![f32::NAN; columns * window.rows],
-            (Source::Slope, _) => self.slopes(id, window)?,
+        let values = match &mut self.source {
+            Source::Photos { reader, .. } => brightness(reader, window)?,
+            Source::Slope(last) => {
+                if last.as_ref().is_none_or(|(known, _)| *known != id) {
+                    *last = Some((id, relief(self.package, id)?));
+                }
+                let relief = last.as_ref().and_then(|(_, relief)| relief.as_ref());
+                slopes(self.package.manifest(), relief, id, window)
+            }
         };
         Ok(Grey { first, columns, values })
     }
@@ -72,38 +92,48 @@ impl<'a> Images<'a> {
     fn frame(&self) -> &Frame {
         &self.package.manifest().frame
     }
+}
 
-    /// The steepness of each cell of a window, degrees, as far as the tile has heights at its corners. A texel is a cell.
-    fn slopes(&self, id: TileId, window: TexelWindow) -> Result<Vec<f32>, MatchError> {
-        let mut slopes = vec![f32::NAN; window.columns * window.rows];
-        let Some(payload) = self.package.payload(id, Sections::RELIEF)? else { return Ok(slopes) };
-        let Some(relief) = &payload.relief else { return Err(MatchError::NoRelief) };
-        let corner = self.frame().tile_corner(id);
-        let cell = self.frame().cell();
-        let height_m = |column: i64, row: i64| {
-            relief.heights().height(column as usize, row as usize).map(f64::from)
-        };
-        for (index, slope) in slopes.iter_mut().enumerate() {
-            let column = window.u + (index % window.columns) as i64 - corner.i;
-            let row = window.v + (index / window.columns) as i64 + corner.j;
-            if !(0..TILE_CELLS).contains(&column) || !(0..TILE_CELLS).contains(&row) {
-                continue;
-            }
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
-            let corners = corners.map(|(east, south)| height_m(column + east, row + south));
-            if let [Some(nw), Some(ne), Some(sw), Some(se)] = corners {
-                let east = (ne + se - nw - sw) / (2.0 * cell.east_m);
-                let north = (nw + ne - sw - se) / (2.0 * cell.north_m);
-                *slope = east.hypot(north).atan().to_degrees() as f32;
-            }
+/// The heights of a tile; `None` if the package has no such tile.
+fn relief(package: &FilePackage, id: TileId) -> Result<Option<Relief>, MatchError> {
+    let Some(payload) = package.payload(id, Sections::RELIEF)? else { return Ok(None) };
+    payload.relief.map_or(Err(MatchError::NoRelief), |relief| Ok(Some(relief)))
+}
+
+/// The steepness of each cell of a window, degrees, as far as the tile has heights at its corners. A texel is a cell.
+fn slopes(
+    manifest: &Manifest,
+    relief: Option<&Relief>,
+    id: TileId,
+    window: TexelWindow,
+) -> Vec<f32> {
+    let mut slopes = vec![f32::NAN; window.columns * window.rows];
+    let Some(relief) = relief else { return slopes };
+    let corner = manifest.frame.tile_corner(id);
+    let cell = manifest.frame.cell();
+    let height_m = |column: i64, row: i64| {
+        relief.heights().height(column as usize, row as usize).map(f64::from)
+    };
+    for (index, slope) in slopes.iter_mut().enumerate() {
+        let column = window.u + (index % window.columns) as i64 - corner.i;
+        let row = window.v + (index / window.columns) as i64 + corner.j;
+        if !(0..TILE_CELLS).contains(&column) || !(0..TILE_CELLS).contains(&row) {
+            continue;
         }
-        Ok(slopes)
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        let corners = corners.map(|(east, south)| height_m(column + east, row + south));
+        if let [Some(nw), Some(ne), Some(sw), Some(se)] = corners {
+            let east = (ne + se - nw - sw) / (2.0 * cell.east_m);
+            let north = (nw + ne - sw - se) / (2.0 * cell.north_m);
+            *slope = east.hypot(north).atan().to_degrees() as f32;
+        }
     }
+    slopes
 }
 
 /// How bright a photo is, 0 to 255 (ITU-R BT.601).
-fn brightness(photos: &PhotoGrid, window: TexelWindow) -> Result<Vec<f32>, MatchError> {
-    let texels = PhotoReader::new(photos).window(window)?;
+fn brightness(photos: &mut PhotoReader<'_>, window: TexelWindow) -> Result<Vec<f32>, MatchError> {
+    let texels = photos.window(window)?;
     let value = |texel: &[u8]| match *texel {
         [red, green, blue, alpha] if alpha > 0 => {
             0.299 * f32::from(red) + 0.587 * f32::from(green) + 0.114 * f32::from(blue)

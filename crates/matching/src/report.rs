@@ -26,8 +26,6 @@ pub struct MatchReport {
 pub struct MatchedRegion {
     /// Its middle, working metres.
     pub center_m: [f64; 2],
-    /// Its side, metres.
-    pub side_m: f64,
     /// Places on roads in it.
     pub samples: u64,
     /// The offset; `None` where the image shows nothing.

@@ -8,7 +8,7 @@ use corniche_tin::{Placement, Surface};
 
 use crate::{
     error::MatchError,
-    images::{Images, MOST_TEXELS, Target},
+    images::{Images, MOST_TEXELS, Target, photos_of},
     report::{MatchReport, MatchedRegion, MatchedRoad},
     response::{Profile, responses},
     samples::{Sample, samples},
@@ -56,7 +56,8 @@ pub fn match_roads(
     request: &MatchRequest,
     observer: &dyn MatchObserver,
 ) -> Result<MatchReport, MatchError> {
-    let images = Images::new(package, target)?;
+    let photos = photos_of(target)?;
+    let images = Images::new(package, photos.as_ref());
     let texel_m = images.scale.texel_m.into_iter().reduce(f64::max).unwrap_or_default();
     let search = Search::new(request.radius_m, texel_m);
     let mut matching = Matching { images, search, request, texel_m, found: Found::default() };
@@ -222,7 +223,6 @@ impl Matching<'_> {
         };
         let regions = found.regions.iter().map(|(place, votes)| MatchedRegion {
             center_m: place.map(|at| (at as f64 + 0.5) * request.region_m),
-            side_m: request.region_m,
             samples: votes.samples,
             offset: votes.offset(&search),
         });

@@ -337,7 +337,7 @@ fn another_table_of_areas_is_refused() {
     let sound = Apart::sound();
     for (other, expected) in [
         (None, "the package has areas; give their table, \"test\", with --areas"),
-        (Some(table().with_sea()), "another table of areas that is called \"test\", too"),
+        (Some(table().with_sea(true)), "another table of areas that is called \"test\", too"),
     ] {
         let error = sound.against_extract(other).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");

@@ -47,6 +47,5 @@ pub fn parse_area_table(text: &str) -> Result<AreaTable, PresetError> {
         };
         tags.extend(of_class.into_iter().map(|tag| (tag, class)));
     }
-    let table = AreaTable::new(file.name, tags)?;
-    Ok(if file.sea { table.with_sea() } else { table })
+    Ok(AreaTable::new(file.name, tags)?.with_sea(file.sea))
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use corniche_matching::MatchReport;
 
 use super::sure::sure_across;
+use crate::defects::quoted;
 
 const HEADINGS: &str = "way_id,class,name,ref,length_m,samples,east_m,north_m,confidence,across_m,across_confidence,bends,sure\n";
 
@@ -36,13 +37,4 @@ pub(crate) fn to_csv(report: &MatchReport) -> String {
         );
     }
     text
-}
-
-/// As a field of CSV (RFC 4180).
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

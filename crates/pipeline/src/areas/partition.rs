@@ -56,7 +56,7 @@ pub(crate) fn partition(
         Ok(summary) => summary,
         Err(error) => return Ok(Err(error)),
     };
-    if let Some(sea) = sea.close(&mut summary, &mut |defect| on_defect(Defect::from(defect))) {
+    if let Some(sea) = sea.close(&mut summary, &mut |defect| on_defect(Defect::from(defect)))? {
         gathered.add(sea);
     }
     gathered.split_batch();

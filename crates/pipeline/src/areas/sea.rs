@@ -13,43 +13,40 @@ const SEA: AreaObject = AreaObject::Way(0);
 /// Each side of the boxes in extracts is looked at in so many places.
 const PLACES_PER_SIDE: usize = 33;
 
-/// Where the sea is made of an extract's coastlines.
+/// Where the sea is made of coastlines.
 #[derive(Clone, Copy)]
 pub(crate) struct SeaPlace<'a> {
+    /// The extracts, whose headers may say what they cover.
+    pub(crate) osm: &'a [PathBuf],
+    /// What the data cover.
+    pub(crate) data: LatticeBounds,
     pub(crate) frame: &'a Frame,
     pub(crate) projection: &'a (dyn Projection + Sync),
-    /// The sea is closed along its edge.
-    pub(crate) bounds: LatticeBounds,
 }
 
-impl<'a> SeaPlace<'a> {
+impl SeaPlace<'_> {
     /// What both the data and the extracts cover, as far as these have boxes in their headers: beyond, coastlines are missing.
-    pub(crate) fn new(
-        osm: &[PathBuf],
-        data_bounds: LatticeBounds,
-        frame: &'a Frame,
-        projection: &'a (dyn Projection + Sync),
-    ) -> Result<Self, BuildError> {
-        let everything = Self { frame, projection, bounds: data_bounds };
+    fn bounds(&self) -> Result<LatticeBounds, BuildError> {
         let boxes: Result<Option<Vec<[f64; 4]>>, _> =
-            osm.iter().map(|path| corniche_osm::header_bounds_deg(path)).collect();
-        let Some(boxes) = boxes.map_err(BuildError::Osm)? else { return Ok(everything) };
-        let Some(covered) = inner_rectangle(extract_bounds::around(&boxes), frame, projection)
-        else {
-            return Ok(everything);
-        };
-        Ok(Self { bounds: intersection(data_bounds, covered).unwrap_or(data_bounds), ..everything })
+            self.osm.iter().map(|path| corniche_osm::header_bounds_deg(path)).collect();
+        let Some(boxes) = boxes.map_err(BuildError::Osm)? else { return Ok(self.data) };
+        let around = extract_bounds::around(&boxes);
+        let covered = inner_rectangle(around, self.frame, self.projection);
+        let both = covered.map(|covered| self.data.intersection(&covered));
+        Ok(both.filter(has_area).unwrap_or(self.data))
     }
 
-    /// Makes the sea and counts it in `summary`, and what is wrong with coastlines.
+    /// Makes the sea, if there are coastlines, and counts it in `summary`, and what is wrong with coastlines.
     pub(crate) fn close(
         &self,
         summary: &mut AreaSummary,
         on_defect: &mut dyn FnMut(Defect),
-    ) -> Option<Area> {
+    ) -> Result<Option<Area>, BuildError> {
         let coastlines: Vec<Coastline> = std::mem::take(&mut summary.coastlines);
-        let first = coastlines.iter().map(|coastline| coastline.way_id).min()?;
-        let closed = close_sea(coastlines, &self.bounds);
+        let Some(first) = coastlines.iter().map(|coastline| coastline.way_id).min() else {
+            return Ok(None);
+        };
+        let closed = close_sea(coastlines, &self.bounds()?);
         let (polygons, left_out) = match closed {
             Ok(sea) => {
                 let open = sea.bridged.into_iter();
@@ -67,7 +64,7 @@ impl<'a> SeaPlace<'a> {
             *summary.lost.entry(loss).or_default() += left_out.len() as u64;
         }
         if polygons.is_empty() {
-            return None;
+            return Ok(None);
         }
         let area_m2 = polygons.iter().map(|polygon| self.area_m2(polygon)).sum();
         summary.objects += 1;
@@ -77,7 +74,7 @@ impl<'a> SeaPlace<'a> {
         let rings = polygons.iter().flat_map(Polygon::rings);
         kept.points += rings.map(|ring| ring.points().len() as u64).sum::<u64>();
         kept.area_m2 += area_m2;
-        Some(Area { object: SEA, class: AreaClass::Sea, name: None, polygons, area_m2 })
+        Ok(Some(Area { object: SEA, class: AreaClass::Sea, name: None, polygons, area_m2 }))
     }
 
     /// The true area. Long straight edges are taken as if they were straight in degrees.
@@ -117,12 +114,9 @@ fn inner_rectangle(
         min: LatticePoint::new(min_u, min_v),
         max: LatticePoint::new(max_u, max_v),
     };
-    (min_u < max_u && min_v < max_v).then_some(bounds)
+    Some(bounds).filter(has_area)
 }
 
-/// What both rectangles cover; `None` if it has no area.
-fn intersection(a: LatticeBounds, b: LatticeBounds) -> Option<LatticeBounds> {
-    let min = LatticePoint::new(a.min.u.max(b.min.u), a.min.v.max(b.min.v));
-    let max = LatticePoint::new(a.max.u.min(b.max.u), a.max.v.min(b.max.v));
-    (min.u < max.u && min.v < max.v).then_some(LatticeBounds { min, max })
+const fn has_area(bounds: &LatticeBounds) -> bool {
+    bounds.min.u < bounds.max.u && bounds.min.v < bounds.max.v
 }

@@ -297,7 +297,7 @@ impl AreaTableText {
         let tags = self.tags.iter().map(tag).collect::<Result<_, PlanError>>()?;
         let table: Result<AreaTable, AreaTableError> = AreaTable::new(self.name.clone(), tags);
         let table = table?;
-        Ok(if self.sea { table.with_sea() } else { table })
+        Ok(table.with_sea(self.sea))
     }
 }
 

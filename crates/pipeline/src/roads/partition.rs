@@ -120,7 +120,8 @@ fn read_areas(
     observer.begin(Stage::MapAreas, None);
     let frame = input.levels.frame();
     let splitting = areas::split::Splitting { frame, data, clip: input.clip };
-    let sea = SeaPlace::new(input.osm, input.data_bounds, frame, input.projection)?;
+    let (osm, data) = (input.osm, input.data_bounds);
+    let sea = SeaPlace { osm, data, frame, projection: input.projection };
     on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
         let mut on_defect = |defect| defects.push(defect);
         areas::partition::partition(

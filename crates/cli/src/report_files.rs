@@ -1,0 +1,39 @@
+//! Files that a command writes beside its answer: a picture and a list.
+
+use std::path::Path;
+
+use crate::{
+    failure::Failure,
+    names::Format,
+    output::{Existing, Output},
+};
+
+/// The files that are wanted, begun but not written.
+pub(crate) struct ReportFiles {
+    /// The one of `--svg`.
+    pub(crate) svg: Option<Output>,
+    /// The one of the option for a list.
+    pub(crate) list: Option<Output>,
+}
+
+impl ReportFiles {
+    /// Looks at both places before any work is done. `list` comes with its option; `inputs` are what the command reads.
+    pub(crate) fn begin<'a>(
+        svg: Option<&'a Path>,
+        (option, list): (&str, Option<&'a Path>),
+        inputs: &[&'a Path],
+        existing: Existing,
+    ) -> Result<Self, Failure> {
+        if svg.is_some() && svg == list {
+            let reason = format!("--svg and {option} name one file; give each its own");
+            return Err(Failure::unusable(reason));
+        }
+        svg.map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+        let begin = |path: &'a Path| {
+            let targets = svg.into_iter().chain(list).filter(|&target| target != path);
+            let others: Vec<&Path> = inputs.iter().copied().chain(targets).collect();
+            Output::create(path, existing, &others)
+        };
+        Ok(Self { svg: svg.map(begin).transpose()?, list: list.map(begin).transpose()? })
+    }
+}
