@@ -6,12 +6,13 @@ use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
 const MAY_USE: [(&str, &[&str]); 19] = [
-    ("cli", &["window", "viewer", "pipeline", "presets", "export", "matching"]),
+    ("cli", &["window", "viewer", "pipeline", "presets", "export", "matching", "overlay"]),
     ("window", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
     ("export", &["tileset", "dem", "store"]),
     ("matching", &["tileset", "photo"]),
+    ("overlay", &["tileset", "dem"]),
     ("tileset", &["drape", "tin", "roads", "areas"]),
     ("osm", &["roads", "areas", "store", "objects"]),
     ("photo", &["dem"]),

@@ -12,6 +12,7 @@ use std::{
     io::{self, Write as _},
     panic,
     sync::{
+        Arc,
         atomic::{AtomicBool, Ordering},
         mpsc::{self, SyncSender},
     },
@@ -25,7 +26,7 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, messages, presets, progress, styles,
+    interrupt, messages, overlays, presets, progress, styles,
     table::Digits,
 };
 use corniche_styles::Style;
@@ -34,7 +35,7 @@ use corniche_viewer::{
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
     stream::StreamBudget,
-    tiles::{BlockingPackage, MapPackage as _, PackageSource},
+    tiles::{BlockingPackage, MapPackage as _, Overlays, PackageSource},
 };
 use corniche_window::{Watched, watch};
 
@@ -49,7 +50,9 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let methods = args.look.roads(&args.drawing.roads)?;
     let package = PackageSource::open(&args.package)?;
     let flight = flight(args, &package)?;
-    let plan = Plan { args, flight: &flight, style: &style, methods: &methods, outputs: &outputs };
+    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let (flown, methods) = (&flight, &methods);
+    let plan = Plan { args, flight: flown, style: &style, methods, outputs: &outputs, overlays };
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
@@ -115,6 +118,7 @@ struct Plan<'a> {
     style: &'a Style,
     methods: &'a [Roads],
     outputs: &'a Outputs,
+    overlays: Arc<Overlays>,
 }
 
 /// What came of them.
@@ -201,6 +205,7 @@ impl Plan<'_> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
         let package =
             PackageSource::open(&self.args.package)?.for_look(options.roads.method, &options.style);
+        let package = package.with_overlays(Arc::clone(&self.overlays));
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
             is_gone || interrupt::is_noted()

@@ -25,6 +25,7 @@ mod named_output;
 mod names;
 mod open_files;
 mod output;
+mod overlays;
 mod parent;
 mod part;
 mod plan;

@@ -10,19 +10,21 @@ use corniche_viewer::{
 };
 
 use crate::{
-    args::RenderArgs,
+    args::{OverlayArg, RenderArgs},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
     names::Format,
     output::{Output, existing_of, png},
-    styles,
+    overlays, styles,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    let overlay_files = args.look.overlay.iter().map(OverlayArg::path);
     let used: Vec<&Path> = [Some(args.package.as_path()), styles::file_of(&args.look.style)]
         .into_iter()
         .flatten()
+        .chain(overlay_files)
         .collect();
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
@@ -44,6 +46,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     request.check()?;
     let package =
         PackageSource::open(&args.package)?.for_look(request.roads.method, &request.style);
+    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let package = package.with_overlays(overlays);
     let legend = args.legend.then(|| class_labels(&package.manifest().settings.frc_table));
     let request = RenderRequest { legend, ..request };
     let rendered = render(&request, &package, &interrupt::is_noted)?;

@@ -15,11 +15,12 @@ use corniche_window::{
 };
 
 use crate::{
-    args::{Motion, Roads, ViewArgs},
+    args::{Motion, OverlayArg, Roads, ViewArgs},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
     output::{Existing, Output},
+    overlays,
     styles::{StyleFile, file_of, style},
     view_command::command_of,
 };
@@ -34,8 +35,8 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
-    let used: Vec<&Path> =
-        [Some(args.package.as_path()), file_of(chosen)].into_iter().flatten().collect();
+    let own = [Some(args.package.as_path()), file_of(chosen)].into_iter().flatten();
+    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(OverlayArg::path)).collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
         return Err(Failure::unusable(format!(
@@ -44,6 +45,11 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         )));
     }
     let package = PackageSource::open(&args.package)?;
+    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let package = package.with_overlays(overlays);
+    for named in &mut styles {
+        named.style = overlays::styled(&args.look.overlay, named.style.clone());
+    }
     let request = WindowRequest {
         name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         size_px: args.size,
@@ -51,11 +57,12 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         roads: args.look.road_options(roads),
         software_method: software_method(args),
         class_labels: class_labels(&package.manifest().settings.frc_table),
-        command_of: command_of(&args.package),
+        command_of: command_of(&args.package, &args.look.overlay),
         styles,
         photo: args.look.photo,
         areas: args.look.areas.in_window(),
-        reload: reload(chosen),
+        reload: reload(chosen, &args.look.overlay),
+        overlays: overlays::names(&args.look.overlay),
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,
@@ -119,10 +126,12 @@ fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, Failure> {
 }
 
 /// Reads the file of a style again whenever it changes.
-fn reload(name_or_path: &str) -> Option<Reload> {
+fn reload(name_or_path: &str, overlays: &[OverlayArg]) -> Option<Reload> {
     let mut file = StyleFile::of(name_or_path)?;
+    let overlays = overlays.to_vec();
     Some(Box::new(move || {
         let style = file.reload_if_changed()?;
+        let style = style.map(|style| overlays::styled(&overlays, style));
         Some(style.map_err(|failure| failure.to_string()))
     }))
 }

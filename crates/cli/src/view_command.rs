@@ -7,16 +7,19 @@ use corniche_viewer::{
 };
 use corniche_window::{Areas, CommandOf, ShownView};
 
-use crate::args::Roads;
+use corniche_styles::Rgb;
+
+use crate::args::{OverlayArg, Roads};
 
 /// The file that the command names.
 const PICTURE: &str = "view.png";
 
 /// Tells the command that draws a view of this package, quoted for a POSIX shell.
-pub(crate) fn command_of(package: &Path) -> CommandOf {
+pub(crate) fn command_of(package: &Path, overlays: &[OverlayArg]) -> CommandOf {
     let package = package.display().to_string();
+    let overlays = overlays.to_vec();
     Box::new(move |shown| {
-        let words = words(&package, shown);
+        let words = words(&package, &overlays, shown);
         // The character 0, which no argument of a program can hold, is the one that cannot be quoted.
         shlex::Quoter::new()
             .allow_nul(true)
@@ -25,7 +28,7 @@ pub(crate) fn command_of(package: &Path) -> CommandOf {
     })
 }
 
-fn words(package: &str, shown: &ShownView) -> Vec<String> {
+fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<String> {
     let mut words = vec!["corniche".to_owned(), "render".to_owned(), package.to_owned()];
     let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     option("-o", PICTURE.to_owned());
@@ -55,6 +58,15 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     if shown.areas == Areas::Hidden {
         option("--areas", "off".to_owned());
     }
+    for (number, overlay) in overlays.iter().enumerate() {
+        if shown.hidden_overlays.contains(&number) {
+            continue;
+        }
+        // Without the files before it, it would be drawn in their colour.
+        let color = shown.overlay_colors.get(number).filter(|_| !overlay.has_color());
+        let color = color.map(|color| format!(",color={}", hex(*color))).unwrap_or_default();
+        option("--overlay", format!("{}{color}", overlay.text()));
+    }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());
     }
@@ -62,6 +74,11 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
         words.push("--wireframe".to_owned());
     }
     words
+}
+
+fn hex(color: Rgb) -> String {
+    let [red, green, blue] = color.map(|channel| (channel * 255.0).round() as u8);
+    format!("#{red:02X}{green:02X}{blue:02X}")
 }
 
 fn method(roads: RoadOptions) -> Roads {

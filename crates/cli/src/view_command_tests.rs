@@ -18,6 +18,8 @@ fn shown(roads: RoadOptions) -> ShownView {
         style: "my styles/night 'n day.toml".to_owned(),
         photo: Some(0.25),
         areas: Areas::Shown,
+        hidden_overlays: std::collections::BTreeSet::new(),
+        overlay_colors: vec![[1.0, 0.5, 0.0], [0.0, 0.0, 1.0]],
         exaggeration: 1.5,
         screen_space_error_px: 0.75,
         cell_px: f64::INFINITY,
@@ -26,9 +28,15 @@ fn shown(roads: RoadOptions) -> ShownView {
     }
 }
 
+/// Two files, the second with a colour of its own.
+fn overlays() -> Vec<OverlayArg> {
+    let of = |text| crate::args::overlay(text).unwrap();
+    vec![of("my tracks/a.gpx"), of("b.geojson,color=#00FF00"), of("c.gpx")]
+}
+
 /// The command as the program reads it, after a shell has split it into words.
 fn read(package: &str, shown: &ShownView) -> RenderArgs {
-    let command = command_of(Path::new(package))(shown);
+    let command = command_of(Path::new(package), &overlays())(shown);
     let words = shlex::split(&command).expect("quotes that a shell understands");
     match Arguments::try_parse_from(words)
         .unwrap_or_else(|error| panic!("{command}: {error}"))
@@ -53,6 +61,22 @@ fn the_command_draws_what_the_window_shows() {
     assert_eq!(args.look.photo.map(f32::to_bits), Some(0.25_f32.to_bits()));
     assert!(!args.wireframe);
     assert!(read("a", &ShownView { wireframe: Wireframe::Shown, ..shown }).wireframe);
+}
+
+/// What is hidden is left out, and no other file takes its colour.
+#[test]
+fn files_of_lines_are_drawn_as_they_are_shown() {
+    let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
+    let texts = |shown: &ShownView| -> Vec<String> {
+        let given = read("a.pmtiles", shown).look.overlay;
+        given.iter().map(|overlay| overlay.text().to_owned()).collect()
+    };
+    let colors = vec![[1.0, 0.5, 0.0], [0.0; 3], [0.0, 0.0, 1.0]];
+    let shown = ShownView { overlay_colors: colors, ..shown };
+    let all = ["my tracks/a.gpx,color=#FF8000", "b.geojson,color=#00FF00", "c.gpx,color=#0000FF"];
+    assert_eq!(texts(&shown), all);
+    let hidden_overlays = [0, 1].into_iter().collect();
+    assert_eq!(texts(&ShownView { hidden_overlays, ..shown }), all[2..]);
 }
 
 /// A ten-millionth of a degree is at most 1.2 cm.

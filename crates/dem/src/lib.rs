@@ -27,6 +27,7 @@ mod error;
 mod file_names;
 mod library_error;
 mod polygon_error;
+mod vector_file;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use crs::projection::DemProjection;
@@ -48,3 +49,4 @@ pub use polygon_error::PolygonError;
 pub use polygons::polygon::Polygon;
 pub use reading::reader::{DemWindow, Reader};
 pub use reading::samples::{SampleArea, SampleBlock};
+pub use vector_file::{NotOpened, open_vectors};

@@ -17,6 +17,12 @@ pub enum StyleError {
         "areas.{text:?} is no class of areas; these are sea, water, glacier, forest, meadow, settlement, park, rock"
     )]
     AreaClass { text: String },
+    #[error(
+        "a pattern of dashes has two or four lengths, dash and gap in turn, or none for a solid line; not {count}"
+    )]
+    DashCount { count: usize },
+    #[error("a dash or gap of {value} pixels is out of range; it must be 1 to {most}")]
+    DashLength { value: f32, most: f32 },
     #[error("a style has 2 to {most} [[tint]] entries, not {count}")]
     TintCount { count: usize, most: usize },
     #[error(

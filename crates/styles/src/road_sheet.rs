@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::{
-    Rgb, RoadBand, RoadBands, RoadStyle, StyleError,
+    Dash, Rgb, RoadBand, RoadBands, RoadStyle, StyleError,
     sheet_values::{Rgb8, within},
 };
 
@@ -80,6 +80,7 @@ impl RoadSheet {
             max_width_px: self.max_width_px.map(|max_width_px| max_width_px as f32),
             thin: self.thin.map(Rgb::from),
             opacity: self.opacity.unwrap_or(1.0) as f32,
+            dash: Dash::SOLID,
         })
     }
 

@@ -7,7 +7,7 @@ use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
 use crate::{
-    AreaStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    AreaStyle, LineStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
     area_sheet::{AreaSheet, areas},
     ground_sheet::{LightSheet, TintSheet, tint},
     road_sheet::RoadSheet,
@@ -42,6 +42,10 @@ pub(crate) struct StyleSheet {
     pub(crate) roads: [RoadStyle; FunctionalRoadClass::COUNT],
     /// By class, in order of their numbers.
     pub(crate) areas: [AreaStyle; AreaClass::COUNT],
+    /// By class, in order of their numbers.
+    pub(crate) boundaries: [LineStyle; LineStyle::MOST],
+    /// In the order of the files.
+    pub(crate) overlays: [LineStyle; LineStyle::MOST],
 }
 
 /// How roads widen with distance.
@@ -145,6 +149,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     if lane_width_m.is_some() && !own_width {
         return Err(StyleError::LaneWidth);
     }
+    let usual = Style::road_atlas();
     let sheet = StyleSheet {
         outline_px,
         shortest_part_px,
@@ -156,7 +161,9 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         background,
         tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
-        areas: areas(&area_sheets, Style::road_atlas().areas)?,
+        areas: areas(&area_sheets, usual.areas)?,
+        boundaries: usual.boundaries,
+        overlays: usual.overlays,
     };
     sheet.check()?;
     Ok(sheet)
@@ -209,6 +216,8 @@ impl From<&StyleSheet> for Style {
         Self {
             roads: *roads,
             areas: sheet.areas,
+            boundaries: sheet.boundaries,
+            overlays: sheet.overlays,
             own_widths: own_width.then_some(OwnWidths { lane_m }),
             width_scaling: WidthScaling {
                 threshold_m: width_scaling.threshold_m as f32,

@@ -3,7 +3,7 @@
 use corniche_areas::AreaClass;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::{AreaStyle, Light, Rgb, RoadBand, RoadBands, Tint, TintHeights};
+use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBand, RoadBands, Tint, TintHeights};
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,8 @@ pub struct RoadStyle {
     pub thin: Option<Rgb>,
     /// How much of the ground a road hides, edge included: 1 hides it.
     pub opacity: f32,
+    /// Dashes along it.
+    pub dash: Dash,
 }
 
 /// How much roads widen with distance (the paper, section 6.2 and Fig. 10).
@@ -83,6 +85,10 @@ pub struct Style {
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
     /// By class, in order of their numbers. Which lies above which is said by [`AreaStyle::TOP_FIRST`].
     pub areas: [AreaStyle; AreaClass::COUNT],
+    /// Boundaries, by class.
+    pub boundaries: [LineStyle; LineStyle::MOST],
+    /// Lines of people's own files, in the order of the files.
+    pub overlays: [LineStyle; LineStyle::MOST],
     /// Whether roads are drawn by their own tags; `None`: all roads of a class are equally wide.
     pub own_widths: Option<OwnWidths>,
     /// How roads widen with distance.
@@ -163,6 +169,7 @@ impl Style {
                     max_width_px: Some(max_width_px),
                     thin: None,
                     opacity: 1.0,
+                    dash: Dash::SOLID,
                 }
             };
         let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
@@ -191,6 +198,8 @@ impl Style {
                 area(0xA2_CD_8B, 0.5),
                 area(0xBC_B4_AA, 0.3),
             ],
+            boundaries: boundaries(),
+            overlays: overlays(),
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
@@ -233,6 +242,38 @@ impl Style {
 /// Areas of this colour that hide so much of the ground.
 fn area(color: u32, opacity: f32) -> AreaStyle {
     AreaStyle { color: rgb(color), opacity }
+}
+
+/// Boundaries of countries are widest and seen from farthest.
+fn boundaries() -> [LineStyle; LineStyle::MOST] {
+    let line = |width_px, lengths_px: &[f32], max_pixel_m| LineStyle {
+        opacity: 0.65,
+        dash: Dash::new(lengths_px).unwrap_or(Dash::SOLID),
+        max_pixel_m,
+        ..LineStyle::solid(rgb(0x8A_3F_86), width_px)
+    };
+    let protected = LineStyle { color: rgb(0x3F_8A_4A), ..line(2.0, &[3.0, 5.0], Some(40.0)) };
+    [
+        line(3.4, &[18.0, 5.0, 4.0, 5.0], None),
+        line(2.8, &[14.0, 5.0], Some(1000.0)),
+        line(2.6, &[12.0, 5.0], Some(600.0)),
+        line(2.2, &[9.0, 5.0], Some(250.0)),
+        line(2.0, &[8.0, 5.0], Some(150.0)),
+        line(1.7, &[6.0, 5.0], Some(60.0)),
+        line(1.5, &[4.0, 4.0], Some(40.0)),
+        protected,
+        protected,
+    ]
+}
+
+/// Colours that can be told from each other and from roads, with a pale edge so that they are seen on any ground.
+fn overlays() -> [LineStyle; LineStyle::MOST] {
+    let colors = [
+        0xC2_1E_8A, 0x1F_5F_D0, 0x0B_8A_7A, 0x7A_34_B8, 0xD0_1F_2E, 0x2C_7A_1E, 0x00_8F_C4,
+        0x8A_4B_12, 0x2B_2B_2B,
+    ];
+    let edge = Some(rgb(0xFF_FF_FF));
+    colors.map(|color| LineStyle { casing: edge, ..LineStyle::solid(rgb(color), 3.0) })
 }
 
 /// `0xRR_GG_BB` as shares.

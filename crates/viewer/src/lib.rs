@@ -25,6 +25,7 @@ pub mod eye_height;
 pub mod flight;
 mod frame_view;
 pub mod gpu;
+mod layer_view;
 pub mod lod;
 mod lon_lat;
 mod options;

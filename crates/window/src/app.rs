@@ -68,6 +68,8 @@ pub(crate) struct App {
     trace: Option<Trace>,
     probe: GroundProbe,
     class_labels: [String; FunctionalRoadClass::COUNT],
+    /// Names of the files of lines.
+    overlays: Vec<String>,
     command_of: CommandOf,
     /// What the next frame puts on the clipboard.
     to_copy: Option<String>,
@@ -146,6 +148,7 @@ impl App {
             trace,
             probe: GroundProbe::default(),
             class_labels: request.class_labels,
+            overlays: request.overlays,
             command_of: request.command_of,
             to_copy: None,
             frame: 0,

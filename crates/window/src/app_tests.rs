@@ -37,6 +37,7 @@ fn request() -> WindowRequest {
         reload: None,
         photo: None,
         areas: crate::Areas::Shown,
+        overlays: Vec::new(),
         screen_space_error_px: 0.01,
         cell_px: f64::INFINITY,
         exaggeration: 1.0,

@@ -1,7 +1,7 @@
-use std::{io, path::PathBuf};
+use std::{collections::BTreeSet, io, path::PathBuf};
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Style;
+use corniche_styles::{Rgb, Style};
 use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, Wireframe, stream::StreamBudget};
 
 use crate::Inertia;
@@ -39,6 +39,10 @@ pub struct ShownView {
     pub photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
     pub areas: Areas,
+    /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
+    pub hidden_overlays: BTreeSet<usize>,
+    /// Colours of the lines of all files, in the style that is shown.
+    pub overlay_colors: Vec<Rgb>,
     /// Factor on heights.
     pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
@@ -86,6 +90,9 @@ pub struct WindowRequest {
     pub photo: Option<f32>,
     /// Whether areas are drawn at first, as the style says, or not at all.
     pub areas: Areas,
+    /// What the files of lines are called that the package's tiles carry, in the order of the style's
+    /// [`overlays`](corniche_styles::Style::overlays).
+    pub overlays: Vec<String>,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels.

@@ -1,5 +1,7 @@
 //! What can be changed while the window is open, as plain values.
 
+use std::collections::BTreeSet;
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions, Wireframe};
@@ -55,6 +57,8 @@ pub(crate) struct Settings {
     pub(crate) photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
     pub(crate) areas: Areas,
+    /// Files of lines that are not shown, by their numbers.
+    pub(crate) hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
     pub(crate) exaggeration: f64,
     /// A tile is refined while its error looks larger than this.
@@ -89,13 +93,18 @@ pub(crate) mod range {
 }
 
 impl Settings {
-    /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas if they are not.
+    /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas and lines of files that are not.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = match self.areas {
             Areas::Shown => style.clone(),
             Areas::Hidden => style.clone().without_areas(),
         };
         applied.photo = self.photo.unwrap_or(applied.photo);
+        for (number, line) in applied.overlays.iter_mut().enumerate() {
+            if self.hidden_overlays.contains(&number) {
+                line.opacity = 0.0;
+            }
+        }
         for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
             road.width_m *= factor;
         }
@@ -118,6 +127,7 @@ pub(crate) fn usual() -> Settings {
         style: 0,
         photo: None,
         areas: Areas::Shown,
+        hidden_overlays: BTreeSet::new(),
         exaggeration: 1.0,
         screen_space_error_px: 2.0,
         cell_px: f64::INFINITY,

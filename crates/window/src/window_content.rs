@@ -44,6 +44,10 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) photo: Option<f32>,
     /// Whether the package has areas.
     pub(crate) has_areas: bool,
+    /// Names of the files of lines.
+    pub(crate) overlays: &'a [String],
+    /// Colours of their lines.
+    pub(crate) overlay_colors: Vec<Rgb>,
     /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
     /// What the roads of each class are called.

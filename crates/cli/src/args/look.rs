@@ -4,7 +4,8 @@ use clap::{Args, ValueEnum};
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
-use crate::failure::Failure;
+use super::overlay::{self, OverlayArg};
+use crate::{failure::Failure, overlays};
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -143,6 +144,11 @@ pub(crate) struct LookArgs {
     /// Areas (water, forest …), where the package has some: as the style draws them, or none
     #[arg(long, value_enum, default_value_t = Areas::On)]
     pub(crate) areas: Areas,
+    /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
+    ///
+    /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP in pixels.
+    #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
+    pub(crate) overlay: Vec<OverlayArg>,
     /// How roads begin, bend and end
     #[arg(long, value_enum, default_value_t = Caps::Round)]
     caps: Caps,
@@ -169,13 +175,14 @@ fn parse_strength(text: &str) -> Result<f32, String> {
 }
 
 impl LookArgs {
-    /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise.
+    /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
         let style = match self.areas {
             Areas::On => style,
             Areas::Off => style.without_areas(),
         };
-        Style { photo: self.photo.unwrap_or(style.photo), ..style }
+        let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
+        overlays::styled(&self.overlay, style)
     }
 
     /// Whether an option is given that only some methods have.

@@ -8,6 +8,7 @@ mod ground;
 mod growth;
 mod look;
 mod matching;
+mod overlay;
 mod part;
 mod profile;
 mod reading;
@@ -31,6 +32,9 @@ pub(crate) use export::{
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use matching::MatchArgs;
+pub(crate) use overlay::OverlayArg;
+#[cfg(test)]
+pub(crate) use overlay::parse as overlay;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};

@@ -1,16 +1,13 @@
 use std::{
-    fmt, fs,
+    fmt,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-use gdal::{
-    Dataset, DatasetOptions, GdalOpenFlags,
-    vector::{Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten},
-};
+use gdal::vector::{Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten};
 
 use crate::crs::horizontal::Crs;
-use crate::{PolygonError, library_error};
+use crate::{NotOpened, PolygonError, library_error, open_vectors};
 
 /// Far more than any administrative border has; the limit keeps memory bounded.
 const MOST_CORNERS: usize = 4_000_000;
@@ -43,25 +40,12 @@ impl Polygon {
     /// When GDAL cannot read the file, when it has no polygon or something else beside, names no coordinate system, or a polygon crosses
     /// itself.
     pub fn read(path: &Path) -> Result<Self, PolygonError> {
-        library_error::quiet();
         let own = || path.to_path_buf();
-        let is_virtual =
-            path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
-        match fs::metadata(path) {
-            // Opening a pipe would block until something is written to it.
-            Ok(found) if !found.is_file() && !found.is_dir() => {
-                return Err(PolygonError::Stream { path: own() });
-            }
-            Err(source) if !is_virtual => {
-                return Err(PolygonError::Missing { path: own(), source });
-            }
-            Ok(_) | Err(_) => {}
-        }
-        library_error::forget();
-        let open_flags = GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_READONLY;
-        let options = DatasetOptions { open_flags, ..DatasetOptions::default() };
-        let dataset = Dataset::open_ex(path, options)
-            .map_err(|source| PolygonError::Open { path: own(), source: source.into() })?;
+        let dataset = open_vectors(path).map_err(|error| match error {
+            NotOpened::Missing(source) => PolygonError::Missing { path: own(), source },
+            NotOpened::Stream => PolygonError::Stream { path: own() },
+            NotOpened::Unreadable(source) => PolygonError::Open { path: own(), source },
+        })?;
         let mut reading = Reading { path, parts: Vec::new(), features: 0, corners: 0 };
         for mut layer in dataset.layers() {
             reading.read_layer(&mut layer)?;

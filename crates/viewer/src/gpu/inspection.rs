@@ -77,6 +77,6 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_labels(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        self.labels.read(gpu)
+        self.roads.labels.read(gpu)
     }
 }

@@ -8,21 +8,24 @@ use super::{
         composite::Composite,
         difference::Difference,
         geo_roads,
+        label_blocks::LabelBlocks,
         level_connectors::LevelConnectors,
+        line_layers::LineColors,
         sv_roads,
         terrain::Terrain,
     },
     passes::{begin, begin_with_stencil},
     picture::Picture,
-    road_instances::RoadPipeline,
+    road_instances::{RoadBuffers, RoadPipeline},
     shared_bindings::{SharedBindings, SharedLayouts},
-    targets::Targets,
-    tile_buffers::DrawTile,
+    targets::{LabelTargets, Targets},
+    tile_buffers::{DrawTile, TileBuffers},
     timings::PassTimer,
 };
 use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
+    tiles::LineLayer,
 };
 
 /// Knows how to draw tiles; holds nothing of any frame.
@@ -32,7 +35,9 @@ pub struct Renderer {
     areas: StencilAreas,
     geo_roads: RoadPipeline,
     sv_roads: RoadPipeline,
+    blocks: LabelBlocks,
     composite: Composite,
+    line_colors: LineColors,
     average: Average,
     difference: Difference,
 }
@@ -48,7 +53,9 @@ impl Renderer {
             areas: StencilAreas::new(device, &layouts),
             geo_roads: geo_roads::pipeline(device, &layouts),
             sv_roads: sv_roads::pipeline(device, &layouts),
+            blocks: LabelBlocks::new(device, &layouts),
             composite: Composite::new(device, &layouts),
+            line_colors: LineColors::new(device, &layouts),
             average: Average::new(device),
             difference: Difference::new(device),
             layouts,
@@ -71,10 +78,7 @@ impl Renderer {
     ) {
         let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
         let shared = SharedBindings::new(gpu, &self.layouts, view, tile_uniforms, targets);
-        let borders: Vec<_> = tiles.iter().map(|tile| tile.border(view.roads.method)).collect();
-        let reference_of = |index: usize| tiles[index].buffers.reference_m;
-        let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
-        let connectors = LevelConnectors::new(gpu, &borders, reference_of, &shown);
+        let roads = LabelledLines::new(gpu, tiles, view, |tile| tile.roads(view.roads.method));
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let areas = areas_of(tiles, view);
@@ -91,9 +95,12 @@ impl Renderer {
         mark(&mut encoder, 1);
         self.areas_pass(gpu, &mut encoder, &shared, &areas, view, targets);
         mark(&mut encoder, 2);
-        self.roads_pass(&mut encoder, &shared, (tiles, &shown), &connectors, view, targets);
+        self.labels_pass(&mut encoder, &shared, &roads, view, &targets.roads);
         mark(&mut encoder, 3);
         self.composite_pass(gpu, &mut encoder, &shared, view, targets);
+        for layer in LineLayer::ALL {
+            self.lines_pass(gpu, &mut encoder, &shared, (tiles, layer), view, targets);
+        }
         self.average.draw(gpu, &mut encoder, targets.picture());
         mark(&mut encoder, 4);
         gpu.queue.submit([encoder.finish()]);
@@ -166,27 +173,52 @@ impl Renderer {
         self.areas.draw(gpu, &mut pass, shared, areas, view);
     }
 
-    /// Labels of roads: of each tile those of the classes that are shown there.
-    fn roads_pass(
+    /// Labels of roads, or of lines of a layer: of each tile those of the classes that are shown there.
+    fn labels_pass(
         &self,
         encoder: &mut CommandEncoder,
         shared: &SharedBindings,
-        (tiles, shown): (&[DrawTile<'_>], &[ClassSet]),
-        connectors: &LevelConnectors,
+        lines: &LabelledLines<'_>,
+        view: &FrameView<'_>,
+        targets: &LabelTargets,
+    ) {
+        // The pass clears the labels even when it draws nothing.
+        let mut pass = begin(encoder, "labels", &[&targets.labels.view], None, LoadOp::Clear(()));
+        let of_tiles = lines.of_tiles.iter().zip(&lines.shown).enumerate();
+        let of_tiles =
+            of_tiles.filter_map(|(index, (buffers, classes))| Some((index, (*buffers)?, *classes)));
+        match view.roads.method {
+            RoadMethod::Geometry => self.geo_roads.draw(&mut pass, shared, of_tiles),
+            RoadMethod::ShadowVolumes => self.sv_roads.draw(&mut pass, shared, of_tiles),
+            RoadMethod::None => return,
+        }
+        lines.connectors.draw(&mut pass, shared, &self.sv_roads);
+    }
+
+    /// A layer of lines, over the samples of the picture. Where no tile has such lines, or the style draws none, there is no such pass.
+    fn lines_pass(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        (tiles, layer): (&[DrawTile<'_>], LineLayer),
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
-        // The pass clears the labels even when it draws no road.
-        let mut pass = begin(encoder, "roads", &[&targets.labels.view], None, LoadOp::Clear(()));
-        let roads = tiles.iter().zip(shown).enumerate().filter_map(|(index, (tile, classes))| {
-            Some((index, tile.buffers.roads(view.roads.method)?, *classes))
-        });
-        match view.roads.method {
-            RoadMethod::Geometry => self.geo_roads.draw(&mut pass, shared, roads),
-            RoadMethod::ShadowVolumes => self.sv_roads.draw(&mut pass, shared, roads),
-            RoadMethod::None => return,
+        let style = layer.style_of(view.style);
+        let view = layer.view_of(view, &style);
+        let lines =
+            LabelledLines::new(gpu, tiles, &view, |tile| tile.lines(layer, view.roads.method));
+        if lines.is_empty() {
+            return;
         }
-        connectors.draw(&mut pass, shared, &self.sv_roads);
+        let shared = shared.with_view(gpu, &self.layouts, &view, targets);
+        let labels = targets.lines(gpu);
+        self.labels_pass(encoder, &shared, &lines, &view, labels);
+        self.blocks.find(gpu, encoder, &shared, labels);
+        let into = [targets.picture().drawn()];
+        let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
+        self.line_colors.draw(gpu, &mut pass, &shared, &view, targets);
     }
 
     /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or
@@ -199,10 +231,44 @@ impl Renderer {
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
-        self.composite.find_blocks(gpu, encoder, shared, view.roads.method, targets);
+        if view.roads.method != RoadMethod::None {
+            self.blocks.find(gpu, encoder, shared, &targets.roads);
+        }
         let into = [targets.picture().drawn()];
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
         self.composite.draw(gpu, &mut pass, shared, view, targets);
+    }
+}
+
+/// The roads of all tiles of a frame, or their lines of one layer.
+struct LabelledLines<'a> {
+    /// By tile.
+    of_tiles: Vec<Option<&'a RoadBuffers>>,
+    /// By tile, the classes that are shown somewhere on it.
+    shown: Vec<ClassSet>,
+    connectors: LevelConnectors,
+}
+
+impl<'a> LabelledLines<'a> {
+    fn new(
+        gpu: &Gpu,
+        tiles: &'a [DrawTile<'_>],
+        view: &FrameView<'_>,
+        of: impl Fn(&'a TileBuffers) -> Option<&'a RoadBuffers>,
+    ) -> Self {
+        let of_tiles: Vec<_> = tiles.iter().map(|tile| of(tile.buffers)).collect();
+        let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
+        let borders: Vec<_> =
+            tiles.iter().zip(&of_tiles).map(|(tile, roads)| tile.border(*roads)).collect();
+        let reference_of = |index: usize| tiles[index].buffers.reference_m;
+        let connectors = LevelConnectors::new(gpu, &borders, reference_of, &shown);
+        Self { of_tiles, shown, connectors }
+    }
+
+    /// Whether nothing of them is shown.
+    fn is_empty(&self) -> bool {
+        let of_tiles = self.of_tiles.iter().zip(&self.shown);
+        of_tiles.flat_map(|(roads, shown)| Some(roads.as_ref()?.runs(*shown))).all(|r| r.is_empty())
     }
 }
 

@@ -44,6 +44,7 @@ impl SharedLayouts {
 }
 
 /// The shared bind groups of one frame.
+#[derive(Clone)]
 pub(crate) struct SharedBindings {
     frame: BindGroup,
     tiles: BindGroup,
@@ -78,6 +79,19 @@ impl SharedBindings {
             tile_stride: tile_stride as u32,
             ground: textures(gpu, &layouts.ground, &[&depth.view, &owners.view]),
         }
+    }
+
+    /// The same with the frame's block of another view of the same tiles with the same camera.
+    pub(crate) fn with_view(
+        &self,
+        gpu: &Gpu,
+        layouts: &SharedLayouts,
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) -> Self {
+        let rows = uniforms::frame_rows(view, targets.samples_per_side());
+        let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        Self { frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]), ..self.clone() }
     }
 
     /// The bind group of the frame's uniform block.

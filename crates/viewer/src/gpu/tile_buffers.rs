@@ -20,7 +20,7 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::{ClassVolumes, TileGeometry, plan_around},
+    tiles::{ClassVolumes, LineLayer, TileGeometry, TileLayer, plan_around},
 };
 
 /// A tile on the graphics card.
@@ -35,10 +35,30 @@ pub struct TileBuffers {
     areas: Option<AreaBuffers>,
     segments: RoadBuffers,
     volumes: RoadBuffers,
+    layers: [LayerBuffers; LineLayer::ALL.len()],
     width_margin_m: f64,
     /// Lowest and highest true height of its ground; `None` without ground.
     height_range_m: Option<[f64; 2]>,
     triangles: u64,
+}
+
+/// A layer of lines of a tile on the graphics card, for both methods.
+struct LayerBuffers {
+    segments: RoadBuffers,
+    volumes: RoadBuffers,
+}
+
+impl LayerBuffers {
+    fn new(gpu: &Gpu, lines: &TileLayer) -> Self {
+        Self {
+            segments: geo_roads::upload(gpu, &lines.segments),
+            volumes: sv_roads::upload(gpu, &lines.volumes),
+        }
+    }
+
+    fn gpu_bytes(&self) -> u64 {
+        self.segments.gpu_bytes() + self.volumes.gpu_bytes()
+    }
 }
 
 /// A tile to draw in this frame.
@@ -58,6 +78,11 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
         + AreaBuffers::bytes_of(&tile.areas)
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
+        + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.of(layer))).iter().sum::<u64>()
+}
+
+fn layer_bytes(lines: &TileLayer) -> u64 {
+    geo_roads::bytes_of(&lines.segments) + sv_roads::bytes_of(&lines.volumes)
 }
 
 impl TileBuffers {
@@ -74,6 +99,7 @@ impl TileBuffers {
             areas: AreaBuffers::new(gpu, &tile.areas),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
+            layers: LineLayer::ALL.map(|layer| LayerBuffers::new(gpu, tile.lines.of(layer))),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
@@ -101,6 +127,12 @@ impl TileBuffers {
             + self.textures.gpu_bytes()
             + self.segments.gpu_bytes()
             + self.volumes.gpu_bytes()
+            + self.layers.iter().map(LayerBuffers::gpu_bytes).sum::<u64>()
+    }
+
+    /// Replaces a layer of its lines by what the tile now has of it.
+    pub fn replace_lines(&mut self, gpu: &Gpu, layer: LineLayer, lines: &TileLayer) {
+        self.layers[layer as usize] = LayerBuffers::new(gpu, lines);
     }
 
     /// The volumes of its areas, class by class.
@@ -117,17 +149,27 @@ impl TileBuffers {
             RoadMethod::None => None,
         }
     }
+
+    /// The lines of a layer as a method draws them.
+    pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
+        let layer = &self.layers[layer as usize];
+        match method {
+            RoadMethod::Geometry => Some(&layer.segments),
+            RoadMethod::ShadowVolumes => Some(&layer.volumes),
+            RoadMethod::None => None,
+        }
+    }
 }
 
 impl DrawTile<'_> {
-    /// Where the roads that a method draws meet its border.
-    pub(crate) fn border(&self, method: RoadMethod) -> BorderTile<'_> {
+    /// Where roads, or lines, of it meet its border.
+    pub(crate) fn border<'b>(&'b self, roads: Option<&'b RoadBuffers>) -> BorderTile<'b> {
         let TileBuffers { id, size_m: [east_m, north_m], .. } = *self.buffers;
         BorderTile {
             id,
             side_m: east_m.min(north_m),
             skirt_depth_m: self.skirt_depth_m,
-            ends: self.buffers.roads(method).map_or(&[], |roads| &roads.ends),
+            ends: roads.map_or(&[], |roads| &roads.ends),
         }
     }
 

@@ -96,6 +96,10 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         }
         bytemuck::cast::<_, [[f32; 4]; RoadBands::MOST / 4]>(shares)
     }));
+    rows.extend(style.roads.iter().map(|road| {
+        let [first, gap, second] = road.dash.ends();
+        [first, gap, second, road.dash.least_px()]
+    }));
     rows
 }
 

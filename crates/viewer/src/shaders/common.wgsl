@@ -39,6 +39,9 @@ struct Frame {
     road_limits: array<vec4<f32>, CLASSES>,
     // The widths of the bands of each class as shares of the road's width, four in each row.
     road_bands: array<vec4<f32>, BANDS / 4u * CLASSES>,
+    // The dashes of each class. xyz: where the first dash, the first gap and the second dash end, as shares of the pattern; w: least
+    // length of the pattern in pixels of the final picture, 0 without gaps.
+    dashes: array<vec4<f32>, CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

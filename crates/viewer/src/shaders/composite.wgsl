@@ -6,10 +6,7 @@
 // roads around a pixel. Where the maximum is more important than the pixel's own road, the pixel is on the outline of the
 // more important road.
 
-@group(1) @binding(0) var ground_color: texture_2d<f32>;
-@group(1) @binding(1) var terrain_depth: texture_2d<f32>;
-@group(1) @binding(2) var road_labels: texture_2d<f32>;
-@group(1) @binding(3) var road_blocks: texture_2d<f32>;
+@group(1) @binding(4) var ground_color: texture_2d<f32>;
 
 // The same fields as in gpu/drawables/composite.rs, in the same order.
 struct PictureColors {
@@ -28,40 +25,10 @@ struct PictureColors {
     road_thins: array<vec4<f32>, CLASSES>,
 }
 
-@group(1) @binding(4) var<uniform> colors: PictureColors;
-
-// Pixels on each side of a block.
-override BLOCK: u32 = 16u;
+@group(1) @binding(3) var<uniform> colors: PictureColors;
 
 // Ground that is this many times farther away than its neighbour in the picture lies behind it. From above none does.
 const FARTHER = 1.1;
-
-// The label that a value in the target stands for.
-fn label_of(stored: f32) -> u32 {
-    return u32(round(stored * 255.0));
-}
-
-fn is_tunnel(label: u32) -> bool {
-    return label < SERVICE_LABELS;
-}
-
-fn look_of(label: u32) -> u32 {
-    return select(select(PLAIN, SERVICE, label < ROAD_LABELS), TUNNEL, is_tunnel(label));
-}
-
-// Of two roads that meet, the one of the higher rank has the edge: tunnels have 1 to 9, service roads 10 to 18, other roads 19
-// to 27. 0 is no road.
-fn rank_of(label: u32) -> u32 {
-    switch look_of(label) {
-        case TUNNEL: { return label / 2u; }
-        case SERVICE: { return label - SERVICE_LABELS + CLASSES; }
-        default: { return label / BANDS - 1u + 2u * CLASSES; }
-    }
-}
-
-fn class_of(label: u32) -> u32 {
-    return (3u * CLASSES - rank_of(label)) % CLASSES;
-}
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
 fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
@@ -190,24 +157,6 @@ fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
 @fragment
 fn ground_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4(sight_at(position.xy).color, 1.0);
-}
-
-// Two triangles for each block, row by row; those of a block without roads have no area.
-@vertex
-fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    let number = index / 6u;
-    let columns = textureDimensions(road_blocks).x;
-    let block = vec2(number % columns, number / columns);
-    let has_roads = textureLoad(road_blocks, block, 0).r > 0.0;
-    //   0 ── 1    3
-    //   │  ╱    ╱ │
-    //   2    4 ── 5
-    let in_block = index % 6u;
-    let corner = select(in_block, in_block - 2u, in_block > 2u);
-    let side = select(vec2(0u), vec2(corner & 1u, corner >> 1u), has_roads);
-    // The last blocks reach over the edge of the picture, where nothing is drawn.
-    let pixel = vec2<f32>((block + side) * BLOCK);
-    return vec4(2.0 * pixel.x / frame.right.w - 1.0, 1.0 - 2.0 * pixel.y / frame.up.w, 0.0, 1.0);
 }
 
 @fragment

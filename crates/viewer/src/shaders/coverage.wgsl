@@ -24,8 +24,9 @@ struct RoadFragment {
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
     @location(3) @interpolate(flat) half_width_m: f32,
-    // Where the dashes of a tunnel are: how far along the road the segment's start is, world metres.
-    @location(4) @interpolate(flat) dash_m: f32,
+    // Where dashes are. x: how far along the line the segment's start is, world metres; y: how many such metres there are along the line
+    // to a metre in plan, more than 1 uphill.
+    @location(4) @interpolate(flat) dash: vec2<f32>,
     // How long the part of the network is that the road belongs to, world metres.
     @location(5) @interpolate(flat) part_m: f32,
 }
@@ -200,20 +201,34 @@ fn band_label(road: Road, within: u32) -> u32 {
     return (CLASSES + 1u - road.class_number) * BANDS + within - 1u;
 }
 
-// The smallest number of pixels that a dash and the gap after it may have together. They have fewer than twice as many.
-const DASH_PX = 12.0;
+// The smallest number of pixels that a dash of a tunnel and the gap after it may have together. They have fewer than twice as many.
+const TUNNEL_DASH_PX = 12.0;
 
-// The label of a road at a place; the label of a tunnel is odd on a dash.
+// Where in a pattern of dashes a place of a line is, 0 to 1. The pattern is at least so long on the picture.
+fn dash_share(in: RoadFragment, position: vec3<f32>, least_px: f32) -> f32 {
+    let segment_m = max(length(in.start_to_end), 1e-6);
+    let along_m = in.dash.x + in.dash.y * dot(position.xy - in.start, in.start_to_end) / segment_m;
+    let pattern_m = exp2(ceil(log2(least_px * pixel_m_at(distance_to(position)))));
+    return fract(along_m / pattern_m);
+}
+
+// The label of a line at a place: none in a gap. The label of a tunnel is odd on a dash.
 fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     let road = road_of(in);
-    if label == NOTHING || road.look != TUNNEL {
+    if label == NOTHING {
+        return NOTHING;
+    }
+    if road.look == TUNNEL {
+        let is_dash = dash_share(in, position, TUNNEL_DASH_PX) < 0.5;
+        return (CLASSES - road.class_number) * 2u + select(0u, 1u, is_dash);
+    }
+    let dashes = frame.dashes[road.class_number];
+    if dashes.w == 0.0 {
         return label;
     }
-    let segment_m = max(length(in.start_to_end), 1e-6);
-    let along_m = in.dash_m + dot(position.xy - in.start, in.start_to_end) / segment_m;
-    let period_m = exp2(ceil(log2(DASH_PX * pixel_m_at(distance_to(position)))));
-    let is_dash = fract(along_m / period_m) < 0.5;
-    return (CLASSES - road.class_number) * 2u + select(0u, 1u, is_dash);
+    let share = dash_share(in, position, dashes.w);
+    let is_dash = share < dashes.x || (share >= dashes.y && share < dashes.z);
+    return select(NOTHING, label, is_dash);
 }
 
 // A label as the target stores it; blending keeps the largest.

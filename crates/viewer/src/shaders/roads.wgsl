@@ -40,7 +40,7 @@ struct SegmentIn {
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
     // As in RoadFragment.
-    @location(7) dash_m: f32,
+    @location(7) dash: vec2<f32>,
     // As in RoadFragment.
     @location(8) part_m: f32,
 }
@@ -242,7 +242,7 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     // Look and flat ends.
     out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 15u) << 4u);
     out.half_width_m = road.half_width_m;
-    out.dash_m = in.dash_m;
+    out.dash = in.dash;
     out.part_m = in.part_m;
     return out;
 }

@@ -32,7 +32,7 @@ struct VolumeIn {
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
     // As in RoadFragment.
-    @location(7) dash_m: f32,
+    @location(7) dash: vec2<f32>,
     // As in RoadFragment.
     @location(8) part_m: f32,
 }
@@ -109,7 +109,7 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
     out.half_width_m = road.half_width_m;
-    out.dash_m = in.dash_m;
+    out.dash = in.dash;
     out.part_m = in.part_m;
     return out;
 }

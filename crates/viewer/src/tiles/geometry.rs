@@ -5,8 +5,10 @@ use corniche_tileset::{AreaRecord, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    AreaVolumes, BadArea, BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
-    ShadingSlopes, TileLines, relief::Relief,
+    AreaVolumes, BadArea, BadRoad, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
+    PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
+    line_layers::{TileGround, lay},
+    relief::Relief,
 };
 use crate::lod::GroundSummary;
 
@@ -31,6 +33,8 @@ pub struct TileGeometry {
     pub volumes: RoadVolumes,
     /// The areas on it as volumes; empty if that section was not read.
     pub areas: AreaVolumes,
+    /// Lines beside its roads.
+    pub lines: LineLayers,
     /// Roads are not drawn beyond this half width, working metres.
     pub width_margin_m: f64,
     /// The largest width factor of its roads: working metres across a road for each true metre across it.
@@ -124,6 +128,7 @@ impl TileGeometry {
             shading: None,
             photo: None,
             areas: AreaVolumes::default(),
+            lines: LineLayers::default(),
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
@@ -173,7 +178,35 @@ impl TileGeometry {
         Ok(Self { areas, ..self })
     }
 
-    /// The same tile without its roads, areas, slopes and photo: enough for rays and heights.
+    /// The same tile with these lines of a layer, laid on the ground that it was made of.
+    #[must_use]
+    pub(crate) fn with_lines(
+        mut self,
+        layer: LineLayer,
+        lines: &[LayerLine],
+        on: &LineGround<'_>,
+        methods: LineMethods,
+    ) -> Self {
+        let LineGround { terrain, frame, quantum_m, scale, vertical_scale } = *on;
+        if lines.is_empty() {
+            return self;
+        }
+        if let Some(surface) = surface(self.id, terrain, frame, quantum_m) {
+            let ground = TileGround {
+                id: self.id,
+                surface: &surface,
+                frame,
+                reference_m: self.reference_m,
+                width_margin_m: self.width_margin_m,
+                scale,
+                vertical_scale,
+            };
+            self.lines.set(layer, lay(lines, &ground, methods));
+        }
+        self
+    }
+
+    /// The same tile without its roads, lines, areas, slopes and photo: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
         Self {
@@ -181,6 +214,7 @@ impl TileGeometry {
             roads: RoadSegments::default(),
             volumes: RoadVolumes::default(),
             areas: AreaVolumes::default(),
+            lines: LineLayers::default(),
             photo: None,
             ..self
         }
@@ -211,6 +245,18 @@ impl TileGeometry {
 pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
     let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
     Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
+}
+
+/// What lines of a tile are laid on.
+#[derive(Clone, Copy)]
+pub(crate) struct LineGround<'a> {
+    pub(crate) terrain: Option<&'a Terrain>,
+    pub(crate) frame: &'a Frame,
+    /// The height of one step of the TIN's heights.
+    pub(crate) quantum_m: f64,
+    pub(crate) scale: &'a PlanScale,
+    /// World height of a metre of true height without exaggeration.
+    pub(crate) vertical_scale: f64,
 }
 
 /// The ground of a tile on the lattice, as roads need it.

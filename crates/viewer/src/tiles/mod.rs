@@ -8,6 +8,7 @@
 pub(crate) mod areas;
 mod geometry;
 mod ground_mesh;
+mod line_layers;
 mod map_extent;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
@@ -28,10 +29,14 @@ pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     geometry::TileGeometry,
+    line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,
     package::PackageTiles,
     photo::PhotoImage,
-    roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
+    roads::{
+        DashPlace, RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes,
+        TileLines,
+    },
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };

@@ -1,10 +1,12 @@
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use corniche_geom::{Frame, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
 
-use super::{LoadTileError, MapPackage, PackageTiles, TileCatalog, TileGeometry, TileSource};
+use super::{
+    LoadTileError, MapPackage, Overlays, PackageTiles, TileCatalog, TileGeometry, TileSource,
+};
 use crate::options::RoadMethod;
 
 /// A package in a file. Threads wait for its tiles.
@@ -40,6 +42,14 @@ impl PackageSource {
         let tiles = self.0.for_method(method);
         let tiles = if style.photo > 0.0 { tiles } else { tiles.without_photos() };
         Self(if style.has_areas() { tiles } else { tiles.without_areas() })
+    }
+}
+
+impl PackageSource {
+    /// See [`PackageTiles::with_overlays`].
+    #[must_use]
+    pub fn with_overlays(self, overlays: Arc<Overlays>) -> Self {
+        Self(self.0.with_overlays(overlays))
     }
 }
 

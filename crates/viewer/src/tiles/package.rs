@@ -1,4 +1,4 @@
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{
@@ -6,7 +6,8 @@ use corniche_tileset::{
 };
 
 use super::{
-    LoadTileError, MapPackage, PhotoImage, PlanScale, TileCatalog, TileGeometry, TileLines,
+    LineLayer, LineMethods, LoadTileError, MapPackage, Overlays, PhotoImage, PlanScale,
+    TileCatalog, TileGeometry, TileLines, geometry::LineGround,
 };
 use crate::options::RoadMethod;
 
@@ -23,6 +24,7 @@ pub struct PackageTiles<S> {
     sections: Sections,
     photos: Photos,
     areas: AreasOfTiles,
+    overlays: Arc<Overlays>,
 }
 
 /// Whether the photos of tiles are read.
@@ -53,7 +55,9 @@ impl<S: ByteSource> PackageTiles<S> {
             }
         }
         let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
-        Ok(Self { package, tiles, sections, photos: Photos::Read, areas: AreasOfTiles::Read })
+        let overlays = Arc::default();
+        let (photos, areas) = (Photos::Read, AreasOfTiles::Read);
+        Ok(Self { package, tiles, sections, photos, areas, overlays })
     }
 
     /// Reads, beside the ground, only the roads that one method needs, with their attributes; without this, the roads that both need.
@@ -79,6 +83,21 @@ impl<S: ByteSource> PackageTiles<S> {
         Self { areas: AreasOfTiles::LeftOut, ..self }
     }
 
+    /// Lays lines of people's own files on the tiles.
+    #[must_use]
+    pub fn with_overlays(self, overlays: Arc<Overlays>) -> Self {
+        Self { overlays, ..self }
+    }
+
+    /// For which methods lines are prepared: those of the roads that are read.
+    fn line_methods(&self) -> LineMethods {
+        match [Sections::ROADS_GEO, Sections::ROADS_SV].map(|of| self.sections.contains(of)) {
+            [true, true] => LineMethods::Both,
+            [true, false] => LineMethods::Geometry,
+            [false, _] => LineMethods::ShadowVolumes,
+        }
+    }
+
     /// Reads and decodes a tile that exists.
     ///
     /// # Errors
@@ -96,8 +115,19 @@ impl<S: ByteSource> PackageTiles<S> {
                 let (frame, margin_m) = (self.frame(), level.width_margin_m);
                 let Manifest { coordinates, point_scale, .. } = self.manifest();
                 let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
+                let on = LineGround {
+                    terrain: payload.terrain.as_ref(),
+                    frame,
+                    quantum_m,
+                    scale: &scale,
+                    vertical_scale: *point_scale,
+                };
                 let tile = TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
                     .map_err(|error| failed(error.into()))?;
+                let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
+                let overlays = self.overlays.near(id, frame, margin);
+                let methods = self.line_methods();
+                let tile = tile.with_lines(LineLayer::Overlays, &overlays, &on, methods);
                 let areas = match self.areas {
                     AreasOfTiles::Read => decode_areas(&bytes, id, frame),
                     AreasOfTiles::LeftOut => Ok(Vec::new()),

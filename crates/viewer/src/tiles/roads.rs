@@ -11,19 +11,20 @@ mod parts;
 mod segments;
 mod volumes;
 
+pub use self::{
+    dashes::DashPlace,
+    lines::{BadRoad, GroundLine, PlanLine, TileLines},
+    list::RoadList,
+    look::RoadLook,
+    segments::{RoadSegment, RoadSegments},
+    volumes::{RoadVolume, RoadVolumes},
+};
 pub(crate) use self::{
     dashes::dash_of_segment_m,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
     parts::OPEN_M,
     segments::Piece,
-};
-pub use self::{
-    lines::{BadRoad, GroundLine, PlanLine, TileLines},
-    list::RoadList,
-    look::RoadLook,
-    segments::{RoadSegment, RoadSegments},
-    volumes::{RoadVolume, RoadVolumes},
 };
 
 #[cfg(test)]

@@ -64,6 +64,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
         look: RoadLook::Plain,
         points_m: vec![from, [30.0, 20.0]],
         ground_range_m: vec![range_m],
+        dashes: None,
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
     let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
@@ -102,6 +103,7 @@ fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
         let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
         let own_width = OwnWidth::Unknown;
         let line = PlanLine {
+            dashes: None,
             way_id: 1,
             class: class(4),
             own_width,

@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::RoadOptions;
 
@@ -24,6 +26,7 @@ pub(crate) fn first_settings(
         style: 0,
         photo: request.photo,
         areas: request.areas,
+        hidden_overlays: BTreeSet::new(),
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,
         cell_px: request.cell_px,

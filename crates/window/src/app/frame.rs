@@ -254,6 +254,12 @@ impl App {
         output
     }
 
+    /// Colours of the lines of all files, in the style that is shown.
+    pub(crate) fn overlay_colors(&self) -> Vec<Rgb> {
+        let lines = self.styles.at(self.settings.style).overlays;
+        lines.iter().take(self.overlays.len()).map(|line| line.color).collect()
+    }
+
     fn content<'a>(
         &'a self,
         canvas: &Canvas,
@@ -276,6 +282,8 @@ impl App {
             mode: self.camera.mode(),
             style_names: self.styles.names(),
             has_areas: manifest.areas.is_some(),
+            overlays: &self.overlays,
+            overlay_colors: self.overlay_colors(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),
             road_colors,
             class_labels: &self.class_labels,

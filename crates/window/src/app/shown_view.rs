@@ -34,6 +34,8 @@ impl App {
             style: self.styles.names().get(settings.style)?.clone(),
             photo: settings.photo,
             areas: settings.areas,
+            hidden_overlays: settings.hidden_overlays.clone(),
+            overlay_colors: self.overlay_colors(),
             exaggeration: settings.exaggeration,
             screen_space_error_px: settings.screen_space_error_px,
             cell_px: settings.cell_px,

@@ -1,4 +1,4 @@
-use egui::{ComboBox, Slider, Ui};
+use egui::{Color32, ComboBox, RichText, Slider, Ui};
 
 use super::slide::slide;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     window_content::WindowContent,
 };
 
-/// The section for style, heights, areas and photos.
+/// The section for style, heights, areas, lines of files and photos.
 pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
@@ -29,6 +29,22 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
         ui.checkbox(&mut are_shown, "Areas")
             .on_hover_text("Water, forest … as the style draws them");
         settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
+    }
+    for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
+    {
+        ui.horizontal(|ui| {
+            let mut is_shown = !settings.hidden_overlays.contains(&number);
+            let [red, green, blue] = color.map(|channel| (channel * 255.0).round() as u8);
+            let mark = RichText::new("■").color(Color32::from_rgb(red, green, blue));
+            if ui.checkbox(&mut is_shown, name).on_hover_text("The lines of this file").changed() {
+                if is_shown {
+                    settings.hidden_overlays.remove(&number);
+                } else {
+                    settings.hidden_overlays.insert(number);
+                }
+            }
+            ui.label(mark);
+        });
     }
     if let Some(of_style) = content.photo {
         let mut strength = settings.photo.unwrap_or(of_style);

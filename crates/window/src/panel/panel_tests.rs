@@ -72,6 +72,8 @@ impl Told {
             style_names: &self.styles,
             photo: None,
             has_areas: self.has_areas,
+            overlays: &[],
+            overlay_colors: Vec::new(),
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             class_labels: &self.class_labels,
             tiles_drawn: 123,

@@ -3,36 +3,28 @@
 use corniche_styles::{RoadBands, RoadStyle};
 use glam::DVec4;
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, ColorWrites,
-    CommandEncoder, Device, RenderPass, RenderPipeline, ShaderStages,
+    BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, Device, RenderPass,
+    RenderPipeline, ShaderStages,
 };
 
 use super::super::{
     Gpu,
-    bindings::{UNFILTERED, group, layout, texture, textures, uniform},
-    formats::LABEL,
-    passes::full_screen,
+    bindings::{UNFILTERED, group, layout, texture, uniform},
     pipeline::{PipelineRecipe, Shader, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
-    targets::{BLOCK_SIDE, Targets},
+    targets::{LabelTargets, Targets},
     uniforms::{color, row},
 };
+use super::label_blocks::{BLOCK_CORNERS, block_constant};
 use crate::{frame_view::FrameView, options::RoadMethod};
 
-pub(crate) const BLOCKS_SHADER: Shader = shader!("road blocks": "common", "screen", "blocks");
-pub(crate) const SHADER: Shader = shader!("composite": "common", "screen", "composite");
-
-/// Corners of the two triangles of a block, as `shaders/composite.wgsl` counts them.
-const BLOCK_CORNERS: u32 = 6;
+pub(crate) const SHADER: Shader = shader!("composite": "common", "screen", "labelled", "composite");
 
 /// Draws ground and sky everywhere, then the blocks with roads again, with their roads.
 ///
 /// These are two draws, because one that looks up the block of each pixel took about twice as long on software Vulkan,
 /// which runs both branches of a condition.
 pub(crate) struct Composite {
-    blocks_layout: BindGroupLayout,
-    /// Finds the blocks with roads.
-    blocks: RenderPipeline,
     layout: BindGroupLayout,
     /// Draws ground and sky, everywhere.
     ground: RenderPipeline,
@@ -42,19 +34,12 @@ pub(crate) struct Composite {
 
 impl Composite {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
-        let block = [("BLOCK", f64::from(BLOCK_SIDE))];
-        let blocks_layout = layout(device, "road blocks", &[texture(0, UNFILTERED)]);
-        let blocks_groups = [Some(&layouts.frame), Some(&blocks_layout)];
-        let blocks = PipelineRecipe {
-            targets: &[(LABEL, ColorWrites::ALL)],
-            ..PipelineRecipe::full_screen(BLOCKS_SHADER, &blocks_groups, &block)
-        }
-        .build(device);
+        let block = block_constant();
         let road_blocks =
-            BindGroupLayoutEntry { visibility: ShaderStages::VERTEX, ..texture(3, UNFILTERED) };
-        let [ground, depth, labels] = [0, 1, 2].map(|binding| texture(binding, UNFILTERED));
+            BindGroupLayoutEntry { visibility: ShaderStages::VERTEX, ..texture(2, UNFILTERED) };
+        let [depth, labels, ground] = [0, 1, 4].map(|binding| texture(binding, UNFILTERED));
         let layout =
-            layout(device, "composite", &[ground, depth, labels, road_blocks, uniform(4, None)]);
+            layout(device, "composite", &[depth, labels, road_blocks, uniform(3, None), ground]);
         let groups = [Some(&layouts.frame), Some(&layout)];
         let composite = |entries| {
             let recipe = PipelineRecipe::full_screen(SHADER, &groups, &block);
@@ -62,23 +47,7 @@ impl Composite {
         };
         let ground = composite(["vertex", "ground_fragment"]);
         let roads = composite(["block_vertex", "road_fragment"]);
-        Self { blocks_layout, blocks, layout, ground, roads }
-    }
-
-    /// Finds the blocks with roads. It begins and ends a pass of its own, because nothing else draws into their texture.
-    pub(crate) fn find_blocks(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        method: RoadMethod,
-        targets: &Targets,
-    ) {
-        if method != RoadMethod::None {
-            let bound = textures(gpu, &self.blocks_layout, &[&targets.labels.view]);
-            let groups = [shared.frame(), &bound];
-            full_screen(encoder, "road blocks", &targets.road_blocks.view, &self.blocks, &groups);
-        }
+        Self { layout, ground, roads }
     }
 
     /// Draws the samples of the picture of `targets`, after ground and roads were drawn and the blocks found. The pass draws
@@ -94,10 +63,10 @@ impl Composite {
         let rows = rows(view);
         let colors =
             gpu.buffer("picture colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
-        let Targets { ground, depth, labels, road_blocks, .. } = targets;
-        let [ground, depth, labels, road_blocks] = [ground, depth, labels, road_blocks]
+        let Targets { ground, depth, roads: LabelTargets { labels, blocks }, .. } = targets;
+        let [ground, depth, labels, blocks] = [ground, depth, labels, blocks]
             .map(|texture| BindingResource::TextureView(&texture.view));
-        let resources = [ground, depth, labels, road_blocks, colors.as_entire_binding()];
+        let resources = [depth, labels, blocks, colors.as_entire_binding(), ground];
         shared.set_frame(pass);
         pass.set_bind_group(1, &group(gpu, &self.layout, &resources), &[]);
         pass.set_pipeline(&self.ground);

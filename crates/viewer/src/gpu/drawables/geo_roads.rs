@@ -15,9 +15,9 @@ use crate::tiles::{Bed, RoadSegment, RoadSegments};
 pub(crate) const SHADER: Shader = shader!("roads": "common", "drawn_ground", "coverage", "roads");
 
 /// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
-/// class, flags and look as u32, eight bounds as f16, own width, place of dashes and length of the
-/// network's part as f32.
-const INSTANCE_BYTES: u64 = 72;
+/// class, flags and look as u32, eight bounds as f16, own width, two numbers for dashes and length of
+/// the network's part as f32.
+const INSTANCE_BYTES: u64 = 76;
 /// Corners of a quad, as `shaders/roads.wgsl` counts them.
 const CORNERS: Range<u32> = 0..4;
 
@@ -28,7 +28,7 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         instance_bytes: INSTANCE_BYTES,
         attributes: &vertex_attr_array![
             0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4,
-            6 => Float32, 7 => Float32, 8 => Float32
+            6 => Float32, 7 => Float32x2, 8 => Float32
         ],
         // A quad may face any direction, so none is culled.
         cull: None,
@@ -66,7 +66,7 @@ fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
             bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());
         }
         bytes.extend_from_slice(&own_width_value(segment.own_width).to_ne_bytes());
-        bytes.extend_from_slice(&segment.dash_m.to_ne_bytes());
+        bytes.extend_from_slice(bytemuck::cast_slice(&segment.dash.numbers()));
         bytes.extend_from_slice(&segment.part_m.to_ne_bytes());
     }
     bytes

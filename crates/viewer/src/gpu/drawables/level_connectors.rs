@@ -11,7 +11,7 @@ use super::{
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
+    tiles::{DashPlace, NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -83,7 +83,7 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         look: connector.look,
         // It goes on in two tiles.
         part_m: OPEN_M,
-        dash_m: dash_of_segment_m(connector.ends_m) as f32,
+        dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
         flat_ends: [false; 2],
     }
 }

@@ -41,7 +41,9 @@ pub(crate) mod average;
 pub(crate) mod composite;
 pub(crate) mod difference;
 pub(crate) mod geo_roads;
+pub(crate) mod label_blocks;
 pub(crate) mod level_connectors;
+pub(crate) mod line_layers;
 pub(crate) mod sv_roads;
 pub(crate) mod terrain;
 

@@ -16,8 +16,8 @@ pub(crate) const SHADER: Shader =
     shader!("volumes": "common", "drawn_ground", "coverage", "volumes");
 
 /// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look,
-/// flat ends and other tile as u32, own width, place of dashes and length of the network's part as f32.
-const INSTANCE_BYTES: u64 = 56;
+/// flat ends and other tile as u32, own width, two numbers for dashes and length of the network's part as f32.
+const INSTANCE_BYTES: u64 = 60;
 /// Corners of the strip of triangles around a box, as `shaders/volumes.wgsl` counts them.
 const CORNERS: Range<u32> = 0..14;
 
@@ -28,7 +28,7 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         instance_bytes: INSTANCE_BYTES,
         attributes: &vertex_attr_array![
             0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32,
-            6 => Float32, 7 => Float32, 8 => Float32
+            6 => Float32, 7 => Float32x2, 8 => Float32
         ],
         // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
         cull: Some(wgpu::Face::Front),
@@ -63,7 +63,7 @@ pub(crate) fn instance_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -
         let flags = volume.look.number() << 4 | start << 6 | end << 7;
         bytes.extend_from_slice(&(class | flags | other << 8).to_ne_bytes());
         bytes.extend_from_slice(&own_width_value(volume.own_width).to_ne_bytes());
-        bytes.extend_from_slice(&volume.dash_m.to_ne_bytes());
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.dash.numbers()));
         bytes.extend_from_slice(&volume.part_m.to_ne_bytes());
     }
     bytes

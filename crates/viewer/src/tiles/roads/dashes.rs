@@ -1,4 +1,4 @@
-//! Where the dashes of tunnels are.
+//! Where the dashes of tunnels and lines are.
 
 use corniche_geom::Bounds;
 
@@ -6,7 +6,33 @@ use corniche_geom::Bounds;
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
 
-/// For each segment of a line, how far along the road its start is, working metres. Dashes are counted from there, so they go on
+/// Where dashes are on a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DashPlace {
+    /// How far along the line the segment's start is, working metres.
+    start_m: f32,
+    /// So many such metres make a metre of the segment in plan: more than 1 uphill, if dashes lie on the ground.
+    rate: f32,
+}
+
+impl DashPlace {
+    /// For a segment that starts this far along its line, with so many metres along the line for each metre in plan.
+    pub(crate) fn new(start_m: f64, rate: f64) -> Self {
+        Self { start_m: start_m.rem_euclid(WRAP_M) as f32, rate: rate as f32 }
+    }
+
+    /// The same, with dashes as long as they are in plan.
+    pub(crate) fn flat(start_m: f64) -> Self {
+        Self::new(start_m, 1.0)
+    }
+
+    /// As shaders take it: start and rate.
+    pub(crate) const fn numbers(self) -> [f32; 2] {
+        [self.start_m, self.rate]
+    }
+}
+
+/// For each segment of a line, where its dashes are: how far along the road its start is. Dashes are counted from there, so they go on
 /// at the bends of the road.
 ///
 /// ```text
@@ -19,7 +45,7 @@ const WRAP_M: f64 = 65_536.0;
 /// ```
 ///
 /// A tile does not know the length of a way before it, so at the border between two tiles dashes begin anew.
-pub(crate) fn dash_starts_m(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<f32> {
+pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlace> {
     let slack_m = 1e-9 * tile.width();
     let is_inside = |[x, y]: [f64; 2]| {
         (tile.min_x - slack_m..=tile.max_x + slack_m).contains(&x)
@@ -37,7 +63,7 @@ pub(crate) fn dash_starts_m(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<f32> {
             None => dash_of_segment_m([pair[0], pair[1]]),
         };
         reached_m = ends_inside.then_some(start_m + length_m);
-        start_m.rem_euclid(WRAP_M) as f32
+        DashPlace::flat(start_m)
     });
     segments.collect()
 }

@@ -4,7 +4,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
 
-use super::{super::PlanScale, RoadLook};
+use super::{super::PlanScale, DashPlace, RoadLook};
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,8 @@ pub struct GroundLine {
     /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
     /// Between two pieces of one segment the road is straight.
     pub sources_m: Vec<[[f64; 2]; 2]>,
+    /// Where dashes are, for the start of each segment of the source line that has pieces; `None`: as for roads.
+    pub dashes: Option<Vec<DashPlace>>,
 }
 
 impl GroundLine {
@@ -37,6 +39,7 @@ impl GroundLine {
             look: RoadLook::Plain,
             points_m,
             sources_m,
+            dashes: None,
         }
     }
 }
@@ -56,6 +59,8 @@ pub struct PlanLine {
     pub points_m: Vec<[f64; 2]>,
     /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
     pub ground_range_m: Vec<[f64; 2]>,
+    /// Where dashes are, for the start of each segment; `None`: as for roads.
+    pub dashes: Option<Vec<DashPlace>>,
 }
 
 /// The roads of a tile.
@@ -124,6 +129,7 @@ fn ground_lines(
                 .into_iter()
                 .map(|ends| ends.map(|point| frame.position_m(point)))
                 .collect(),
+            dashes: None,
         });
     }
     Ok(lines)
@@ -148,6 +154,7 @@ fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
             look,
             points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
             ground_range_m: road.line.ground_range_m.clone(),
+            dashes: None,
         }
     };
     payload.roads_sv.iter().map(place).collect()

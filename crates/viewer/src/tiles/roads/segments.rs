@@ -4,7 +4,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use super::{
     super::{PlanScale, ground_mesh::relative},
     Bed, GroundLine, RoadList, RoadLook,
-    dashes::dash_starts_m,
+    dashes::{DashPlace, dash_starts},
     ends::ground_ends,
     flat_ends::{LineEnds, flat_ends},
     parts::{KnownNet, NetLine, part_lengths_m},
@@ -36,8 +36,8 @@ pub struct RoadSegment {
     pub look: RoadLook,
     /// How long the part of the network is that it belongs to, working metres.
     pub(crate) part_m: f32,
-    /// Where the dashes of a tunnel are: how far along the road the start of its source segment is, working metres.
-    pub(crate) dash_m: f32,
+    /// Where dashes are, for the start of its source segment.
+    pub(crate) dash: DashPlace,
     /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
     pub(crate) flat_ends: [bool; 2],
 }
@@ -145,7 +145,12 @@ impl RoadList<RoadSegment> {
         let lines_parts = lines.iter().zip(parts_m);
         let segments =
             lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
-                let dashes_m = dash_starts_m(&source_vertices(line), tile);
+                let sources = source_vertices(line);
+                let segments = sources.len().saturating_sub(1);
+                let dashes = match &line.dashes {
+                    Some(given) => given.clone(),
+                    None => dash_starts(&sources, tile),
+                };
                 Piece::all_of(line).map(move |piece| {
                     let [start_in_tile, end_in_tile] = piece.source_m.map(place);
                     RoadSegment {
@@ -160,10 +165,10 @@ impl RoadList<RoadSegment> {
                         own_width: line.own_width,
                         look: line.look,
                         part_m,
-                        dash_m: dashes_m[piece.source_number],
+                        dash: dashes[piece.source_number],
                         flat_ends: [
                             piece.source_number == 0 && first_flat,
-                            piece.source_number + 1 == dashes_m.len() && last_flat,
+                            piece.source_number + 1 == segments && last_flat,
                         ],
                     }
                 })

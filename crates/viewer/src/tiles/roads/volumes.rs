@@ -4,7 +4,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use super::{
     super::{PlanScale, ground_mesh::relative},
     NearHeights, PlanLine, RoadList, RoadLook,
-    dashes::dash_starts_m,
+    dashes::{DashPlace, dash_starts},
     ends::plan_ends,
     flat_ends::{LineEnds, flat_ends},
     parts::{KnownNet, NetLine, part_lengths_m},
@@ -31,8 +31,8 @@ pub struct RoadVolume {
     pub look: RoadLook,
     /// How long the part of the network is that it belongs to, working metres.
     pub(crate) part_m: f32,
-    /// Where the dashes of a tunnel are: how far along the road its start is, working metres.
-    pub(crate) dash_m: f32,
+    /// Where dashes are, for its start.
+    pub(crate) dash: DashPlace,
     /// Whether it ends flat at its start and at its end, also where roads have caps.
     pub(crate) flat_ends: [bool; 2],
 }
@@ -85,9 +85,12 @@ impl RoadList<RoadVolume> {
         let volumes =
             lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
                 let last = line.points_m.len().saturating_sub(2);
-                let dashes_m = dash_starts_m(&line.points_m, tile);
-                let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes_m);
-                segments.enumerate().map(move |(number, ((pair, range_m), dash_m))| {
+                let dashes = match &line.dashes {
+                    Some(given) => given.clone(),
+                    None => dash_starts(&line.points_m, tile),
+                };
+                let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes);
+                segments.enumerate().map(move |(number, ((pair, range_m), dash))| {
                     // Without ground near, the box is almost flat.
                     let (near_m, rise) = near([pair[0], pair[1]])
                         .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
@@ -104,7 +107,7 @@ impl RoadList<RoadVolume> {
                         own_width: line.own_width,
                         look: line.look,
                         part_m,
-                        dash_m,
+                        dash,
                         flat_ends: [number == 0 && first_flat, number == last && last_flat],
                     }
                 })

@@ -1,0 +1,104 @@
+//! `--overlay`: a file of lines and how they are drawn.
+
+use std::path::{Path, PathBuf};
+
+use corniche_styles::{Dash, LineStyle, Rgb};
+
+/// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=#RRGGBB`, `,width=PX`,
+/// `,opacity=SHARE` and `,dash=DASH/GAP` in any order.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct OverlayArg {
+    path: PathBuf,
+    color: Option<Rgb>,
+    width_px: Option<f32>,
+    opacity: Option<f32>,
+    dash: Option<Dash>,
+    /// As it was given.
+    text: String,
+}
+
+/// Whether a name of an entry is one of a style. What follows another name belongs to the file's name.
+fn is_entry(name: &str) -> bool {
+    ["color", "width", "opacity", "dash"].contains(&name)
+}
+
+impl OverlayArg {
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// As it was given on the command line.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it says which colour its lines have.
+    pub(crate) fn has_color(&self) -> bool {
+        self.color.is_some()
+    }
+
+    /// How its lines are drawn; what it does not say is as in `usual`.
+    pub(crate) fn style(&self, usual: LineStyle) -> LineStyle {
+        LineStyle {
+            color: self.color.unwrap_or(usual.color),
+            width_px: self.width_px.unwrap_or(usual.width_px),
+            opacity: self.opacity.unwrap_or(usual.opacity),
+            dash: self.dash.unwrap_or(usual.dash),
+            ..usual
+        }
+    }
+}
+
+pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
+    let mut found = OverlayArg {
+        path: PathBuf::new(),
+        color: None,
+        width_px: None,
+        opacity: None,
+        dash: None,
+        text: text.to_owned(),
+    };
+    let mut rest = text;
+    while let Some((before, entry)) = rest.rsplit_once(',')
+        && let Some((name, value)) = entry.split_once('=')
+        && is_entry(name)
+    {
+        let number = |range: std::ops::RangeInclusive<f32>| {
+            let value = value.parse().ok().filter(|number| range.contains(number));
+            value.ok_or_else(|| format!("{name} must be {} to {}", range.start(), range.end()))
+        };
+        match name {
+            "color" => found.color = Some(color(value)?),
+            "width" => found.width_px = Some(number(0.5..=50.0)?),
+            "opacity" => found.opacity = Some(number(0.01..=1.0)?),
+            _ => found.dash = Some(dash(value)?),
+        }
+        rest = before;
+    }
+    if rest.is_empty() {
+        return Err("name a file of lines".to_owned());
+    }
+    Ok(OverlayArg { path: PathBuf::from(rest), ..found })
+}
+
+fn color(text: &str) -> Result<Rgb, String> {
+    let digits = text
+        .strip_prefix('#')
+        .filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
+        .and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, channels @ ..] = digits
+        .ok_or_else(|| format!("{text:?} is no colour; write it like color=#C21E8A"))?
+        .to_be_bytes();
+    Ok(channels.map(|channel| f32::from(channel) / 255.0))
+}
+
+fn dash(text: &str) -> Result<Dash, String> {
+    let lengths: Result<Vec<f32>, _> = text.split('/').map(str::parse).collect();
+    let lengths =
+        lengths.map_err(|_| format!("{text:?} is no pattern; write pixels like dash=8/4"))?;
+    Dash::new(&lengths).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+#[path = "overlay_tests.rs"]
+mod tests;

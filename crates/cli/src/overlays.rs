@@ -1,0 +1,66 @@
+//! Lines of people's own files, as `--overlay` names them.
+
+use std::{path::Path, sync::Arc};
+
+use corniche_overlay::{OverlayError, place, read};
+use corniche_styles::{LineStyle, Style};
+use corniche_tileset::Manifest;
+use corniche_viewer::tiles::{LayerLine, Overlays};
+
+use crate::{args::OverlayArg, exit::ExitCode, failure::Failure, messages};
+
+/// Reads the files and lays out their lines for a package. What has no place on it, or is no line, is told.
+pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Overlays>, Failure> {
+    if files.len() > LineStyle::MOST {
+        let most = LineStyle::MOST;
+        return Err(Failure::unusable(format!("at most {most} files can be given as --overlay")));
+    }
+    let mut lines = Vec::new();
+    for (style, file) in (0..).zip(files) {
+        let found = read(file.path())?;
+        let placed = place(&found.lines, manifest)?;
+        if found.others > 0 {
+            note(file.path(), &format!("{} features are neither lines nor outlines", found.others));
+        }
+        let is_near = placed.iter().any(|line| {
+            let tile = manifest.frame.tile_lattice_bounds(corniche_geom::TileId::ROOT);
+            line.points.iter().any(|point| tile.contains(*point))
+        });
+        if !is_near {
+            note(file.path(), "no point of its lines lies in the package");
+        }
+        let first = lines.len();
+        lines.extend(placed.into_iter().map(|line| LayerLine {
+            id: (first + line.line) as i64,
+            style,
+            points: line.points,
+        }));
+    }
+    Ok(Arc::new(Overlays::new(&lines, &manifest.frame)))
+}
+
+fn note(path: &Path, what: &str) {
+    messages::note(&format!("note: {}: {what}", path.display()));
+}
+
+/// A style with the looks that the files ask for.
+pub(crate) fn styled(files: &[OverlayArg], mut style: Style) -> Style {
+    for (line, file) in style.overlays.iter_mut().zip(files) {
+        *line = file.style(*line);
+    }
+    style
+}
+
+/// What the files are called.
+pub(crate) fn names(files: &[OverlayArg]) -> Vec<String> {
+    let name = |file: &OverlayArg| {
+        file.path().file_name().unwrap_or_default().to_string_lossy().into_owned()
+    };
+    files.iter().map(name).collect()
+}
+
+impl From<OverlayError> for Failure {
+    fn from(error: OverlayError) -> Self {
+        Self::new(ExitCode::Unusable, error)
+    }
+}

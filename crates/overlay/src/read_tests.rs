@@ -1,0 +1,56 @@
+use std::{fs, path::PathBuf};
+
+use super::*;
+
+fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+const GEOJSON: &str = r#"{"type":"FeatureCollection","features":[
+ {"type":"Feature","properties":{"name":"one"},"geometry":{"type":"LineString","coordinates":[[9.5,47.1],[9.6,47.2]]}},
+ {"type":"Feature","properties":{},"geometry":{"type":"MultiLineString","coordinates":[[[9,47],[9,48]],[[8,47],[8,48],[8,49]]]}},
+ {"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[9,47]}},
+ {"type":"Feature","properties":{},"geometry":null},
+ {"type":"Feature","properties":{"name":"two"},"geometry":{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,0]],[[1,0.5],[2,0.5],[2,1],[1,0.5]]]}}
+]}"#;
+
+#[test]
+fn lines_and_outlines_come_in_the_order_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = read(&written(folder.path(), "a.geojson", GEOJSON)).unwrap();
+    let counts: Vec<usize> = found.lines.iter().map(|line| line.positions_deg.len()).collect();
+    assert_eq!(counts, [2, 2, 3, 4, 4]);
+    assert_eq!(found.others, 1, "the point");
+    let names: Vec<_> = found.lines.iter().map(|line| line.name.as_deref()).collect();
+    assert_eq!(names, [Some("one"), None, None, Some("two"), Some("two")]);
+    let [lon, lat] = found.lines[0].positions_deg[1];
+    assert!((lon - 9.6).abs() < 1e-12 && (lat - 47.2).abs() < 1e-12, "{lon}, {lat}");
+}
+
+/// GDAL tells points of a track in a layer of its own, too.
+#[test]
+fn a_track_of_gpx_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"<?xml version="1.0"?><gpx version="1.1" creator="t" xmlns="http://www.topografix.com/GPX/1/1">
+      <wpt lat="47" lon="9"><name>hut</name></wpt>
+      <trk><name>up</name><trkseg><trkpt lat="47.0" lon="9.0"/><trkpt lat="47.1" lon="9.1"/></trkseg></trk></gpx>"#;
+    let found = read(&written(folder.path(), "a.gpx", text)).unwrap();
+    assert_eq!((found.lines.len(), found.others), (1, 1));
+    assert_eq!(found.lines[0].name.as_deref(), Some("up"));
+}
+
+#[test]
+fn what_gives_no_lines_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let told =
+        |name: &str, text: &str| read(&written(folder.path(), name, text)).unwrap_err().to_string();
+    let point = r#"{"type":"Point","coordinates":[9,47]}"#;
+    assert!(told("point.geojson", point).contains("no line and no outline, but 1 other"));
+    assert!(told("no.geojson", "{}").contains("not a vector file"));
+    assert!(told("half.geojson", &GEOJSON[..300]).contains("half.geojson"));
+    assert!(told("empty.gpx", "").contains("not a vector file"));
+    let missing = read(&folder.path().join("missing.gpx")).unwrap_err();
+    assert!(matches!(missing, OverlayError::Missing { .. }), "{missing}");
+}

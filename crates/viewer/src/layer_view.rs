@@ -1,0 +1,38 @@
+//! Lines beside the roads are drawn as roads of another style: what is told here is which.
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::{LineStyle, Style};
+
+use crate::{
+    frame_view::FrameView,
+    options::{RoadMethod, RoadOptions},
+    tiles::LineLayer,
+};
+
+impl LineLayer {
+    /// How lines of the layer are drawn in a style.
+    #[must_use]
+    pub fn lines_of(self, style: &Style) -> &[LineStyle] {
+        match self {
+            Self::Boundaries => &style.boundaries,
+            Self::Overlays => &style.overlays,
+        }
+    }
+
+    /// A style whose roads are the lines of the layer.
+    pub(crate) fn style_of(self, style: &Style) -> Style {
+        style.with_lines_as_roads(self.lines_of(style))
+    }
+
+    /// The view of a picture of the lines alone, in a style of [`LineLayer::style_of`]. Where roads are not drawn, lines are drawn as
+    /// volumes.
+    pub(crate) fn view_of<'a>(self, view: &FrameView<'a>, style: &'a Style) -> FrameView<'a> {
+        let method = match view.roads.method {
+            RoadMethod::Geometry => RoadMethod::Geometry,
+            RoadMethod::ShadowVolumes | RoadMethod::None => RoadMethod::ShadowVolumes,
+        };
+        let is_drawn = |class: &FunctionalRoadClass| style.road(*class).opacity > 0.0;
+        let classes = FunctionalRoadClass::all().filter(is_drawn).collect();
+        FrameView { style, roads: RoadOptions { classes, ..RoadOptions::of(method) }, ..*view }
+    }
+}

@@ -1,0 +1,61 @@
+//! Where the dashes of a line are, if they lie on the ground: their lengths are true along it, not in plan.
+
+use super::super::DashPlace;
+
+/// How long the ground under each segment of a line is.
+///
+/// ```text
+///            ╱╲        ground: g metres              Between two points of the line, dashes are stretched evenly, by g / p.
+///        ___╱  ╲___                                  So both methods have them at the same places, though volumes (SV) know
+///   ────●──────────●────  segment: p metres          nothing of the ground in between.
+/// ```
+pub(crate) struct GroundLengths {
+    /// Points in plan, working metres.
+    points_m: Vec<[f64; 2]>,
+    /// Of each segment: how much of it lies on ground of the tile, in plan and along the ground.
+    lengths_m: Vec<[f64; 2]>,
+}
+
+impl GroundLengths {
+    /// Nothing is known yet of a line with these points.
+    pub(crate) fn new(points_m: Vec<[f64; 2]>) -> Self {
+        let lengths_m = vec![[0.0; 2]; points_m.len().saturating_sub(1)];
+        Self { points_m, lengths_m }
+    }
+
+    /// A piece of a segment lies on the ground between these points. `vertical_scale` is the world height of a metre of true height.
+    pub(crate) fn add(&mut self, segment: usize, ends_m: [[f64; 3]; 2], vertical_scale: f64) {
+        let [from, to] = ends_m;
+        let plan_m = (to[0] - from[0]).hypot(to[1] - from[1]);
+        if let Some(sums) = self.lengths_m.get_mut(segment) {
+            sums[0] += plan_m;
+            sums[1] += plan_m.hypot((to[2] - from[2]) * vertical_scale);
+        }
+    }
+
+    /// For each segment, where its dashes are.
+    pub(crate) fn places(self) -> DashPlaces {
+        let mut along_m = 0.0;
+        let segments = self.points_m.array_windows::<2>().zip(&self.lengths_m);
+        let of_segments = segments.map(|([from, to], [plan_m, ground_m])| {
+            // What lies on no ground of the tile is not drawn there.
+            let rate = if *plan_m > 0.0 { ground_m / plan_m } else { 1.0 };
+            let start_m = along_m;
+            along_m += rate * (to[0] - from[0]).hypot(to[1] - from[1]);
+            (*from, start_m, rate)
+        });
+        DashPlaces(of_segments.collect())
+    }
+}
+
+/// For each segment of a line its start, how far along the line that is, and metres along the line for each metre in plan.
+pub(crate) struct DashPlaces(Vec<([f64; 2], f64, f64)>);
+
+impl DashPlaces {
+    /// For a part of a segment that starts at this point.
+    pub(crate) fn at(&self, segment: usize, start: [f64; 2]) -> DashPlace {
+        let Some((from, start_m, rate)) = self.0.get(segment) else { return DashPlace::flat(0.0) };
+        let beyond_m = (start[0] - from[0]).hypot(start[1] - from[1]);
+        DashPlace::new(start_m + rate * beyond_m, *rate)
+    }
+}

@@ -1,0 +1,189 @@
+use corniche_drape::{ClippedPart, OwnedBorders};
+use corniche_geom::{Frame, LatticePoint, Polyline, TileId};
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_tin::Surface;
+
+use super::{
+    LayerLine, LineMethods, TileLayer,
+    dashes::{DashPlaces, GroundLengths},
+};
+use crate::tiles::{
+    DashPlace, GroundLine, PlanScale, RoadLook, RoadSegments, RoadVolumes, relief::Relief,
+    roads::PlanLine,
+};
+
+/// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
+const LONGEST_CELLS: f64 = 8.0;
+
+/// The ground of a tile as lines need it.
+pub(crate) struct TileGround<'a> {
+    pub(crate) id: TileId,
+    pub(crate) surface: &'a Surface,
+    pub(crate) frame: &'a Frame,
+    /// The tile's reference point.
+    pub(crate) reference_m: [f64; 3],
+    /// Lines are not drawn beyond this half width, working metres.
+    pub(crate) width_margin_m: f64,
+    pub(crate) scale: &'a PlanScale,
+    /// World height of a metre of true height without exaggeration.
+    pub(crate) vertical_scale: f64,
+}
+
+/// Lays lines on a tile's ground. Lines that are not near it give nothing.
+pub(crate) fn lay(lines: &[LayerLine], on: &TileGround<'_>, methods: LineMethods) -> TileLayer {
+    let mut ground = Vec::new();
+    let mut plan = Vec::new();
+    for line in lines {
+        let Some(class) = FunctionalRoadClass::new(line.style) else { continue };
+        let Ok(path) = Polyline::new(divided(&line.points, on)) else { continue };
+        let laid = on_ground(&path, line.id, class, on);
+        if methods != LineMethods::Geometry {
+            plan.extend(in_plan(&path, line.id, class, &laid.places, on));
+        }
+        if methods != LineMethods::ShadowVolumes {
+            ground.extend(laid.lines);
+        }
+    }
+    let bounds = on.frame.tile_bounds(on.id);
+    let relief = Relief::new(on.id, Some(on.surface), on.frame, on.width_margin_m);
+    let wide = relief.wide(&ground);
+    let segments = RoadSegments::of_lines(&ground, bounds, on.reference_m, on.scale, |piece| {
+        relief.bed(piece, wide.as_ref())
+    });
+    let volumes =
+        RoadVolumes::new(&plan, (bounds, on.width_margin_m), on.reference_m, on.scale, |ends_m| {
+            relief.near(ends_m)
+        });
+    TileLayer { segments, volumes }
+}
+
+/// The points of a line, with points between those that are far from each other, on the lattice. Each lies within half a step of it beside
+/// the line.
+fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
+    let [east, north] = on.frame.node_steps(on.id.z());
+    let longest = LONGEST_CELLS * east.min(north) as f64;
+    let mut divided: Vec<LatticePoint> = points.first().copied().into_iter().collect();
+    for [from, to] in points.array_windows::<2>() {
+        let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
+        let parts = (du.hypot(dv) / longest).ceil().max(1.0);
+        // A line all around the earth has some thousand parts.
+        for part in 1..parts as u32 {
+            let share = f64::from(part) / parts;
+            divided.push(LatticePoint::new(
+                from.u + (du * share).round() as i64,
+                from.v + (dv * share).round() as i64,
+            ));
+        }
+        divided.push(*to);
+    }
+    divided.dedup();
+    divided
+}
+
+/// What lies on the ground, and where its dashes are.
+struct Laid {
+    lines: Vec<GroundLine>,
+    places: DashPlaces,
+}
+
+fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGround<'_>) -> Laid {
+    let frame = on.frame;
+    let tile = frame.tile_lattice_bounds(on.id);
+    let points_m = path.points().iter().map(|&point| frame.position_m(point)).collect();
+    let mut lengths = GroundLengths::new(points_m);
+    // With each line the segments of `path` that its source segments are parts of.
+    let mut found: Vec<(GroundLine, Vec<usize>)> = Vec::new();
+    for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
+        for draped in corniche_drape::drape(&part.line, on.surface).lines {
+            let Ok(positions) = corniche_drape::positions(&draped, on.surface) else { continue };
+            let points_m: Vec<[f64; 3]> = positions
+                .into_iter()
+                .map(|[u, v, height_m]| {
+                    let [x, y] = frame.position_of_fraction_m([u, v]);
+                    [x, y, height_m]
+                })
+                .collect();
+            let sources = corniche_drape::source_segments(&draped);
+            let segments = segments_of(&sources, &part);
+            for (pair, &segment) in points_m.array_windows::<2>().zip(&segments) {
+                lengths.add(segment, *pair, on.vertical_scale);
+            }
+            let sources_m =
+                sources.into_iter().map(|ends| ends.map(|point| frame.position_m(point)));
+            let line = GroundLine {
+                way_id: id,
+                class,
+                own_width: OwnWidth::Unknown,
+                look: RoadLook::Plain,
+                points_m,
+                sources_m: sources_m.collect(),
+                dashes: None,
+            };
+            found.push((line, segments));
+        }
+    }
+    let places = lengths.places();
+    let with_dashes = |(line, segments): (GroundLine, Vec<usize>)| {
+        let sources = line.sources_m.iter().zip(&segments);
+        let mut dashes: Vec<(&[[f64; 2]; 2], DashPlace)> = Vec::new();
+        for (source_m, &segment) in sources {
+            if dashes.last().is_none_or(|(last, _)| *last != source_m) {
+                dashes.push((source_m, places.at(segment, source_m[0])));
+            }
+        }
+        let dashes = dashes.into_iter().map(|(_, place)| place).collect();
+        GroundLine { dashes: Some(dashes), ..line }
+    };
+    let lines = found.into_iter().map(with_dashes).collect();
+    Laid { lines, places }
+}
+
+/// For each piece of a draped line, the number of the path's segment that it is a piece of. `sources` are segments of `part`, in order.
+fn segments_of(sources: &[[LatticePoint; 2]], part: &ClippedPart) -> Vec<usize> {
+    let points = part.line.points();
+    let mut at = 0;
+    let mut number = |source: &[LatticePoint; 2]| {
+        while at + 2 < points.len() && points[at..at + 2] != source[..] {
+            at += 1;
+        }
+        part.segments.get(at).copied().unwrap_or_default()
+    };
+    sources.iter().map(&mut number).collect()
+}
+
+fn in_plan(
+    path: &Polyline,
+    id: i64,
+    class: FunctionalRoadClass,
+    places: &DashPlaces,
+    on: &TileGround<'_>,
+) -> Vec<PlanLine> {
+    let frame = on.frame;
+    let margin = (on.width_margin_m / frame.lattice_step_m()).floor() as i64;
+    let around = frame.tile_lattice_bounds(on.id).expanded(margin);
+    let mut lines = Vec::new();
+    for part in corniche_drape::clip_parts(path, &around, OwnedBorders::ALL) {
+        for line in corniche_drape::extrude(&part.line, on.surface, margin) {
+            let points_m: Vec<[f64; 2]> =
+                line.points.iter().map(|&point| frame.position_m(point)).collect();
+            let sources: Vec<[LatticePoint; 2]> = line.points.array_windows().copied().collect();
+            let segments = segments_of(&sources, &part);
+            let dashes =
+                segments.iter().zip(&points_m).map(|(&segment, at)| places.at(segment, *at));
+            lines.push(PlanLine {
+                way_id: id,
+                class,
+                own_width: OwnWidth::Unknown,
+                look: RoadLook::Plain,
+                dashes: Some(dashes.collect()),
+                points_m,
+                ground_range_m: line.ground_range_m,
+            });
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+#[path = "lay_tests.rs"]
+mod tests;

@@ -1,0 +1,104 @@
+use corniche_geom::NodeIndex;
+use corniche_tin::{Placement, Tin, TinVertex};
+
+use super::*;
+
+const CELL_M: f64 = 10.0;
+/// The ground rises by so many metres for each metre to the east.
+const RISE: f64 = 0.75;
+
+fn frame() -> Frame {
+    Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+}
+
+/// A plane in two triangles.
+fn surface(frame: &Frame) -> Surface {
+    let rise_q = (256.0 * 2.0 * CELL_M * RISE) as i32;
+    let node =
+        |row, column| TinVertex { row, column, height_q: if column > 0 { rise_q } else { 0 } };
+    let nodes = vec![node(0, 0), node(0, 256), node(256, 0), node(256, 256)];
+    let tin = Tin::new(nodes, &[[0, 2, 3], [0, 3, 1]]).unwrap();
+    Surface::new(&tin, Placement::of_tile(frame, TileId::ROOT, 1.0))
+}
+
+fn laid(points_m: &[[f64; 2]]) -> TileLayer {
+    let frame = frame();
+    let tile = frame.tile_bounds(TileId::ROOT);
+    let place =
+        |&[east, south]: &[f64; 2]| frame.snap([tile.min_x + east, tile.max_y - south]).unwrap();
+    let points = points_m.iter().map(place).collect();
+    let on = TileGround {
+        id: TileId::ROOT,
+        surface: &surface(&frame),
+        frame: &frame,
+        reference_m: [tile.min_x, tile.max_y, 0.0],
+        width_margin_m: 40.0,
+        scale: &PlanScale::uniform([1.0; 2]),
+        vertical_scale: 1.0,
+    };
+    lay(&[LayerLine { id: 7, style: 2, points }], &on, LineMethods::Both)
+}
+
+fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {
+    layer.segments.all().iter().map(|of| (of.start_in_tile, of.dash.numbers())).collect()
+}
+
+/// 150 m east on a slope of 3 : 4 are 187.5 m of ground; north along the slope a metre is a metre.
+#[test]
+fn dashes_are_as_long_on_a_slope_as_on_level_ground() {
+    let layer = laid(&[[100.0, 900.0], [250.0, 900.0], [250.0, 800.0]]);
+    let mut found = starts_and_rates(&layer);
+    found.dedup();
+    let expected = [([100.0, -900.0], [0.0, 1.25]), ([250.0, -900.0], [187.5, 1.0])];
+    assert_eq!(found.len(), 2, "{found:?}");
+    for ((start, dash), (expected_start, expected_dash)) in found.iter().zip(expected) {
+        for (a, b) in [(start, expected_start), (dash, expected_dash)] {
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.02), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn both_methods_have_dashes_at_the_same_places() {
+    let layer = laid(&[[-500.0, 900.0], [700.0, 3000.0], [4000.0, 2500.0], [6000.0, 5000.0]]);
+    let geo = starts_and_rates(&layer);
+    let sv: Vec<_> =
+        layer.volumes.all().iter().map(|of| (of.start_in_tile, of.dash.numbers())).collect();
+    let mut compared = 0;
+    for (start, dash) in &geo {
+        let same =
+            |(at, _): &&([f32; 2], [f32; 2])| (at[0] - start[0]).hypot(at[1] - start[1]) < 0.02;
+        // Where the border cuts a segment, only the drawing on the ground is cut.
+        let Some((_, other)) = sv.iter().find(same) else { continue };
+        assert!((dash[1] - other[1]).abs() < 1e-4 && (dash[0] - other[0]).abs() < 0.05);
+        compared += 1;
+    }
+    assert!(compared > 20, "{compared} of {}", geo.len());
+}
+
+#[test]
+fn every_vertex_lies_on_the_ground() {
+    let layer = laid(&[[20.0, 900.0], [700.0, 3000.0], [4000.0, 2500.0]]);
+    for of in layer.segments.all() {
+        let share = of.shares[0];
+        let east = of.start_in_tile[0] + share * (of.end_in_tile[0] - of.start_in_tile[0]);
+        let ground_m = f64::from(east) * RISE;
+        assert!((f64::from(of.height_in_tile) - ground_m).abs() < 0.01, "{of:?}");
+    }
+}
+
+#[test]
+fn lines_beyond_the_ground_give_nothing() {
+    assert!(laid(&[[-9000.0, 100.0], [-8000.0, 100.0]]).is_empty());
+    assert!(laid(&[[100.0, 100.0]]).is_empty());
+}
+
+#[test]
+fn long_segments_are_divided_and_stay_straight() {
+    let layer = laid(&[[100.0, 900.0], [2000.0, 900.0]]);
+    let longest_m = LONGEST_CELLS * 2.0 * CELL_M;
+    let starts: std::collections::BTreeSet<u32> =
+        layer.volumes.all().iter().map(|of| of.start_in_tile[0].to_bits()).collect();
+    assert_eq!(starts.len(), (1900.0 / longest_m).ceil() as usize);
+    assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
+}

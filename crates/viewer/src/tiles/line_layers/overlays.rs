@@ -1,0 +1,99 @@
+//! Lines of people's own files, as the tiles of each level need them.
+
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
+
+use super::LayerLine;
+
+/// On levels above the finest, lines are simplified by so many of the level's cells, as roads are.
+const TOLERANCE_CELLS: f64 = 0.25;
+/// Segments in a run whose rectangle is known.
+const RUN: usize = 64;
+
+/// Lines of people's own files, prepared for each level of a package.
+#[derive(Debug, Clone, Default)]
+pub struct Overlays {
+    /// By level.
+    levels: Vec<Vec<LevelLine>>,
+}
+
+#[derive(Debug, Clone)]
+struct LevelLine {
+    line: LayerLine,
+    /// The rectangle around each [`RUN`] of segments.
+    runs: Vec<LatticeBounds>,
+}
+
+impl Overlays {
+    /// Prepares lines. Those that are not two different points long are left out.
+    #[must_use]
+    pub fn new(lines: &[LayerLine], frame: &Frame) -> Self {
+        let levels = (0..=frame.max_level()).map(|level| {
+            let tolerance_m = if level == frame.max_level() {
+                0.0
+            } else {
+                TOLERANCE_CELLS * frame.level_cell(level).shorter_m()
+            };
+            let tolerance = tolerance_m / frame.lattice_step_m();
+            lines.iter().filter_map(|line| LevelLine::new(line, tolerance)).collect()
+        });
+        Self { levels: levels.collect() }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.levels.iter().all(Vec::is_empty)
+    }
+
+    /// The parts of lines in a tile and so many steps of the lattice around it.
+    pub(crate) fn near(&self, id: TileId, frame: &Frame, margin: i64) -> Vec<LayerLine> {
+        let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
+        let lines = self.levels.get(usize::from(id.z())).into_iter().flatten();
+        lines.flat_map(|line| line.near(&around)).collect()
+    }
+}
+
+impl LevelLine {
+    fn new(line: &LayerLine, tolerance: f64) -> Option<Self> {
+        let mut points = line.points.clone();
+        points.dedup();
+        let path = Polyline::new(points).ok()?;
+        let last = path.points().len() as u32 - 1;
+        let road = Road {
+            way_id: line.id,
+            class: FunctionalRoadClass::new(line.style)?,
+            attributes: RoadAttributes::default(),
+            line: path,
+            fixed: vec![0, last],
+        };
+        let points = simplify(&road, tolerance).points().to_vec();
+        let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {
+            LatticeBounds::of(&points[first..points.len().min(first + RUN + 1)])
+        });
+        Some(Self { runs: runs.collect(), line: LayerLine { points, ..line.clone() } })
+    }
+
+    /// The parts that have a segment whose rectangle touches these bounds.
+    fn near(&self, around: &LatticeBounds) -> Vec<LayerLine> {
+        let points = &self.line.points;
+        let is_near = |segment: &usize| {
+            LatticeBounds::of(&points[*segment..*segment + 2])
+                .is_some_and(|bounds| bounds.intersects(around))
+        };
+        let runs = self.runs.iter().enumerate().filter(|(_, bounds)| bounds.intersects(around));
+        let near: Vec<usize> = runs
+            .flat_map(|(run, _)| run * RUN..((run + 1) * RUN).min(points.len() - 1))
+            .filter(is_near)
+            .collect();
+        let parts = near.chunk_by(|one, next| one + 1 == *next);
+        let part = |part: &[usize]| -> Vec<LatticePoint> {
+            points[part[0]..part[part.len() - 1] + 2].to_vec()
+        };
+        parts.map(|of| LayerLine { points: part(of), ..self.line.clone() }).collect()
+    }
+}
+
+#[cfg(test)]
+#[path = "overlays_tests.rs"]
+mod tests;
