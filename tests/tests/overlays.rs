@@ -9,6 +9,7 @@ use std::{
 };
 
 use e2e::{Ran, corniche, text};
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use image::RgbaImage;
 
 const SIZE: [u32; 2] = [400, 300];
@@ -25,6 +26,8 @@ struct Scene {
     package: PathBuf,
     /// Longitude and latitude of the middle of all pictures.
     middle_deg: [f64; 2],
+    /// From WGS84 to the package's coordinate system.
+    to_package: CoordTransform,
 }
 
 impl Scene {
@@ -34,20 +37,27 @@ impl Scene {
         e2e::build_pass(&package, &["--max-error", "2"]);
         let info = succeed(corniche(["info", text(&package), "--json"]));
         let info: serde_json::Value = serde_json::from_str(&info.out).unwrap();
-        let bounds: Vec<f64> =
-            serde_json::from_value(info["wgs84_bounds"].clone()).unwrap_or_else(|_| {
-                let of = |name: &str| info["wgs84_bounds"][name].as_f64().unwrap();
-                vec![of("min_x"), of("min_y"), of("max_x"), of("max_y")]
-            });
-        let middle_deg = [(bounds[0] + bounds[2]) / 2.0, (bounds[1] + bounds[3]) / 2.0];
-        Self { folder, package, middle_deg }
+        let bounds = &info["manifest"]["wgs84_bounds"];
+        let middle = |low: &str, high: &str| {
+            f64::midpoint(bounds[low].as_f64().unwrap(), bounds[high].as_f64().unwrap())
+        };
+        let middle_deg = [middle("min_x", "max_x"), middle("min_y", "max_y")];
+        let reference = |reference: gdal::errors::Result<SpatialRef>| {
+            let mut reference = reference.unwrap();
+            reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+            reference
+        };
+        let from = reference(SpatialRef::from_epsg(4326));
+        let to = reference(SpatialRef::from_wkt(info["manifest"]["crs_wkt"].as_str().unwrap()));
+        let to_package = CoordTransform::new(&from, &to).unwrap();
+        Self { folder, package, middle_deg, to_package }
     }
 
     fn at(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    /// A point so many metres east and north of the middle, to a thousandth of that.
+    /// A point about so many metres east and north of the middle.
     fn beside_deg(&self, [east_m, north_m]: [f64; 2]) -> [f64; 2] {
         let [lon, lat] = self.middle_deg;
         // Lengths of a degree on the ellipsoid of WGS84, by their series.
@@ -60,6 +70,14 @@ impl Scene {
             lon + east_m / (111_412.84 * cos - 93.5 * cos_3),
             lat + north_m / (111_132.92 - 559.82 * cos_2),
         ]
+    }
+
+    /// Metres east and north of the middle, along the axes of the package.
+    fn from_middle_m(&self, at_deg: [f64; 2]) -> [f64; 2] {
+        let mut x = [self.middle_deg[0], at_deg[0]];
+        let mut y = [self.middle_deg[1], at_deg[1]];
+        self.to_package.transform_coords(&mut x, &mut y, &mut []).unwrap();
+        [x[1] - x[0], y[1] - y[0]]
     }
 
     fn write_line(&self, name: &str, points_m: &[[f64; 2]]) -> PathBuf {
@@ -109,6 +127,7 @@ fn a_line_is_drawn_where_it_is() {
     let scene = Scene::new();
     let points_m = [[-700.0, -300.0], [-100.0, 420.0], [250.0, -200.0], [600.0, 300.0]];
     let line = scene.write_line("line.geojson", &points_m);
+    let points_m = points_m.map(|at| scene.from_middle_m(scene.beside_deg(at)));
     let overlay = format!("{},color=#FF00FF,width=6", text(&line));
     for roads in ["geo", "sv"] {
         let before = scene.from_above(&format!("before-{roads}.png"), roads, &[]);
@@ -122,7 +141,7 @@ fn a_line_is_drawn_where_it_is() {
             let segments = points_m.array_windows::<2>().map(|pair| distance(at_m, *pair));
             let from_px = segments.fold(f64::INFINITY, f64::min) / PIXEL_M;
             let is_line = pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200;
-            // Grid north and the lengths of degrees are known to half a pixel. The edge of one pixel is neither.
+            // Half of the width is three pixels; the edge of one more has another colour.
             if from_px < 2.5 {
                 inside += 1;
                 if !is_line {

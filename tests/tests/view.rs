@@ -346,3 +346,114 @@ fn it_survives_other_sizes_and_being_hidden_and_ends_well() {
     desk.xdotool("key ctrl+q");
     assert_eq!(ended(&mut desk.window).code, 0);
 }
+
+/// The points of all lines of a GeoJSON file.
+fn lines_of(path: &Path) -> Vec<Vec<Vec<f64>>> {
+    let text = fs::read_to_string(path).expect("it is saved");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("as JSON");
+    let features = document["features"].as_array().expect("a collection");
+    let line = |feature: &serde_json::Value| {
+        serde_json::from_value(feature["geometry"]["coordinates"].clone()).expect("a line")
+    };
+    features.iter().map(line).collect()
+}
+
+impl Desk {
+    fn click(&mut self, x: i32, y: i32) {
+        self.point_at(x, y);
+        self.xdotool("click 1");
+    }
+
+    /// The lines as they are saved now.
+    fn saved_lines(
+        &self,
+        path: &Path,
+        is_right: impl Fn(&[Vec<Vec<f64>>]) -> bool,
+    ) -> Vec<Vec<Vec<f64>>> {
+        self.xdotool("key ctrl+s");
+        let begun = Instant::now();
+        loop {
+            if path.exists() {
+                let lines = lines_of(path);
+                if is_right(&lines) {
+                    return lines;
+                }
+                assert!(begun.elapsed() < Duration::from_mins(1), "{lines:?}");
+            }
+            assert!(begun.elapsed() < Duration::from_mins(1), "nothing is saved");
+            thread::sleep(Duration::from_millis(100));
+        }
+    }
+}
+
+/// Yellow as drawn lines are.
+fn yellow(picture: &image::RgbaImage) -> usize {
+    let is_yellow = |pixel: &&image::Rgba<u8>| {
+        let [red, green, blue, _] = pixel.0;
+        red > 230 && green > 200 && blue < 60
+    };
+    picture.pixels().filter(is_yellow).count()
+}
+
+#[test]
+fn a_line_is_drawn_changed_and_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lines.geojson");
+    let draw = path.to_str().expect("paths are UTF-8").to_owned();
+    let near = ["--look-at", "9.53,46.88", "--distance", "5000", "--draw", &draw];
+    let Some(mut desk) = Desk::open(&near) else { return };
+    desk.focus();
+    // Without the panel there is room beside the notices.
+    desk.xdotool("key Tab");
+    let bare = yellow(&desk.picture("p", 1));
+    desk.xdotool("key l");
+    for (x, y) in [(300, 260), (380, 330), (450, 260)] {
+        desk.click(x, y);
+    }
+    desk.xdotool("key Return");
+    let drawn = yellow(&desk.picture("p", 2));
+    assert!(drawn > bare + 100, "{bare} and {drawn} yellow pixels");
+    let three = desk.saved_lines(&path, |lines| lines.len() == 1);
+    assert_eq!(three[0].len(), 3);
+
+    // Another line, whose last point goes again.
+    for (x, y) in [(320, 200), (400, 215), (440, 200)] {
+        desk.click(x, y);
+    }
+    desk.xdotool("key Delete");
+    let two = desk.saved_lines(&path, |lines| lines.len() == 2);
+    assert_eq!(two[0], three[0], "to the last bit");
+    assert_eq!(two[1].len(), 2);
+
+    // The middle of the first line is dragged; that is one change, which is taken back and made again.
+    desk.point_at(380, 330);
+    desk.xdotool("mousedown 1");
+    for step in 1..=5 {
+        desk.xdotool(&format!("mousemove {} {}", 380 + 3 * step, 330 + 3 * step));
+    }
+    desk.point_at(395, 345);
+    desk.xdotool("mouseup 1");
+    let dragged = desk.saved_lines(&path, |lines| lines[0] != three[0]);
+    assert_eq!((&dragged[0][0], &dragged[0][2]), (&three[0][0], &three[0][2]));
+    assert_ne!(dragged[0][1], three[0][1]);
+    desk.xdotool("key ctrl+z");
+    desk.saved_lines(&path, |lines| lines == two);
+    desk.xdotool("key ctrl+y");
+    desk.saved_lines(&path, |lines| lines == dragged);
+
+    // What is not saved when the window closes is saved then.
+    desk.click(350, 300);
+    desk.xdotool("key Return");
+    desk.xdotool("key ctrl+z");
+    desk.xdotool("key ctrl+z");
+    desk.xdotool("key ctrl+q");
+    assert_eq!(ended(&mut desk.window).code, 0);
+    assert_eq!(lines_of(&path), two, "two changes were taken back: the point and the drag");
+
+    // A picture of the same file, by another command.
+    let package = desk.trace.with_file_name("pass.pmtiles");
+    let picture = folder.path().join("lines.png");
+    let words = ["render", e2e::text(&package), "-o", e2e::text(&picture), "--overlay", &draw];
+    let ran = e2e::corniche(words);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+}

@@ -8,6 +8,7 @@ mod chart;
 mod completions;
 mod defects;
 mod documents;
+mod drawing;
 mod exit;
 mod export;
 mod failure;

@@ -16,6 +16,7 @@ use corniche_window::{
 
 use crate::{
     args::{Motion, OverlayArg, Roads, ViewArgs},
+    drawing::Drawing,
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
@@ -46,7 +47,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     }
     let package = PackageSource::open(&args.package)?;
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
-    let package = package.with_overlays(overlays);
+    let package = Arc::new(package.with_overlays(overlays));
+    let draw = args.draw.as_deref();
+    let drawing = Drawing::begin(draw, &args.folder, &used, Arc::clone(&package))?;
     for named in &mut styles {
         named.style = overlays::styled(&args.look.overlay, named.style.clone());
     }
@@ -63,6 +66,8 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         areas: args.look.areas.in_window(),
         reload: reload(chosen, &args.look.overlay),
         overlays: overlays::names(&args.look.overlay),
+        drawn_lines: drawing.lines,
+        save_drawing: drawing.save,
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,
@@ -80,7 +85,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         trace,
         is_stopped: Box::new(interrupt::is_noted),
     };
-    let Closed { end, last_files } = open_window(request, Arc::new(package));
+    let Closed { end, last_files } = open_window(request, package);
     let mut code = ExitCode::Done;
     for saved in last_files {
         match saved {

@@ -36,6 +36,12 @@ pub enum OverlayError {
         "{path:?} has more than {limit} points in its lines; simplify it (ogr2ogr -simplify), or cut it to the package (ogr2ogr -clipsrc)"
     )]
     TooManyPoints { path: PathBuf, limit: usize },
+    #[error("cannot read {path:?}")]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{path:?} is larger than {limit} bytes, which is no file of lines that were drawn")]
+    TooLarge { path: PathBuf, limit: u64 },
+    #[error("{path:?} is no GeoJSON (RFC 7946): {reason}")]
+    GeoJson { path: PathBuf, reason: String },
     #[error("the package's coordinate system cannot be used")]
     PackageCrs(#[source] Box<DemError>),
     #[error(transparent)]

@@ -46,6 +46,8 @@ pub(crate) struct StyleSheet {
     pub(crate) boundaries: [LineStyle; LineStyle::MOST],
     /// In the order of the files.
     pub(crate) overlays: [LineStyle; LineStyle::MOST],
+    /// Lines that a person draws.
+    pub(crate) drawn: LineStyle,
 }
 
 /// How roads widen with distance.
@@ -164,6 +166,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         areas: areas(&area_sheets, usual.areas)?,
         boundaries: usual.boundaries,
         overlays: usual.overlays,
+        drawn: usual.drawn,
     };
     sheet.check()?;
     Ok(sheet)
@@ -218,6 +221,7 @@ impl From<&StyleSheet> for Style {
             areas: sheet.areas,
             boundaries: sheet.boundaries,
             overlays: sheet.overlays,
+            drawn: sheet.drawn,
             own_widths: own_width.then_some(OwnWidths { lane_m }),
             width_scaling: WidthScaling {
                 threshold_m: width_scaling.threshold_m as f32,

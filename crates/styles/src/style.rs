@@ -89,6 +89,8 @@ pub struct Style {
     pub boundaries: [LineStyle; LineStyle::MOST],
     /// Lines of people's own files, in the order of the files.
     pub overlays: [LineStyle; LineStyle::MOST],
+    /// Lines that a person draws.
+    pub drawn: LineStyle,
     /// Whether roads are drawn by their own tags; `None`: all roads of a class are equally wide.
     pub own_widths: Option<OwnWidths>,
     /// How roads widen with distance.
@@ -200,6 +202,10 @@ impl Style {
             ],
             boundaries: boundaries(),
             overlays: overlays(),
+            drawn: LineStyle {
+                casing: Some(rgb(0x2B_2B_2B)),
+                ..LineStyle::solid(rgb(0xFF_E6_00), 3.0)
+            },
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,

@@ -16,6 +16,7 @@ impl LineLayer {
         match self {
             Self::Boundaries => &style.boundaries,
             Self::Overlays => &style.overlays,
+            Self::Drawn => std::slice::from_ref(&style.drawn),
         }
     }
 

@@ -35,6 +35,7 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
     let points_m = lay(from, to, &triangles(TileId::ROOT, &ground));
     let line = ground_line(2, points_m);
     let plan = PlanLine {
+        dashes: None,
         way_id: 1,
         class: class(2),
         own_width: OwnWidth::Unknown,

@@ -5,6 +5,7 @@ mod adapter;
 mod camera_control;
 mod camera_limits;
 mod captures;
+mod drawing;
 mod first_settings;
 mod first_view;
 mod frame;
@@ -30,14 +31,14 @@ use glam::DVec2;
 
 use self::{
     adapter::AdapterState, camera_control::CameraControl, camera_limits::limits,
-    captures::Captures, first_settings::first_settings, first_view::first_view,
+    captures::Captures, drawing::Drawing, first_settings::first_settings, first_view::first_view,
     frame_pace::FramePace, ground_probe::GroundProbe, style_list::StyleList,
     typed_place::place_in_world,
 };
 use crate::{
-    CommandOf, NotSaved, WindowError, WindowRequest,
+    ClockS, CommandOf, NotSaved, WindowError, WindowRequest,
     canvas::Canvas,
-    command::Command,
+    command::{Command, DrawingCommand},
     controls::{Button, Input, Modifiers, Navigator},
     formatting,
     notices::Notices,
@@ -64,6 +65,7 @@ pub(crate) struct App {
     graphics: AdapterState,
     pace: FramePace,
     captures: Captures,
+    drawing: Drawing,
     notices: Notices,
     trace: Option<Trace>,
     probe: GroundProbe,
@@ -86,6 +88,8 @@ pub(crate) struct AppPlatform {
     pub(crate) loader: Box<dyn TileLoader>,
     /// Saves files.
     pub(crate) files: Box<dyn SaveFiles>,
+    /// Tells the time.
+    pub(crate) clock_s: ClockS,
 }
 
 impl App {
@@ -135,6 +139,11 @@ impl App {
                 graphics.adapter()
             ));
         }
+        let (lines, ways) = (&request.drawn_lines, (request.save_drawing, platform.clock_s));
+        let (drawing, left_out) = Drawing::new(lines, ways, package.manifest());
+        if left_out > 0 {
+            notices.warn(format!("{left_out} lines lie too far away from the package"));
+        }
         Ok(Self {
             tiles: Tiles::new(package.catalog(), quantum_m, platform.loader, request.budget),
             package,
@@ -144,6 +153,7 @@ impl App {
             graphics,
             pace: FramePace::default(),
             captures: Captures::new(Shots::new(platform.files)),
+            drawing,
             notices,
             trace,
             probe: GroundProbe::default(),
@@ -169,12 +179,23 @@ impl App {
 
     /// A button of the mouse goes down on the map.
     pub(crate) fn press(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
+        let is_drawn = self.is_drawing() && button == Button::Left && !modifiers.control;
+        if is_drawn && self.press_drawing(at_px, modifiers) {
+            return;
+        }
         let ground = ground(&self.tiles, &self.settings, &self.package);
-        self.camera.press(button, at_px, modifiers, now_s, &ground);
+        if is_drawn {
+            self.camera.press_once(button, at_px, modifiers, now_s, &ground);
+        } else {
+            self.camera.press(button, at_px, modifiers, now_s, &ground);
+        }
     }
 
     /// Any other input that moves the camera.
     pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
+        if self.is_drawing() && self.input_drawing(input) {
+            return;
+        }
         let ground = ground(&self.tiles, &self.settings, &self.package);
         self.camera.input(input, now_s, &ground);
     }
@@ -194,7 +215,9 @@ impl App {
             Command::CopyView => self.copy_view(now_s),
             Command::TogglePanel => self.settings.is_panel_open = !self.settings.is_panel_open,
             Command::ToggleHelp => self.settings.is_help_open = !self.settings.is_help_open,
-            Command::CloseHelp => self.settings.is_help_open = false,
+            Command::CloseHelp if self.settings.is_help_open => self.settings.is_help_open = false,
+            Command::CloseHelp => self.draw_command(DrawingCommand::EndLine, now_s),
+            Command::Draw(command) => self.draw_command(command, now_s),
             Command::Take(shot) => self.captures.want(shot),
             Command::ToggleRecording if self.captures.is_recording() => self.stop_recording(now_s),
             Command::ToggleRecording | Command::StartRecording => {
@@ -236,6 +259,7 @@ impl App {
     /// The graphics device is lost and another one has taken its place: everything is loaded and drawn again.
     pub(crate) fn begin_again(&mut self, canvas: &Canvas) {
         self.tiles.begin_again();
+        self.drawing.clear_tiles();
         // A frozen choice of tiles would stay empty.
         self.settings.refinement = Refinement::Live;
         self.graphics = AdapterState::of(canvas);
@@ -248,7 +272,9 @@ impl App {
     /// show it.
     pub(crate) fn end(&mut self, canvas: &Canvas, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
         let manifest = self.package.manifest();
-        self.captures.end(canvas, now_s, self.settings.divider_share, manifest)
+        let mut saved = self.captures.end(canvas, now_s, self.settings.divider_share, manifest);
+        saved.extend(self.drawing.save());
+        saved
     }
 
     /// When [`App::reload`] must be called.

@@ -38,6 +38,8 @@ fn request() -> WindowRequest {
         photo: None,
         areas: crate::Areas::Shown,
         overlays: Vec::new(),
+        drawn_lines: Vec::new(),
+        save_drawing: Box::new(|_| Ok(PathBuf::new())),
         screen_space_error_px: 0.01,
         cell_px: f64::INFINITY,
         exaggeration: 1.0,
@@ -66,7 +68,7 @@ fn drawn_at_rest(
     let data = package.manifest().data_bounds;
     let extent = MapExtent::of_data(data, root.summary.unwrap().height_range_m);
     let shown = ShownPackage::of(&request, package, root, extent).unwrap();
-    let platform = AppPlatform { loader, files: Box::new(NoFiles) };
+    let platform = AppPlatform { loader, files: Box::new(NoFiles), clock_s: Box::new(|| 0.0) };
     let mut app = App::new(request, shown, None, canvas, platform, SIZE_PX, 1.0).unwrap();
     let ui = egui::Context::default();
     crate::panel::set_up(&ui);

@@ -13,7 +13,7 @@ use corniche_viewer::{
         DrawTile, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, Targets,
         TileBuffers,
     },
-    tiles::TileGeometry,
+    tiles::{LineLayer, TileGeometry, TileLayer},
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
@@ -82,6 +82,13 @@ impl Canvas {
             let above = above.map(TileBuffers::slopes);
             let buffers = TileBuffers::new(&self.gpu, tile, above);
             self.tiles.insert(tile.id, buffers);
+        }
+    }
+
+    /// Replaces the lines that a person draws on a tile.
+    pub(crate) fn replace_drawn_lines(&mut self, id: TileId, lines: &TileLayer) {
+        if let Some(tile) = self.tiles.get_mut(&id) {
+            tile.replace_lines(&self.gpu, LineLayer::Drawn, lines);
         }
     }
 

@@ -33,6 +33,7 @@ fn scene(compare: Compare) -> Scene {
 pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
     Scene {
+        lines_revision: 0,
         camera: Camera::look_at(DVec3::ZERO, 1000.0, level, size_px),
         window_px: size_px,
         style: Style::road_atlas(),

@@ -9,6 +9,25 @@ pub(crate) enum Shot {
     Window,
 }
 
+/// What a key or the panel does to the drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DrawingCommand {
+    /// Begin to draw, or end it.
+    Toggle,
+    /// The next click begins another line.
+    EndLine,
+    /// Remove the picked point.
+    RemovePoint,
+    /// Remove the picked line.
+    RemoveLine,
+    /// Take the last change back.
+    Undo,
+    /// Make the change again that was taken back last.
+    Redo,
+    /// Save the lines.
+    Save,
+}
+
 /// What a person asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Command {
@@ -36,6 +55,8 @@ pub(crate) enum Command {
     StartRecording,
     /// End the recording and save the flight.
     StopRecording,
+    /// Do something to the lines that are drawn.
+    Draw(DrawingCommand),
     /// Remove the notice at this place of the list.
     Dismiss(usize),
 }

@@ -20,6 +20,7 @@ mod canvas;
 mod clicks;
 mod command;
 mod controls;
+mod drawing;
 mod error;
 mod formatting;
 mod frame_times;
@@ -43,4 +44,7 @@ pub use controls::Inertia;
 pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};
-pub use request::{Areas, BeginTrace, CommandOf, NamedStyle, Reload, ShownView, WindowRequest};
+pub use request::{
+    Areas, BeginTrace, ClockS, CommandOf, DrawnLine, NamedStyle, Reload, SaveDrawing, ShownView,
+    WindowRequest,
+};

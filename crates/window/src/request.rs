@@ -4,7 +4,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{Rgb, Style};
 use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, Wireframe, stream::StreamBudget};
 
-use crate::Inertia;
+use crate::{Inertia, NotSaved};
 
 /// A style and what it is called.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +66,21 @@ pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
 /// meanwhile.
 pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
 
+/// A line that a person draws or has drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnLine {
+    /// Which feature of the file it comes from; `None` for one that was drawn here.
+    pub feature: Option<usize>,
+    /// Longitude and latitude of each point, WGS84.
+    pub points_deg: Vec<[f64; 2]>,
+}
+
+/// Saves all lines, and tells where.
+pub type SaveDrawing = Box<dyn FnMut(&[DrawnLine]) -> Result<PathBuf, NotSaved>>;
+
+/// Tells the time, seconds since any moment.
+pub type ClockS = Box<dyn Fn() -> f64>;
+
 /// How to open a window, and what it shows at first.
 pub struct WindowRequest {
     /// What the package is called.
@@ -93,6 +108,10 @@ pub struct WindowRequest {
     /// What the files of lines are called that the package's tiles carry, in the order of the style's
     /// [`overlays`](corniche_styles::Style::overlays).
     pub overlays: Vec<String>,
+    /// Lines that can be changed in the window.
+    pub drawn_lines: Vec<DrawnLine>,
+    /// Saves them.
+    pub save_drawing: SaveDrawing,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels.

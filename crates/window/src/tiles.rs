@@ -132,6 +132,11 @@ impl Tiles {
         }
     }
 
+    /// The ground of the tiles that are on the graphics card.
+    pub(crate) fn resident(&self) -> impl Iterator<Item = &TileGeometry> {
+        self.resident.values()
+    }
+
     /// Everything on the graphics card is lost: all tiles are requested again.
     pub(crate) fn begin_again(&mut self) {
         self.loader.forget();

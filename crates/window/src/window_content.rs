@@ -20,6 +20,34 @@ pub(crate) struct GroundPoint {
     pub(crate) at_m: [f64; 3],
 }
 
+/// A point of a drawn line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Handle {
+    /// On the screen, points.
+    pub(crate) at: [f32; 2],
+    /// Whether keys act on it.
+    pub(crate) is_picked: bool,
+}
+
+/// What is told of the lines that a person draws.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct DrawingContent {
+    /// Whether the mouse draws.
+    pub(crate) is_on: bool,
+    /// The points of all lines, while it does.
+    pub(crate) handles: Vec<Handle>,
+    /// How many lines there are.
+    pub(crate) lines: usize,
+    /// Whether a point is picked.
+    pub(crate) is_picked: bool,
+    /// Whether a change can be taken back, and whether one can be made again.
+    pub(crate) can_step: [bool; 2],
+    /// Whether something is not saved.
+    pub(crate) is_changed: bool,
+    /// How often a line was laid on a tile for the last change, and how many milliseconds that took.
+    pub(crate) last: Option<(usize, f64)>,
+}
+
 /// Everything that the panel and the overlay show, apart from the settings.
 pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
@@ -70,6 +98,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) passes: &'a [(RoadMethod, PassTimes)],
     /// How long the last frames took.
     pub(crate) frame_times: &'a FrameTimes,
+    /// The lines that a person draws.
+    pub(crate) drawing: DrawingContent,
     /// For how long a flight has been recorded; `None` while none is.
     pub(crate) recording_s: Option<f64>,
     /// Messages, oldest first.

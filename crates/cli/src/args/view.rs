@@ -49,6 +49,10 @@ pub(crate) struct ViewArgs {
     /// How movements end
     #[arg(long, value_enum, default_value_t = Motion::Soft)]
     pub(crate) motion: Motion,
+    /// Lines to change with the mouse (key L): a GeoJSON file, made if it is not there. They are saved there with Ctrl S and at the end
+    /// [default: a new file in --folder]
+    #[arg(long, value_name = "GEOJSON")]
+    pub(crate) draw: Option<PathBuf>,
     /// Where pictures (key P) and recorded flights (key C) are saved, numbered; no file is replaced
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub(crate) folder: PathBuf,

@@ -7,11 +7,12 @@
 mod dashes;
 mod lay;
 mod overlays;
+mod tile_surface;
 
 use corniche_geom::LatticePoint;
 
 pub(crate) use self::lay::{TileGround, lay};
-pub use self::overlays::Overlays;
+pub use self::{overlays::Overlays, tile_surface::TileSurface};
 use super::{RoadSegments, RoadVolumes};
 
 /// The layers of lines, from the lowest to the highest.
@@ -21,11 +22,13 @@ pub enum LineLayer {
     Boundaries,
     /// Lines of people's own files.
     Overlays,
+    /// Lines that a person draws in the window.
+    Drawn,
 }
 
 impl LineLayer {
     /// All layers, in the order in which they are drawn.
-    pub const ALL: [Self; 2] = [Self::Boundaries, Self::Overlays];
+    pub const ALL: [Self; 3] = [Self::Boundaries, Self::Overlays, Self::Drawn];
 }
 
 /// A line in plan.
@@ -49,6 +52,15 @@ pub struct TileLayer {
 }
 
 impl TileLayer {
+    /// Several layers of one tile as one.
+    #[must_use]
+    pub fn joined<'a>(layers: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        Self {
+            segments: RoadSegments::joined(layers.clone().map(|layer| &layer.segments)),
+            volumes: RoadVolumes::joined(layers.map(|layer| &layer.volumes)),
+        }
+    }
+
     /// Whether there is nothing in it.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -29,7 +29,9 @@ pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     geometry::TileGeometry,
-    line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
+    line_layers::{
+        LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer, TileSurface,
+    },
     map_extent::MapExtent,
     package::PackageTiles,
     photo::PhotoImage,

@@ -208,6 +208,7 @@ pub(crate) fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64>
 /// Roads of one width for all classes, without any growth: `half_width_m` is all there is to know.
 pub(crate) fn plain_style(width_m: f32) -> Style {
     let road = RoadStyle {
+        dash: corniche_styles::Dash::SOLID,
         width_m,
         min_width_px: 0.0,
         bands: RoadBands::one([1.0; 3]),

@@ -100,6 +100,7 @@ impl Tile {
                             line.ground_range_m.push(range_m);
                         }
                         None => lines.plan.push(PlanLine {
+                            dashes: None,
                             way_id: *way_id,
                             class,
                             own_width: OwnWidth::Unknown,
@@ -161,6 +162,7 @@ impl Tile {
             .roads_geo
             .iter()
             .map(|road| GroundLine {
+                dashes: None,
                 way_id: road.way_id,
                 class: road.class,
                 own_width: own_width(payload, road.way_id),
@@ -183,6 +185,7 @@ impl Tile {
             .roads_sv
             .iter()
             .map(|road| PlanLine {
+                dashes: None,
                 way_id: road.way_id,
                 class: road.class,
                 own_width: own_width(payload, road.way_id),

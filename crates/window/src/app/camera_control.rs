@@ -57,6 +57,19 @@ impl CameraControl {
         self.input(&input, now_s, ground);
     }
 
+    /// The same for a press that is never the second of a double click.
+    pub(crate) fn press_once(
+        &mut self,
+        button: Button,
+        at_px: DVec2,
+        modifiers: Modifiers,
+        now_s: f64,
+        ground: &dyn KnownGround,
+    ) {
+        self.is_dragging = true;
+        self.input(&Input::Press { button, at_px, modifiers }, now_s, ground);
+    }
+
     /// Any other input.
     pub(crate) fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         match input {

@@ -147,7 +147,10 @@ impl App {
             Refinement::Frozen => Changes::default(),
         };
         canvas.change(&changes.evict, &changes.upload);
+        let is_new = !changes.upload.is_empty();
         self.tiles.keep_ground(changes.upload);
+        self.drawing.evict(&changes.evict);
+        self.drawing.lay(canvas, &self.tiles, self.package.manifest(), is_new);
         if self.tiles.take_first_time_full() {
             self.notices.warn(
                 "the graphics memory allowed is full: this view is drawn more coarsely than asked; allow more with \
@@ -215,6 +218,7 @@ impl App {
             latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: settings.wireframe(),
             drawn: self.tiles.drawn().to_vec(),
+            lines_revision: self.drawing.revision(),
             samples_per_side,
         }
     }
@@ -296,6 +300,7 @@ impl App {
             gpu_bytes: self.tiles.bytes_of_budget(),
             passes: self.graphics.passes(),
             frame_times: self.pace.times(),
+            drawing: self.drawing_content(),
             recording_s: self.captures.recording_s(now_s),
             notices: self.notices.all(),
         }

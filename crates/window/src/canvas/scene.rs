@@ -30,6 +30,8 @@ pub(crate) struct Scene {
     pub(crate) wireframe: Wireframe,
     /// The tiles to draw.
     pub(crate) drawn: Vec<Drawn>,
+    /// Grows with every change of lines that a person draws.
+    pub(crate) lines_revision: u64,
     /// Samples per pixel along each side.
     pub(crate) samples_per_side: u32,
 }

@@ -8,6 +8,7 @@ mod answer;
 mod compass;
 mod credits;
 mod divider;
+mod handles;
 mod help;
 mod legend;
 mod no_data;
@@ -23,6 +24,7 @@ use self::{
     compass::{compass, compass_place},
     credits::{credits, credits_place},
     divider::divider,
+    handles::handles,
     help::help,
     legend::legend,
     no_data::no_data,
@@ -49,6 +51,7 @@ pub(crate) fn overlay(
     let mut answer = OverlayAnswer::default();
     // Nothing is painted over the panel or the status line, however small the window is.
     ui.set_clip_rect(rect);
+    handles(ui, &content.drawing);
     let mut room = rect;
     room.max.y = scale_bar(ui, rect, credits_place(ui, rect, content).as_ref(), content);
     if settings.is_help_open {

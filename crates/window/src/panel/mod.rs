@@ -2,6 +2,7 @@
 
 mod advanced;
 mod camera;
+mod lines;
 mod map;
 mod performance;
 mod record;
@@ -121,6 +122,7 @@ fn sections(
         section(ui, "Classes", |ui| roads::classes(ui, settings, content));
         section(ui, "Map", |ui| map::show(ui, settings, content));
         section(ui, "Camera", |ui| camera::show(ui, settings, content, commands));
+        section(ui, "Lines", |ui| lines::show(ui, content, commands));
         section(ui, "Record", |ui| record::show(ui, content, commands));
         section(ui, "Advanced", |ui| advanced::show(ui, settings, content));
         section(ui, "Performance", |ui| performance::show(ui, content));

@@ -73,6 +73,7 @@ impl Told {
             photo: None,
             has_areas: self.has_areas,
             overlays: &[],
+            drawing: crate::window_content::DrawingContent::default(),
             overlay_colors: Vec::new(),
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             class_labels: &self.class_labels,

@@ -8,7 +8,7 @@ use winit::{
 
 use crate::{
     app::App,
-    command::{Command, Shot},
+    command::{Command, DrawingCommand, Shot},
     controls::{Button, Input, Key, KeyState, Modifiers},
 };
 
@@ -176,6 +176,13 @@ impl Inputs {
             ElementState::Pressed => KeyState::Pressed,
             ElementState::Released => KeyState::Released,
         };
+        let drawing = drawing_command(&event.logical_key, self.modifiers, app.is_drawing());
+        if let Some(command) = drawing {
+            if state == KeyState::Pressed {
+                app.command(Command::Draw(command), now_s);
+            }
+            return true;
+        }
         if let Some(key) = moving_key(&event.logical_key, event.physical_key) {
             app.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
             return true;
@@ -221,6 +228,32 @@ fn moving_key(logical: &winit::keyboard::Key, physical: PhysicalKey) -> Option<K
         PhysicalKey::Code(KeyCode::KeyQ) => Some(Key::Sink),
         _ => None,
     })
+}
+
+/// The key that does something to drawn lines. With Control, keys of fly mode are these.
+fn drawing_command(
+    logical: &winit::keyboard::Key,
+    modifiers: Modifiers,
+    is_drawing: bool,
+) -> Option<DrawingCommand> {
+    use winit::keyboard::Key as Logical;
+    if let Logical::Character(letter) = logical {
+        return match (letter.to_lowercase().as_str(), modifiers) {
+            ("l", Modifiers { control: false, .. }) => Some(DrawingCommand::Toggle),
+            ("z", Modifiers { control: true, shift: false }) => Some(DrawingCommand::Undo),
+            ("z" | "y", Modifiers { control: true, .. }) => Some(DrawingCommand::Redo),
+            ("s", Modifiers { control: true, .. }) => Some(DrawingCommand::Save),
+            _ => None,
+        };
+    }
+    match logical {
+        Logical::Named(NamedKey::Enter) if is_drawing => Some(DrawingCommand::EndLine),
+        Logical::Named(NamedKey::Delete | NamedKey::Backspace) if is_drawing => {
+            let is_line = modifiers.shift;
+            Some(if is_line { DrawingCommand::RemoveLine } else { DrawingCommand::RemovePoint })
+        }
+        _ => None,
+    }
 }
 
 fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Command> {

@@ -17,7 +17,7 @@ use super::{
     screen::{Acquired, Screen},
 };
 use crate::{
-    NotSaved, WindowError, WindowRequest,
+    ClockS, NotSaved, WindowError, WindowRequest,
     app::{App, AppPlatform, FrameInput, Redraw},
     canvas::Canvas,
 };
@@ -67,7 +67,9 @@ impl OpenWindow {
         let room = request.budget.tiles_in_flight;
         let loader = LoaderThreads::new(&package.tiles, threads, room, &wake)
             .map_err(|source| WindowError::Thread { source })?;
-        let platform = AppPlatform { loader: Box::new(loader), files };
+        let begun = std::time::Instant::now();
+        let clock_s: ClockS = Box::new(move || begun.elapsed().as_secs_f64());
+        let platform = AppPlatform { loader: Box::new(loader), files, clock_s };
         let place_height_m = package.place_height_m(request.camera)?;
         let app = App::new(
             request,

@@ -11,13 +11,13 @@ const TOLERANCE_CELLS: f64 = 0.25;
 const RUN: usize = 64;
 
 /// Lines of people's own files, prepared for each level of a package.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
     /// By level.
     levels: Vec<Vec<LevelLine>>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 struct LevelLine {
     line: LayerLine,
     /// The rectangle around each [`RUN`] of segments.
@@ -47,7 +47,8 @@ impl Overlays {
     }
 
     /// The parts of lines in a tile and so many steps of the lattice around it.
-    pub(crate) fn near(&self, id: TileId, frame: &Frame, margin: i64) -> Vec<LayerLine> {
+    #[must_use]
+    pub fn near(&self, id: TileId, frame: &Frame, margin: i64) -> Vec<LayerLine> {
         let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
         let lines = self.levels.get(usize::from(id.z())).into_iter().flatten();
         lines.flat_map(|line| line.near(&around)).collect()

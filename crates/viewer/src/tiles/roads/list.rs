@@ -4,6 +4,11 @@ use corniche_roads::FunctionalRoadClass;
 
 use super::RoadEnd;
 
+/// What has a functional road class, or the place of one.
+pub(crate) trait Classed {
+    fn class(&self) -> FunctionalRoadClass;
+}
+
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoadList<T> {
@@ -27,6 +32,16 @@ impl<T> RoadList<T> {
             *range = start as u32..end as u32;
         }
         Self { pieces, ranges, ends }
+    }
+
+    /// The pieces and ends of several lists of one tile.
+    pub(crate) fn joined<'a>(lists: impl Iterator<Item = &'a Self> + Clone) -> Self
+    where
+        T: Classed + Clone + 'a,
+    {
+        let pieces = lists.clone().flat_map(|list| list.pieces.iter().cloned()).collect();
+        let ends = lists.flat_map(|list| list.ends.iter().copied()).collect();
+        Self::sorted(pieces, T::class, ends)
     }
 
     /// The pieces, most important class first.

@@ -7,6 +7,7 @@ use super::{
     dashes::{DashPlace, dash_starts},
     ends::ground_ends,
     flat_ends::{LineEnds, flat_ends},
+    list::Classed,
     parts::{KnownNet, NetLine, part_lengths_m},
 };
 
@@ -40,6 +41,12 @@ pub struct RoadSegment {
     pub(crate) dash: DashPlace,
     /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
     pub(crate) flat_ends: [bool; 2],
+}
+
+impl Classed for RoadSegment {
+    fn class(&self) -> FunctionalRoadClass {
+        self.class
+    }
 }
 
 /// All segments of a tile.

@@ -7,6 +7,7 @@ use super::{
     dashes::{DashPlace, dash_starts},
     ends::plan_ends,
     flat_ends::{LineEnds, flat_ends},
+    list::Classed,
     parts::{KnownNet, NetLine, part_lengths_m},
 };
 
@@ -35,6 +36,12 @@ pub struct RoadVolume {
     pub(crate) dash: DashPlace,
     /// Whether it ends flat at its start and at its end, also where roads have caps.
     pub(crate) flat_ends: [bool; 2],
+}
+
+impl Classed for RoadVolume {
+    fn class(&self) -> FunctionalRoadClass {
+        self.class
+    }
 }
 
 /// All volumes of a tile.
