@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// Metres east and north of the middle, along the axes of the package.
-    fn from_middle_m(&self, at_deg: [f64; 2]) -> [f64; 2] {
+    fn metres_beside_middle(&self, at_deg: [f64; 2]) -> [f64; 2] {
         let mut x = [self.middle_deg[0], at_deg[0]];
         let mut y = [self.middle_deg[1], at_deg[1]];
         self.to_package.transform_coords(&mut x, &mut y, &mut []).unwrap();
@@ -108,7 +108,7 @@ impl Scene {
         image::open(path).unwrap().to_rgba8()
     }
 
-    fn from_above(&self, name: &str, roads: &str, overlays: &[&str]) -> RgbaImage {
+    fn seen_from_above(&self, name: &str, roads: &str, overlays: &[&str]) -> RgbaImage {
         let pixel = PIXEL_M.to_string();
         self.render(name, roads, overlays, &["--ortho", "--pixel", &pixel])
     }
@@ -127,11 +127,11 @@ fn a_line_is_drawn_where_it_is() {
     let scene = Scene::new();
     let points_m = [[-700.0, -300.0], [-100.0, 420.0], [250.0, -200.0], [600.0, 300.0]];
     let line = scene.write_line("line.geojson", &points_m);
-    let points_m = points_m.map(|at| scene.from_middle_m(scene.beside_deg(at)));
+    let points_m = points_m.map(|at| scene.metres_beside_middle(scene.beside_deg(at)));
     let overlay = format!("{},color=#FF00FF,width=6", text(&line));
     for roads in ["geo", "sv"] {
-        let before = scene.from_above(&format!("before-{roads}.png"), roads, &[]);
-        let after = scene.from_above(&format!("after-{roads}.png"), roads, &[&overlay]);
+        let before = scene.seen_from_above(&format!("before-{roads}.png"), roads, &[]);
+        let after = scene.seen_from_above(&format!("after-{roads}.png"), roads, &[&overlay]);
         let (mut inside, mut outside, mut wrong) = (0, 0, Vec::new());
         for (x, y, pixel) in after.enumerate_pixels() {
             let at_m = [
@@ -191,7 +191,7 @@ fn every_format_is_read_alike() {
     let scene = Scene::new();
     let line =
         scene.write_line("line.geojson", &[[-700.0, -300.0], [-100.0, 420.0], [600.0, 300.0]]);
-    let expected = scene.from_above("geojson.png", "none", &[text(&line)]);
+    let expected = scene.seen_from_above("geojson.png", "none", &[text(&line)]);
     let convert = |name: &str, more: &[&str]| {
         let path = scene.at(name);
         let mut command = Command::new("ogr2ogr");
@@ -205,7 +205,7 @@ fn every_format_is_read_alike() {
         convert("lines.shp", &["-f", "ESRI Shapefile", "-t_srs", "EPSG:32632"]),
     ];
     for path in &files {
-        let found = scene.from_above("other.png", "none", &[text(path)]);
+        let found = scene.seen_from_above("other.png", "none", &[text(path)]);
         fs::remove_file(scene.at("other.png")).unwrap();
         let differ = found.pixels().zip(expected.pixels()).filter(|(a, b)| a != b).count();
         assert!(differ <= 4, "{}: {differ} pixels differ", path.display());

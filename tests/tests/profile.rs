@@ -75,6 +75,57 @@ fn a_profile_is_as_long_and_as_steep_as_the_exported_road() {
     assert_eq!(checked, 12);
 }
 
+/// A way of the package as a line of a file: the same ground, the same heights.
+#[test]
+fn a_line_of_a_file_has_the_profile_of_the_way_that_it_follows() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (package, roads, line) = (at("pass.pmtiles"), at("roads.gpkg"), at("line.gpkg"));
+    e2e::build_pass(&package, &["--max-error", "2"]);
+    succeed(corniche(["export", "roads", text(&package), "-o", text(&roads), "-q"]));
+    let longest = {
+        let dataset = gdal::Dataset::open(&roads).unwrap();
+        let mut layer = dataset.layer(0).unwrap();
+        let field = |feature: &gdal::vector::Feature<'_>, name: &str| {
+            feature.field_as_double(feature.field_index(name).unwrap()).unwrap().unwrap()
+        };
+        let whole =
+            layer.features().filter(|feature| feature.geometry().unwrap().geometry_count() < 2);
+        let lengths = whole.map(|way| (field(&way, "length_2d_m"), field(&way, "way_id") as i64));
+        lengths.max_by(|one, other| one.0.total_cmp(&other.0)).unwrap().1.to_string()
+    };
+    let cut = std::process::Command::new("ogr2ogr")
+        .args(["-dim", "XY", "-where", &format!("way_id = {longest}")])
+        .args([&line, &roads])
+        .output()
+        .unwrap();
+    assert!(cut.status.success(), "{}", String::from_utf8_lossy(&cut.stderr));
+    let profile = |what: &[&str], name: &str| {
+        let list = at(name);
+        let words = [&["profile", text(&package), "--csv", text(&list)], what].concat();
+        let said = succeed(corniche(words)).out;
+        (rows(&fs::read_to_string(list).unwrap()), said)
+    };
+    let (of_way, said) = profile(&["--way", &longest], "way.csv");
+    let (of_line, also_said) = profile(&["--line", text(&line)], "line.csv");
+    assert!(of_way.len() > 50, "{} vertices", of_way.len());
+    let last = |rows: &[BTreeMap<String, String>], name| number(rows.last().unwrap(), name);
+    for name in ["distance_m", "height_m"] {
+        let (one, other) = (last(&of_way, name), last(&of_line, name));
+        assert!((one - other).abs() < 0.05, "{name}: {one} and {other}");
+    }
+    assert!(of_line.iter().all(|row| row["way_id"] == "1" && row["part"] == "0"));
+    let length = |said: &str| said.lines().next().unwrap().split(" m").next().unwrap().to_owned();
+    assert_eq!(length(&said), length(&also_said));
+    let far = at("far.geojson");
+    fs::write(&far, r#"{"type":"LineString","coordinates":[[100,10],[101,11]]}"#).unwrap();
+    let ran = corniche(["profile", text(&package), "--line", text(&far)]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("no line lies on ground"), "{}", ran.err);
+    let both = corniche(["profile", text(&package), "--line", text(&far), "--way", "1"]);
+    assert_eq!(both.code, 2, "{}", both.err);
+}
+
 #[test]
 fn what_is_not_there_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use std::{path::Path, sync::Arc};
 
 use corniche_overlay::{OverlayError, place, read};
-use corniche_styles::{LineStyle, Style};
+use corniche_styles::LineStyle;
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{LayerLine, Overlays};
 
@@ -41,14 +41,6 @@ pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Over
 
 fn note(path: &Path, what: &str) {
     messages::note(&format!("note: {}: {what}", path.display()));
-}
-
-/// A style with the looks that the files ask for.
-pub(crate) fn styled(files: &[OverlayArg], mut style: Style) -> Style {
-    for (line, file) in style.overlays.iter_mut().zip(files) {
-        *line = file.style(*line);
-    }
-    style
 }
 
 /// What the files are called.

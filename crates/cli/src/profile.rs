@@ -1,11 +1,13 @@
-//! `corniche profile`: height and grade along roads.
+//! `corniche profile`: height and grade along roads and other lines.
 
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
+    path::Path,
 };
 
-use corniche_export::{Profile, ProfilePoint, profile};
+use corniche_export::{Profile, ProfilePoint, profile, profile_of_lines};
+use corniche_geom::LatticePoint;
 use corniche_tileset::FilePackage;
 use plotters::prelude::RGBColor;
 
@@ -27,9 +29,15 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
     // Both places are looked at before any work is done.
-    let files = ReportFiles::begin(args.svg.as_deref(), list, &[&args.package], existing)?;
+    let inputs: Vec<&Path> =
+        [&args.package].into_iter().chain(&args.line).map(AsRef::as_ref).collect();
+    let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
+    let lines = args.line.as_deref().map(|path| placed_lines(path, &package)).transpose()?;
     let bars = Bars::default();
-    let found = profile(&package, &args.way, args.level, &bars);
+    let found = match &lines {
+        Some(lines) => profile_of_lines(&package, lines, args.level, &bars),
+        None => profile(&package, &args.way, args.level, &bars),
+    };
     bars.end();
     let found = found?;
     if let Some(output) = files.list {
@@ -37,12 +45,25 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     }
     if let Some(output) = files.svg {
         let credits = package.manifest().attribution.join(", ");
-        let svg = to_svg(&found, &args.way, &credits);
+        let name = if let Some(path) = &args.line {
+            path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+        } else {
+            let ways: Vec<String> = args.way.iter().map(i64::to_string).collect();
+            format!("Way {}", ways.join(", "))
+        };
+        let svg = to_svg(&found, &name, &credits);
         let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }
     io::stdout().lock().write_all(to_text(&found).as_bytes())?;
     Ok(ExitCode::Done)
+}
+
+/// The lines of a file on the package's lattice.
+fn placed_lines(path: &Path, package: &FilePackage) -> Result<Vec<Vec<LatticePoint>>, Failure> {
+    let found = corniche_overlay::read(path)?;
+    let placed = corniche_overlay::place(&found.lines, package.manifest())?;
+    Ok(placed.into_iter().map(|line| line.points).collect())
 }
 
 fn points(found: &Profile) -> impl Iterator<Item = &ProfilePoint> {
@@ -98,8 +119,7 @@ fn to_csv(found: &Profile) -> String {
     text
 }
 
-fn to_svg(found: &Profile, ways: &[i64], credits: &str) -> anyhow::Result<String> {
-    let names: Vec<String> = ways.iter().map(i64::to_string).collect();
+fn to_svg(found: &Profile, name: &str, credits: &str) -> anyhow::Result<String> {
     let kilometres = |point: &ProfilePoint| point.distance_m / 1e3;
     let curves = |value: fn(&ProfilePoint) -> f64, color: RGBColor, name: &str| -> Vec<Curve> {
         let curve = |(number, part): (usize, &corniche_export::ProfilePart)| Curve {
@@ -127,7 +147,7 @@ fn to_svg(found: &Profile, ways: &[i64], credits: &str) -> anyhow::Result<String
         x: Axis { description: "distance, km", range: 0.0..end, ticks: Ticks::Round },
         y: Axis { description, range: y, ticks: Ticks::Round },
     };
-    let caption = format!("Way {} on level {}", names.join(", "), found.level);
+    let caption = format!("{name} on level {}", found.level);
     let above = axes(caption, "height, m", range(&heights, 1.0), 380);
     let below = axes(format!("Grade over 20 m. {credits}"), "grade, %", range(&grades, 1.0), 260);
     draw_below_each_other(&[(&above, &heights), (&below, &grades)])

@@ -15,7 +15,7 @@ use corniche_window::{
 };
 
 use crate::{
-    args::{Motion, OverlayArg, Roads, ViewArgs},
+    args::{Motion, OverlayArg, Roads, ViewArgs, with_overlays},
     drawing::Drawing,
     exit::ExitCode,
     failure::Failure,
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     let draw = args.draw.as_deref();
     let drawing = Drawing::begin(draw, &args.folder, &used, Arc::clone(&package))?;
     for named in &mut styles {
-        named.style = overlays::styled(&args.look.overlay, named.style.clone());
+        named.style = with_overlays(&args.look.overlay, named.style.clone());
     }
     let request = WindowRequest {
         name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -136,7 +136,7 @@ fn reload(name_or_path: &str, overlays: &[OverlayArg]) -> Option<Reload> {
     let overlays = overlays.to_vec();
     Some(Box::new(move || {
         let style = file.reload_if_changed()?;
-        let style = style.map(|style| overlays::styled(&overlays, style));
+        let style = style.map(|style| with_overlays(&overlays, style));
         Some(style.map_err(|failure| failure.to_string()))
     }))
 }

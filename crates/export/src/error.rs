@@ -43,6 +43,8 @@ pub enum ExportError {
         "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
     )]
     NoWay { package: PathBuf, way_id: i64, level: u8 },
+    #[error("no line lies on ground of {package:?}")]
+    NoLineOnGround { package: PathBuf },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(

@@ -1,11 +1,13 @@
 //! Heights and grades along ways.
 
+use corniche_geom::LatticePoint;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::FilePackage;
 
 use crate::{
     error::ExportError,
     join::{Line, lines},
+    laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures},
     observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, Vertex},
@@ -45,7 +47,7 @@ pub struct ProfilePart {
 /// A vertex of a road on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfilePoint {
-    /// The way that it belongs to; of two ways that meet, the first.
+    /// The way that it belongs to; of two ways that meet, the first. Of lines that are no ways their numbers, from 1.
     pub way_id: i64,
     /// True distance in plan from the beginning of the profile, metres. Gaps count nothing.
     pub distance_m: f64,
@@ -85,7 +87,37 @@ pub fn profile(
         }
         of_ways.push(lines(&own));
     }
-    let parts = in_a_row(way_ids, of_ways);
+    Ok(told(&in_a_row(way_ids, of_ways), level, &places))
+}
+
+/// Follows lines that are no ways of the package over the ground of a level, one after the other. Parts of the line with index 0 have the
+/// `way_id` 1, and so on.
+///
+/// # Errors
+/// When the package has no such level, no line lies on its ground, or it is damaged.
+pub fn profile_of_lines(
+    package: &FilePackage,
+    lines: &[Vec<LatticePoint>],
+    level: Option<u8>,
+    observer: &dyn Observer,
+) -> Result<Profile, ExportError> {
+    let level = read::level(package, level)?;
+    let places = Places::new(package.manifest(), Coordinates::Package)?;
+    let laid = laid_lines(package, lines, level, observer)?;
+    let numbered = (1..).zip(laid).flat_map(|(number, parts)| {
+        let of_line = move |part: Vec<Vertex>| -> Part {
+            part.into_iter().map(|vertex| (number, vertex)).collect()
+        };
+        parts.into_iter().map(of_line)
+    });
+    let parts: Vec<Part> = numbered.collect();
+    if parts.is_empty() {
+        return Err(ExportError::NoLineOnGround { package: package.path().to_path_buf() });
+    }
+    Ok(told(&parts, level, &places))
+}
+
+fn told(parts: &[Part], level: u8, places: &Places<'_>) -> Profile {
     let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
     let all: Vec<Line> = parts
         .iter()
@@ -94,12 +126,12 @@ pub fn profile(
     let measures = Measures::of(&all, &distance_m);
     let mut begin_m = 0.0;
     let mut told = Vec::with_capacity(parts.len());
-    for part in &parts {
-        let points = points(part, begin_m, &places);
+    for part in parts {
+        let points = points(part, begin_m, places);
         begin_m = points.last().map_or(begin_m, |last| last.distance_m);
         told.push(ProfilePart { points });
     }
-    Ok(Profile {
+    Profile {
         level,
         heights: places.heights().to_owned(),
         parts: told,
@@ -108,7 +140,7 @@ pub fn profile(
         ascent_m: measures.ascent_m,
         descent_m: measures.descent_m,
         steepest: measures.steepest,
-    })
+    }
 }
 
 /// What the tiles of a level hold of some ways, in the package's order.

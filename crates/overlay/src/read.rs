@@ -65,7 +65,7 @@ impl Reading<'_> {
     fn layer(&mut self, layer: &mut Layer<'_>) -> Result<(), OverlayError> {
         let path = || self.path.to_path_buf();
         let (name, claimed) = (layer.name(), layer.try_feature_count());
-        let to_wgs84 = layer.spatial_ref().map(|from| to_wgs84(from)).transpose();
+        let to_wgs84 = layer.spatial_ref().map(to_wgs84).transpose();
         let to_wgs84 = to_wgs84.map_err(|source| OverlayError::Crs {
             path: path(),
             layer: name.clone(),

@@ -24,16 +24,16 @@ impl LineLayer {
     pub(crate) fn style_of(self, style: &Style) -> Style {
         style.with_lines_as_roads(self.lines_of(style))
     }
+}
 
-    /// The view of a picture of the lines alone, in a style of [`LineLayer::style_of`]. Where roads are not drawn, lines are drawn as
-    /// volumes.
-    pub(crate) fn view_of<'a>(self, view: &FrameView<'a>, style: &'a Style) -> FrameView<'a> {
-        let method = match view.roads.method {
-            RoadMethod::Geometry => RoadMethod::Geometry,
-            RoadMethod::ShadowVolumes | RoadMethod::None => RoadMethod::ShadowVolumes,
-        };
-        let is_drawn = |class: &FunctionalRoadClass| style.road(*class).opacity > 0.0;
-        let classes = FunctionalRoadClass::all().filter(is_drawn).collect();
-        FrameView { style, roads: RoadOptions { classes, ..RoadOptions::of(method) }, ..*view }
-    }
+/// The view of a picture of the lines alone, in a style of [`LineLayer::style_of`]. Where roads are not drawn, lines are drawn as
+/// volumes.
+pub(crate) fn view_of_lines<'a>(view: &FrameView<'a>, style: &'a Style) -> FrameView<'a> {
+    let method = match view.roads.method {
+        RoadMethod::Geometry => RoadMethod::Geometry,
+        RoadMethod::ShadowVolumes | RoadMethod::None => RoadMethod::ShadowVolumes,
+    };
+    let is_drawn = |class: &FunctionalRoadClass| style.road(*class).opacity > 0.0;
+    let classes = FunctionalRoadClass::all().filter(is_drawn).collect();
+    FrameView { style, roads: RoadOptions { classes, ..RoadOptions::of(method) }, ..*view }
 }

@@ -5,6 +5,7 @@ mod adapter;
 mod camera_control;
 mod camera_limits;
 mod captures;
+mod draw_input;
 mod drawing;
 mod first_settings;
 mod first_view;

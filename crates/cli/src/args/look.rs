@@ -5,7 +5,7 @@ use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
 use super::overlay::{self, OverlayArg};
-use crate::{failure::Failure, overlays};
+use crate::failure::Failure;
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -182,7 +182,7 @@ impl LookArgs {
             Areas::Off => style.without_areas(),
         };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
-        overlays::styled(&self.overlay, style)
+        overlay::styled(&self.overlay, style)
     }
 
     /// Whether an option is given that only some methods have.

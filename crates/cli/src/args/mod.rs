@@ -32,9 +32,9 @@ pub(crate) use export::{
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use matching::MatchArgs;
-pub(crate) use overlay::OverlayArg;
 #[cfg(test)]
 pub(crate) use overlay::parse as overlay;
+pub(crate) use overlay::{OverlayArg, styled as with_overlays};
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_styles::{Dash, LineStyle, Rgb};
+use corniche_styles::{Dash, LineStyle, Rgb, Style};
 
 /// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=#RRGGBB`, `,width=PX`,
 /// `,opacity=SHARE` and `,dash=DASH/GAP` in any order.
@@ -47,6 +47,14 @@ impl OverlayArg {
             ..usual
         }
     }
+}
+
+/// A style with the looks that the files ask for.
+pub(crate) fn styled(files: &[OverlayArg], mut style: Style) -> Style {
+    for (line, file) in style.overlays.iter_mut().zip(files) {
+        *line = file.style(*line);
+    }
+    style
 }
 
 pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {

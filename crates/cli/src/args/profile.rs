@@ -3,19 +3,19 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("drawn").args(["csv", "svg"]).multiple(true))]
+#[command(
+    group = ArgGroup::new("drawn").args(["csv", "svg"]).multiple(true),
+    group = ArgGroup::new("what").args(["way", "line"]).required(true),
+)]
 pub(crate) struct ProfileArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
-    #[arg(
-        long,
-        value_name = "ID",
-        required = true,
-        value_delimiter = ',',
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) way: Vec<i64>,
+    /// The lines to follow instead: those of a file (GeoJSON, GPX, GeoPackage, Shapefile …), one after the other
+    #[arg(long, value_name = "FILE")]
+    pub(crate) line: Option<PathBuf>,
     /// The level on whose ground they lie [default: the finest]
     #[arg(long, value_name = "Z")]
     pub(crate) level: Option<u8>,

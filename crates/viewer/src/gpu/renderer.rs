@@ -24,6 +24,7 @@ use super::{
 };
 use crate::{
     frame_view::FrameView,
+    layer_view::view_of_lines,
     options::{ClassSet, RoadMethod},
     tiles::LineLayer,
 };
@@ -206,7 +207,7 @@ impl Renderer {
         targets: &Targets,
     ) {
         let style = layer.style_of(view.style);
-        let view = layer.view_of(view, &style);
+        let view = view_of_lines(view, &style);
         let lines =
             LabelledLines::new(gpu, tiles, &view, |tile| tile.lines(layer, view.roads.method));
         if lines.is_empty() {
@@ -268,7 +269,9 @@ impl<'a> LabelledLines<'a> {
     /// Whether nothing of them is shown.
     fn is_empty(&self) -> bool {
         let of_tiles = self.of_tiles.iter().zip(&self.shown);
-        of_tiles.flat_map(|(roads, shown)| Some(roads.as_ref()?.runs(*shown))).all(|r| r.is_empty())
+        of_tiles
+            .filter_map(|(roads, shown)| Some(roads.as_ref()?.runs(*shown)))
+            .all(|r| r.is_empty())
     }
 }
 

@@ -7,12 +7,11 @@
 mod dashes;
 mod lay;
 mod overlays;
-mod tile_surface;
 
 use corniche_geom::LatticePoint;
 
 pub(crate) use self::lay::{TileGround, lay};
-pub use self::{overlays::Overlays, tile_surface::TileSurface};
+pub use self::overlays::Overlays;
 use super::{RoadSegments, RoadVolumes};
 
 /// The layers of lines, from the lowest to the highest.

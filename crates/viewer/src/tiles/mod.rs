@@ -21,6 +21,7 @@ mod shading_slopes;
 mod slopes;
 mod source;
 mod store;
+mod tile_surface;
 mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -29,9 +30,7 @@ pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     geometry::TileGeometry,
-    line_layers::{
-        LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer, TileSurface,
-    },
+    line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,
     package::PackageTiles,
     photo::PhotoImage,
@@ -41,6 +40,7 @@ pub use self::{
     },
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
+    tile_surface::TileSurface,
 };
 pub(crate) use self::{
     geometry::{WideWay, plan_around},

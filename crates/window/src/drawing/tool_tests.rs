@@ -1,3 +1,5 @@
+#![expect(clippy::unnecessary_wraps, reason = "as the tool asks for them")]
+
 use super::*;
 
 /// The screen shows working metres as they are.

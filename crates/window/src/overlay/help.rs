@@ -7,10 +7,10 @@ use super::{
 use crate::command::Command;
 
 /// The page is no larger than this, points.
-const MOST: [f32; 2] = [470.0, 560.0];
+const MOST: [f32; 2] = [470.0, 630.0];
 
 /// What to do with mouse and keys, and what it does.
-const ROWS: [(&str, &str); 24] = [
+const ROWS: [(&str, &str); 22] = [
     ("left drag", "move the map; in fly mode look around"),
     ("right drag, Ctrl + left drag", "turn and tilt around the middle"),
     ("middle drag", "turn and tilt around the cursor"),
@@ -26,11 +26,9 @@ const ROWS: [(&str, &str); 24] = [
     ("V", "copy this view as a command"),
     ("P, Shift P", "picture of the map, of the window"),
     ("C", "record the camera's way, and stop"),
-    ("L", "draw lines with clicks, and stop"),
-    ("Shift click", "while drawing: a point inside the line"),
+    ("L, then click, Shift click", "draw lines: a point at the end, inside"),
     ("Enter, Del, Shift Del", "end the line, remove the point, the line"),
-    ("Ctrl Z, Ctrl Y", "take a change back, make it again"),
-    ("Ctrl S", "save the lines"),
+    ("Ctrl Z, Ctrl Y, Ctrl S", "take back, make again, save"),
     ("Tab", "show and hide the panel"),
     ("?", "show and hide this page"),
     ("Esc", "close this page; end the line"),

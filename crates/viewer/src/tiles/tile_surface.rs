@@ -2,8 +2,10 @@ use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
-use super::{LayerLine, LineMethods, TileGround, TileLayer, lay};
-use crate::tiles::{PlanScale, TileGeometry};
+use super::{
+    LayerLine, LineMethods, PlanScale, TileGeometry, TileLayer,
+    line_layers::{TileGround, lay},
+};
 
 /// The ground of a tile that is shown, on which lines can be laid at any time.
 ///

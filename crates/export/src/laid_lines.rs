@@ -1,0 +1,115 @@
+//! Lines that are no roads of the package, on the ground of a level.
+
+use corniche_drape::OwnedBorders;
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_tileset::{FilePackage, Sections};
+use corniche_tin::{Placement, Surface};
+
+use crate::{
+    error::ExportError,
+    observer::{Observer, Stage, stop_if_asked},
+    piece::Vertex,
+    read,
+};
+
+/// What lies on one tile.
+struct Laid {
+    line: usize,
+    /// How far along the line it begins, steps of the lattice.
+    along: f64,
+    vertices: Vec<Vertex>,
+}
+
+/// For each line the parts of it that lie on ground, in order. Parts that meet on a border of tiles are one.
+pub(crate) fn laid_lines(
+    package: &FilePackage,
+    lines: &[Vec<LatticePoint>],
+    level: u8,
+    observer: &dyn Observer,
+) -> Result<Vec<Vec<Vec<Vertex>>>, ExportError> {
+    let paths: Vec<Option<Polyline>> = lines.iter().map(|line| path_of(line)).collect();
+    let tiles = read::tiles(package, level, None)?;
+    let mut laid = Vec::new();
+    for (done, &id) in (0..).zip(&tiles) {
+        stop_if_asked(observer)?;
+        observer.done(Stage::Tiles, done, tiles.len() as u64);
+        lay_on(package, id, &paths, &mut laid)?;
+    }
+    laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
+    let mut parts: Vec<Vec<Vec<Vertex>>> = vec![Vec::new(); lines.len()];
+    for Laid { line, vertices, .. } in laid {
+        let ends_at = |part: &Vec<Vertex>| part.last().map(|vertex| vertex.at);
+        match parts[line].last_mut() {
+            Some(part) if ends_at(part) == vertices.first().map(|vertex| vertex.at) => {
+                part.extend(vertices.into_iter().skip(1));
+            }
+            _ => parts[line].push(vertices),
+        }
+    }
+    Ok(parts)
+}
+
+fn path_of(points: &[LatticePoint]) -> Option<Polyline> {
+    let mut points = points.to_vec();
+    points.dedup();
+    Polyline::new(points).ok()
+}
+
+fn lay_on(
+    package: &FilePackage,
+    id: TileId,
+    paths: &[Option<Polyline>],
+    laid: &mut Vec<Laid>,
+) -> Result<(), ExportError> {
+    let manifest = package.manifest();
+    let tile = manifest.frame.tile_lattice_bounds(id);
+    let is_near = |path: &Polyline| {
+        LatticeBounds::of(path.points()).is_some_and(|bounds| bounds.intersects(&tile))
+    };
+    if !paths.iter().flatten().any(is_near) {
+        return Ok(());
+    }
+    let Some(payload) = package.payload(id, Sections::TERRAIN)? else { return Ok(()) };
+    let Some(terrain) = &payload.terrain else { return Ok(()) };
+    let quantum_m = manifest.vertical.quantum_m;
+    let surface = Surface::new(&terrain.tin, Placement::of_tile(&manifest.frame, id, quantum_m));
+    for (line, path) in paths.iter().enumerate() {
+        let Some(path) = path else { continue };
+        let starts = starts_of(path);
+        for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
+            for draped in corniche_drape::drape(&part.line, &surface).lines {
+                let failed = |source| ExportError::Line { tile: id, source };
+                let positions = corniche_drape::positions(&draped, &surface).map_err(failed)?;
+                let vertices: Vec<Vertex> = positions
+                    .into_iter()
+                    .map(|[u, v, z_m]| Vertex { at: [u, v], z_m, is_source: false })
+                    .collect();
+                let sources = corniche_drape::source_segments(&draped);
+                let (Some(first), Some(source)) = (vertices.first(), sources.first()) else {
+                    continue;
+                };
+                let points = part.line.points();
+                let own = points.windows(2).position(|pair| pair == source);
+                let segment = own.and_then(|own| part.segments.get(own)).copied();
+                let Some(segment) = segment else { continue };
+                let from = path.points()[segment];
+                let beyond = (first.at[0] - from.u as f64).hypot(first.at[1] - from.v as f64);
+                laid.push(Laid { line, along: starts[segment] + beyond, vertices });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How far along a line each of its segments begins, steps of the lattice.
+fn starts_of(path: &Polyline) -> Vec<f64> {
+    let mut along = 0.0;
+    path.points()
+        .array_windows()
+        .map(|[from, to]| {
+            let start = along;
+            along += ((to.u - from.u) as f64).hypot((to.v - from.v) as f64);
+            start
+        })
+        .collect()
+}

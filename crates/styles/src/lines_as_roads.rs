@@ -1,0 +1,49 @@
+//! Lines take the places of roads: the viewer draws them as it draws roads.
+
+use crate::{LineStyle, RoadBand, RoadBands, RoadStyle, Style};
+
+impl LineStyle {
+    /// The same look as that of a road.
+    fn as_road(&self) -> RoadStyle {
+        let inner = RoadBands::one(self.color);
+        let (bands, width_px) = match self.casing {
+            None => (inner, self.width_px),
+            Some(casing) => {
+                let width_px = self.width_px + 2.0;
+                let width_share = self.width_px / width_px;
+                let band = RoadBand { width_share, color: self.color };
+                (RoadBands::one(casing).with_center(band), width_px)
+            }
+        };
+        RoadStyle {
+            // Far less than a pixel: the least width is what is drawn.
+            width_m: 1e-3,
+            min_width_px: width_px,
+            bands,
+            outline: self.color,
+            max_pixel_m: self.max_pixel_m,
+            max_width_px: None,
+            thin: None,
+            opacity: self.opacity,
+            dash: self.dash,
+        }
+    }
+}
+
+impl Style {
+    /// This style for a picture whose roads are lines in these styles: what has the place of class 0 is drawn in the first one. Places
+    /// without a style are not drawn.
+    #[must_use]
+    pub fn with_lines_as_roads(&self, lines: &[LineStyle]) -> Self {
+        let mut roads = self.roads.map(|road| RoadStyle { opacity: 0.0, ..road });
+        for (road, line) in roads.iter_mut().zip(lines) {
+            *road = line.as_road();
+        }
+        Self { roads, own_widths: None, outline_px: 0, shortest_part_px: 0.0, ..self.clone() }
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
+#[path = "lines_as_roads_tests.rs"]
+mod tests;
