@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::area_loss::AreaLoss;
+use crate::{area_loss::AreaLoss, boundaries::BoundaryLoss};
 
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -138,6 +138,13 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
+    /// A way that is a boundary is left out.
+    LostBoundary {
+        /// The way.
+        way_id: i64,
+        /// Why.
+        loss: BoundaryLoss,
+    },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.
     ConflictingNode {
         /// The node.
@@ -173,6 +180,7 @@ impl Defect {
             Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
             Self::LostArea { loss, .. } => loss.reason(),
+            Self::LostBoundary { loss, .. } => loss.reason(),
             Self::MissingWays { .. } => MISSING_WAYS,
             Self::MendedOutline { .. } => MENDED_OUTLINE,
             Self::OpenCoastline { .. } => OPEN_COASTLINE,
@@ -198,6 +206,7 @@ impl Defect {
             | Self::NoLine { way_id }
             | Self::DuplicatePoints { way_id, .. }
             | Self::ConflictingWay { way_id }
+            | Self::LostBoundary { way_id, .. }
             | Self::OpenCoastline { way_id }
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
@@ -233,6 +242,7 @@ impl Defect {
             | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. }
             | Self::OpenCoastline { .. }
+            | Self::LostBoundary { .. }
             | Self::LostArea { .. } => None,
         }
     }

@@ -22,6 +22,7 @@
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
 mod areas;
+mod boundaries;
 mod header_bounds;
 mod read_request;
 mod read_roads;
@@ -68,6 +69,7 @@ mod summary;
 
 pub use area_loss::AreaLoss;
 pub use areas::{AreaSummary, KeptAreas, read_areas};
+pub use boundaries::{Boundary, BoundaryLoss, BoundarySummary, read_boundaries};
 pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;

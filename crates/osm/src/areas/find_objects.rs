@@ -1,12 +1,15 @@
-//! Pass 1: ways and relations with the tags of an area, and coastlines.
+//! Pass 1: ways and relations with the tags of an area, and coastlines; or those of boundaries.
 
 use std::io::{Read, Seek};
 
-use corniche_areas::{AreaClass, AreaObject, AreaTable};
+use corniche_areas::AreaObject;
 use corniche_store::Sorter;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation, Way};
 
-use super::records::{Member, ObjectRecord};
+use super::{
+    records::{Member, ObjectRecord},
+    wanted::Wanted,
+};
 use crate::{
     AreaLoss, Defect, ReadOsmError,
     blobs::Decoding,
@@ -35,7 +38,7 @@ pub(crate) struct FoundObjects<'a> {
 pub(crate) fn find_objects<'a, R: Read + Seek>(
     reading: &Reading<'a>,
     file: &mut Extracts<R>,
-    table: &AreaTable,
+    wanted: Wanted<'_>,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<FoundObjects<'a>, ReadOsmError> {
     let request = reading.request;
@@ -60,7 +63,7 @@ pub(crate) fn find_objects<'a, R: Read + Seek>(
         &all,
         &decoding,
         |block| (Versions::scan(block), IdRange::scan(block)),
-        |block, most_bytes| OfBlock::scan(block, table, most_bytes),
+        |block, most_bytes| OfBlock::scan(block, wanted, most_bytes),
         |[file, number], (versions_of_block, ids), of_block| {
             let file = file as u32;
             append_versions(reading, &mut versions, versions_of_block.of_file(file))?;
@@ -105,15 +108,15 @@ const LEAST_REFS: usize = 4;
 
 impl OfBlock {
     /// Finds the objects of a block; `None` if they take more than `most_bytes`.
-    fn scan(block: &PrimitiveBlock, table: &AreaTable, most_bytes: u64) -> Option<Self> {
+    fn scan(block: &PrimitiveBlock, wanted: Wanted<'_>, most_bytes: u64) -> Option<Self> {
         let mut found = Self::default();
         for group in block.groups() {
             for way in group.ways() {
                 found.has_ways = true;
-                found.take_way(&way, table);
+                found.take_way(&way, wanted);
             }
             for relation in group.relations() {
-                found.take_relation(&relation, table);
+                found.take_relation(&relation, wanted);
             }
             if found.held_bytes > most_bytes {
                 return None;
@@ -122,19 +125,19 @@ impl OfBlock {
         Some(found)
     }
 
-    fn take_way(&mut self, way: &Way<'_>, table: &AreaTable) {
+    fn take_way(&mut self, way: &Way<'_>, wanted: Wanted<'_>) {
         let strings = way.raw_stringtable();
-        let Some(tags) = Tags::of(strings, way.raw_tags(), table) else { return };
+        let Some(tags) = Tags::of(strings, way.raw_tags(), wanted) else { return };
         // Closed ways may be lines, such as hedges around a field; the tags of the table are those of areas.
         let mut class = tags.class.filter(|_| !tags.is("area", "no"));
         let first = way.refs().next();
         let is_open = way.raw_refs().len() < LEAST_REFS || way.refs().last() != first;
-        if class.is_some() && is_open {
+        if class.is_some() && is_open && !wanted.has_open_ways() {
             self.open_ways.push(way.id());
             self.held_bytes += 16;
             class = None;
         }
-        let is_coastline = table.has_sea() && tags.is("natural", "coastline");
+        let is_coastline = wanted.has_sea() && tags.is("natural", "coastline");
         if class.is_none() && !is_coastline {
             return;
         }
@@ -148,9 +151,9 @@ impl OfBlock {
         );
     }
 
-    fn take_relation(&mut self, relation: &Relation<'_>, table: &AreaTable) {
+    fn take_relation(&mut self, relation: &Relation<'_>, wanted: Wanted<'_>) {
         let strings = relation.raw_stringtable();
-        let Some(tags) = Tags::of(strings, relation.raw_tags(), table) else { return };
+        let Some(tags) = Tags::of(strings, relation.raw_tags(), wanted) else { return };
         if !tags.is("type", "multipolygon") && !tags.is("type", "boundary") {
             return;
         }
@@ -161,7 +164,12 @@ impl OfBlock {
             let role = usize::try_from(role).ok().and_then(|role| strings.get(role));
             role.is_some_and(|role| role == b"inner")
         };
+        let is_outline = |role: i32| {
+            let role = usize::try_from(role).ok().and_then(|role| strings.get(role));
+            wanted.is_outline(role.map_or(&[], Vec::as_slice))
+        };
         let mut ways: Vec<Member> = ways
+            .filter(|way| is_outline(way.role_sid))
             .map(|way| Member { way_id: way.member_id, is_inner: is_inner(way.role_sid) })
             .collect();
         // A way that is named twice counts once, as in libosmium.
@@ -175,7 +183,7 @@ impl OfBlock {
         &mut self,
         object: AreaObject,
         version: Option<i32>,
-        (class, is_coastline): (Option<AreaClass>, bool),
+        (class, is_coastline): (Option<u8>, bool),
         tags: &Tags<'_>,
         ways: Box<[Member]>,
     ) {
@@ -200,7 +208,8 @@ impl OfBlock {
 /// The tags of an object that has one of the table's keys.
 struct Tags<'a> {
     texts: Vec<[Text<'a>; 2]>,
-    class: Option<AreaClass>,
+    /// The number of its class.
+    class: Option<u8>,
 }
 
 impl<'a> Tags<'a> {
@@ -208,14 +217,10 @@ impl<'a> Tags<'a> {
     fn of(
         strings: &'a [Vec<u8>],
         raw: impl Iterator<Item = (u32, u32)> + Clone,
-        table: &AreaTable,
+        wanted: Wanted<'_>,
     ) -> Option<Self> {
         let bytes = |number: u32| strings.get(number as usize).map_or(&[][..], Vec::as_slice);
-        let is_key = |key: &[u8]| {
-            table.keys().any(|known| known.as_bytes() == key)
-                || table.has_sea() && key == b"natural"
-        };
-        let is_known = |(key, _): (u32, u32)| is_key(bytes(key));
+        let is_known = |(key, _): (u32, u32)| wanted.is_key(bytes(key));
         if !raw.clone().any(is_known) {
             return None;
         }
@@ -223,7 +228,7 @@ impl<'a> Tags<'a> {
             raw.map(|pair| [pair.0, pair.1].map(|number| Text::new(bytes(number)))).collect();
         let plain: Vec<(&str, &str)> =
             texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
-        let class = table.classify(&plain);
+        let class = wanted.classify(&plain);
         Some(Self { texts, class })
     }
 

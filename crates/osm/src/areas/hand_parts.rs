@@ -1,27 +1,12 @@
 //! Gives each object the ways of its outline, with their places.
 
-use corniche_store::{SortRecord as _, Sorted, Sorter};
+use corniche_store::{SortRecord as _, Sorter};
 
-use super::records::{MemberRecord, PartLine, PartRecord};
-use crate::{
-    ReadOsmError,
-    location::Location,
-    reading::Reading,
-    records::Stop,
-    spool::{SpoolReader, damaged},
-    wire::{varint, zigzag},
+use super::{
+    located_ways::{LocatedWay, LocatedWays},
+    records::{MemberRecord, PartLine, PartRecord},
 };
-
-/// Ways in order of their ids, each with the places of its nodes.
-pub(crate) struct LocatedWays<'a> {
-    pub(crate) ways: SpoolReader<'a>,
-    pub(crate) stops: Sorted<'a, Stop>,
-}
-
-struct LocatedWay {
-    way_id: i64,
-    places: Vec<Location>,
-}
+use crate::{ReadOsmError, reading::Reading, spool::SpoolReader};
 
 /// Members and ways come in order of way ids. A member whose way is not in the file gets a part that says so.
 pub(crate) fn hand_parts<'a>(
@@ -51,20 +36,4 @@ pub(crate) fn hand_parts<'a>(
         parts.push(PartRecord { object_number, member, line }).map_err(failed)?;
     }
     Ok(parts)
-}
-
-impl LocatedWays<'_> {
-    fn next(&mut self, reading: &Reading<'_>) -> Result<Option<LocatedWay>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
-        let take_way = |bytes: &mut &[u8]| Some((zigzag(varint(bytes).ok()?), varint(bytes).ok()?));
-        let Some((way_id, nodes)) = self.ways.next(take_way).map_err(failed)? else {
-            return Ok(None);
-        };
-        let mut places = Vec::new();
-        for _ in 0..nodes {
-            let stop = self.stops.next().ok_or_else(damaged).map_err(failed)?;
-            places.push(stop.map_err(failed)?.location);
-        }
-        Ok(Some(LocatedWay { way_id, places }))
-    }
 }

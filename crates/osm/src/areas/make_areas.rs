@@ -125,7 +125,8 @@ fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
         Ok(lines) => (lines, None),
         Err(loss) => (Vec::new(), Some(loss)),
     };
-    let area = match (known.class, failed) {
+    let class = known.class.and_then(AreaClass::from_number);
+    let area = match (class, failed) {
         (Some(class), _) => try_making((known, class), parts, place, &mut defects).map(Some),
         (None, Some(loss)) => Err(loss),
         (None, None) => Ok(None),

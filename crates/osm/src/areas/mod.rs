@@ -12,13 +12,16 @@
 //!
 //! Everything is sorted and joined within the memory that the caller allows, as for roads.
 
-mod find_objects;
-mod find_outlines;
+pub(crate) mod find_objects;
+pub(crate) mod find_outlines;
 mod hand_parts;
+pub(crate) mod located_ways;
 mod make_areas;
+pub(crate) mod outline_ways;
 mod read_areas;
-mod records;
+pub(crate) mod records;
 mod summary;
+pub(crate) mod wanted;
 
 pub use read_areas::read_areas;
 pub use summary::{AreaSummary, KeptAreas};

@@ -4,18 +4,15 @@ use corniche_areas::{Area, AreaTable};
 
 use super::{
     find_objects::find_objects,
-    find_outlines::{find_outlines, number_objects},
-    hand_parts::{LocatedWays, hand_parts},
+    find_outlines::number_objects,
+    hand_parts::hand_parts,
     make_areas::make_areas,
+    outline_ways::{OutlineWays, read_outline_ways},
     summary::AreaSummary,
+    wanted::Wanted,
 };
 use crate::{
-    AreaLoss, Defect, ExtractSummary, ReadOsmError,
-    extracts::Extracts,
-    locate_nodes::{FileNodes, NodeQuestions, locate_nodes},
-    number_nodes::{NumberedNodes, number_nodes},
-    read_request::ReadRequest,
-    reading::Reading,
+    AreaLoss, Defect, ReadOsmError, extracts::Extracts, read_request::ReadRequest, reading::Reading,
 };
 
 /// Reads the areas of an extract and hands them to `sink`: first those of ways, then those of relations, in ascending order of
@@ -56,28 +53,22 @@ fn read_all<R: Read + Seek>(
 ) -> Result<AreaSummary, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     let mut summary = AreaSummary::default();
-    let found = find_objects(reading, file, table, on_defect)?;
+    let found = find_objects(reading, file, Wanted::Areas(table), on_defect)?;
     let mut held_bytes = found.held_bytes;
     if found.open_ways > 0 {
         summary.objects += found.open_ways;
         summary.lost.insert(AreaLoss::OpenWay, found.open_ways);
     }
     let objects = number_objects(reading, found.objects, &mut summary, on_defect)?;
-    let outlines =
-        find_outlines(reading, file, &found.way_blobs, objects.members, &mut held_bytes)?;
-    // What these count is of roads.
-    let mut of_roads = ExtractSummary::default();
-    let ways = outlines.ways.finish().map_err(failed)?;
-    let numbered = number_nodes(reading, ways, &mut of_roads, on_defect)?;
-    let NumberedNodes { ways, mentions, mentions_count, .. } = numbered;
-    let mentions = mentions.finish().map_err(failed)?;
-    let located = outlines.located.finish().map_err(failed)?;
-    let questions = NodeQuestions { mentions, mentions_count, located };
-    let mut nodes = FileNodes { file, node_blobs: &found.node_blobs };
-    let nodes = locate_nodes(reading, &mut nodes, questions, on_defect)?;
-    let stops = nodes.stops.finish().map_err(failed)?;
-    let parts =
-        hand_parts(reading, outlines.members.read(), LocatedWays { ways: ways.read(), stops })?;
+    let OutlineWays { members, located } = read_outline_ways(
+        reading,
+        file,
+        (&found.way_blobs, &found.node_blobs),
+        objects.members,
+        &mut held_bytes,
+        on_defect,
+    )?;
+    let parts = hand_parts(reading, members.read(), located)?;
     let parts = parts.finish().map_err(failed)?;
     let objects = (objects.known.read(), objects.count);
     make_areas(reading, objects, parts, held_bytes, &mut summary, sink, on_defect)?;

@@ -1,6 +1,6 @@
 //! What is sorted on the way from objects to areas.
 
-use corniche_areas::{AreaClass, AreaObject};
+use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
 use corniche_store::SortRecord;
 
@@ -21,8 +21,8 @@ pub(crate) struct ObjectRecord {
     pub(crate) version: i32,
     /// Which extract it is from.
     pub(crate) file: u32,
-    /// `None` of a coastline that is no area.
-    pub(crate) class: Option<AreaClass>,
+    /// The number of its class; `None` of a coastline that is no area.
+    pub(crate) class: Option<u8>,
     pub(crate) is_coastline: bool,
     /// Empty for none.
     pub(crate) name: Box<str>,
@@ -42,7 +42,7 @@ pub(crate) struct Member {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Known {
     pub(crate) object: AreaObject,
-    pub(crate) class: Option<AreaClass>,
+    pub(crate) class: Option<u8>,
     pub(crate) is_coastline: bool,
     pub(crate) name: Box<str>,
 }
@@ -127,7 +127,7 @@ impl Known {
             AreaObject::Relation(id) => (1, id),
         };
         // Classes are few.
-        let class = self.class.map_or(NO_CLASS, AreaClass::number);
+        let class = self.class.unwrap_or(NO_CLASS);
         bytes.extend([is_relation, u8::from(self.is_coastline), class]);
         push_varint(bytes, to_zigzag(id));
         push_varint(bytes, self.name.len() as u64);
@@ -143,7 +143,7 @@ impl Known {
         *bytes = rest;
         Some(Self {
             object: if is_relation == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
-            class: if class == NO_CLASS { None } else { Some(AreaClass::from_number(class)?) },
+            class: (class != NO_CLASS).then_some(class),
             is_coastline: is_coastline == 1,
             name: str::from_utf8(name).ok()?.into(),
         })

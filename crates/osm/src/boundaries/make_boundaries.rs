@@ -1,0 +1,160 @@
+use corniche_areas::BoundaryClass;
+use corniche_geom::LatticePoint;
+use corniche_store::SortRecord as _;
+
+use super::{Boundary, BoundaryLoss, BoundarySummary};
+use crate::{
+    Defect, ReadOsmError,
+    areas::{
+        located_ways::{LocatedWay, LocatedWays},
+        records::{MemberRecord, degrees_of, to_point},
+    },
+    location,
+    reading::{Reading, Step},
+    spool::SpoolReader,
+};
+
+/// Who is told what is found.
+pub(crate) struct Sinks<'a> {
+    pub(crate) sink: &'a mut dyn FnMut(Boundary),
+    pub(crate) on_defect: &'a mut dyn FnMut(Defect),
+}
+
+/// Members and ways come in order of way ids; `classes` are those of objects by their numbers.
+pub(crate) fn make_boundaries(
+    reading: &Reading<'_>,
+    (members, classes): (SpoolReader<'_>, &[Option<BoundaryClass>]),
+    mut located: LocatedWays<'_>,
+    summary: &mut BoundarySummary,
+    sinks: &mut Sinks<'_>,
+) -> Result<(), ReadOsmError> {
+    let mut members = Members { next: None, members };
+    let mut way: Option<LocatedWay> = None;
+    let mut count = 0;
+    while let Some((way_id, class)) = members.next_way(reading, classes)? {
+        reading.check_stop_at(count)?;
+        count += 1;
+        let Some(class) = class else { continue };
+        summary.ways += 1;
+        while way.as_ref().is_none_or(|way| way.way_id < way_id) {
+            way = located.next(reading)?;
+            if way.is_none() {
+                break;
+            }
+        }
+        let made = match &way {
+            Some(way) if way.way_id == way_id => parts_of(reading, way, class),
+            _ => Err(BoundaryLoss::MissingWay),
+        };
+        match made {
+            Ok(parts) => {
+                *summary.kept.entry(class).or_default() += 1;
+                parts.into_iter().for_each(&mut *sinks.sink);
+            }
+            Err(loss) => {
+                *summary.lost.entry(loss).or_default() += 1;
+                (sinks.on_defect)(Defect::LostBoundary { way_id, loss });
+            }
+        }
+    }
+    reading.tell(Step::Roads, 1, 1);
+    Ok(())
+}
+
+/// The members of all objects by way.
+struct Members<'a> {
+    next: Option<MemberRecord>,
+    members: SpoolReader<'a>,
+}
+
+impl Members<'_> {
+    /// The next way and the most important of the classes that objects give it.
+    fn next_way(
+        &mut self,
+        reading: &Reading<'_>,
+        classes: &[Option<BoundaryClass>],
+    ) -> Result<Option<(i64, Option<BoundaryClass>)>, ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let class_of =
+            |record: &MemberRecord| classes.get(record.object_number as usize).copied().flatten();
+        let first = match self.next.take() {
+            Some(first) => Some(first),
+            None => self.members.next(MemberRecord::decode).map_err(failed)?,
+        };
+        let Some(first) = first else { return Ok(None) };
+        let way_id = first.member.way_id;
+        let mut class = class_of(&first);
+        while let Some(record) = self.members.next(MemberRecord::decode).map_err(failed)? {
+            if record.member.way_id != way_id {
+                self.next = Some(record);
+                break;
+            }
+            class = [class, class_of(&record)].into_iter().flatten().min();
+        }
+        Ok(Some((way_id, class)))
+    }
+}
+
+/// The parts of a way that have a place.
+fn parts_of(
+    reading: &Reading<'_>,
+    way: &LocatedWay,
+    class: BoundaryClass,
+) -> Result<Vec<Boundary>, BoundaryLoss> {
+    let is_missing = |place: &location::Location| *place == location::MISSING;
+    let is_valid =
+        |place: &location::Location| !is_missing(place) && *place != location::OUT_OF_RANGE;
+    let positions_deg: Vec<[f64; 2]> = way
+        .places
+        .iter()
+        .map(|&place| if is_valid(&place) { degrees_of(to_point(place)) } else { [0.0; 2] })
+        .collect();
+    let placed = (reading.request.place)(&positions_deg);
+    let points: Vec<Option<(LatticePoint, bool)>> = placed
+        .into_iter()
+        .zip(&way.places)
+        .zip(&way.is_shared)
+        .map(|((point, place), &is_shared)| {
+            point.filter(|_| is_valid(place)).map(|at| (at, is_shared))
+        })
+        .collect();
+    let parts: Vec<Boundary> = points
+        .split(Option::is_none)
+        .filter_map(|run| part(way.way_id, class, run.iter().flatten().copied()))
+        .collect();
+    if !parts.is_empty() {
+        return Ok(parts);
+    }
+    let valid: Vec<&location::Location> =
+        way.places.iter().filter(|place| is_valid(place)).collect();
+    Err(if way.places.iter().any(is_missing) {
+        BoundaryLoss::MissingNodes
+    } else if valid.len() < way.places.len() || valid.len() < 2 {
+        BoundaryLoss::OutOfRange
+    } else {
+        BoundaryLoss::OutsideProjection
+    })
+}
+
+fn part(
+    way_id: i64,
+    class: BoundaryClass,
+    run: impl Iterator<Item = (LatticePoint, bool)>,
+) -> Option<Boundary> {
+    let mut points: Vec<(LatticePoint, bool)> = Vec::new();
+    for (at, is_shared) in run {
+        match points.last_mut() {
+            Some((last, was_shared)) if *last == at => *was_shared |= is_shared,
+            _ => points.push((at, is_shared)),
+        }
+    }
+    if points.len() < 2 {
+        return None;
+    }
+    let last = points.len() - 1;
+    let fixed = points.iter().enumerate().filter_map(|(index, (_, is_shared))| {
+        (*is_shared || index == 0 || index == last).then_some(index as u32)
+    });
+    let fixed = fixed.collect();
+    Some(Boundary { way_id, class, fixed, points: points.into_iter().map(|(at, _)| at).collect() })
+}
