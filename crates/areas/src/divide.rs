@@ -16,7 +16,8 @@ pub enum Axis {
     North,
 }
 
-/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Both have the same points on the line.
+/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Both cover the same stretches of the line, between the
+/// same points; a corner of the outline that only touches the line lies in the part on its side alone.
 ///
 /// ```text
 ///        │                       each ring is cut at the line; what that adds along the line is there

@@ -48,12 +48,13 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER, PayloadSizes,
-    Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode,
-    decode_areas, decode_photo, payload_sizes,
+    AreaRecord, AreaRings, BoundaryRecord, Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER,
+    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload,
+    decode, decode_areas, decode_boundaries, decode_photo, payload_sizes,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, EncodedTile, PayloadContext, PhotoSection, encode, encode_areas, encode_photo,
-    encode_with_ground_of, photo_section, with_areas, with_photo,
+    AreasSection, BoundariesSection, EncodedTile, PayloadContext, PhotoSection, encode,
+    encode_areas, encode_boundaries, encode_photo, encode_with_ground_of, photo_section,
+    with_areas, with_boundaries, with_photo,
 };

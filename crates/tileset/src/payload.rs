@@ -13,6 +13,7 @@ mod envelope;
 
 mod areas;
 mod attributes;
+mod boundaries;
 mod photo;
 mod relief;
 mod road_tags;
@@ -33,6 +34,9 @@ mod damage;
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
 pub use areas::{AreasSection, encode_areas, with_areas};
+#[cfg(feature = "write")]
+pub use boundaries::{BoundariesSection, encode_boundaries, with_boundaries};
+pub use boundaries::{BoundaryRecord, decode_boundaries};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]

@@ -47,7 +47,8 @@ fn doubled_area(parts: &[AreaRings]) -> i128 {
     parts.iter().flat_map(|part| &part.rings).map(of_ring).sum()
 }
 
-/// Pieces of the border of a tile along an upright line, where a part runs along it.
+/// Stretches of an upright line, the border of a tile, along which its parts run. A corner of the outline that touches the line from one side
+/// is a point of the part on that side alone; both cover the same of the line.
 fn along(parts: &[AreaRings], u: i64) -> Vec<[i64; 2]> {
     let mut pieces = Vec::new();
     for ring in parts.iter().flat_map(|part| &part.rings) {
@@ -58,6 +59,13 @@ fn along(parts: &[AreaRings], u: i64) -> Vec<[i64; 2]> {
         }
     }
     pieces.sort_unstable();
+    pieces.dedup_by(|later, piece| {
+        let touches = later[0] <= piece[1];
+        if touches {
+            piece[1] = piece[1].max(later[1]);
+        }
+        touches
+    });
     pieces
 }
 

@@ -6,7 +6,9 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
 use crate::payload::section_kind::{Kind, Sections};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
-use crate::payload::{areas, attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
+use crate::payload::{
+    areas, attributes, boundaries, envelope, road_tags, roads_geo, roads_sv, terrain,
+};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
@@ -77,6 +79,10 @@ pub fn decode(
         .map(|bytes| areas::decode(&bytes, frame.tile_lattice_bounds(id)))
         .transpose()
         .map_err(inside(Kind::Areas))?;
+    let _checked = read(Kind::Boundaries, Sections::BOUNDARIES)?
+        .map(|bytes| boundaries::decode(&bytes))
+        .transpose()
+        .map_err(inside(Kind::Boundaries))?;
     Ok(TilePayload {
         id,
         terrain: ground,

@@ -130,6 +130,7 @@ fn encode_sections(
         relief: size(Kind::Relief),
         photo: SectionSize::default(),
         areas: SectionSize::default(),
+        boundaries: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,
     };

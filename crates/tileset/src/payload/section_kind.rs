@@ -35,11 +35,12 @@ kinds! {
     Relief = 6, "relief section";
     Photo = 7, "photo section";
     Areas = 8, "areas section";
+    Boundaries = 9, "boundaries section";
 }
 
 /// Which sections of a payload to decode; combine them with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sections(u8);
+pub struct Sections(u16);
 
 impl Sections {
     /// None: checks the header alone.
@@ -58,6 +59,8 @@ impl Sections {
     pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
     pub const AREAS: Self = Self::of(Kind::Areas);
+    /// Boundaries. [`decode`](crate::decode) checks them; [`decode_boundaries`](crate::decode_boundaries) gives them.
+    pub const BOUNDARIES: Self = Self::of(Kind::Boundaries);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

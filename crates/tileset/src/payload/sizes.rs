@@ -28,6 +28,8 @@ pub struct PayloadSizes {
     pub photo: SectionSize,
     /// The areas section.
     pub areas: SectionSize,
+    /// The boundaries section.
+    pub boundaries: SectionSize,
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -61,6 +63,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         relief: size(Kind::Relief),
         photo: size(Kind::Photo),
         areas: size(Kind::Areas),
+        boundaries: size(Kind::Boundaries),
         geo_class_bytes: of_classes(Kind::RoadsGeo)?,
         sv_class_bytes: of_classes(Kind::RoadsSv)?,
     })
