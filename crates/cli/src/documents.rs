@@ -4,6 +4,7 @@
 //! that belongs together is an object.
 
 pub(crate) mod areas;
+pub(crate) mod boundaries;
 pub(crate) mod growth;
 pub(crate) mod info;
 pub(crate) mod plan;

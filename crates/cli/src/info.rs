@@ -6,9 +6,11 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_areas::AreaClass;
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
-use corniche_tileset::{AreasRecord, FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
+use corniche_tileset::{
+    AreasRecord, BoundariesRecord, FilePackage, Manifest, SampleErrorRecord, ScaleRecord,
+};
 
 use crate::{
     args::InfoArgs,
@@ -102,6 +104,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if let Some(areas) = &manifest.areas {
         say(area_texts(areas, digits));
     }
+    if let Some(boundaries) = &manifest.boundaries {
+        say(boundary_texts(boundaries, digits));
+    }
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
@@ -136,6 +141,39 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
         "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}{}\n{}",
         digits.count(counts.objects),
         digits.count(kept),
+        classes.to_text(),
+        lost.collect::<String>(),
+        table.to_text()
+    )
+}
+
+/// What became of boundaries, and what they take on each level.
+fn boundary_texts(boundaries: &BoundariesRecord, digits: Digits) -> String {
+    let BoundariesRecord { counts, levels } = boundaries;
+    let mut classes = Table::new(["boundaries", "ways", "km"]);
+    for kept in &counts.kept {
+        let name = BoundaryClass::from_number(kept.class).map_or("?", BoundaryClass::name);
+        let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
+        classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
+    }
+    let mut table = Table::new(["level", "tiles", "parts", "points", "bytes", "per tile"]);
+    for level in levels {
+        table.row([
+            level.level.to_string(),
+            digits.count(level.tiles),
+            digits.count(level.parts),
+            digits.count(level.points),
+            bytes(level.bytes),
+            bytes(level.bytes / level.tiles.max(1)),
+        ]);
+    }
+    let lost = counts
+        .lost
+        .iter()
+        .map(|(reason, ways)| format!("  lost {} ways: {}\n", digits.count(*ways), plain(reason)));
+    format!(
+        "Boundaries: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
+        digits.count(counts.ways),
         classes.to_text(),
         lost.collect::<String>(),
         table.to_text()

@@ -95,6 +95,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     }
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;
+    let boundaries = boundaries(&args.areas, &osm)?;
     let cut = Cut {
         bounds_deg: bounds_deg(terrain.bounds, &osm)?.or(base.terrain.plan.bounds_deg),
         polygon: args.polygon.map(polygon).transpose()?,
@@ -104,6 +105,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         terrain_of: args.terrain_of,
         osm,
         areas,
+        boundaries,
         photo,
         attribution,
         terrain: terrain_settings(terrain, base.terrain, cut, args.force)?,
@@ -247,6 +249,18 @@ fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable
             Err(Failure::unusable("--areas takes areas from an extract; give one with --osm"))
         }
         Some(table) => presets::area_table(table).map(Some),
+    }
+}
+
+/// Whether boundaries are wanted.
+fn boundaries(options: &AreaOptions, osm: &[PathBuf]) -> Result<bool, Failure> {
+    match options.boundaries.as_deref() {
+        None | Some("off") => Ok(false),
+        Some("on") if osm.is_empty() => Err(Failure::unusable(
+            "--boundaries takes boundaries from an extract; give one with --osm",
+        )),
+        Some("on") => Ok(true),
+        Some(other) => Err(Failure::unusable(format!("boundaries is on or off, not {other:?}"))),
     }
 }
 

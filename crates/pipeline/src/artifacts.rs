@@ -25,6 +25,8 @@
 //! | `PhotoRaster` | tile | texels of its photo, one for each cell; empty where there is none | heights, top | top, tiles |
 //! | `AreaSection` | tile | its areas section, encoded, with counts; nothing where it has none | roads | tiles |
 //! | `AreaTotals` | 0 | counts of the extract's areas, after all their sections | roads | tiles, merge |
+//! | `BoundarySection` | tile | its boundaries section, encoded, with counts; nothing where it has none | roads | tiles |
+//! | `BoundaryTotals` | 0 | counts of the extract's boundaries, after all their sections | roads | merge |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
 //! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
@@ -64,11 +66,13 @@ pub(crate) enum Kind {
     PhotoRaster,
     AreaSection,
     AreaTotals,
+    BoundarySection,
+    BoundaryTotals,
 }
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 23] = [
+    pub(crate) const ALL: [Self; 25] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
@@ -92,6 +96,8 @@ impl Kind {
         Self::PhotoRaster,
         Self::AreaSection,
         Self::AreaTotals,
+        Self::BoundarySection,
+        Self::BoundaryTotals,
     ];
 
     /// The key of what belongs to a tile.

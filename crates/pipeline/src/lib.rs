@@ -4,6 +4,7 @@
 
 mod areas;
 mod artifacts;
+mod boundaries;
 mod build;
 mod context;
 mod defect;
@@ -22,6 +23,7 @@ mod parts;
 mod photos;
 mod plan;
 mod plan_error;
+mod points_step;
 mod roads;
 mod sample_deviation;
 mod settings;

@@ -22,6 +22,8 @@ pub enum Stage {
     Hash,
     /// Read areas from the extract.
     MapAreas,
+    /// Read boundaries from the extract.
+    Boundaries,
     /// Read roads from the extract.
     Roads,
     /// Read the DEM, reproject it, fill its voids, make the level rasters.
@@ -46,9 +48,10 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Hash,
         Self::MapAreas,
+        Self::Boundaries,
         Self::Roads,
         Self::Heights,
         Self::Photos,
@@ -67,6 +70,7 @@ impl Stage {
         match self {
             Self::Hash => "hashing inputs",
             Self::MapAreas => "reading areas",
+            Self::Boundaries => "reading boundaries",
             Self::Roads => "reading roads",
             Self::Heights => "reading heights",
             Self::Photos => "reading photos",
@@ -86,6 +90,7 @@ impl Stage {
         match self {
             Self::Hash => "hash",
             Self::MapAreas => "areas",
+            Self::Boundaries => "boundaries",
             Self::Roads => "roads",
             Self::Heights => "heights",
             Self::Photos => "photos",
@@ -103,7 +108,7 @@ impl Stage {
     #[must_use]
     pub fn unit(self) -> Unit {
         match self {
-            Self::Hash | Self::MapAreas | Self::Roads => Unit::Bytes,
+            Self::Hash | Self::MapAreas | Self::Boundaries | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
             Self::Heights => Unit::Areas,
             Self::Photos

@@ -40,6 +40,8 @@ pub struct PlanSettings {
     pub roads: RoadSettings,
     /// Which objects of the extracts are areas, if any are wanted.
     pub areas: Option<AreaTable>,
+    /// Whether boundaries of the extracts are wanted.
+    pub boundaries: bool,
     /// Photos of the ground.
     pub photo: PhotoChoice,
     /// Credits beside those that the inputs call for, such as a DEM's.

@@ -20,7 +20,7 @@ pub(crate) fn of(
     roads: &RoadSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
-    areas: Option<&AreaTable>,
+    (areas, boundaries): (Option<&AreaTable>, bool),
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
     let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _, relief } =
@@ -52,6 +52,7 @@ pub(crate) fn of(
         simplify_cells: *simplify_cells,
         photo,
         areas: areas.map(area_table_record),
+        boundaries,
     }
 }
 

@@ -141,13 +141,17 @@ pub struct AreaOptions {
     #[arg(id = "areas", long = "areas", value_name = "off|default|FILE")]
     #[serde(rename = "areas")]
     pub table: Option<String>,
+    /// Boundaries of the extract: administrative ones of the levels 2 to 8, and those of protected areas, each shared border once; on or
+    /// off [default: off]
+    #[arg(long, value_name = "off|on", value_parser = ["off", "on"])]
+    pub boundaries: Option<String>,
 }
 
 impl AreaOptions {
     /// These options; those that are not given are taken from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
-        Self { table: self.table.or(other.table) }
+        Self { table: self.table.or(other.table), boundaries: self.boundaries.or(other.boundaries) }
     }
 }
 

@@ -18,6 +18,10 @@ pub enum StyleError {
     )]
     AreaClass { text: String },
     #[error(
+        "boundaries.{text:?} is no class of boundaries; these are admin-2 to admin-8 and protected"
+    )]
+    BoundaryClass { text: String },
+    #[error(
         "a pattern of dashes has two or four lengths, dash and gap in turn, or none for a solid line; not {count}"
     )]
     DashCount { count: usize },

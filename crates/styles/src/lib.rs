@@ -17,6 +17,7 @@ mod dash;
 mod error;
 mod ground;
 mod ground_sheet;
+mod line_sheet;
 mod line_style;
 mod lines_as_roads;
 mod presets;

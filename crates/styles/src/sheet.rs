@@ -10,6 +10,7 @@ use crate::{
     AreaStyle, LineStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
     area_sheet::{AreaSheet, areas},
     ground_sheet::{LightSheet, TintSheet, tint},
+    line_sheet::{LineSheet, boundaries},
     road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
 };
@@ -112,6 +113,8 @@ struct StyleFile {
     tint: Vec<TintSheet>,
     #[serde(default)]
     areas: BTreeMap<String, AreaSheet>,
+    #[serde(default)]
+    boundaries: BTreeMap<String, LineSheet>,
     roads: BTreeMap<String, RoadSheet>,
 }
 
@@ -146,6 +149,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         tint_by_climate,
         tint: stops,
         areas: area_sheets,
+        boundaries: line_sheets,
         roads,
     } = file;
     if lane_width_m.is_some() && !own_width {
@@ -164,7 +168,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
         areas: areas(&area_sheets, usual.areas)?,
-        boundaries: usual.boundaries,
+        boundaries: boundaries(&line_sheets, usual.boundaries)?,
         overlays: usual.overlays,
         drawn: usual.drawn,
     };

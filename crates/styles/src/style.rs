@@ -134,6 +134,19 @@ impl Style {
         self.areas.iter().any(AreaStyle::is_drawn)
     }
 
+    /// The same without any boundaries.
+    #[must_use]
+    pub fn without_boundaries(self) -> Self {
+        let boundaries = self.boundaries.map(|line| LineStyle { opacity: 0.0, ..line });
+        Self { boundaries, ..self }
+    }
+
+    /// Whether boundaries of some class are drawn.
+    #[must_use]
+    pub fn has_boundaries(&self) -> bool {
+        self.boundaries.iter().any(LineStyle::is_drawn)
+    }
+
     /// How areas of a class are drawn.
     #[must_use]
     pub fn area(&self, class: AreaClass) -> &AreaStyle {

@@ -100,6 +100,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             simplify_cells: 0.5,
             photo: None,
             areas: None,
+            boundaries: false,
         },
         settings_sha256: String::new(),
         inputs: vec![],
@@ -108,6 +109,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
         growth: vec![GrowthRow::default()],
         photos: Vec::new(),
         areas: None,
+        boundaries: None,
     }
 }
 

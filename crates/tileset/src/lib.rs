@@ -34,10 +34,11 @@ mod package;
 mod payload;
 
 pub use manifest::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
-    Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest, PhotoLevelRecord,
-    PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord,
-    ScaleRecord, SettingsRecord, VerticalRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
+    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, Counts, Distribution,
+    GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest, PhotoLevelRecord, PhotoRecord,
+    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,

@@ -8,9 +8,9 @@ mod relief_levels;
 pub(crate) mod check;
 
 pub use contents::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
-    SettingsRecord, VerticalRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
+    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, InputRecord, Manifest,
+    PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

@@ -95,7 +95,7 @@ pub(crate) enum Outline {
     Kernel5,
 }
 
-/// Whether areas are drawn.
+/// Whether areas, or boundaries, are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Areas {
     /// Those that the style draws
@@ -144,6 +144,9 @@ pub(crate) struct LookArgs {
     /// Areas (water, forest …), where the package has some: as the style draws them, or none
     #[arg(long, value_enum, default_value_t = Areas::On)]
     pub(crate) areas: Areas,
+    /// Boundaries, where the package has some: as the style draws them, or none
+    #[arg(long, value_enum, default_value_t = Areas::On)]
+    pub(crate) boundaries: Areas,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
     /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP in pixels.
@@ -180,6 +183,10 @@ impl LookArgs {
         let style = match self.areas {
             Areas::On => style,
             Areas::Off => style.without_areas(),
+        };
+        let style = match self.boundaries {
+            Areas::On => style,
+            Areas::Off => style.without_boundaries(),
         };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)

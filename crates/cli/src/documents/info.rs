@@ -18,6 +18,7 @@ use self::{
 };
 use super::{
     areas::{AreaTableDocument, AreasDocument},
+    boundaries::BoundariesDocument,
     growth::RowDocument,
 };
 
@@ -89,6 +90,9 @@ pub(crate) struct ManifestDocument {
     /// The areas; left out in packages made without.
     #[serde(skip_serializing_if = "Option::is_none")]
     areas: Option<AreasDocument>,
+    /// The boundaries; left out in packages made without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    boundaries: Option<BoundariesDocument>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -172,6 +176,9 @@ struct SettingsDocument {
     /// Which objects are areas; left out without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     areas: Option<AreaTableDocument>,
+    /// Whether there are boundaries; left out without any.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    boundaries: bool,
 }
 
 /// How the photos of a package were made.
@@ -253,6 +260,7 @@ impl From<&Manifest> for ManifestDocument {
             growth: manifest.growth.iter().map(Into::into).collect(),
             photos: manifest.photos.into_iter().map(Into::into).collect(),
             areas: manifest.areas.map(Into::into),
+            boundaries: manifest.boundaries.map(Into::into),
         }
     }
 }
@@ -296,6 +304,7 @@ impl From<SettingsRecord> for SettingsDocument {
                 .photo
                 .map(|PhotoRecord { levels, quality }| PhotoDocument { levels, quality }),
             areas: settings.areas.map(Into::into),
+            boundaries: settings.boundaries,
         }
     }
 }

@@ -106,6 +106,7 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         // Photos change no road.
         photo: _,
         areas: _,
+        boundaries: _,
     } = &manifest.settings;
     [
         ("extract", inputs(manifest, &["osm"])),

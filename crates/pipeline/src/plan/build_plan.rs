@@ -139,7 +139,8 @@ impl BuildPlan {
     /// The plan for what was opened.
     pub(crate) fn of(settings: &PlanSettings, opened: &Opened) -> Result<Self, BuildError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, areas, attribution, generator, .. } = settings;
+        let PlanSettings { terrain, roads, areas, boundaries, attribution, generator, .. } =
+            settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
@@ -150,7 +151,7 @@ impl BuildPlan {
                 roads,
                 opened.max_error_m,
                 opened.photo.record(),
-                areas.as_ref(),
+                (areas.as_ref(), *boundaries),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
             area_table: areas.as_ref().map(AreaTableText::of),
@@ -220,6 +221,7 @@ impl BuildPlan {
             osm: paths("osm").collect(),
             terrain,
             areas: self.area_table.as_ref().map(AreaTableText::table).transpose()?,
+            boundaries: self.settings.boundaries,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),

@@ -35,6 +35,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         // Photos are taken with the terrain.
         photo: ours.photo,
         areas: ours.areas.clone(),
+        boundaries: ours.boundaries,
         ..package.clone()
     };
     // A polygon is the same under another name.
@@ -58,6 +59,7 @@ pub(crate) fn network_differences(ours: &SettingsRecord, package: &SettingsRecor
         class_max_cell_m: package.class_max_cell_m.clone(),
         simplify_cells: package.simplify_cells,
         areas: package.areas.clone(),
+        boundaries: package.boundaries,
         ..ours.clone()
     };
     differences_from(ours, &theirs)
@@ -127,6 +129,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         simplify_cells,
         photo,
         areas,
+        boundaries,
     } = record;
     let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
         Some(cell_m) => format!("{class}: {cell_m}"),
@@ -166,5 +169,6 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         fact("--photo-levels", &given(photo.map(|photo| photo.levels).as_ref())),
         fact("--photo-quality", &given(photo.map(|photo| photo.quality).as_ref())),
         fact("--areas", &given(areas.as_ref().map(area_table_text).as_ref())),
+        fact("--boundaries", &if *boundaries { "on" } else { "off" }),
     ]
 }

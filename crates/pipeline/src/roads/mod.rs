@@ -9,7 +9,7 @@ pub(crate) mod losses;
 pub(crate) mod overlap;
 pub(crate) mod partition;
 pub(crate) mod pieces;
-mod reach;
+pub(crate) mod reach;
 pub(crate) mod shares;
 mod split;
 pub(crate) mod totals;

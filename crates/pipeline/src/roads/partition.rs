@@ -36,6 +36,7 @@ use crate::{
     BuildError, Defect, Observer, RoadSettings, Stage,
     areas::{self, sea::SeaPlace},
     artifacts::{self, Kind},
+    boundaries,
     heights::data_tiles::DataTiles,
     levels::Levels,
 };
@@ -54,6 +55,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) settings: &'a RoadSettings,
     /// Which objects are areas and on which tiles, if any are wanted.
     pub(crate) areas: Option<AreaInput<'a>>,
+    /// The tiles on which data can lie, if boundaries are wanted.
+    pub(crate) boundaries: Option<DataTiles>,
     pub(crate) projection: &'a (dyn Projection + Sync),
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
@@ -90,6 +93,7 @@ pub(crate) fn partition(
     }
     let mut defects = DefectsWriter::new(store, observer);
     read_areas(input, (store, scratch), &mut defects, observer)?;
+    read_boundaries(input, (store, scratch), &mut defects, observer)?;
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
     let extract = read(input, (store, scratch), &mut gathered, &mut defects, observer)?;
@@ -134,6 +138,25 @@ fn read_areas(
         )
     })?;
     observer.end(Stage::MapAreas);
+    Ok(())
+}
+
+/// Makes the boundaries of the extract, if they are wanted.
+fn read_boundaries(
+    input: &RoadInput<'_>,
+    (store, scratch): (&dyn Artifacts, &dyn Scratch),
+    defects: &mut DefectsWriter<'_>,
+    observer: &dyn Observer,
+) -> Result<(), BuildError> {
+    let Some(data) = input.boundaries else { return Ok(()) };
+    observer.begin(Stage::Boundaries, None);
+    let splitting = boundaries::split::Splitting { levels: input.levels, data, clip: input.clip };
+    on_extract(input, (scratch, Stage::Boundaries), observer, |request| {
+        let mut on_defect = |defect| defects.push(defect);
+        let how = (&splitting, input.lengths);
+        boundaries::partition::partition(request, how, store, observer, &mut on_defect)
+    })?;
+    observer.end(Stage::Boundaries);
     Ok(())
 }
 

@@ -1,13 +1,15 @@
 //! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
 use corniche_tileset::{
-    AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, Manifest, PhotoLevelRecord, SampleErrorRecord, ScaleRecord, VerticalRecord,
+    AreaLevelRecord, AreasRecord, BoundariesRecord, BoundaryLevelRecord, Counts, Distribution,
+    FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, PhotoLevelRecord,
+    SampleErrorRecord, ScaleRecord, VerticalRecord,
 };
 
 use super::sums::{LevelSums, TileSums};
 use crate::{
     areas::totals::AreaTotals,
+    boundaries::totals::BoundaryTotals,
     context::Context,
     heights::pyramid::HeightSums,
     manifest_texts,
@@ -22,6 +24,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
     pub(crate) areas: Option<AreaTotals>,
+    pub(crate) boundaries: Option<BoundaryTotals>,
     pub(crate) tiles: &'a TileSums,
 }
 
@@ -34,7 +37,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         &settings.roads,
         outcome.context.max_error_m,
         outcome.context.photo.record(),
-        settings.areas.as_ref(),
+        (settings.areas.as_ref(), settings.boundaries),
     );
     let mut attribution = settings.attribution.clone();
     for credit in outcome.context.photo.files().into_iter().flat_map(|photo| &photo.credits) {
@@ -81,6 +84,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         growth: growth(outcome),
         photos: photos(outcome),
         areas: areas(outcome),
+        boundaries: boundaries(outcome),
     }
 }
 
@@ -169,6 +173,19 @@ fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
         bytes: sums.areas.bytes,
     };
     Some(AreasRecord { counts, levels: levels.map(level).collect() })
+}
+
+fn boundaries(outcome: &Outcome<'_>) -> Option<BoundariesRecord> {
+    let counts = outcome.boundaries.as_ref()?.counts();
+    let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.boundaries.tiles > 0);
+    let level = |(&level, sums): (&u8, &LevelSums)| BoundaryLevelRecord {
+        level,
+        tiles: sums.boundaries.tiles,
+        parts: sums.boundaries.parts,
+        points: sums.boundaries.points,
+        bytes: sums.boundaries.bytes,
+    };
+    Some(BoundariesRecord { counts, levels: levels.map(level).collect() })
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {

@@ -16,6 +16,7 @@ use crate::{
     BuildError, Stage,
     areas::totals::AreaTotals,
     artifacts::{self, Kind},
+    boundaries::totals::BoundaryTotals,
     context::Context,
     heights::pyramid::{HeightSums, all_there},
     roads::losses::LossFold,
@@ -86,6 +87,7 @@ pub(crate) fn make(
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
         areas: AreaTotals::get(context.store)?,
+        boundaries: BoundaryTotals::get(context.store)?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {

@@ -58,6 +58,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
             .areas
             .as_ref()
             .map(|table| AreaInput { table, data: context.data() }),
+        boundaries: context.settings.boundaries.then(|| context.data()),
         projection: &projection,
         levels: context.levels,
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),

@@ -8,7 +8,7 @@ use crate::{
     context::Context,
     roads::lay::ClassSums,
     sample_deviation::SampleSums,
-    tile::record::{AreasOfTile, LevelShare, TileRecord},
+    tile::record::{AreasOfTile, BoundariesOfTile, LevelShare, TileRecord},
 };
 
 /// Sums over all tiles.
@@ -35,6 +35,7 @@ pub(crate) struct LevelSums {
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
     pub(crate) areas: AreaSums,
+    pub(crate) boundaries: BoundarySums,
     /// Geometric errors of its tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Geometric errors of its tiles over their deviations, where those can be measured.
@@ -56,6 +57,24 @@ impl AreaSums {
     fn add(&mut self, of_tile: AreasOfTile) {
         self.tiles += u64::from(of_tile.areas > 0);
         self.areas += of_tile.areas;
+        self.points += of_tile.points;
+        self.bytes += of_tile.bytes;
+    }
+}
+
+/// Sums over the boundaries sections of a level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct BoundarySums {
+    pub(crate) tiles: u64,
+    pub(crate) parts: u64,
+    pub(crate) points: u64,
+    pub(crate) bytes: u64,
+}
+
+impl BoundarySums {
+    fn add(&mut self, of_tile: BoundariesOfTile) {
+        self.tiles += u64::from(of_tile.parts > 0);
+        self.parts += of_tile.parts;
         self.points += of_tile.points;
         self.bytes += of_tile.bytes;
     }
@@ -93,6 +112,7 @@ impl TileSums {
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
         sums.areas.add(ground.areas);
+        sums.boundaries.add(ground.boundaries);
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);

@@ -10,12 +10,13 @@ use corniche_tin::{Placement, Surface};
 
 use super::{
     mesh::Meshed,
-    record::{AreasOfTile, GroundRecord, TileDeviation, TileRecord},
+    record::{AreasOfTile, BoundariesOfTile, GroundRecord, TileDeviation, TileRecord},
 };
 use crate::{
     BuildError,
     areas::sections::TileAreas,
     artifacts::Kind,
+    boundaries::sections::TileBoundaries,
     context::Context,
     heights::{finest::TILE_NODES, rasters},
     photos::textures,
@@ -81,6 +82,13 @@ pub(crate) fn with_ground(
         (bytes, size) = corniche_tileset::with_areas(&bytes, id, own.into_section())?;
         areas.bytes = size.stored;
     }
+    let mut boundaries = BoundariesOfTile::default();
+    if let Some(own) = TileBoundaries::get(context.store, id)? {
+        (boundaries.parts, boundaries.points) = (own.parts, own.points);
+        let size;
+        (bytes, size) = corniche_tileset::with_boundaries(&bytes, id, own.into_section())?;
+        boundaries.bytes = size.stored;
+    }
     context.store.put(Kind::Payload.of_tile(id), &bytes)?;
     let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
@@ -91,6 +99,7 @@ pub(crate) fn with_ground(
             relief_bytes,
             photo_bytes,
             areas,
+            boundaries,
             deviation,
         }),
         classes,

@@ -39,6 +39,7 @@ pub(crate) struct GroundRecord {
     /// 0 without a photo.
     pub(crate) photo_bytes: u64,
     pub(crate) areas: AreasOfTile,
+    pub(crate) boundaries: BoundariesOfTile,
     pub(crate) deviation: TileDeviation,
 }
 
@@ -47,6 +48,15 @@ pub(crate) struct GroundRecord {
 pub(crate) struct AreasOfTile {
     pub(crate) areas: u64,
     /// Of all rings.
+    pub(crate) points: u64,
+    /// Stored.
+    pub(crate) bytes: u64,
+}
+
+/// The boundaries section of a tile; all 0 without one.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct BoundariesOfTile {
+    pub(crate) parts: u64,
     pub(crate) points: u64,
     /// Stored.
     pub(crate) bytes: u64,

@@ -89,6 +89,9 @@ checks! {
     AreaRings "areas.rings" Package "the outer rings of areas run counter-clockwise, those around holes clockwise, and no point of a ring comes twice"
     AreaSeams "areas.seams" Package "an area that lies on both sides of a line between two tiles covers the same of the line in both"
     AreaSums "areas.sums" Package "areas, points and bytes on each level are those of the tiles, and objects are kept or lost"
+    BoundaryPlaces "boundaries.places" Package "each segment of a boundary comes into its tile or the margin around it"
+    BoundaryOrder "boundaries.order" Package "boundaries of a tile are in order of class and way"
+    BoundarySums "boundaries.sums" Package "parts, points and bytes of boundaries on each level are those of the tiles, and ways are kept or lost"
     SettingsHash "settings.hash" Package "the recorded hash is that of the recorded settings"
     Grid "manifest.grid" Package "the grid is the smallest that covers the rectangle of the data, and the corners of this rectangle are nodes"
     Crs "manifest.crs" Package "the CRS's code or name is that of its WKT"
@@ -123,6 +126,8 @@ checks! {
     OsmGrowth "osm.growth" Osm "source and simplified points of the growth table are those of the extract"
     OsmAreas "osm.areas" Osm "the areas of each tile are those of the extract, split again; their points are compared to the lattice step"
     OsmAreaCounts "osm.areas.counts" Osm "areas by class, their square kilometres and the objects lost are those of the extract"
+    OsmBoundaries "osm.boundaries" Osm "the boundaries of each tile are those of the extract, split again"
+    OsmBoundaryCounts "osm.boundaries.counts" Osm "ways that are boundaries by class, their lengths and the ways lost are those of the extract"
 }
 
 /// One check, how often it was made, and where it failed.

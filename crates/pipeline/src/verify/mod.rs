@@ -2,6 +2,7 @@
 
 mod areas;
 mod attributes;
+mod boundaries;
 mod checks;
 mod dem;
 mod dem_inputs;
@@ -17,6 +18,7 @@ mod manifest_sums;
 mod one_tile;
 mod osm;
 mod osm_areas;
+mod osm_boundaries;
 mod osm_tile;
 mod photo_against_files;
 mod photo_files;
@@ -67,6 +69,7 @@ pub fn verify(
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
     photos::verify(&package, settings.threads, &mut findings, observer)?;
     areas::verify(&package, settings.threads, &mut findings, observer)?;
+    boundaries::verify(&package, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(&package, &mut findings)?;

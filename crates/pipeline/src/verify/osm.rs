@@ -11,7 +11,7 @@ use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
 use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
-    georeference, grid, osm_areas,
+    georeference, grid, osm_areas, osm_boundaries,
     osm_tile::{Found, Laying, SoupCache, look_at},
     request::{VerifyOsm, VerifySettings},
     temporary_store::TemporaryStore,
@@ -84,6 +84,7 @@ fn compare_all(
         osm: &paths,
         settings: &settings,
         areas: area_table.map(|table| AreaInput { table, data: DataTiles::spanning(first, last) }),
+        boundaries: manifest.settings.boundaries.then(|| DataTiles::spanning(first, last)),
         projection: &projection,
         levels: &levels,
         lengths: &lengths,
@@ -101,6 +102,9 @@ fn compare_all(
     check_counts(manifest, &roads, &losses, findings);
     if area_table.is_some() {
         osm_areas::compare(package, store, request.threads, findings, observer)?;
+    }
+    if manifest.settings.boundaries {
+        osm_boundaries::compare(package, store, request.threads, findings, observer)?;
     }
     check_growth(manifest, &classes, findings);
     Ok(())

@@ -163,6 +163,7 @@ pub(crate) fn settings(
 ) -> BuildSettings {
     BuildSettings {
         plan: PlanSettings {
+            boundaries: false,
             dem: vec![dem],
             terrain_of: None,
             osm: osm.into_iter().collect(),

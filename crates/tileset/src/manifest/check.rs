@@ -3,11 +3,13 @@
 //! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
 //! the first product, and comparisons with NaN would give wrong answers.
 
-use corniche_areas::AreaClass;
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{AreaLevelRecord, AreasRecord, Manifest};
+use crate::manifest::contents::{
+    AreaLevelRecord, AreasRecord, BoundariesRecord, BoundaryLevelRecord, Manifest,
+};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
@@ -94,6 +96,7 @@ impl Manifest {
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         self.check_photos()?;
         self.check_areas()?;
+        self.check_boundaries()?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
     }
 
@@ -108,6 +111,27 @@ impl Manifest {
         let most = levels.max().unwrap_or_default();
         that(most <= self.frame.max_level(), "photos.level", most)?;
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
+    }
+
+    fn check_boundaries(&self) -> Result<(), String> {
+        let Some(BoundariesRecord { counts, levels }) = &self.boundaries else { return Ok(()) };
+        let numbers = levels.iter().map(|of| of.level);
+        let is_sorted = numbers.clone().is_sorted_by(|one, next| one < next);
+        that(is_sorted, "boundaries.levels.level", numbers.clone().collect::<Vec<_>>())?;
+        let most = numbers.max().unwrap_or_default();
+        that(most <= self.frame.max_level(), "boundaries.levels.level", most)?;
+        let of_level = |of: &BoundaryLevelRecord| [of.tiles, of.parts, of.points, of.bytes];
+        check_sum("boundaries.levels", levels.iter().flat_map(of_level))?;
+        let classes: Vec<u8> = counts.kept.iter().map(|kept| kept.class).collect();
+        let is_known = classes.iter().all(|class| BoundaryClass::from_number(*class).is_some());
+        let is_right = is_known && classes.is_sorted_by(|one, next| one < next);
+        that(is_right, "boundaries.counts.kept.class", classes)?;
+        check_sum(
+            "boundaries.counts.kept.length_um",
+            counts.kept.iter().map(|kept| kept.length_um),
+        )?;
+        let kept = counts.kept.iter().map(|kept| kept.ways);
+        check_sum("boundaries.counts", kept.chain(counts.lost.iter().map(|lost| lost.1)))
     }
 
     fn check_areas(&self) -> Result<(), String> {

@@ -64,6 +64,9 @@ pub struct Manifest {
     /// The areas; left out in packages made without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub areas: Option<AreasRecord>,
+    /// The boundaries; left out in packages made without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundaries: Option<BoundariesRecord>,
 }
 
 /// The part of the elevation files that a package is of.
@@ -183,6 +186,9 @@ pub struct SettingsRecord {
     /// Which objects are areas (`--areas`); left out without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub areas: Option<AreaTableRecord>,
+    /// Whether there are boundaries (`--boundaries`); left out without any.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub boundaries: bool,
 }
 
 /// The table of classes of areas.
@@ -289,4 +295,50 @@ pub struct InputRecord {
     pub bytes: u64,
     /// SHA-256 of as many bytes; empty for an elevation file outside the bounds of the package, of which no sample is used.
     pub sha256: String,
+}
+
+/// The boundaries of a package.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoundariesRecord {
+    /// What was in the extract.
+    pub counts: BoundaryCounts,
+    /// What tiles have of them, by level; levels without boundaries are left out.
+    pub levels: Vec<BoundaryLevelRecord>,
+}
+
+/// Boundaries of the extract.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoundaryCounts {
+    /// Ways that are boundaries; each counts once, in its most important class.
+    pub ways: u64,
+    /// Those that were read, by class, wherever they lie.
+    pub kept: Vec<BoundaryClassRecord>,
+    /// Those that were left out, by reason.
+    pub lost: Vec<(String, u64)>,
+}
+
+/// Boundaries of one class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoundaryClassRecord {
+    /// Number of the class.
+    pub class: u8,
+    /// How many ways.
+    pub ways: u64,
+    /// Their true length in plan, micrometres, wherever they lie.
+    pub length_um: u64,
+}
+
+/// The boundaries of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoundaryLevelRecord {
+    /// The level.
+    pub level: u8,
+    /// Tiles with boundaries.
+    pub tiles: u64,
+    /// Parts of boundaries in these tiles; what comes near several tiles counts in each.
+    pub parts: u64,
+    /// Their points.
+    pub points: u64,
+    /// Stored bytes of their boundaries sections.
+    pub bytes: u64,
 }

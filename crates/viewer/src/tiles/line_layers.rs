@@ -9,6 +9,7 @@ mod lay;
 mod overlays;
 
 use corniche_geom::LatticePoint;
+use corniche_tileset::BoundaryRecord;
 
 pub(crate) use self::lay::{TileGround, lay};
 pub use self::overlays::Overlays;
@@ -39,6 +40,12 @@ pub struct LayerLine {
     pub style: u8,
     /// At least two points.
     pub points: Vec<LatticePoint>,
+}
+
+impl From<BoundaryRecord> for LayerLine {
+    fn from(BoundaryRecord { way_id, class, points }: BoundaryRecord) -> Self {
+        Self { id: way_id, style: class.number(), points }
+    }
 }
 
 /// What a tile has of one layer, ready to be uploaded: nothing of a method that is not wanted.

@@ -35,13 +35,14 @@ impl PackageSource {
 }
 
 impl PackageSource {
-    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos or areas
+    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos, areas or boundaries
     /// where the style hides them.
     #[must_use]
     pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
         let tiles = self.0.for_method(method);
         let tiles = if style.photo > 0.0 { tiles } else { tiles.without_photos() };
-        Self(if style.has_areas() { tiles } else { tiles.without_areas() })
+        let tiles = if style.has_areas() { tiles } else { tiles.without_areas() };
+        Self(if style.has_boundaries() { tiles } else { tiles.without_boundaries() })
     }
 }
 

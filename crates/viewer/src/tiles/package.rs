@@ -2,11 +2,12 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{
-    ByteSource, Manifest, OpenError, Package, Sections, decode, decode_areas, decode_photo,
+    ByteSource, Manifest, OpenError, Package, Sections, decode, decode_areas, decode_boundaries,
+    decode_photo,
 };
 
 use super::{
-    LineLayer, LineMethods, LoadTileError, MapPackage, Overlays, PhotoImage, PlanScale,
+    LayerLine, LineLayer, LineMethods, LoadTileError, MapPackage, Overlays, PhotoImage, PlanScale,
     TileCatalog, TileGeometry, TileLines, geometry::LineGround,
 };
 use crate::options::RoadMethod;
@@ -24,6 +25,7 @@ pub struct PackageTiles<S> {
     sections: Sections,
     photos: Photos,
     areas: AreasOfTiles,
+    boundaries: BoundariesOfTiles,
     overlays: Arc<Overlays>,
 }
 
@@ -37,6 +39,13 @@ enum Photos {
 /// Whether the areas of tiles are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum AreasOfTiles {
+    Read,
+    LeftOut,
+}
+
+/// Whether the boundaries of tiles are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum BoundariesOfTiles {
     Read,
     LeftOut,
 }
@@ -57,7 +66,8 @@ impl<S: ByteSource> PackageTiles<S> {
         let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
         let overlays = Arc::default();
         let (photos, areas) = (Photos::Read, AreasOfTiles::Read);
-        Ok(Self { package, tiles, sections, photos, areas, overlays })
+        let boundaries = BoundariesOfTiles::Read;
+        Ok(Self { package, tiles, sections, photos, areas, boundaries, overlays })
     }
 
     /// Reads, beside the ground, only the roads that one method needs, with their attributes; without this, the roads that both need.
@@ -81,6 +91,12 @@ impl<S: ByteSource> PackageTiles<S> {
     #[must_use]
     pub fn without_areas(self) -> Self {
         Self { areas: AreasOfTiles::LeftOut, ..self }
+    }
+
+    /// Reads no boundaries.
+    #[must_use]
+    pub fn without_boundaries(self) -> Self {
+        Self { boundaries: BoundariesOfTiles::LeftOut, ..self }
     }
 
     /// Lays lines of people's own files on the tiles.
@@ -124,9 +140,17 @@ impl<S: ByteSource> PackageTiles<S> {
                 };
                 let tile = TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
                     .map_err(|error| failed(error.into()))?;
+                let methods = self.line_methods();
+                let boundaries = match self.boundaries {
+                    BoundariesOfTiles::Read => decode_boundaries(&bytes, id),
+                    BoundariesOfTiles::LeftOut => Ok(Vec::new()),
+                };
+                let boundaries = boundaries.map_err(|error| failed(error.into()))?;
+                let boundaries: Vec<LayerLine> =
+                    boundaries.into_iter().map(LayerLine::from).collect();
+                let tile = tile.with_lines(LineLayer::Boundaries, &boundaries, &on, methods);
                 let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
                 let overlays = self.overlays.near(id, frame, margin);
-                let methods = self.line_methods();
                 let tile = tile.with_lines(LineLayer::Overlays, &overlays, &on, methods);
                 let areas = match self.areas {
                     AreasOfTiles::Read => decode_areas(&bytes, id, frame),

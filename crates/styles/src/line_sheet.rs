@@ -1,0 +1,59 @@
+//! The part of a style's text that is about boundaries.
+
+use std::collections::BTreeMap;
+
+use corniche_areas::BoundaryClass;
+use serde::Deserialize;
+
+use crate::{
+    Dash, LineStyle, Rgb, StyleError,
+    sheet_values::{Rgb8, within},
+};
+
+/// How the boundaries of one class are drawn.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LineSheet {
+    /// Colour.
+    color: Rgb8,
+    /// Width on the picture, 0.5 to 50 pixels.
+    width_px: f64,
+    /// Colour of an edge of one pixel on both sides; left out: without.
+    casing: Option<Rgb8>,
+    /// How much of the map it hides, 0 to 1; 0 does not draw the class. Left out: 1.
+    opacity: Option<f64>,
+    /// Dash and gap in pixels, twice if wanted; left out: a solid line.
+    #[serde(default)]
+    dash: Vec<f32>,
+    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    max_pixel_m: Option<f64>,
+}
+
+/// The boundaries by class: those that are named, and `others` for the rest.
+pub(crate) fn boundaries(
+    sheets: &BTreeMap<String, LineSheet>,
+    others: [LineStyle; LineStyle::MOST],
+) -> Result<[LineStyle; LineStyle::MOST], StyleError> {
+    let mut styles = others;
+    for (name, sheet) in sheets {
+        let Some(class) = BoundaryClass::from_name(name) else {
+            return Err(StyleError::BoundaryClass { text: name.clone() });
+        };
+        let entry = |of| format!("boundaries.{name}.{of}");
+        within(&entry("width_px"), sheet.width_px, 0.5..=50.0)?;
+        let opacity = sheet.opacity.unwrap_or(1.0);
+        within(&entry("opacity"), opacity, 0.0..=1.0)?;
+        if let Some(max_pixel_m) = sheet.max_pixel_m {
+            within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
+        }
+        styles[usize::from(class.number())] = LineStyle {
+            color: sheet.color.into(),
+            width_px: sheet.width_px as f32,
+            casing: sheet.casing.map(Rgb::from),
+            opacity: opacity as f32,
+            dash: Dash::new(&sheet.dash)?,
+            max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
+        };
+    }
+    Ok(styles)
+}
