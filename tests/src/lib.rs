@@ -15,7 +15,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-pub use corniche_testing::{extract_with_areas, extract_with_coast, real_data, root, sample};
+pub use corniche_testing::{
+    extract_with_areas, extract_with_boundaries, extract_with_coast, real_data, root, sample,
+};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
 pub use job::{Job, When};

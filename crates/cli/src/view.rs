@@ -65,6 +65,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         photo: args.look.photo,
         areas: args.look.areas.in_window(),
         reload: reload(chosen, &args.look.overlay),
+        boundaries: args.look.boundaries.in_window(),
         overlays: overlays::names(&args.look.overlay),
         drawn_lines: drawing.lines,
         save_drawing: drawing.save,

@@ -58,6 +58,9 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     if shown.areas == Areas::Hidden {
         option("--areas", "off".to_owned());
     }
+    if shown.boundaries == Areas::Hidden {
+        option("--boundaries", "off".to_owned());
+    }
     for (number, overlay) in overlays.iter().enumerate() {
         if shown.hidden_overlays.contains(&number) {
             continue;

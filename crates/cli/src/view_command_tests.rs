@@ -18,6 +18,7 @@ fn shown(roads: RoadOptions) -> ShownView {
         style: "my styles/night 'n day.toml".to_owned(),
         photo: Some(0.25),
         areas: Areas::Shown,
+        boundaries: Areas::Shown,
         hidden_overlays: std::collections::BTreeSet::new(),
         overlay_colors: vec![[1.0, 0.5, 0.0], [0.0, 0.0, 1.0]],
         exaggeration: 1.5,

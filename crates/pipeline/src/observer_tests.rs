@@ -9,20 +9,21 @@ fn every_stage_is_listed_once_in_order() {
         let expected = match stage {
             Stage::Hash => 0,
             Stage::MapAreas => 1,
-            Stage::Roads => 2,
-            Stage::Heights => 3,
-            Stage::Photos => 4,
-            Stage::CoarseTins => 5,
-            Stage::Deviations => 6,
-            Stage::Samples => 7,
-            Stage::Tiles => 8,
-            Stage::CoarseTiles => 9,
-            Stage::Package => 10,
-            Stage::Verify => 11,
+            Stage::Boundaries => 2,
+            Stage::Roads => 3,
+            Stage::Heights => 4,
+            Stage::Photos => 5,
+            Stage::CoarseTins => 6,
+            Stage::Deviations => 7,
+            Stage::Samples => 8,
+            Stage::Tiles => 9,
+            Stage::CoarseTiles => 10,
+            Stage::Package => 11,
+            Stage::Verify => 12,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 12);
+    assert_eq!(Stage::ALL.len(), 13);
 }
 
 #[test]

@@ -15,6 +15,7 @@
 )]
 
 mod area_extract;
+mod boundary_extract;
 mod coast_extract;
 #[cfg(feature = "rasters")]
 mod colour_image;
@@ -34,6 +35,7 @@ mod random;
 mod raster;
 
 pub use area_extract::extract_with_areas;
+pub use boundary_extract::extract_with_boundaries;
 pub use coast_extract::extract_with_coast;
 #[cfg(feature = "rasters")]
 pub use colour_image::ColourImage;

@@ -37,6 +37,7 @@ fn request() -> WindowRequest {
         reload: None,
         photo: None,
         areas: crate::Areas::Shown,
+        boundaries: crate::Areas::Shown,
         overlays: Vec::new(),
         drawn_lines: Vec::new(),
         save_drawing: Box::new(|_| Ok(PathBuf::new())),

@@ -15,7 +15,7 @@ pub struct NamedStyle {
     pub style: Style,
 }
 
-/// Whether areas are drawn, where the package has some.
+/// Whether areas, or boundaries, are drawn, where the package has some.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Areas {
     /// Those that the style draws.
@@ -39,6 +39,8 @@ pub struct ShownView {
     pub photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
     pub areas: Areas,
+    /// Whether boundaries are drawn as the style says, or not at all.
+    pub boundaries: Areas,
     /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
     pub hidden_overlays: BTreeSet<usize>,
     /// Colours of the lines of all files, in the style that is shown.
@@ -105,6 +107,8 @@ pub struct WindowRequest {
     pub photo: Option<f32>,
     /// Whether areas are drawn at first, as the style says, or not at all.
     pub areas: Areas,
+    /// Whether boundaries are drawn at first, as the style says, or not at all.
+    pub boundaries: Areas,
     /// What the files of lines are called that the package's tiles carry, in the order of the style's
     /// [`overlays`](corniche_styles::Style::overlays).
     pub overlays: Vec<String>,

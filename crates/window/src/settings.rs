@@ -57,6 +57,8 @@ pub(crate) struct Settings {
     pub(crate) photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
     pub(crate) areas: Areas,
+    /// Whether boundaries are drawn as the style says, or not at all.
+    pub(crate) boundaries: Areas,
     /// Files of lines that are not shown, by their numbers.
     pub(crate) hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
@@ -100,6 +102,9 @@ impl Settings {
             Areas::Hidden => style.clone().without_areas(),
         };
         applied.photo = self.photo.unwrap_or(applied.photo);
+        if self.boundaries == Areas::Hidden {
+            applied = applied.without_boundaries();
+        }
         for (number, line) in applied.overlays.iter_mut().enumerate() {
             if self.hidden_overlays.contains(&number) {
                 line.opacity = 0.0;
@@ -127,6 +132,7 @@ pub(crate) fn usual() -> Settings {
         style: 0,
         photo: None,
         areas: Areas::Shown,
+        boundaries: Areas::Shown,
         hidden_overlays: BTreeSet::new(),
         exaggeration: 1.0,
         screen_space_error_px: 2.0,

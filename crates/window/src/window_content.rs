@@ -72,6 +72,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) photo: Option<f32>,
     /// Whether the package has areas.
     pub(crate) has_areas: bool,
+    /// Whether it has boundaries.
+    pub(crate) has_boundaries: bool,
     /// Names of the files of lines.
     pub(crate) overlays: &'a [String],
     /// Colours of their lines.

@@ -97,6 +97,7 @@ impl World {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = RoadInput {
+            boundaries: None,
             osm: &[osm.to_path_buf()],
             settings: &self.settings,
             areas: None,

@@ -26,6 +26,7 @@ pub(crate) fn first_settings(
         style: 0,
         photo: request.photo,
         areas: request.areas,
+        boundaries: request.boundaries,
         hidden_overlays: BTreeSet::new(),
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,

@@ -286,6 +286,7 @@ impl App {
             mode: self.camera.mode(),
             style_names: self.styles.names(),
             has_areas: manifest.areas.is_some(),
+            has_boundaries: manifest.boundaries.is_some(),
             overlays: &self.overlays,
             overlay_colors: self.overlay_colors(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),

@@ -34,6 +34,7 @@ impl App {
             style: self.styles.names().get(settings.style)?.clone(),
             photo: settings.photo,
             areas: settings.areas,
+            boundaries: settings.boundaries,
             hidden_overlays: settings.hidden_overlays.clone(),
             overlay_colors: self.overlay_colors(),
             exaggeration: settings.exaggeration,

@@ -30,6 +30,11 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
             .on_hover_text("Water, forest … as the style draws them");
         settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
     }
+    if content.has_boundaries {
+        let mut are_shown = settings.boundaries == Areas::Shown;
+        ui.checkbox(&mut are_shown, "Boundaries").on_hover_text("As the style draws them");
+        settings.boundaries = if are_shown { Areas::Shown } else { Areas::Hidden };
+    }
     for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
     {
         ui.horizontal(|ui| {

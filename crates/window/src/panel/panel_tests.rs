@@ -72,6 +72,7 @@ impl Told {
             style_names: &self.styles,
             photo: None,
             has_areas: self.has_areas,
+            has_boundaries: false,
             overlays: &[],
             drawing: crate::window_content::DrawingContent::default(),
             overlay_colors: Vec::new(),

@@ -1,0 +1,143 @@
+//! `corniche build --boundaries`: boundaries through the whole binary, however the package is made; losses; refusals.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{fs, path::Path};
+
+use e2e::{
+    Job, Ran, When, corniche, extract_with_boundaries, lacks_adapter, manifest, sample, text,
+};
+
+fn succeed(ran: Ran) -> Ran {
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    ran
+}
+
+#[test]
+fn boundaries_are_the_same_however_the_package_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path()));
+    let whole = at("whole.pmtiles");
+    let inputs =
+        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--boundaries", "on"];
+    let build = |package: &Path, inputs: &[&str], more: &[&str]| {
+        succeed(corniche([&["build", "-q", "-o", text(package)], inputs, more].concat()));
+        fs::read(package).unwrap()
+    };
+    let bytes = build(&whole, &inputs, &["--threads", "1", "--defects", text(&at("defects.csv"))]);
+    let ran = succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
+    assert!(!ran.out.contains("broken"), "{}", ran.out);
+
+    // What came in is what is kept and what is lost, with its id.
+    let found = &manifest(&whole)["boundaries"];
+    assert_eq!(found["ways"], 4);
+    let kept: Vec<(&str, u64)> = found["kept"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|kept| (kept["class"].as_str().unwrap(), kept["ways"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(kept, [("admin-2", 1), ("admin-6", 1), ("protected", 1)]);
+    assert_eq!(found["lost"][0]["reason"], "way of a boundary is missing");
+    let defects = fs::read_to_string(at("defects.csv")).unwrap();
+    assert!(defects.contains("way of a boundary is missing,way,9"), "{defects}");
+    let ran = succeed(corniche(["info", text(&whole)]));
+    assert!(ran.out.contains("Boundaries: 4 ways of the extract"), "{}", ran.out);
+    // 5 by 4 steps of the lattice of nodes and so on: 382 by 445 metres each.
+    let length_km = found["kept"][0]["length_um"].as_f64().unwrap() / 1e9;
+    let expected_km = (3.0_f64 * 0.382).hypot(2.0 * 0.4447) + (4.0_f64 * 0.382).hypot(0.4447);
+    assert!((length_km / expected_km - 1.0).abs() < 0.01, "{length_km} and {expected_km} km");
+
+    // Other threads and memory; onto recorded terrain; left out; in parts.
+    let again = build(&at("again.pmtiles"), &inputs, &["--threads", "3", "--memory", "600M"]);
+    assert!(again == bytes, "threads");
+    let plain = at("plain.pmtiles");
+    let plain_bytes = build(&plain, &inputs[..6], &[]);
+    assert!(manifest(&plain).get("boundaries").is_none());
+    let off = build(&at("off.pmtiles"), &inputs[..6], &["--boundaries", "off"]);
+    assert!(off == plain_bytes, "off is what is usual");
+    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--boundaries", "on"];
+    assert!(build(&at("onto.pmtiles"), &onto, &[]) == bytes, "onto recorded terrain");
+    let without = ["--terrain", text(&whole), "--osm", text(&osm)];
+    assert!(build(&at("without.pmtiles"), &without, &[]) == plain_bytes, "left out");
+    let (plan, store, merged) = (at("plan.json"), at("store"), at("merged.pmtiles"));
+    succeed(corniche([&["plan", "-o", text(&plan)], &inputs[..]].concat()));
+    for step in ["hashes", "roads", "heights", "top", "tiles"] {
+        let subtree: &[&str] =
+            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
+        let words = ["part", text(&plan), "-q", "--step", step, "--store", text(&store)];
+        succeed(corniche([&words[..5], subtree, &words[5..]].concat()));
+    }
+    succeed(corniche(["merge", text(&plan), "-q", "-o", text(&merged), "--store", text(&store)]));
+    assert!(fs::read(&merged).unwrap() == bytes, "in parts");
+}
+
+#[test]
+fn a_build_with_boundaries_that_was_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let inputs = || [sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path())];
+    let options = ["--max-error", "0.25", "--boundaries", "on"];
+    let whole = Job::new(&options).of(inputs());
+    whole.succeed(&["--quiet"]);
+    let job = Job::new(&options).of(inputs());
+    let stopped = job.stop(&[], "KILL", When::Worked);
+    assert_ne!(stopped.code, 0, "it ended by itself");
+    job.succeed(&["--quiet", "--resume"]);
+    assert!(job.result() == whole.result());
+}
+
+#[test]
+fn they_are_drawn_by_both_methods_and_can_be_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let osm = extract_with_boundaries(folder.path());
+    let dem = sample("pass/pass-dem.tif");
+    let package = at("package.pmtiles");
+    let words = ["build", "-q", "-o", text(&package), "--dem", text(&dem), "--osm", text(&osm)];
+    succeed(corniche([&words[..], &["--max-error", "5", "--boundaries", "on"]].concat()));
+    let render = |name: &str, more: &[&str]| {
+        let picture = at(name);
+        let words = ["render", text(&package), "-o", text(&picture), "--size", "500x400"];
+        let ran = corniche([&words[..], more].concat());
+        (!lacks_adapter(&ran)).then(|| {
+            succeed(ran);
+            image::open(picture).unwrap().to_rgba8()
+        })
+    };
+    let Some(geo) = render("geo.png", &["--roads", "geo"]) else { return };
+    let sv = render("sv.png", &["--roads", "sv"]).unwrap();
+    let without = render("without.png", &["--roads", "sv", "--boundaries", "off"]).unwrap();
+    let differ = |one: &image::RgbaImage, other: &image::RgbaImage| {
+        one.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count()
+    };
+    assert!(differ(&sv, &without) > 1000, "{} pixels", differ(&sv, &without));
+    assert!(differ(&geo, &sv) * 20 < differ(&sv, &without), "{} pixels", differ(&geo, &sv));
+}
+
+#[test]
+fn bounds_leave_out_what_is_far_and_an_extract_is_needed() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let osm = extract_with_boundaries(folder.path());
+    let dem = sample("pass/pass-dem.tif");
+    let (whole, part) = (at("whole.pmtiles"), at("part.pmtiles"));
+    let build = |package: &Path, more: &[&str]| {
+        let words = ["build", "-q", "-o", text(package), "--dem", text(&dem), "--max-error", "5"];
+        corniche([&words[..], more].concat())
+    };
+    let from_extract = ["--osm", text(&osm), "--boundaries", "on"];
+    succeed(build(&whole, &from_extract));
+    let bounds = ["--bounds", "9.505,46.875,9.52,46.885"];
+    succeed(build(&part, &[&from_extract[..], &bounds].concat()));
+    succeed(corniche(["verify", text(&part), "--osm", text(&osm)]));
+    let points = |package: &Path| {
+        let levels = manifest(package)["boundaries"]["levels"].clone();
+        let finest = levels.as_array().unwrap().last().unwrap().clone();
+        finest["points"].as_u64().unwrap()
+    };
+    assert!(points(&part) < points(&whole), "{} and {}", points(&part), points(&whole));
+    let refused = build(&at("none.pmtiles"), &["--boundaries", "on"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.err.contains("give one with --osm"), "{}", refused.err);
+}
