@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{area_loss::AreaLoss, boundaries::BoundaryLoss};
+use crate::{area_loss::AreaLoss, boundary_loss::BoundaryLoss};
 
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

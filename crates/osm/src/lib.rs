@@ -62,6 +62,7 @@ mod way_bytes;
 mod way_facts;
 
 mod area_loss;
+mod boundary_loss;
 mod defect;
 mod error;
 mod kept_error;
@@ -69,7 +70,8 @@ mod summary;
 
 pub use area_loss::AreaLoss;
 pub use areas::{AreaSummary, KeptAreas, read_areas};
-pub use boundaries::{Boundary, BoundaryLoss, BoundarySummary, read_boundaries};
+pub use boundaries::{Boundary, BoundarySummary, read_boundaries};
+pub use boundary_loss::BoundaryLoss;
 pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;

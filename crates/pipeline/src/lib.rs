@@ -32,6 +32,8 @@ mod steps;
 mod target;
 mod terrain;
 mod tile;
+mod tiles_near;
+mod true_lengths;
 mod unfinished;
 mod verify;
 mod workers;

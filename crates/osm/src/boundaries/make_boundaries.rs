@@ -2,13 +2,14 @@ use corniche_areas::BoundaryClass;
 use corniche_geom::LatticePoint;
 use corniche_store::SortRecord as _;
 
-use super::{Boundary, BoundaryLoss, BoundarySummary};
+use super::{boundary::Boundary, summary::BoundarySummary};
 use crate::{
     Defect, ReadOsmError,
     areas::{
         located_ways::{LocatedWay, LocatedWays},
         records::{MemberRecord, degrees_of, to_point},
     },
+    boundary_loss::BoundaryLoss,
     location,
     reading::{Reading, Step},
     spool::SpoolReader,

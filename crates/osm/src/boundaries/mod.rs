@@ -6,9 +6,11 @@
 //!                                          class of each object ┘
 //! ```
 
+mod boundary;
 mod make_boundaries;
 mod read_boundaries;
 mod summary;
 
-pub use read_boundaries::{Boundary, read_boundaries};
-pub use summary::{BoundaryLoss, BoundarySummary};
+pub use boundary::Boundary;
+pub use read_boundaries::read_boundaries;
+pub use summary::BoundarySummary;

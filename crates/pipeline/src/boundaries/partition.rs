@@ -13,7 +13,7 @@ use super::{sections::TileBoundaries, split::Splitting, totals::BoundaryTotals};
 use crate::{
     BuildError, Defect, Observer,
     artifacts::{Kind, damaged, tile_of},
-    roads::lengths::TrueLengths,
+    true_lengths::TrueLengths,
 };
 
 /// Keeps the sections of all tiles and last the totals. `on_defect` is told what is wrong, in an order that depends on the extract alone.

@@ -8,7 +8,7 @@ use corniche_tileset::BoundaryRecord;
 
 use crate::{
     heights::data_tiles::DataTiles, levels::Levels, points_step::points_step,
-    roads::reach::for_each_tile_near,
+    tiles_near::for_each_tile_near,
 };
 
 /// On levels above the finest, lines are simplified by so many of the level's cells.

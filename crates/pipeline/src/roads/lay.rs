@@ -8,11 +8,9 @@ use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    lengths::{gaps_um, pieces_um},
-    pieces::{RoadPiece, Run, TilePieces},
-};
+use super::pieces::{RoadPiece, Run, TilePieces};
 use crate::levels::Levels;
+use crate::true_lengths::{gaps_um, pieces_um};
 
 /// Sums over the roads of a class on a level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -5,10 +5,9 @@ use corniche_tileset::RoadLoss;
 
 use super::{
     lay::RoadFate,
-    lengths::UM,
     totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
 };
-use crate::{BuildError, Defect, Loss, Observer};
+use crate::{BuildError, Defect, Loss, Observer, true_lengths::UM};
 
 /// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]

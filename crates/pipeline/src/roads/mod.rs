@@ -4,12 +4,12 @@ pub(crate) mod counts;
 mod defects;
 pub(crate) mod extract;
 pub(crate) mod lay;
-pub(crate) mod lengths;
+
 pub(crate) mod losses;
 pub(crate) mod overlap;
 pub(crate) mod partition;
 pub(crate) mod pieces;
-pub(crate) mod reach;
+
 pub(crate) mod shares;
 mod split;
 pub(crate) mod totals;

@@ -27,7 +27,6 @@ pub(crate) use super::defects::replay_defects;
 use super::{
     defects::DefectsWriter,
     extract::{kept_in, not_read},
-    lengths::TrueLengths,
     pieces::{RoadPiece, TilePiecesWriter},
     split::{SplitRoad, Splitting},
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
@@ -39,6 +38,7 @@ use crate::{
     boundaries,
     heights::data_tiles::DataTiles,
     levels::Levels,
+    true_lengths::TrueLengths,
 };
 
 /// Roads and points of roads that are split at once.

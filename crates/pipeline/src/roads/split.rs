@@ -7,12 +7,12 @@ use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
-    lengths::{TrueLengths, pieces_um},
     pieces::{RoadPiece, Run},
-    reach::for_each_tile_near,
     totals::RoadLength,
 };
 use crate::levels::Levels;
+use crate::tiles_near::for_each_tile_near;
+use crate::true_lengths::{TrueLengths, pieces_um};
 
 /// What splitting needs.
 pub(crate) struct Splitting<'a> {

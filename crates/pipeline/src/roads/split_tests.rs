@@ -15,9 +15,9 @@ use crate::{
     RoadSettings,
     roads::{
         lay::{ClassSums, Laid, RoadFate, TileToLayOn, lost_pieces},
-        lengths::gaps_um,
         pieces::TilePieces,
     },
+    true_lengths::gaps_um,
 };
 
 /// A package's frame and settings.

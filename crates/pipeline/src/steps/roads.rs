@@ -7,11 +7,11 @@ use crate::{
     artifacts::{self, Kind},
     context::Context,
     roads::{
-        lengths::TrueLengths,
         overlap::check_overlap,
         partition::{AreaInput, RoadInput, partition},
         totals::RoadTotals,
     },
+    true_lengths::TrueLengths,
 };
 
 /// What is known of all roads, which must be there; `None` without an extract.

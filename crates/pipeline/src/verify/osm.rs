@@ -24,13 +24,14 @@ use crate::{
     roads::{
         counts::road_counts,
         lay::ClassSums,
-        lengths::TrueLengths,
         losses::{LossFold, Sums},
         partition::{AreaInput, RoadInput, partition},
         pieces::TilePieces,
         totals::RoadTotals,
     },
-    settings_record, workers,
+    settings_record,
+    true_lengths::TrueLengths,
+    workers,
 };
 
 pub(crate) fn verify(

@@ -108,5 +108,5 @@ pub(crate) fn cut_um(share: f64, segment_um: u64) -> u64 {
 }
 
 #[cfg(test)]
-#[path = "lengths_tests.rs"]
+#[path = "true_lengths_tests.rs"]
 mod tests;

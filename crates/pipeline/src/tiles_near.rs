@@ -53,5 +53,5 @@ fn stretch_u([a, b]: [LatticePoint; 2], reach: [i64; 2]) -> [i64; 2] {
 }
 
 #[cfg(test)]
-#[path = "reach_tests.rs"]
+#[path = "tiles_near_tests.rs"]
 mod tests;
