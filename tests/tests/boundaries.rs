@@ -99,7 +99,8 @@ fn they_are_drawn_by_both_methods_and_can_be_left_out() {
     let render = |name: &str, more: &[&str]| {
         let picture = at(name);
         let words = ["render", text(&package), "-o", text(&picture), "--size", "500x400"];
-        let ran = corniche([&words[..], more].concat());
+        let view = ["--look-at", "9.525,46.885", "--distance", "6000", "--pitch", "40"];
+        let ran = corniche([&words[..], &view, more].concat());
         (!lacks_adapter(&ran)).then(|| {
             succeed(ran);
             image::open(picture).unwrap().to_rgba8()

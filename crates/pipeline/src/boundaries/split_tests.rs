@@ -1,1 +1,99 @@
+use std::collections::{BTreeMap, BTreeSet};
 
+use corniche_geom::{Frame, NodeIndex};
+use corniche_roads::{ClassFilter, FrcTable};
+
+use super::*;
+use crate::RoadSettings;
+
+/// Three levels of tiles with cells of 10, 20 and 40 m.
+fn levels() -> Levels {
+    let frame = Frame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
+    let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25 };
+    Levels::new(frame, 1.0, &settings, 1.0)
+}
+
+fn splitting(levels: &Levels) -> Splitting<'_> {
+    let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
+    let data = DataTiles::between(levels.frame(), south_west, north_east);
+    Splitting { levels, data, clip: None }
+}
+
+/// A wave across the whole of the root, in metres; its middle is a junction.
+fn wave(levels: &Levels, class: BoundaryClass) -> Boundary {
+    let point = |k: i32| {
+        let x = f64::from(k) * 20.0 - 5000.0;
+        levels.frame().snap([x, 900.0 * (x / 700.0).sin()]).unwrap()
+    };
+    let points: Vec<LatticePoint> = (0..=500).map(point).collect();
+    Boundary { way_id: 7, class, points, fixed: vec![0, 250, 500] }
+}
+
+#[test]
+fn every_tile_has_the_segments_that_come_near_it() {
+    let levels = levels();
+    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let mut by_tile: BTreeMap<TileId, Vec<BoundaryRecord>> = BTreeMap::new();
+    for (id, record) in splitting.split(&boundary) {
+        by_tile.entry(id).or_default().push(record);
+    }
+    for level in levels.numbers() {
+        let line = splitting.line(&boundary, level);
+        let step = splitting.step(level);
+        assert!(line.iter().all(|point| point.u % step == 0 && point.v % step == 0));
+        let margin = levels.margin_steps(level);
+        let side = 1_u32 << level;
+        for id in (0..side * side).map(|k| TileId::new(level, k % side, k / side).unwrap()) {
+            let around = levels.frame().tile_lattice_bounds(id).expanded(margin);
+            let touches =
+                |pair: &&[LatticePoint; 2]| pair.iter().any(|point| around.contains(*point));
+            let needed: BTreeSet<[LatticePoint; 2]> =
+                line.array_windows().filter(touches).copied().collect();
+            let found: BTreeSet<[LatticePoint; 2]> = by_tile
+                .get(&id)
+                .into_iter()
+                .flatten()
+                .flat_map(|record| record.points.array_windows().copied().collect::<Vec<_>>())
+                .collect();
+            assert!(found.is_superset(&needed), "{id}: {} of {}", found.len(), needed.len());
+        }
+    }
+}
+
+#[test]
+fn junctions_stay_and_coarse_levels_have_fewer_points() {
+    let levels = levels();
+    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let lines: Vec<Vec<LatticePoint>> =
+        levels.numbers().map(|level| splitting.line(&boundary, level)).collect();
+    let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
+    assert!(counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
+    for (level, line) in (0..).zip(&lines) {
+        let half = splitting.step(level) / 2 + 1;
+        for &index in &boundary.fixed {
+            let junction = boundary.points[index as usize];
+            let is_near = |point: &LatticePoint| {
+                (point.u - junction.u).abs() <= half && (point.v - junction.v).abs() <= half
+            };
+            assert!(line.iter().any(is_near), "{index} on level {level}");
+        }
+    }
+}
+
+#[test]
+fn small_units_are_stored_where_cells_are_small() {
+    let frame = Frame::new([0.0, 0.0], 60.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
+    let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25 };
+    let levels = Levels::new(frame, 1.0, &settings, 1.0);
+    let splitting = splitting(&levels);
+    let shown = |class| -> Vec<u8> {
+        levels.numbers().filter(|&level| splitting.shows(level, class)).collect()
+    };
+    // Cells of 240, 120 and 60 m.
+    assert_eq!(shown(BoundaryClass::Admin2), [0, 1, 2]);
+    assert_eq!(shown(BoundaryClass::Admin6), [0, 1, 2]);
+    assert_eq!(shown(BoundaryClass::Admin8), [2]);
+    assert_eq!(shown(BoundaryClass::Protected), [2]);
+}
