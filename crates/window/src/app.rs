@@ -143,7 +143,7 @@ impl App {
         let (lines, ways) = (&request.drawn_lines, (request.save_drawing, platform.clock_s));
         let (drawing, left_out) = Drawing::new(lines, ways, package.manifest());
         if left_out > 0 {
-            notices.warn(format!("{left_out} lines lie too far away from the package"));
+            notices.warn(format!("{left_out} lines lie too far away from the package: they are not shown, and stay in the file"));
         }
         Ok(Self {
             tiles: Tiles::new(package.catalog(), quantum_m, platform.loader, request.budget),

@@ -59,7 +59,8 @@ pub(crate) fn partition(
     Ok(Ok(()))
 }
 
-/// The part of a boundary on its way to its tile. Parts of a tile are sorted by class, way and their order along it.
+/// The part of a boundary on its way to its tile. Parts of a tile are sorted by class and way; those of one way by where they begin, so that
+/// their order depends on what they are alone.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct PartRecord {
     /// The tile's place in the order of the package.

@@ -18,6 +18,8 @@ pub(crate) struct Drawing {
     pub(crate) is_on: bool,
     pub(crate) tool: Tool,
     pub(crate) document: Document,
+    /// Lines that have no place in the package's CRS: they cannot be shown, and are saved as they are.
+    unplaced: Vec<DrawnLine>,
     laid: LaidLines,
     /// The state of the document that was laid last.
     laid_revision: u64,
@@ -29,7 +31,7 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// With the lines of a file. Those with a point that has no place in the package's CRS are left out, and counted.
+    /// With the lines of a file. Those with a point that has no place in the package's CRS are not shown; tells how many these are.
     pub(crate) fn new(
         lines: &[DrawnLine],
         (save, clock_s): (SaveDrawing, ClockS),
@@ -39,18 +41,20 @@ impl Drawing {
             let at_m = manifest.coordinates.working_from_wgs84(lon_lat_deg)?;
             Some(Point { lon_lat_deg, at_m })
         };
-        let placed: Vec<_> = lines
-            .iter()
-            .filter_map(|line| {
-                let points: Option<Vec<Point>> = line.points_deg.iter().map(point).collect();
-                Some((line.feature, points?))
-            })
-            .collect();
-        let left_out = lines.len() - placed.len();
+        let (mut placed, mut unplaced) = (Vec::new(), Vec::new());
+        for line in lines {
+            let points: Option<Vec<Point>> = line.points_deg.iter().map(point).collect();
+            match points {
+                Some(points) => placed.push((line.feature, points)),
+                None => unplaced.push(line.clone()),
+            }
+        }
+        let left_out = unplaced.len();
         let drawing = Self {
             is_on: false,
             tool: Tool::default(),
             document: Document::of(placed),
+            unplaced,
             laid: LaidLines::default(),
             laid_revision: 0,
             last: None,
@@ -108,7 +112,8 @@ impl Drawing {
             feature: line.feature,
             points_deg: line.points.iter().map(|point| point.lon_lat_deg).collect(),
         };
-        let lines: Vec<DrawnLine> = self.document.lines().iter().map(line).collect();
+        let drawn = self.document.lines().iter().map(line);
+        let lines: Vec<DrawnLine> = drawn.chain(self.unplaced.iter().cloned()).collect();
         let saved = (self.save)(&lines);
         if saved.is_ok() {
             self.document.note_saved();

@@ -176,9 +176,13 @@ impl Inputs {
             ElementState::Pressed => KeyState::Pressed,
             ElementState::Released => KeyState::Released,
         };
-        let drawing = drawing_command(&event.logical_key, self.modifiers, app.is_drawing());
-        if let Some(command) = drawing {
-            if state == KeyState::Pressed {
+        // A release is always the camera's: the key may have been pressed before Control was.
+        if state == KeyState::Pressed
+            && let Some(command) =
+                drawing_command(&event.logical_key, self.modifiers, app.is_drawing())
+        {
+            let is_once = matches!(command, DrawingCommand::Toggle | DrawingCommand::Save);
+            if !(event.repeat && is_once) {
                 app.command(Command::Draw(command), now_s);
             }
             return true;

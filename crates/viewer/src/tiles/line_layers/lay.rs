@@ -1,5 +1,5 @@
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{Frame, LatticePoint, Polyline, TileId};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tin::Surface;
 
@@ -57,18 +57,22 @@ pub(crate) fn lay(lines: &[LayerLine], on: &TileGround<'_>, methods: LineMethods
     TileLayer { segments, volumes }
 }
 
-/// The points of a line, with points between those that are far from each other, on the lattice. Each lies within half a step of it beside
-/// the line.
+/// The points of a line, with points between those that are far from each other, on the lattice, as far as they lie near the tile. Each lies
+/// within half a step of it beside the line.
 fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
     let [east, north] = on.frame.node_steps(on.id.z());
     let longest = LONGEST_CELLS * east.min(north) as f64;
+    let margin = (on.width_margin_m / on.frame.lattice_step_m()).ceil() as i64;
+    let around = on.frame.tile_lattice_bounds(on.id).expanded(margin + longest.ceil() as i64);
     let mut divided: Vec<LatticePoint> = points.first().copied().into_iter().collect();
     for [from, to] in points.array_windows::<2>() {
         let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
         let parts = (du.hypot(dv) / longest).ceil().max(1.0);
-        // A line all around the earth has some thousand parts.
-        for part in 1..parts as u32 {
-            let share = f64::from(part) / parts;
+        // A segment may go all around the earth: only what is near is divided.
+        let [first, last] = shares_in(*from, [du, dv], &around);
+        let numbers = (first * parts).floor().max(1.0) as u64..=(last * parts).ceil() as u64;
+        for part in numbers.take_while(|part| (*part as f64) < parts) {
+            let share = part as f64 / parts;
             divided.push(LatticePoint::new(
                 from.u + (du * share).round() as i64,
                 from.v + (dv * share).round() as i64,
@@ -78,6 +82,25 @@ fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
     }
     divided.dedup();
     divided
+}
+
+/// Between which shares of its length a segment may lie in a rectangle; the second is below the first if nowhere.
+fn shares_in(from: LatticePoint, way: [f64; 2], around: &LatticeBounds) -> [f64; 2] {
+    let mut shares = [0.0_f64, 1.0];
+    let axes = [(from.u, around.min.u, around.max.u), (from.v, around.min.v, around.max.v)];
+    for ((start, low, high), step) in axes.into_iter().zip(way) {
+        let [to_low, to_high] = [low, high].map(|side| (side - start) as f64);
+        if step == 0.0 {
+            if to_low > 0.0 || to_high < 0.0 {
+                return [1.0, 0.0];
+            }
+            continue;
+        }
+        let (enters, leaves) = (to_low / step, to_high / step);
+        shares[0] = shares[0].max(enters.min(leaves));
+        shares[1] = shares[1].min(enters.max(leaves));
+    }
+    shares
 }
 
 /// What lies on the ground, and where its dashes are.

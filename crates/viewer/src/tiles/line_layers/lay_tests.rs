@@ -102,3 +102,15 @@ fn long_segments_are_divided_and_stay_straight() {
     assert_eq!(starts.len(), (1900.0 / longest_m).ceil() as usize);
     assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
 }
+
+/// Of a segment through the tile that begins and ends far away, only what is near is divided.
+#[test]
+fn a_segment_all_around_the_earth_is_divided_near_the_tile_alone() {
+    let far_m = 2e7;
+    let layer = laid(&[[-far_m, 900.0], [far_m, 900.0]]);
+    let [side_m, _] = [256.0 * 2.0 * CELL_M; 2];
+    let parts = layer.volumes.all().len() as f64;
+    let most = (side_m + 2.0 * 40.0) / (LONGEST_CELLS * 2.0 * CELL_M) + 6.0;
+    assert!(parts > 20.0 && parts <= most, "{parts} parts");
+    assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
+}
