@@ -49,7 +49,9 @@ fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
         let class = class_of(field('T'));
         if object.starts_with('w') {
             present.insert(id);
-            class.into_iter().for_each(|class| name(id, class));
+            if let Some(class) = class {
+                name(id, class);
+            }
             continue;
         }
         let kind = field('T').split(',').find_map(|tag| tag.strip_prefix("type="));

@@ -32,9 +32,9 @@ pub(crate) struct LineSheet {
 /// The boundaries by class: those that are named, and `others` for the rest.
 pub(crate) fn boundaries(
     sheets: &BTreeMap<String, LineSheet>,
-    others: [LineStyle; LineStyle::MOST],
+    others: &[LineStyle; LineStyle::MOST],
 ) -> Result<[LineStyle; LineStyle::MOST], StyleError> {
-    let mut styles = others;
+    let mut styles = *others;
     for (name, sheet) in sheets {
         let Some(class) = BoundaryClass::from_name(name) else {
             return Err(StyleError::BoundaryClass { text: name.clone() });

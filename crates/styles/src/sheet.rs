@@ -168,7 +168,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
         areas: areas(&area_sheets, usual.areas)?,
-        boundaries: boundaries(&line_sheets, usual.boundaries)?,
+        boundaries: boundaries(&line_sheets, &usual.boundaries)?,
         overlays: usual.overlays,
         drawn: usual.drawn,
     };

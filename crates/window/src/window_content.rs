@@ -20,6 +20,15 @@ pub(crate) struct GroundPoint {
     pub(crate) at_m: [f64; 3],
 }
 
+/// What a package may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Has {
+    /// Water, forest and so on.
+    pub(crate) areas: bool,
+    /// Boundaries.
+    pub(crate) boundaries: bool,
+}
+
 /// A point of a drawn line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Handle {
@@ -70,10 +79,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) style_names: &'a [String],
     /// How strongly the style that is shown lets photos be seen; `None` in a package without photos.
     pub(crate) photo: Option<f32>,
-    /// Whether the package has areas.
-    pub(crate) has_areas: bool,
-    /// Whether it has boundaries.
-    pub(crate) has_boundaries: bool,
+    /// What the package has beside ground, roads and photos.
+    pub(crate) has: Has,
     /// Names of the files of lines.
     pub(crate) overlays: &'a [String],
     /// Colours of their lines.

@@ -21,7 +21,7 @@ use crate::{
     settings::{Refinement, Settings},
     tiles::Changes,
     trace::TraceLine,
-    window_content::WindowContent,
+    window_content::{Has, WindowContent},
 };
 
 /// A processor that draws draws coarsely until the camera has been at rest for this time.
@@ -285,8 +285,7 @@ impl App {
             metres_per_point: self.probe.middle_pixel_m().map(|pixel_m| pixel_m * points),
             mode: self.camera.mode(),
             style_names: self.styles.names(),
-            has_areas: manifest.areas.is_some(),
-            has_boundaries: manifest.boundaries.is_some(),
+            has: Has { areas: manifest.areas.is_some(), boundaries: manifest.boundaries.is_some() },
             overlays: &self.overlays,
             overlay_colors: self.overlay_colors(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),

@@ -24,13 +24,13 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
     slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
         slider.prefix("× ").max_decimals(2).text("heights")
     });
-    if content.has_areas {
+    if content.has.areas {
         let mut are_shown = settings.areas == Areas::Shown;
         ui.checkbox(&mut are_shown, "Areas")
             .on_hover_text("Water, forest … as the style draws them");
         settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
     }
-    if content.has_boundaries {
+    if content.has.boundaries {
         let mut are_shown = settings.boundaries == Areas::Shown;
         ui.checkbox(&mut are_shown, "Boundaries").on_hover_text("As the style draws them");
         settings.boundaries = if are_shown { Areas::Shown } else { Areas::Hidden };

@@ -137,7 +137,7 @@ fn positions(settings: &Settings, content: &WindowContent<'_>) -> Vec<Item> {
     for (method, times) in content.passes {
         let PassTimes { terrain_ms, areas_ms, roads_ms, composite_ms } = *times;
         let areas =
-            if content.has_areas { format!(" areas {areas_ms:.1},") } else { String::new() };
+            if content.has.areas { format!(" areas {areas_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);
         items.push(Item::new(
             8,
