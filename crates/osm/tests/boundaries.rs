@@ -84,8 +84,10 @@ fn a_shared_border_comes_once_in_the_most_important_class() {
         (12, PARK, &[(3, "outer"), (2, "outer")]),
     ];
     let found = read(&made(&ways, &relations), 1 << 24);
-    use BoundaryClass::{Admin2, Admin6};
-    assert_eq!(classes(&found), [(1, Admin2), (2, Admin2), (3, Admin6)]);
+    assert_eq!(
+        classes(&found),
+        [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin2), (3, BoundaryClass::Admin6)]
+    );
     assert!(found.defects.is_empty(), "{:?}", found.defects);
     assert_eq!((found.summary.objects, found.summary.ways), (3, 3));
 }
@@ -138,8 +140,14 @@ fn what_is_lost_is_counted_by_reason() {
             _ => None,
         })
         .collect();
-    use BoundaryLoss::{MissingNodes, MissingWay, OutsideProjection};
-    assert_eq!(lost, [(3, MissingNodes), (4, OutsideProjection), (5, MissingWay)]);
+    assert_eq!(
+        lost,
+        [
+            (3, BoundaryLoss::MissingNodes),
+            (4, BoundaryLoss::OutsideProjection),
+            (5, BoundaryLoss::MissingWay)
+        ]
+    );
     assert_eq!(found.summary.ways, 5);
 }
 
