@@ -1,6 +1,7 @@
 //! The lines that a person draws in a window: where they come from and where they go.
 
 use std::{
+    collections::BTreeMap,
     io,
     path::{Path, PathBuf},
     sync::Arc,
@@ -96,15 +97,29 @@ fn save(
     place: &mut Place,
     package: &PackageSource,
 ) -> Result<PathBuf, Failure> {
-    let heights = EllipsoidHeights::of(package.manifest())?;
+    // Heights may be left out; lines may not be lost for want of them.
+    let heights = EllipsoidHeights::of(package.manifest()).unwrap_or_else(|error| {
+        without_heights(&Failure::from(error));
+        None
+    });
+    let old: BTreeMap<usize, Vec<[f64; 2]>> = known.lines().into_iter().collect();
     let mut store = TileStore::new(package);
     let mut saved = Vec::with_capacity(lines.len());
     for line in lines {
-        saved.push(SavedLine {
-            feature: line.feature,
-            points_deg: line.points_deg.clone(),
-            heights_m: heights_of(line, heights.as_ref(), package, &mut store)?,
-        });
+        // What has not changed stays as it is in the file.
+        let is_old = line.feature.and_then(|feature| old.get(&feature)) == Some(&line.points_deg);
+        let heights_m = match heights.as_ref().filter(|_| !is_old) {
+            Some(heights) => {
+                let found = heights_of(line, heights, package, &mut store);
+                found.unwrap_or_else(|failure| {
+                    without_heights(&failure);
+                    None
+                })
+            }
+            None => None,
+        };
+        let (feature, points_deg) = (line.feature, line.points_deg.clone());
+        saved.push(SavedLine { feature, points_deg, heights_m });
     }
     let text = known.text_with(&saved);
     let (path, existing) = match place {
@@ -119,11 +134,10 @@ fn save(
 /// Heights of the finest ground at the points of a line, above the ellipsoid; `None` if one of them is not known.
 fn heights_of(
     line: &DrawnLine,
-    heights: Option<&EllipsoidHeights>,
+    heights: &EllipsoidHeights,
     package: &PackageSource,
     store: &mut TileStore<'_>,
 ) -> Result<Option<Vec<f64>>, Failure> {
-    let Some(heights) = heights else { return Ok(None) };
     let coordinates = &package.manifest().coordinates;
     let mut positions_m = Vec::new();
     let mut heights_m = Vec::new();
@@ -136,6 +150,10 @@ fn heights_of(
         heights_m.push(height_m);
     }
     Ok(heights.carry(&positions_m, &mut heights_m).then_some(heights_m))
+}
+
+fn without_heights(failure: &Failure) {
+    messages::note(&format!("note: lines are saved without heights: {failure}"));
 }
 
 fn unreadable(error: corniche_viewer::tiles::LoadTileError) -> Failure {

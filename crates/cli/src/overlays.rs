@@ -15,7 +15,7 @@ pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Over
         let most = LineStyle::MOST;
         return Err(Failure::unusable(format!("at most {most} files can be given as --overlay")));
     }
-    let mut lines = Vec::new();
+    let (mut lines, mut first) = (Vec::new(), 0);
     for (style, file) in (0..).zip(files) {
         let found = read(file.path())?;
         let placed = place(&found.lines, manifest)?;
@@ -29,12 +29,12 @@ pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Over
         if !is_near {
             note(file.path(), "no point of its lines lies in the package");
         }
-        let first = lines.len();
         lines.extend(placed.into_iter().map(|line| LayerLine {
             id: (first + line.line) as i64,
             style,
             points: line.points,
         }));
+        first += found.lines.len();
     }
     Ok(Arc::new(Overlays::new(&lines, &manifest.frame)))
 }

@@ -36,6 +36,11 @@ pub(crate) fn laid_lines(
         lay_on(package, id, &paths, &mut laid)?;
     }
     laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
+    // What runs along a border lies on both of its tiles.
+    let end = |laid: &Laid| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));
+    laid.dedup_by(|later, one| {
+        (later.line, later.along.to_bits(), end(later)) == (one.line, one.along.to_bits(), end(one))
+    });
     let mut parts: Vec<Vec<Vec<Vertex>>> = vec![Vec::new(); lines.len()];
     for Laid { line, vertices, .. } in laid {
         let ends_at = |part: &Vec<Vertex>| part.last().map(|vertex| vertex.at);

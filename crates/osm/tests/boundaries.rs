@@ -148,6 +148,7 @@ fn what_is_lost_is_counted_by_reason() {
             (5, BoundaryLoss::MissingWay)
         ]
     );
+    assert!(found.defects.contains(&Defect::MissingNodes { way_id: 2, points: 1 }));
     assert_eq!(found.summary.ways, 5);
 }
 

@@ -104,7 +104,8 @@ impl LineFile {
         });
         let features: Vec<String> = old.chain(new).map(|feature| feature.to_string()).collect();
         let mut members: Vec<String> = vec![r#""type":"FeatureCollection""#.to_owned()];
-        let others = self.members.iter().filter(|(name, _)| *name != "type");
+        let others =
+            self.members.iter().filter(|(name, _)| !["type", "bbox"].contains(&name.as_str()));
         members
             .extend(others.map(|(name, value)| format!("{}:{value}", Value::from(name.as_str()))));
         // A line for each feature, so that people and version control can read it.
@@ -132,15 +133,33 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
     if line.points_deg.len() < 2 {
         return None;
     }
+    // Positions that stay keep all that was known of them.
+    let old = feature.pointer("/geometry/coordinates").and_then(Value::as_array);
+    let old: Vec<([f64; 2], &Value)> = old
+        .into_iter()
+        .flatten()
+        .filter_map(|position| {
+            Some(([position.get(0)?.as_f64()?, position.get(1)?.as_f64()?], position))
+        })
+        .collect();
+    let kept = |point: &[f64; 2]| {
+        old.iter().find(|(at, _)| at == point).map(|(_, position)| (*position).clone())
+    };
     let coordinates: Vec<Value> = match &line.heights_m {
         // Heights to the millimetre.
         Some(heights_m) => line
             .points_deg
             .iter()
             .zip(heights_m)
-            .map(|([lon, lat], height_m)| json!([lon, lat, (height_m * 1e3).round() / 1e3]))
+            .map(|(point, height_m)| {
+                let [lon, lat] = point;
+                kept(point).unwrap_or_else(|| json!([lon, lat, (height_m * 1e3).round() / 1e3]))
+            })
             .collect(),
-        None => line.points_deg.iter().map(|[lon, lat]| json!([lon, lat])).collect(),
+        None => {
+            let position = |point: &[f64; 2]| kept(point).unwrap_or_else(|| json!(point));
+            line.points_deg.iter().map(position).collect()
+        }
     };
     let mut feature = feature.clone();
     feature["geometry"] = json!({"type": "LineString", "coordinates": coordinates});

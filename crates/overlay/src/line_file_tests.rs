@@ -43,10 +43,7 @@ fn a_changed_line_keeps_its_properties_and_gets_new_heights() {
     assert_eq!(features.len(), 3, "one point is no line");
     assert_eq!(features[2]["properties"]["name"], "b");
     assert_eq!(features[2].get("bbox"), None, "it was that of the old line");
-    assert_eq!(
-        features[2]["geometry"]["coordinates"],
-        json!([[8.1, 47.1, 400.0], [8.5, 47.5, 410.0]])
-    );
+    assert_eq!(features[2]["geometry"]["coordinates"], json!([[8.1, 47.1, 400.0], [8.5, 47.5]]));
 }
 
 #[test]
@@ -79,4 +76,22 @@ fn what_is_no_geojson_is_refused() {
         let reason = LineFile::parse(text).unwrap_err();
         assert!(reason.contains(part), "{text}: {reason}");
     }
+}
+
+/// A track with elevations, of which one point is moved where no heights are known.
+#[test]
+fn points_that_stay_keep_their_elevations() {
+    let file = LineFile::parse(TEXT).unwrap();
+    let mut lines = saved(&file);
+    lines[0].points_deg.push([9.3, 47.3]);
+    let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
+    let expected = json!([[9.123456789012345, 47.1, 500.25], [9.2, 47.2, 600], [9.3, 47.3]]);
+    assert_eq!(again["features"][0]["geometry"]["coordinates"], expected);
+}
+
+#[test]
+fn a_rectangle_around_all_lines_is_not_kept() {
+    let text = r#"{"type":"FeatureCollection","bbox":[8,47,9,48],"features":[]}"#;
+    let text = LineFile::parse(text).unwrap().text_with(&[]);
+    assert!(!text.contains("bbox"), "{text}");
 }

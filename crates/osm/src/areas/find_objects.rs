@@ -129,7 +129,7 @@ impl OfBlock {
         let strings = way.raw_stringtable();
         let Some(tags) = Tags::of(strings, way.raw_tags(), wanted) else { return };
         // Closed ways may be lines, such as hedges around a field; the tags of the table are those of areas.
-        let mut class = tags.class.filter(|_| !tags.is("area", "no"));
+        let mut class = tags.class.filter(|_| wanted.has_open_ways() || !tags.is("area", "no"));
         let first = way.refs().next();
         let is_open = way.raw_refs().len() < LEAST_REFS || way.refs().last() != first;
         if class.is_some() && is_open && !wanted.has_open_ways() {

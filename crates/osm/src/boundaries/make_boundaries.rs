@@ -50,6 +50,7 @@ pub(crate) fn make_boundaries(
         match made {
             Ok(parts) => {
                 *summary.kept.entry(class).or_default() += 1;
+                way.iter().for_each(|way| tell_gaps(way, sinks.on_defect));
                 parts.into_iter().for_each(&mut *sinks.sink);
             }
             Err(loss) => {
@@ -93,6 +94,23 @@ impl Members<'_> {
             class = [class, class_of(&record)].into_iter().flatten().min();
         }
         Ok(Some((way_id, class)))
+    }
+}
+
+/// Tells of nodes at which a way that is kept is cut.
+fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(Defect)) {
+    let way_id = way.way_id;
+    let count = |wanted: location::Location| {
+        let found = way.places.iter().filter(|&&place| place == wanted).count();
+        u32::try_from(found).unwrap_or(u32::MAX)
+    };
+    match count(location::MISSING) {
+        0 => {}
+        points => on_defect(Defect::MissingNodes { way_id, points }),
+    }
+    match count(location::OUT_OF_RANGE) {
+        0 => {}
+        points => on_defect(Defect::OutOfRange { way_id, points }),
     }
 }
 

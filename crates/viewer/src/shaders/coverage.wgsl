@@ -208,7 +208,8 @@ const TUNNEL_DASH_PX = 12.0;
 fn dash_share(in: RoadFragment, position: vec3<f32>, least_px: f32) -> f32 {
     let segment_m = max(length(in.start_to_end), 1e-6);
     let along_m = in.dash.x + in.dash.y * dot(position.xy - in.start, in.start_to_end) / segment_m;
-    let pattern_m = exp2(ceil(log2(least_px * pixel_m_at(distance_to(position)))));
+    // Lengths are counted modulo 2^16 metres (tiles/roads/dashes.rs).
+    let pattern_m = min(exp2(ceil(log2(least_px * pixel_m_at(distance_to(position))))), 65536.0);
     return fract(along_m / pattern_m);
 }
 

@@ -59,10 +59,13 @@ impl App {
     /// Does what a key or the panel asks of the drawing.
     pub(crate) fn draw_command(&mut self, command: DrawingCommand, now_s: f64) {
         let Drawing { tool, document, is_on, .. } = &mut self.drawing;
+        if command != DrawingCommand::Save {
+            // What is held may be another point afterwards.
+            tool.let_go();
+        }
         match command {
             DrawingCommand::Toggle => {
                 *is_on = !*is_on;
-                tool.let_go();
                 tool.end_line();
                 let told = if *is_on {
                     "drawing: click on the ground to add points, drag a point to move it, Enter ends the line"
@@ -102,7 +105,7 @@ impl App {
             Some(Handle { at: seen.at(point)?.to_array().map(|value| value as f32), is_picked })
         };
         let handles = if drawing.is_on {
-            points.take(MOST_HANDLES).filter_map(handle).collect()
+            points.filter_map(handle).take(MOST_HANDLES).collect()
         } else {
             Vec::new()
         };

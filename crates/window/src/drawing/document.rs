@@ -36,7 +36,8 @@ pub(crate) struct Document {
     next_id: u64,
     /// Changes since the beginning, those that were taken back included.
     revision: u64,
-    saved_revision: u64,
+    /// The lines as they were saved last.
+    saved: Lines,
 }
 
 impl Document {
@@ -47,6 +48,7 @@ impl Document {
             let id = document.take_id();
             document.lines.push(Arc::new(Line { id, feature, points }));
         }
+        document.saved.clone_from(&document.lines);
         document
     }
 
@@ -67,12 +69,18 @@ impl Document {
 
     /// Whether there is something that is not saved.
     pub(crate) fn is_changed(&self) -> bool {
-        self.revision != self.saved_revision
+        // One point is no line.
+        fn lines(all: &Lines) -> impl Iterator<Item = &Arc<Line>> + Clone {
+            all.iter().filter(|line| line.points.len() >= 2)
+        }
+        let (now, saved) = (lines(&self.lines), lines(&self.saved));
+        now.clone().count() != saved.clone().count()
+            || now.zip(saved).any(|(now, saved)| !Arc::ptr_eq(now, saved))
     }
 
     /// What there is now is saved.
     pub(crate) fn note_saved(&mut self) {
-        self.saved_revision = self.revision;
+        self.saved.clone_from(&self.lines);
     }
 
     /// Whether a change can be taken back, and whether one that was taken back can be made again.

@@ -30,6 +30,20 @@ fn points_are_added_moved_and_removed() {
     assert!(!document.is_changed());
 }
 
+#[test]
+fn what_was_taken_back_is_not_to_be_saved() {
+    let mut document = Document::default();
+    let id = document.begin(point(1.0));
+    assert!(!document.is_changed(), "one point is no line");
+    document.insert(id, 1, point(2.0));
+    assert!(document.is_changed());
+    document.note_saved();
+    document.undo();
+    assert!(document.is_changed());
+    document.redo();
+    assert!(!document.is_changed());
+}
+
 /// A drag is many movements and one change.
 #[test]
 fn a_drag_is_taken_back_at_once() {

@@ -1,6 +1,9 @@
 //! The lines on the tiles that are shown.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::Manifest;
@@ -60,7 +63,7 @@ impl LaidLines {
         let mut relaid = Relaid::default();
         for tile in tiles {
             let laid = self.tiles.entry(tile.id).or_default();
-            if laid.update(document, &self.prepared, (tile, manifest), &mut relaid.laid) {
+            if laid.update(&self.prepared, (tile, manifest), &mut relaid.laid) {
                 relaid.changed.push((tile.id, laid.joined()));
             }
         }
@@ -69,7 +72,8 @@ impl LaidLines {
 
     /// Simplifies lines for all levels.
     fn prepare(&mut self, document: &Document, frame: &Frame) {
-        self.prepared.retain(|id, _| document.line(*id).is_some());
+        let ids: BTreeSet<u64> = document.lines().iter().map(|line| line.id).collect();
+        self.prepared.retain(|id, _| ids.contains(id));
         for line in document.lines() {
             if self.prepared.get(&line.id).is_some_and(|(known, _)| Arc::ptr_eq(known, line)) {
                 continue;
@@ -86,7 +90,6 @@ impl LaidTile {
     /// Whether something changed.
     fn update(
         &mut self,
-        document: &Document,
         prepared: &BTreeMap<u64, (Arc<Line>, Overlays)>,
         (tile, manifest): (&TileGeometry, &Manifest),
         laid: &mut usize,
@@ -94,7 +97,7 @@ impl LaidTile {
         let frame = &manifest.frame;
         let margin = (tile.width_margin_m / frame.lattice_step_m()).ceil() as i64;
         let before = self.lines.len();
-        self.lines.retain(|id, _| document.line(*id).is_some());
+        self.lines.retain(|id, _| prepared.contains_key(id));
         let mut is_changed = self.lines.len() != before;
         for (id, (line, overlays)) in prepared {
             let known = self.lines.get(id);

@@ -33,6 +33,8 @@ struct Press {
     point: Option<Picked>,
     /// Whether the cursor has moved since.
     is_moved: bool,
+    /// Whether the point has been moved since.
+    is_shifted: bool,
 }
 
 impl Tool {
@@ -54,7 +56,7 @@ impl Tool {
         if point.is_some() {
             self.picked = point;
         }
-        self.pressed = Some(Press { at, point, is_moved: false });
+        self.pressed = Some(Press { at, point, is_moved: false, is_shifted: false });
         point.is_some()
     }
 
@@ -69,16 +71,16 @@ impl Tool {
         if !press.is_moved && press.at.distance(at) <= STILL_POINTS {
             return false;
         }
-        let is_first = !std::mem::replace(&mut press.is_moved, true);
+        press.is_moved = true;
         let (Some(Picked { line, place }), Some(to)) =
             (press.point, press.point.and_then(|_| ground()))
         else {
             return false;
         };
-        if is_first {
-            document.shift(line, place, to);
-        } else {
+        if std::mem::replace(&mut press.is_shifted, true) {
             document.shift_on(line, place, to);
+        } else {
+            document.shift(line, place, to);
         }
         true
     }

@@ -106,3 +106,18 @@ fn the_picked_point_and_line_are_removed() {
     assert!(!hand.tool.remove_point(&mut hand.document), "nothing is picked any more");
     assert!(hand.lines().is_empty());
 }
+
+/// Over the sky there is nothing to move to; the drag begins where there is ground again.
+#[test]
+fn a_drag_that_begins_over_the_sky_is_a_change_of_its_own() {
+    let mut hand = Hand::new();
+    hand.click(0.0, 0.0, false);
+    hand.click(100.0, 0.0, false);
+    hand.tool.press(DVec2::new(100.0, 0.0), &hand.document, seen_at);
+    let sky = DVec2::new(100.0, -90.0);
+    assert!(!hand.tool.move_to(sky, &mut hand.document, || None));
+    let ground = DVec2::new(120.0, 40.0);
+    assert!(hand.tool.move_to(ground, &mut hand.document, || under(ground)));
+    hand.document.undo();
+    assert_eq!(hand.lines(), [[[0.0, 0.0], [100.0, 0.0]]]);
+}
