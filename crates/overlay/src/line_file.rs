@@ -142,25 +142,24 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
             Some(([position.get(0)?.as_f64()?, position.get(1)?.as_f64()?], position))
         })
         .collect();
-    let kept = |point: &[f64; 2]| {
-        old.iter().find(|(at, _)| at == point).map(|(_, position)| (*position).clone())
+    let kept = |point: [f64; 2]| {
+        let same = |at: [f64; 2]| at.map(f64::to_bits) == point.map(f64::to_bits);
+        old.iter().find(|(at, _)| same(*at)).map(|(_, position)| (*position).clone())
     };
-    let coordinates: Vec<Value> = match &line.heights_m {
-        // Heights to the millimetre.
-        Some(heights_m) => line
-            .points_deg
-            .iter()
-            .zip(heights_m)
-            .map(|(point, height_m)| {
-                let [lon, lat] = point;
-                kept(point).unwrap_or_else(|| json!([lon, lat, (height_m * 1e3).round() / 1e3]))
+    let coordinates: Vec<Value> = line
+        .points_deg
+        .iter()
+        .enumerate()
+        .map(|(index, &point)| {
+            let height_m = line.heights_m.as_ref().and_then(|heights_m| heights_m.get(index));
+            let [lon, lat] = point;
+            kept(point).unwrap_or_else(|| match height_m {
+                // Heights to the millimetre.
+                Some(height_m) => json!([lon, lat, (height_m * 1e3).round() / 1e3]),
+                None => json!([lon, lat]),
             })
-            .collect(),
-        None => {
-            let position = |point: &[f64; 2]| kept(point).unwrap_or_else(|| json!(point));
-            line.points_deg.iter().map(position).collect()
-        }
-    };
+        })
+        .collect();
     let mut feature = feature.clone();
     feature["geometry"] = json!({"type": "LineString", "coordinates": coordinates});
     if let Some(members) = feature.as_object_mut() {

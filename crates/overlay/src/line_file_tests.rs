@@ -85,7 +85,7 @@ fn points_that_stay_keep_their_elevations() {
     let mut lines = saved(&file);
     lines[0].points_deg.push([9.3, 47.3]);
     let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
-    let expected = json!([[9.123456789012345, 47.1, 500.25], [9.2, 47.2, 600], [9.3, 47.3]]);
+    let expected = json!([[9.123_456_789_012_345, 47.1, 500.25], [9.2, 47.2, 600], [9.3, 47.3]]);
     assert_eq!(again["features"][0]["geometry"]["coordinates"], expected);
 }
 

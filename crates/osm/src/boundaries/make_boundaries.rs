@@ -44,13 +44,14 @@ pub(crate) fn make_boundaries(
             }
         }
         let made = match &way {
-            Some(way) if way.way_id == way_id => parts_of(reading, way, class),
+            Some(way) if way.way_id == way_id => {
+                parts_of(reading, way, class).inspect(|_| tell_gaps(way, sinks.on_defect))
+            }
             _ => Err(BoundaryLoss::MissingWay),
         };
         match made {
             Ok(parts) => {
                 *summary.kept.entry(class).or_default() += 1;
-                way.iter().for_each(|way| tell_gaps(way, sinks.on_defect));
                 parts.into_iter().for_each(&mut *sinks.sink);
             }
             Err(loss) => {
