@@ -1,7 +1,7 @@
 use corniche_geom::LatticePoint;
 
 use crate::{
-    Polygon,
+    Polygon, Ring,
     assemble::polygons_of,
     outline::{OutlineError, OutlineWay},
     segments::uncrossed_segments_of,
@@ -18,15 +18,20 @@ use crate::{
 /// # Errors
 /// [`OutlineError::TooIntricate`], for polygons far beyond what is real.
 pub fn coarsen(polygon: &Polygon, step: i64) -> Result<Vec<Polygon>, OutlineError> {
+    let rings: Vec<&[LatticePoint]> = polygon.rings().map(Ring::points).collect();
+    surrounded(&rings, step)
+}
+
+/// What closed lines surround by the even-odd rule, with points on a coarser lattice as in [`coarsen`]. Lines may cross themselves and each
+/// other; the point after the last one of each is its first.
+///
+/// # Errors
+/// [`OutlineError::TooIntricate`], for lines far beyond what is real.
+pub fn surrounded(rings: &[&[LatticePoint]], step: i64) -> Result<Vec<Polygon>, OutlineError> {
     let to_coarse = |part: i64| (2 * part + step).div_euclid(2 * step);
     let coarse = |point: &LatticePoint| LatticePoint::new(to_coarse(point.u), to_coarse(point.v));
-    let rings: Vec<Vec<LatticePoint>> = polygon
-        .rings()
-        .map(|ring| {
-            let points = ring.points();
-            points.iter().chain(points.first()).map(coarse).collect()
-        })
-        .collect();
+    let closed = |ring: &&[LatticePoint]| ring.iter().chain(ring.first()).map(coarse).collect();
+    let rings: Vec<Vec<LatticePoint>> = rings.iter().map(closed).collect();
     let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
     let polygons = polygons_of(uncrossed_segments_of(&ways)?)?;
     let fine = |point: LatticePoint| Some(LatticePoint::new(point.u * step, point.v * step));

@@ -24,6 +24,23 @@ fn what_is_narrower_than_a_step_is_gone() {
     assert_eq!(coarsen(&polygons_around(&cells)[0], 1000).unwrap(), []);
 }
 
+/// A bow tie is two triangles that touch at the crossing; a square in a square is a hole.
+#[test]
+fn lines_that_cross_surround_what_the_even_odd_rule_says() {
+    let points = |places: &[[i64; 2]]| -> Vec<LatticePoint> {
+        places.iter().map(|[u, v]| LatticePoint::new(*u, *v)).collect()
+    };
+    let tie = points(&[[0, 0], [40, 40], [40, 0], [0, 40]]);
+    let found = surrounded(&[&tie], 1).unwrap();
+    let areas: Vec<i128> = found.iter().map(Polygon::doubled_area).collect();
+    assert_eq!(areas, [800, 800]);
+    let outer = points(&[[0, 0], [40, 0], [40, 40], [0, 40]]);
+    let inner = points(&[[10, 10], [20, 10], [20, 20], [10, 20]]);
+    let found = surrounded(&[&outer, &inner], 1).unwrap();
+    assert_eq!((found.len(), found[0].holes().len(), found[0].doubled_area()), (1, 1, 3000));
+    assert_eq!(surrounded(&[&points(&[[0, 0], [9, 9]])], 1).unwrap(), []);
+}
+
 /// A thin point reaches through a line that it does not touch before it is coarsened.
 #[test]
 fn segments_that_come_to_cross_are_led_through_one_point() {

@@ -1,4 +1,4 @@
-//! The lines that a person draws in a window: where they come from and where they go.
+//! The lines and areas that a person draws in a window: where they come from and where they go.
 
 use std::{
     collections::BTreeMap,
@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use corniche_overlay::{EllipsoidHeights, LineFile, SavedLine};
+use corniche_overlay::{EllipsoidHeights, LineFile, SavedLine, Shape};
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
@@ -57,7 +57,7 @@ impl Drawing {
             drop(Output::create(path, Existing::Replace, used)?);
             if known.others() > 0 {
                 messages::note(&format!(
-                    "note: {}: {} features are no single lines; they stay as they are",
+                    "note: {}: {} features are no single lines or areas without holes; they stay as they are",
                     path.display(),
                     known.others()
                 ));
@@ -66,7 +66,11 @@ impl Drawing {
         let lines = known
             .lines()
             .into_iter()
-            .map(|(feature, points_deg)| DrawnLine { feature: Some(feature), points_deg })
+            .map(|(feature, shape, points_deg)| DrawnLine {
+                feature: Some(feature),
+                is_area: shape == Shape::Area,
+                points_deg,
+            })
             .collect();
         let mut place = match file {
             Some(path) => Place::File(path.to_path_buf()),
@@ -102,7 +106,9 @@ fn save(
         without_heights(&Failure::from(error));
         None
     });
-    let old: BTreeMap<usize, Vec<[f64; 2]>> = known.lines().into_iter().collect();
+    let old = known.lines().into_iter();
+    let old: BTreeMap<usize, Vec<[f64; 2]>> =
+        old.map(|(number, _, points_deg)| (number, points_deg)).collect();
     let mut store = TileStore::new(package);
     let mut saved = Vec::with_capacity(lines.len());
     for line in lines {
@@ -118,8 +124,9 @@ fn save(
             }
             None => None,
         };
+        let shape = if line.is_area { Shape::Area } else { Shape::Line };
         let (feature, points_deg) = (line.feature, line.points_deg.clone());
-        saved.push(SavedLine { feature, points_deg, heights_m });
+        saved.push(SavedLine { feature, shape, points_deg, heights_m });
     }
     let text = known.text_with(&saved);
     let (path, existing) = match place {

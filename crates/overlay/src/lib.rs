@@ -15,6 +15,6 @@ mod read;
 
 pub use error::OverlayError;
 pub use heights::EllipsoidHeights;
-pub use line_file::{LineFile, SavedLine};
+pub use line_file::{LineFile, SavedLine, Shape};
 pub use place::{Placed, place};
 pub use read::{VectorLine, VectorLines, read};

@@ -7,7 +7,7 @@ use crate::OverlayError;
 /// Far more than a person draws.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// A file of lines that a person draws, as GeoJSON (RFC 7946). Features that are no lines, and all properties, are kept as they are.
+/// A file of lines and areas that a person draws, as GeoJSON (RFC 7946). Other features, and all properties, are kept as they are.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LineFile {
     /// What the collection has beside its features.
@@ -15,11 +15,34 @@ pub struct LineFile {
     features: Vec<Value>,
 }
 
+/// What the points of a line are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Shape {
+    /// A line.
+    #[default]
+    Line,
+    /// The outline of an area without holes: the first point comes after the last one.
+    Area,
+}
+
+impl Shape {
+    /// What has fewer points is not saved.
+    #[must_use]
+    pub const fn least_points(self) -> usize {
+        match self {
+            Self::Line => 2,
+            Self::Area => 3,
+        }
+    }
+}
+
 /// A line as it is saved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedLine {
     /// Which feature of the file it comes from.
     pub feature: Option<usize>,
+    /// What its points are.
+    pub shape: Shape,
     /// Longitude and latitude, WGS84.
     pub points_deg: Vec<[f64; 2]>,
     /// Of each point, above the ellipsoid, metres; `None` if they are not known.
@@ -73,11 +96,13 @@ impl LineFile {
         }
     }
 
-    /// All features that are one line each, with their numbers. Longitude and latitude of each point.
+    /// All features that are one line, or one area without holes, with their numbers. Longitude and latitude of each point.
     #[must_use]
-    pub fn lines(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
-        let lines = self.features.iter().enumerate();
-        lines.filter_map(|(number, feature)| Some((number, line_of(feature)?))).collect()
+    pub fn lines(&self) -> Vec<(usize, Shape, Vec<[f64; 2]>)> {
+        let features = self.features.iter().enumerate();
+        let line =
+            |(number, feature)| line_of(feature).map(|(shape, points)| (number, shape, points));
+        features.filter_map(line).collect()
     }
 
     /// How many features are not such lines.
@@ -87,14 +112,18 @@ impl LineFile {
     }
 
     /// The text of a file with these lines in the place of those that this one has. A line whose points are as they were stays as it is,
-    /// heights included. Lines with one point are left out: they are no lines.
+    /// heights included. Lines with one point and areas with two are left out: they are none.
     #[must_use]
     pub fn text_with(&self, lines: &[SavedLine]) -> String {
         let known = |number: usize| lines.iter().find(|line| line.feature == Some(number));
         let old = self.features.iter().enumerate().filter_map(|(number, feature)| {
             match (line_of(feature), known(number)) {
                 (None, _) => Some(feature.clone()),
-                (Some(points), Some(line)) if points == line.points_deg => Some(feature.clone()),
+                (Some((shape, points)), Some(line))
+                    if (shape, &points) == (line.shape, &line.points_deg) =>
+                {
+                    Some(feature.clone())
+                }
                 (Some(_), Some(line)) => changed(feature, line),
                 (Some(_), None) => None,
             }
@@ -113,40 +142,51 @@ impl LineFile {
     }
 }
 
-/// The points of a feature that is one line with valid positions.
-fn line_of(feature: &Value) -> Option<Vec<[f64; 2]>> {
+/// The points of a feature that is one line, or one area without holes, with valid positions. An area's first point is not repeated at
+/// the end.
+fn line_of(feature: &Value) -> Option<(Shape, Vec<[f64; 2]>)> {
     let geometry = feature.get("geometry")?;
-    if geometry.get("type")?.as_str()? != "LineString" {
-        return None;
-    }
-    let positions = geometry.get("coordinates")?.as_array()?;
-    let position = |position: &Value| {
-        let at = |axis: usize| position.get(axis)?.as_f64().filter(|value| value.is_finite());
-        Some([at(0)?, at(1)?])
+    let coordinates = geometry.get("coordinates")?.as_array()?;
+    let (shape, positions) = match (geometry.get("type")?.as_str()?, &coordinates[..]) {
+        ("LineString", positions) => (Shape::Line, positions),
+        ("Polygon", [ring]) => (Shape::Area, ring.as_array()?.as_slice()),
+        _ => return None,
     };
-    let points: Option<Vec<[f64; 2]>> = positions.iter().map(position).collect();
-    points.filter(|points| points.len() >= 2)
+    let mut points = positions.iter().map(point_of).collect::<Option<Vec<_>>>()?;
+    if shape == Shape::Area && points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    (points.len() >= shape.least_points()).then_some((shape, points))
 }
 
-/// A feature with another line; `None` if that has only one point.
+/// Longitude and latitude of a position.
+fn point_of(position: &Value) -> Option<[f64; 2]> {
+    let part = |index: usize| position.get(index)?.as_f64().filter(|value| value.is_finite());
+    Some([part(0)?, part(1)?])
+}
+
+/// A feature with another line; `None` if that has too few points.
 fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
-    if line.points_deg.len() < 2 {
+    if line.points_deg.len() < line.shape.least_points() {
         return None;
     }
     // Positions that stay keep all that was known of them.
-    let old = feature.pointer("/geometry/coordinates").and_then(Value::as_array);
+    let geometry = feature.get("geometry");
+    let path = match geometry.and_then(|geometry| geometry.get("type")).and_then(Value::as_str) {
+        Some("Polygon") => "/coordinates/0",
+        _ => "/coordinates",
+    };
+    let old = geometry.and_then(|geometry| geometry.pointer(path)).and_then(Value::as_array);
     let old: Vec<([f64; 2], &Value)> = old
         .into_iter()
         .flatten()
-        .filter_map(|position| {
-            Some(([position.get(0)?.as_f64()?, position.get(1)?.as_f64()?], position))
-        })
+        .filter_map(|position| Some((point_of(position)?, position)))
         .collect();
     let kept = |point: [f64; 2]| {
         let same = |at: [f64; 2]| at.map(f64::to_bits) == point.map(f64::to_bits);
         old.iter().find(|(at, _)| same(*at)).map(|(_, position)| (*position).clone())
     };
-    let coordinates: Vec<Value> = line
+    let mut coordinates: Vec<Value> = line
         .points_deg
         .iter()
         .enumerate()
@@ -161,11 +201,27 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
         })
         .collect();
     let mut feature = feature.clone();
-    feature["geometry"] = json!({"type": "LineString", "coordinates": coordinates});
+    feature["geometry"] = match line.shape {
+        Shape::Line => json!({"type": "LineString", "coordinates": coordinates}),
+        Shape::Area => {
+            // Outer rings are counter-clockwise (RFC 7946, section 3.1.6).
+            if doubled_area(&line.points_deg) < 0.0 {
+                coordinates.reverse();
+            }
+            coordinates.extend(coordinates.first().cloned());
+            json!({"type": "Polygon", "coordinates": [coordinates]})
+        }
+    };
     if let Some(members) = feature.as_object_mut() {
         members.remove("bbox");
     }
     Some(feature)
+}
+
+/// Twice the area that a closed line surrounds; negative if it is clockwise.
+fn doubled_area(points: &[[f64; 2]]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum()
 }
 
 #[cfg(test)]

@@ -7,15 +7,19 @@ const TEXT: &str = r#"{"type":"FeatureCollection","name":"mine","features":[
 ]}"#;
 
 fn saved(file: &LineFile) -> Vec<SavedLine> {
-    let line =
-        |(feature, points_deg)| SavedLine { feature: Some(feature), points_deg, heights_m: None };
+    let line = |(feature, shape, points_deg)| SavedLine {
+        feature: Some(feature),
+        shape,
+        points_deg,
+        heights_m: None,
+    };
     file.lines().into_iter().map(line).collect()
 }
 
 #[test]
 fn what_is_not_changed_is_saved_as_it_was() {
     let file = LineFile::parse(TEXT).unwrap();
-    assert_eq!(file.lines().iter().map(|(number, _)| *number).collect::<Vec<_>>(), [0, 2]);
+    assert_eq!(file.lines().iter().map(|(number, ..)| *number).collect::<Vec<_>>(), [0, 2]);
     assert_eq!(file.others(), 1);
     let again: Value = serde_json::from_str(&file.text_with(&saved(&file))).unwrap();
     assert_eq!(again, serde_json::from_str::<Value>(TEXT).unwrap());
@@ -26,9 +30,14 @@ fn what_is_not_changed_is_saved_as_it_was() {
 fn positions_come_back_to_the_last_bit() {
     let points_deg: Vec<[f64; 2]> =
         (1..500).map(|k| [f64::from(k) / 7.0, f64::from(k).sqrt() * 1.1]).collect();
-    let line = SavedLine { feature: None, points_deg: points_deg.clone(), heights_m: None };
-    let again = LineFile::parse(&LineFile::default().text_with(&[line])).unwrap();
-    assert_eq!(again.lines(), [(0, points_deg)]);
+    // The way back makes the area counter-clockwise.
+    let closed: Vec<[f64; 2]> = points_deg.iter().rev().copied().collect();
+    for (shape, points_deg) in [(Shape::Line, points_deg), (Shape::Area, closed)] {
+        let known = points_deg.clone();
+        let line = SavedLine { feature: None, shape, points_deg, heights_m: None };
+        let again = LineFile::parse(&LineFile::default().text_with(&[line])).unwrap();
+        assert!(again.lines() == [(0, shape, known)], "{shape:?}");
+    }
 }
 
 #[test]
@@ -37,7 +46,9 @@ fn a_changed_line_keeps_its_properties_and_gets_new_heights() {
     let mut lines = saved(&file);
     lines[1].points_deg[0] = [8.1, 47.1];
     lines[1].heights_m = Some(vec![400.000_4, 410.0]);
-    lines.push(SavedLine { feature: None, points_deg: vec![[1.0, 2.0]], heights_m: None });
+    let point = vec![[1.0, 2.0]];
+    let line = SavedLine { feature: None, shape: Shape::Line, points_deg: point, heights_m: None };
+    lines.push(line);
     let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
     let features = again["features"].as_array().unwrap();
     assert_eq!(features.len(), 3, "one point is no line");
@@ -59,7 +70,8 @@ fn single_features_and_geometries_are_collections_of_one() {
         r#"{"type":"LineString","coordinates":[[1,2],[3,4]]}"#,
         r#"{"type":"Feature","properties":null,"geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}}"#,
     ] {
-        assert_eq!(LineFile::parse(text).unwrap().lines(), [(0, vec![[1.0, 2.0], [3.0, 4.0]])]);
+        let line = (0, Shape::Line, vec![[1.0, 2.0], [3.0, 4.0]]);
+        assert_eq!(LineFile::parse(text).unwrap().lines(), [line]);
     }
 }
 
@@ -94,4 +106,43 @@ fn a_rectangle_around_all_lines_is_not_kept() {
     let text = r#"{"type":"FeatureCollection","bbox":[8,47,9,48],"features":[]}"#;
     let text = LineFile::parse(text).unwrap().text_with(&[]);
     assert!(!text.contains("bbox"), "{text}");
+}
+
+/// RFC 7946, section 3.1.6: closed rings, the outer one counter-clockwise.
+#[test]
+fn areas_are_polygons_with_a_closed_ring() {
+    let clockwise = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let area = SavedLine {
+        feature: None,
+        shape: Shape::Area,
+        points_deg: clockwise,
+        heights_m: Some(vec![1.0, 2.0, 3.0]),
+    };
+    let two = SavedLine { points_deg: vec![[0.0, 0.0], [1.0, 1.0]], ..area.clone() };
+    let text = LineFile::default().text_with(&[area, two]);
+    let written: Value = serde_json::from_str(&text).unwrap();
+    let features = written["features"].as_array().unwrap();
+    assert_eq!(features.len(), 1, "two points are no area");
+    let ring = json!([[1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 0.0, 1.0], [1.0, 1.0, 3.0]]);
+    assert_eq!(features[0]["geometry"], json!({"type": "Polygon", "coordinates": [ring]}));
+    let file = LineFile::parse(&text).unwrap();
+    let points = vec![[1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+    assert_eq!(file.lines(), [(0, Shape::Area, points)]);
+    // A point that stays keeps its elevation, as an area and as a line.
+    let mut lines = saved(&file);
+    lines[0].points_deg[0] = [2.0, 0.5];
+    for (shape, path) in [(Shape::Area, "/coordinates/0"), (Shape::Line, "/coordinates")] {
+        lines[0].shape = shape;
+        let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
+        let positions = again["features"][0]["geometry"].pointer(path).unwrap();
+        assert!(positions.as_array().unwrap().contains(&json!([0.0, 1.0, 2.0])), "{positions}");
+    }
+}
+
+#[test]
+fn areas_with_holes_stay_as_they_are() {
+    let text =
+        r#"{"type":"Polygon","coordinates":[[[0,0],[9,0],[9,9],[0,0]],[[5,2],[6,2],[6,3],[5,2]]]}"#;
+    let file = LineFile::parse(text).unwrap();
+    assert_eq!((file.lines().len(), file.others()), (0, 1));
 }

@@ -1,6 +1,8 @@
-//! Lines take the places of roads: the viewer draws them as it draws roads.
+//! Lines take the places of roads, and areas that a person draws that of a class: the viewer draws them as it draws those.
 
-use crate::{LineStyle, RoadBand, RoadBands, RoadStyle, Style};
+use corniche_areas::AreaClass;
+
+use crate::{AreaStyle, LineStyle, RoadBand, RoadBands, RoadStyle, Style};
 
 impl LineStyle {
     /// The same look as that of a road.
@@ -40,6 +42,24 @@ impl Style {
             *road = line.as_road();
         }
         Self { roads, own_widths: None, outline_px: 0, shortest_part_px: 0.0, ..self.clone() }
+    }
+}
+
+impl Style {
+    /// The class whose place areas have that a person draws.
+    pub const DRAWN_AREAS: AreaClass = AreaClass::Settlement;
+
+    /// How much of the map they hide.
+    const DRAWN_AREAS_OPACITY: f32 = 0.3;
+
+    /// This style for a picture whose only areas are drawn by a person: inside as their outlines, half transparent.
+    #[must_use]
+    pub fn with_drawn_areas(&self) -> Self {
+        let mut areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
+        let opacity = Self::DRAWN_AREAS_OPACITY * self.drawn.opacity;
+        areas[usize::from(Self::DRAWN_AREAS.number())] =
+            AreaStyle { color: self.drawn.color, opacity };
+        Self { areas, ..self.clone() }
     }
 }
 

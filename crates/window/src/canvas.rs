@@ -13,7 +13,7 @@ use corniche_viewer::{
         DrawTile, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, Targets,
         TileBuffers,
     },
-    tiles::{LineLayer, TileGeometry, TileLayer},
+    tiles::{AreaVolumes, LineLayer, TileGeometry, TileLayer},
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
@@ -85,10 +85,11 @@ impl Canvas {
         }
     }
 
-    /// Replaces the lines that a person draws on a tile.
-    pub(crate) fn replace_drawn_lines(&mut self, id: TileId, lines: &TileLayer) {
+    /// Replaces the lines and areas that a person draws on a tile.
+    pub(crate) fn replace_drawn(&mut self, id: TileId, lines: &TileLayer, areas: &AreaVolumes) {
         if let Some(tile) = self.tiles.get_mut(&id) {
             tile.replace_lines(&self.gpu, LineLayer::Drawn, lines);
+            tile.replace_drawn_areas(&self.gpu, areas);
         }
     }
 

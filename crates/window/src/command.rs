@@ -20,6 +20,10 @@ pub(crate) enum DrawingCommand {
     RemovePoint,
     /// Remove the picked line.
     RemoveLine,
+    /// Make an area of the picked line, or a line of the picked area.
+    Turn,
+    /// Make a curve of the picked line.
+    Smooth,
     /// Take the last change back.
     Undo,
     /// Make the change again that was taken back last.

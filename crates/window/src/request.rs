@@ -73,6 +73,8 @@ pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
 pub struct DrawnLine {
     /// Which feature of the file it comes from; `None` for one that was drawn here.
     pub feature: Option<usize>,
+    /// Whether it is the outline of an area: its first point comes after the last one.
+    pub is_area: bool,
     /// Longitude and latitude of each point, WGS84.
     pub points_deg: Vec<[f64; 2]>,
 }

@@ -1,6 +1,6 @@
 //! One area to its parts in the tiles of each level.
 
-use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, divide};
+use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all};
 use corniche_geom::{Frame, LatticeBounds, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
@@ -33,9 +33,9 @@ impl Splitting<'_> {
                 let [east, north] = self.frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
-            let mut coarse = within(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
+            let mut coarse = cut_out(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
             if let Some(clip) = &self.clip {
-                coarse = within(&coarse, clip)?;
+                coarse = cut_out(&coarse, clip)?;
             }
             let mut tiles = Vec::new();
             let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
@@ -92,29 +92,6 @@ impl Wanted<'_> {
 
 fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
     LatticeBounds::of(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
-}
-
-/// The parts inside a rectangle.
-fn within(polygons: &[Polygon], bounds: &LatticeBounds) -> Result<Vec<Polygon>, OutlineError> {
-    let [_, east] = divide_all(polygons, Axis::East, bounds.min.u)?;
-    let [inside, _] = divide_all(&east, Axis::East, bounds.max.u)?;
-    let [_, north] = divide_all(&inside, Axis::North, bounds.min.v)?;
-    let [inside, _] = divide_all(&north, Axis::North, bounds.max.v)?;
-    Ok(inside)
-}
-
-fn divide_all(
-    polygons: &[Polygon],
-    axis: Axis,
-    at: i64,
-) -> Result<[Vec<Polygon>; 2], OutlineError> {
-    let mut all = [Vec::new(), Vec::new()];
-    for polygon in polygons {
-        for (all, parts) in all.iter_mut().zip(divide(polygon, axis, at)?) {
-            all.extend(parts);
-        }
-    }
-    Ok(all)
 }
 
 fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {

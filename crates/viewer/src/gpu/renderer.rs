@@ -82,9 +82,12 @@ impl Renderer {
         let roads = LabelledLines::new(gpu, tiles, view, |tile| tile.roads(view.roads.method));
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        let areas = areas_of(tiles, view);
+        let areas = areas_of(tiles, view, DrawTile::areas);
+        let drawn_style = view.style.with_drawn_areas();
+        let drawn_view = FrameView { style: &drawn_style, ..*view };
+        let drawn_areas = areas_of(tiles, &drawn_view, DrawTile::drawn_areas);
         if let Some(timer) = &mut timer {
-            timer.begin(!areas.is_empty());
+            timer.begin(!areas.is_empty() || !drawn_areas.is_empty());
         }
         let mut mark = |encoder: &mut CommandEncoder, number| {
             if let Some(timer) = &mut timer {
@@ -95,6 +98,7 @@ impl Renderer {
         self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
         self.areas_pass(gpu, &mut encoder, &shared, &areas, view, targets);
+        self.areas_pass(gpu, &mut encoder, &shared, &drawn_areas, &drawn_view, targets);
         mark(&mut encoder, 2);
         self.labels_pass(&mut encoder, &shared, &roads, view, &targets.roads);
         mark(&mut encoder, 3);
@@ -275,11 +279,15 @@ impl<'a> LabelledLines<'a> {
     }
 }
 
-/// The tiles that have areas of a class that is drawn.
-fn areas_of<'a>(tiles: &'a [DrawTile<'_>], view: &FrameView<'_>) -> Vec<AreaTile<'a>> {
+/// The tiles that have areas of a class that is drawn, among those that `of` finds on a tile.
+fn areas_of<'a>(
+    tiles: &'a [DrawTile<'_>],
+    view: &FrameView<'_>,
+    of: impl Fn(&'a DrawTile<'a>, usize, &FrameView<'_>) -> Option<AreaTile<'a>>,
+) -> Vec<AreaTile<'a>> {
     let has_drawn = |(_, areas, _): &AreaTile<'_>| {
         areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
     };
     let tiles = tiles.iter().enumerate();
-    tiles.filter_map(|(index, tile)| tile.areas(index, view)).filter(has_drawn).collect()
+    tiles.filter_map(|(index, tile)| of(tile, index, view)).filter(has_drawn).collect()
 }

@@ -20,7 +20,7 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::{ClassVolumes, LineLayer, TileGeometry, TileLayer, plan_around},
+    tiles::{AreaVolumes, ClassVolumes, LineLayer, TileGeometry, TileLayer, plan_around},
 };
 
 /// A tile on the graphics card.
@@ -33,6 +33,8 @@ pub struct TileBuffers {
     pub(crate) textures: TileTextures,
     /// `None` without areas.
     areas: Option<AreaBuffers>,
+    /// Those that a person draws.
+    drawn_areas: Option<AreaBuffers>,
     segments: RoadBuffers,
     volumes: RoadBuffers,
     layers: [LayerBuffers; LineLayer::ALL.len()],
@@ -97,6 +99,7 @@ impl TileBuffers {
             ground: GroundBuffers::new(gpu, &tile.ground),
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
+            drawn_areas: None,
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             layers: LineLayer::ALL.map(|layer| LayerBuffers::new(gpu, tile.lines.of(layer))),
@@ -123,7 +126,11 @@ impl TileBuffers {
     pub fn gpu_bytes(&self) -> u64 {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
         ground_bytes
-            + self.areas.as_ref().map_or(0, AreaBuffers::gpu_bytes)
+            + [&self.areas, &self.drawn_areas]
+                .into_iter()
+                .flatten()
+                .map(AreaBuffers::gpu_bytes)
+                .sum::<u64>()
             + self.textures.gpu_bytes()
             + self.segments.gpu_bytes()
             + self.volumes.gpu_bytes()
@@ -133,6 +140,11 @@ impl TileBuffers {
     /// Replaces a layer of its lines by what the tile now has of it.
     pub fn replace_lines(&mut self, gpu: &Gpu, layer: LineLayer, lines: &TileLayer) {
         self.layers[layer as usize] = LayerBuffers::new(gpu, lines);
+    }
+
+    /// Replaces the areas that a person draws by what the tile now has of them.
+    pub fn replace_drawn_areas(&mut self, gpu: &Gpu, areas: &AreaVolumes) {
+        self.drawn_areas = AreaBuffers::new(gpu, areas);
     }
 
     /// The volumes of its areas, class by class.
@@ -206,7 +218,20 @@ impl DrawTile<'_> {
 
     /// Its areas with its index in the list of tiles of the frame, and how they are counted; `None` without areas.
     pub(crate) fn areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
-        let areas = self.buffers.areas.as_ref()?;
+        self.counted(index, self.buffers.areas.as_ref()?, view)
+    }
+
+    /// The same of areas that a person draws.
+    pub(crate) fn drawn_areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
+        self.counted(index, self.buffers.drawn_areas.as_ref()?, view)
+    }
+
+    fn counted<'a>(
+        &self,
+        index: usize,
+        areas: &'a AreaBuffers,
+        view: &FrameView<'_>,
+    ) -> Option<AreaTile<'a>> {
         let [low, high] =
             areas.box_in_tile().map(|corner| DVec3::from_array(corner.map(f64::from)));
         let reference = DVec3::from_array(self.buffers.reference_m);

@@ -12,6 +12,7 @@
 //! Source: Schneider & Klein 2007, *Efficient and Accurate Rendering of Vector Data on Virtual Landscapes*, Journal of WSCG 15.
 
 mod border_strips;
+mod drawn;
 mod plan_mesh;
 
 use std::ops::Range;
@@ -20,6 +21,7 @@ use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
+pub use self::drawn::DrawnArea;
 use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
@@ -107,7 +109,7 @@ impl AreaVolumes {
         let site = Site::new(id, frame, ground, reference_m);
         for class in AreaClass::ALL {
             let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
-            let mut around = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+            let mut around = NOWHERE;
             let mut polygons = 0;
             for area in areas.iter().filter(|area| area.class == class) {
                 for rings in &area.polygons {
@@ -128,9 +130,53 @@ impl AreaVolumes {
                 });
             }
         }
-        let boxes = volumes.classes.iter().map(|class| class.box_in_tile);
-        volumes.box_in_tile = boxes.reduce(united);
+        volumes.unite_boxes();
         Ok(volumes)
+    }
+
+    /// Several sets of volumes of one tile as one.
+    #[must_use]
+    pub fn joined<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let mut joined = Self::default();
+        for class in AreaClass::ALL {
+            let (first_wall, first_index) = (joined.walls.len(), joined.triangles.len());
+            let mut around = NOWHERE;
+            let mut polygons = 0;
+            let of_class = |part: &'a Self| {
+                part.classes.iter().find(|of| of.class == class).map(|of| (part, of))
+            };
+            for (part, of) in parts.clone().filter_map(of_class) {
+                let in_list = |range: &Range<u32>| range.start as usize..range.end as usize;
+                let first = joined.corners.len() as u32;
+                joined.walls.extend_from_slice(&part.walls[in_list(&of.walls)]);
+                joined.corners.extend_from_slice(&part.corners);
+                let triangles = part.triangles[in_list(&of.triangles)].iter();
+                joined.triangles.extend(triangles.map(|corner| first + corner));
+                around = united(around, of.box_in_tile);
+                polygons += of.polygons;
+            }
+            if polygons > 0 {
+                joined.classes.push(ClassVolumes {
+                    class,
+                    walls: first_wall as u32..joined.walls.len() as u32,
+                    triangles: first_index as u32..joined.triangles.len() as u32,
+                    box_in_tile: around,
+                    polygons,
+                });
+            }
+        }
+        joined.unite_boxes();
+        joined
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.classes.is_empty()
+    }
+
+    fn unite_boxes(&mut self) {
+        self.box_in_tile = self.classes.iter().map(|class| class.box_in_tile).reduce(united);
     }
 
     /// Adds the prism over a mesh; `around` grows by it.
@@ -161,6 +207,9 @@ impl AreaVolumes {
         }
     }
 }
+
+/// The box around nothing.
+const NOWHERE: [[f32; 3]; 2] = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The box around two boxes.
 fn united([low, high]: [[f32; 3]; 2], [other_low, other_high]: [[f32; 3]; 2]) -> [[f32; 3]; 2] {

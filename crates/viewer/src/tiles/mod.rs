@@ -28,7 +28,7 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
-    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes, DrawnArea},
     geometry::TileGeometry,
     line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,

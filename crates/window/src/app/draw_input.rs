@@ -68,7 +68,7 @@ impl App {
                 *is_on = !*is_on;
                 tool.end_line();
                 let told = if *is_on {
-                    "drawing: click on the ground to add points, drag a point to move it, Enter ends the line"
+                    "drawing: click on the ground to add points, drag a point to move it, Enter ends the line, G makes it an area"
                 } else {
                     "drawing is over"
                 };
@@ -80,6 +80,18 @@ impl App {
             }
             DrawingCommand::RemoveLine => {
                 tool.remove_line(document);
+            }
+            DrawingCommand::Turn => {
+                tool.turn(document);
+            }
+            DrawingCommand::Smooth => {
+                let coordinates = &self.package.manifest().coordinates;
+                let point =
+                    |at_m| Point { lon_lat_deg: coordinates.wgs84_from_working(at_m), at_m };
+                if !tool.smooth(document, point) {
+                    let told = "nothing to smooth: pick a line with at least three points";
+                    self.notices.tell(told.to_owned(), now_s);
+                }
             }
             DrawingCommand::Undo => document.undo(),
             DrawingCommand::Redo => document.redo(),

@@ -45,7 +45,7 @@ impl Drawing {
         for line in lines {
             let points: Option<Vec<Point>> = line.points_deg.iter().map(point).collect();
             match points {
-                Some(points) => placed.push((line.feature, points)),
+                Some(points) => placed.push((line.feature, line.is_area, points)),
                 None => unplaced.push(line.clone()),
             }
         }
@@ -85,8 +85,8 @@ impl Drawing {
         self.laid_revision = self.document.revision();
         let begun_s = (self.clock_s)();
         let relaid = self.laid.update(&self.document, tiles.resident(), manifest);
-        for (id, lines) in &relaid.changed {
-            canvas.replace_drawn_lines(*id, lines);
+        for (id, lines, areas) in &relaid.changed {
+            canvas.replace_drawn(*id, lines, areas);
         }
         if is_changed {
             self.last = Some((relaid.laid, ((self.clock_s)() - begun_s) * 1e3));
@@ -110,6 +110,7 @@ impl Drawing {
         }
         let line = |line: &Arc<Line>| DrawnLine {
             feature: line.feature,
+            is_area: line.is_area,
             points_deg: line.points.iter().map(|point| point.lon_lat_deg).collect(),
         };
         let drawn = self.document.lines().iter().map(line);

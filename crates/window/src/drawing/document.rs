@@ -21,8 +21,17 @@ pub(crate) struct Line {
     pub(crate) id: u64,
     /// Which feature of the file it comes from; `None` for one that was drawn.
     pub(crate) feature: Option<usize>,
+    /// Whether it is the outline of an area: its first point comes after the last one.
+    pub(crate) is_area: bool,
     /// Its points; a line that is being begun has only one.
     pub(crate) points: Vec<Point>,
+}
+
+impl Line {
+    /// Whether it has points enough to be saved.
+    fn is_whole(&self) -> bool {
+        self.points.len() >= if self.is_area { 3 } else { 2 }
+    }
 }
 
 type Lines = Vec<Arc<Line>>;
@@ -41,12 +50,12 @@ pub(crate) struct Document {
 }
 
 impl Document {
-    /// With lines that are saved already.
-    pub(crate) fn of(lines: Vec<(Option<usize>, Vec<Point>)>) -> Self {
+    /// With lines that are saved already: which feature of the file each is, whether it is an area, and its points.
+    pub(crate) fn of(lines: Vec<(Option<usize>, bool, Vec<Point>)>) -> Self {
         let mut document = Self::default();
-        for (feature, points) in lines {
+        for (feature, is_area, points) in lines {
             let id = document.take_id();
-            document.lines.push(Arc::new(Line { id, feature, points }));
+            document.lines.push(Arc::new(Line { id, feature, is_area, points }));
         }
         document.saved.clone_from(&document.lines);
         document
@@ -69,9 +78,9 @@ impl Document {
 
     /// Whether there is something that is not saved.
     pub(crate) fn is_changed(&self) -> bool {
-        // One point is no line.
+        // One point is no line, and two are no area.
         fn lines(all: &Lines) -> impl Iterator<Item = &Arc<Line>> + Clone {
-            all.iter().filter(|line| line.points.len() >= 2)
+            all.iter().filter(|line| line.is_whole())
         }
         let (now, saved) = (lines(&self.lines), lines(&self.saved));
         now.clone().count() != saved.clone().count()
@@ -91,7 +100,7 @@ impl Document {
     /// Begins a line; returns its id.
     pub(crate) fn begin(&mut self, first: Point) -> u64 {
         let id = self.take_id();
-        let line = Line { id, feature: None, points: vec![first] };
+        let line = Line { id, feature: None, is_area: false, points: vec![first] };
         self.change(|lines| lines.push(Arc::new(line)));
         id
     }
@@ -134,6 +143,16 @@ impl Document {
         });
     }
 
+    /// Makes a line of an area, or an area of a line.
+    pub(crate) fn turn(&mut self, id: u64) {
+        self.change_line(id, |line| line.is_area = !line.is_area);
+    }
+
+    /// Gives a line other points.
+    pub(crate) fn replace_points(&mut self, id: u64, points: Vec<Point>) {
+        self.change_line(id, |line| line.points = points);
+    }
+
     /// Takes a line out.
     pub(crate) fn remove_line(&mut self, id: u64) {
         self.change(|lines| lines.retain(|line| line.id != id));
@@ -161,11 +180,15 @@ impl Document {
     }
 
     fn change_points(&mut self, id: u64, change: impl FnOnce(&mut Vec<Point>)) {
+        self.change_line(id, |line| change(&mut line.points));
+    }
+
+    fn change_line(&mut self, id: u64, change: impl FnOnce(&mut Line)) {
         self.change(|lines| {
             if let Some(line) = lines.iter_mut().find(|line| line.id == id) {
-                let mut points = line.points.clone();
-                change(&mut points);
-                *line = Arc::new(Line { points, ..Line::clone(line) });
+                let mut changed = Line::clone(line);
+                change(&mut changed);
+                *line = Arc::new(changed);
             }
         });
     }

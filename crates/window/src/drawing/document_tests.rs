@@ -13,7 +13,7 @@ fn places(document: &Document) -> Vec<Vec<f64>> {
 
 #[test]
 fn points_are_added_moved_and_removed() {
-    let mut document = Document::of(vec![(Some(3), vec![point(1.0), point(2.0)])]);
+    let mut document = Document::of(vec![(Some(3), false, vec![point(1.0), point(2.0)])]);
     assert!(!document.is_changed(), "what was loaded is saved");
     let id = document.begin(point(5.0));
     document.insert(id, 1, point(6.0));
@@ -25,9 +25,14 @@ fn points_are_added_moved_and_removed() {
     assert_eq!(places(&document), [vec![1.0, 2.0], vec![6.0]]);
     document.remove_point(id, 0);
     assert_eq!(places(&document), [vec![1.0, 2.0]], "a line without points is gone");
+    assert!(!document.is_changed(), "the lines are those that were loaded");
+    let loaded = document.lines()[0].id;
+    document.shift(loaded, 0, point(0.5));
     assert!(document.is_changed());
     document.note_saved();
     assert!(!document.is_changed());
+    document.turn(loaded);
+    assert!(document.is_changed() && document.lines()[0].is_area);
 }
 
 #[test]
@@ -47,7 +52,7 @@ fn what_was_taken_back_is_not_to_be_saved() {
 /// A drag is many movements and one change.
 #[test]
 fn a_drag_is_taken_back_at_once() {
-    let mut document = Document::of(vec![(None, vec![point(1.0), point(2.0)])]);
+    let mut document = Document::of(vec![(None, false, vec![point(1.0), point(2.0)])]);
     let id = document.lines()[0].id;
     document.shift(id, 0, point(3.0));
     document.shift_on(id, 0, point(4.0));
@@ -62,8 +67,10 @@ fn a_drag_is_taken_back_at_once() {
 
 #[test]
 fn lines_that_are_not_changed_stay_the_same_ones() {
-    let mut document =
-        Document::of(vec![(None, vec![point(1.0)]), (None, vec![point(2.0), point(3.0)])]);
+    let mut document = Document::of(vec![
+        (None, false, vec![point(1.0)]),
+        (None, false, vec![point(2.0), point(3.0)]),
+    ]);
     let first = Arc::clone(&document.lines()[0]);
     let id = document.lines()[1].id;
     document.insert(id, 2, point(4.0));

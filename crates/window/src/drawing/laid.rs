@@ -1,14 +1,14 @@
-//! The lines on the tiles that are shown.
+//! The lines and areas on the tiles that are shown.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::Arc,
 };
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{
-    LayerLine, LineMethods, Overlays, TileGeometry, TileLayer, TileSurface,
+    AreaVolumes, DrawnArea, LayerLine, LineMethods, Overlays, TileGeometry, TileLayer, TileSurface,
 };
 
 use super::{Document, Line};
@@ -18,22 +18,45 @@ use super::{Document, Line};
 pub(crate) struct LaidLines {
     tiles: BTreeMap<TileId, LaidTile>,
     /// Each line as it was prepared last.
-    prepared: BTreeMap<u64, (Arc<Line>, Overlays)>,
+    prepared: BTreeMap<u64, PreparedLine>,
+}
+
+/// A line that can be laid on any tile.
+struct PreparedLine {
+    line: Arc<Line>,
+    /// The line, or the outline of the area.
+    outline: Overlays,
+    /// What is inside.
+    area: Option<DrawnArea>,
 }
 
 #[derive(Default)]
 struct LaidTile {
     /// Made when a line first comes near.
     surface: Option<TileSurface>,
-    /// What the tile has of each line, and of which state of it.
-    lines: BTreeMap<u64, (Arc<Line>, TileLayer)>,
+    /// What the tile has of each line.
+    lines: BTreeMap<u64, LaidLine>,
+}
+
+/// What a tile has of a line.
+struct LaidLine {
+    /// The state of the line that was laid.
+    line: Arc<Line>,
+    outline: TileLayer,
+    inside: AreaVolumes,
+}
+
+impl LaidLine {
+    fn is_empty(&self) -> bool {
+        self.outline.is_empty() && self.inside.is_empty()
+    }
 }
 
 /// What laying came to.
 #[derive(Debug, Default)]
 pub(crate) struct Relaid {
-    /// All lines of each tile that has others than before.
-    pub(crate) changed: Vec<(TileId, TileLayer)>,
+    /// All lines and areas of each tile that has others than before.
+    pub(crate) changed: Vec<(TileId, TileLayer, AreaVolumes)>,
     /// How often a line was laid on a tile.
     pub(crate) laid: usize,
 }
@@ -64,7 +87,8 @@ impl LaidLines {
         for tile in tiles {
             let laid = self.tiles.entry(tile.id).or_default();
             if laid.update(&self.prepared, (tile, manifest), &mut relaid.laid) {
-                relaid.changed.push((tile.id, laid.joined()));
+                let (outlines, areas) = laid.joined();
+                relaid.changed.push((tile.id, outlines, areas));
             }
         }
         relaid
@@ -75,14 +99,24 @@ impl LaidLines {
         let ids: BTreeSet<u64> = document.lines().iter().map(|line| line.id).collect();
         self.prepared.retain(|id, _| ids.contains(id));
         for line in document.lines() {
-            if self.prepared.get(&line.id).is_some_and(|(known, _)| Arc::ptr_eq(known, line)) {
+            if self.prepared.get(&line.id).is_some_and(|known| Arc::ptr_eq(&known.line, line)) {
                 continue;
             }
-            let points = line.points.iter().filter_map(|point| frame.snap(point.at_m)).collect();
-            let layer_line = LayerLine { id: line.id as i64, style: 0, points };
-            let overlays = Overlays::new(&[layer_line], frame);
-            self.prepared.insert(line.id, (Arc::clone(line), overlays));
+            self.prepared.insert(line.id, PreparedLine::new(line, frame));
         }
+    }
+}
+
+impl PreparedLine {
+    fn new(line: &Arc<Line>, frame: &Frame) -> Self {
+        let mut points: Vec<LatticePoint> =
+            line.points.iter().filter_map(|point| frame.snap(point.at_m)).collect();
+        let area = if line.is_area { DrawnArea::new(&points) } else { None };
+        if line.is_area {
+            points.extend(points.first().copied());
+        }
+        let layer_line = LayerLine { id: line.id as i64, style: 0, points };
+        Self { line: Arc::clone(line), outline: Overlays::new(&[layer_line], frame), area }
     }
 }
 
@@ -90,7 +124,7 @@ impl LaidTile {
     /// Whether something changed.
     fn update(
         &mut self,
-        prepared: &BTreeMap<u64, (Arc<Line>, Overlays)>,
+        prepared: &BTreeMap<u64, PreparedLine>,
         (tile, manifest): (&TileGeometry, &Manifest),
         laid: &mut usize,
     ) -> bool {
@@ -99,31 +133,35 @@ impl LaidTile {
         let before = self.lines.len();
         self.lines.retain(|id, _| prepared.contains_key(id));
         let mut is_changed = self.lines.len() != before;
-        for (id, (line, overlays)) in prepared {
+        for (id, prepared) in prepared {
             let known = self.lines.get(id);
-            if known.is_some_and(|(known, _)| Arc::ptr_eq(known, line)) {
+            if known.is_some_and(|known| Arc::ptr_eq(&known.line, &prepared.line)) {
                 continue;
             }
-            let had_some = known.is_some_and(|(_, layer)| !layer.is_empty());
-            let near = overlays.near(tile.id, frame, margin);
+            let had_some = known.is_some_and(|known| !known.is_empty());
+            let near = prepared.outline.near(tile.id, frame, margin);
             if !near.is_empty() && self.surface.is_none() {
                 self.surface = TileSurface::of(tile, manifest);
             }
-            let layer = match &self.surface {
-                Some(surface) if !near.is_empty() => {
-                    *laid += 1;
-                    surface.lay(&near, frame, LineMethods::Both)
-                }
+            let outline = match &self.surface {
+                Some(surface) if !near.is_empty() => surface.lay(&near, frame, LineMethods::Both),
                 _ => TileLayer::default(),
             };
-            is_changed |= had_some || !layer.is_empty();
-            self.lines.insert(*id, (Arc::clone(line), layer));
+            let inside = prepared
+                .area
+                .as_ref()
+                .map_or_else(AreaVolumes::default, |area| area.over(tile, frame));
+            let now = LaidLine { line: Arc::clone(&prepared.line), outline, inside };
+            *laid += usize::from(!now.is_empty());
+            is_changed |= had_some || !now.is_empty();
+            self.lines.insert(*id, now);
         }
         is_changed
     }
 
-    fn joined(&self) -> TileLayer {
-        TileLayer::joined(self.lines.values().map(|(_, layer)| layer))
+    fn joined(&self) -> (TileLayer, AreaVolumes) {
+        let outlines = TileLayer::joined(self.lines.values().map(|line| &line.outline));
+        (outlines, AreaVolumes::joined(self.lines.values().map(|line| &line.inside)))
     }
 }
 

@@ -27,8 +27,8 @@ fn an_edit_lays_that_line_alone() {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
     let mut document = Document::of(vec![
-        (None, vec![at(0.1, 0.1), at(0.9, 0.9)]),
-        (None, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+        (None, false, vec![at(0.1, 0.1), at(0.9, 0.9)]),
+        (None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
     let mut laid = LaidLines::default();
     let first = laid.update(&document, tiles.iter(), manifest);
@@ -42,15 +42,56 @@ fn an_edit_lays_that_line_alone() {
     assert!(edited.laid > 0 && edited.laid <= tiles.len(), "{} laid", edited.laid);
     // What is shown is what laying all lines anew gives.
     let mut anew = LaidLines::default();
-    let expected: BTreeMap<TileId, TileLayer> =
-        anew.update(&document, tiles.iter(), manifest).changed.into_iter().collect();
+    let expected = anew.update(&document, tiles.iter(), manifest).changed;
     assert!(!edited.changed.is_empty());
-    for (id, layer) in &edited.changed {
-        assert_eq!(Some(layer), expected.get(id), "{id}");
+    for changed in &edited.changed {
+        assert!(expected.contains(changed), "{}", changed.0);
     }
 
     document.remove_line(id);
     let removed = laid.update(&document, tiles.iter(), manifest);
     assert_eq!(removed.laid, 0);
     assert!(!removed.changed.is_empty());
+}
+
+#[test]
+fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = source(folder.path());
+    let manifest = source.manifest();
+    let tiles = [source.load(TileId::ROOT).unwrap().without_roads()];
+    let bounds = manifest.data_bounds;
+    let at = |x: f64, y: f64| {
+        point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
+    };
+    let square = |from: f64, to: f64| vec![at(from, from), at(to, from), at(to, to), at(from, to)];
+    let mut document = Document::of(vec![
+        (None, true, square(0.2, 0.5)),
+        (None, true, square(0.4, 0.8)),
+        (None, false, square(0.1, 0.3)),
+    ]);
+    let mut laid = LaidLines::default();
+    let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
+        panic!("one tile");
+    };
+    assert_eq!(areas.classes.iter().map(|class| class.polygons).collect::<Vec<_>>(), [2]);
+    // Two squares of four walls each, and of two triangles.
+    assert_eq!((areas.walls.len(), areas.triangles.len()), (8, 12));
+    let ways: std::collections::BTreeSet<_> = document.lines().iter().map(|line| line.id).collect();
+    assert_eq!(ways.len(), 3);
+    let before = outlines.segments.all().len();
+
+    // As a line the second one has no inside, and lacks the side that closed it.
+    let id = document.lines()[1].id;
+    document.turn(id);
+    let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
+        panic!("one tile");
+    };
+    assert_eq!((areas.walls.len(), areas.triangles.len()), (4, 6));
+    assert!(outlines.segments.all().len() < before);
+    document.undo();
+    let [(_, _, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
+        panic!("one tile");
+    };
+    assert_eq!(areas.walls.len(), 8);
 }

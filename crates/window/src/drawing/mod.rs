@@ -1,4 +1,4 @@
-//! Lines that a person draws on the ground: what they are, how they are changed, and how they come onto the tiles.
+//! Lines and areas that a person draws on the ground: what they are, how they are changed, and how they come onto the tiles.
 //!
 //! ```text
 //!  mouse, keys ──► Tool ──► Document (lines, undo, redo) ──► LaidLines ──► layers of the tiles that are shown
@@ -8,6 +8,7 @@
 
 mod document;
 mod laid;
+mod smooth;
 mod tool;
 
 pub(crate) use self::{

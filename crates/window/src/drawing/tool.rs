@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Document, Line, Point};
+use super::{Document, Line, Point, smooth::smoothed};
 
 /// The cursor is at a point of a line if it is no farther from it than this, screen points.
 const NEAR_POINTS: f64 = 9.0;
@@ -106,6 +106,9 @@ impl Tool {
             Some(line) => {
                 let place = if is_shift {
                     nearest_segment(press.at, line, seen_at).map_or(line.points.len(), |k| k + 1)
+                } else if line.is_area {
+                    // An area has no end.
+                    picked.map_or(line.points.len(), |picked| picked.place + 1)
                 } else if picked.is_some_and(|picked| picked.place == 0) && line.points.len() > 1 {
                     // The line goes on from the end that is picked.
                     0
@@ -144,6 +147,29 @@ impl Tool {
         true
     }
 
+    /// Makes an area of the picked line, or a line of the picked area. Whether there was one.
+    pub(crate) fn turn(&mut self, document: &mut Document) -> bool {
+        let Some(Picked { line, .. }) = self.picked(document) else { return false };
+        document.turn(line);
+        true
+    }
+
+    /// Makes a curve of the picked line; `place` makes a point of a place in the working CRS. Whether there was one that has corners.
+    pub(crate) fn smooth(
+        &mut self,
+        document: &mut Document,
+        place: impl Fn([f64; 2]) -> Point,
+    ) -> bool {
+        let Some(line) = self.picked(document).and_then(|picked| document.line(picked.line)) else {
+            return false;
+        };
+        let Some(points) = smoothed(line, place) else { return false };
+        let id = line.id;
+        document.replace_points(id, points);
+        self.picked = None;
+        true
+    }
+
     /// Removes the picked line. Whether there was one.
     pub(crate) fn remove_line(&mut self, document: &mut Document) -> bool {
         let Some(Picked { line, .. }) = self.picked(document) else { return false };
@@ -171,13 +197,14 @@ fn nearest(
         .map(|(picked, _)| picked)
 }
 
-/// Which segment of a line is seen nearest to a position.
+/// Which segment of a line is seen nearest to a position; the last one of an area closes it.
 fn nearest_segment(
     at: DVec2,
     line: &Line,
     seen_at: impl Fn(&Point) -> Option<DVec2>,
 ) -> Option<usize> {
-    let seen: Vec<Option<DVec2>> = line.points.iter().map(seen_at).collect();
+    let closing = line.points.first().filter(|_| line.is_area);
+    let seen: Vec<Option<DVec2>> = line.points.iter().chain(closing).map(seen_at).collect();
     let away = |(place, pair): (usize, &[Option<DVec2>])| {
         let (from, to) = (pair[0]?, pair[1]?);
         let way = to - from;

@@ -10,7 +10,7 @@ use crate::command::Command;
 const MOST: [f32; 2] = [470.0, 630.0];
 
 /// What to do with mouse and keys, and what it does.
-const ROWS: [(&str, &str); 22] = [
+const ROWS: [(&str, &str); 23] = [
     ("left drag", "move the map; in fly mode look around"),
     ("right drag, Ctrl + left drag", "turn and tilt around the middle"),
     ("middle drag", "turn and tilt around the cursor"),
@@ -28,6 +28,7 @@ const ROWS: [(&str, &str); 22] = [
     ("C", "record the camera's way, and stop"),
     ("L, then click, Shift click", "draw lines: a point at the end, inside"),
     ("Enter, Del, Shift Del", "end the line, remove the point, the line"),
+    ("G, M", "line or area, round its corners"),
     ("Ctrl Z, Ctrl Y, Ctrl S", "take back, make again, save"),
     ("Tab", "show and hide the panel"),
     ("?", "show and hide this page"),

@@ -25,6 +25,10 @@ pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<
             button(ui, *is_picked, "- point (Del)", DrawingCommand::RemovePoint);
             button(ui, *is_picked, "- line", DrawingCommand::RemoveLine);
         });
+        ui.horizontal(|ui| {
+            button(ui, *is_picked, "Line or area (G)", DrawingCommand::Turn);
+            button(ui, *is_picked, "Round corners (M)", DrawingCommand::Smooth);
+        });
     }
     ui.horizontal(|ui| {
         button(ui, can_step[0], "Undo", DrawingCommand::Undo);

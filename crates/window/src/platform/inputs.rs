@@ -181,7 +181,13 @@ impl Inputs {
             && let Some(command) =
                 drawing_command(&event.logical_key, self.modifiers, app.is_drawing())
         {
-            let is_once = matches!(command, DrawingCommand::Toggle | DrawingCommand::Save);
+            let is_once = matches!(
+                command,
+                DrawingCommand::Toggle
+                    | DrawingCommand::Turn
+                    | DrawingCommand::Smooth
+                    | DrawingCommand::Save
+            );
             if !(event.repeat && is_once) {
                 app.command(Command::Draw(command), now_s);
             }
@@ -247,6 +253,8 @@ fn drawing_command(
             ("z", Modifiers { control: true, shift: false }) => Some(DrawingCommand::Undo),
             ("z" | "y", Modifiers { control: true, .. }) => Some(DrawingCommand::Redo),
             ("s", Modifiers { control: true, .. }) => Some(DrawingCommand::Save),
+            ("g", Modifiers { control: false, .. }) if is_drawing => Some(DrawingCommand::Turn),
+            ("m", Modifiers { control: false, .. }) if is_drawing => Some(DrawingCommand::Smooth),
             _ => None,
         };
     }

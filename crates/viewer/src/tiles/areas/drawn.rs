@@ -1,0 +1,53 @@
+//! Areas that a person draws.
+
+use corniche_areas::{AreaObject, Polygon, cut_out, surrounded};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint};
+use corniche_styles::Style;
+use corniche_tileset::{AreaRecord, AreaRings};
+
+use super::AreaVolumes;
+use crate::tiles::TileGeometry;
+
+/// An area that a person draws, in plan. Where its outline crosses itself, the even-odd rule says what is inside.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DrawnArea {
+    polygons: Vec<Polygon>,
+}
+
+impl DrawnArea {
+    /// What a closed line surrounds; its first point comes after the last. `None` if it is far too intricate.
+    #[must_use]
+    pub fn new(outline: &[LatticePoint]) -> Option<Self> {
+        surrounded(&[outline], 1).ok().map(|polygons| Self { polygons })
+    }
+
+    /// The volumes over the part of it in a tile. Their class is [`Style::DRAWN_AREAS`].
+    #[must_use]
+    pub fn over(&self, tile: &TileGeometry, frame: &Frame) -> AreaVolumes {
+        let bounds = frame.tile_lattice_bounds(tile.id);
+        let is_near = |polygon: &&Polygon| {
+            let around = LatticeBounds::of(polygon.outer().points());
+            around.is_some_and(|around| around.intersects(&bounds))
+        };
+        let near: Vec<Polygon> = self.polygons.iter().filter(is_near).cloned().collect();
+        let rings = |polygon: &Polygon| AreaRings {
+            rings: polygon.rings().map(|ring| ring.points().to_vec()).collect(),
+        };
+        let inside = cut_out(&near, &bounds).ok();
+        let volumes = inside.and_then(|inside| {
+            let area = AreaRecord {
+                object: AreaObject::Way(0),
+                class: Style::DRAWN_AREAS,
+                name: String::new(),
+                polygons: inside.iter().map(rings).collect(),
+            };
+            AreaVolumes::new(&[area], tile.id, frame, &tile.ground, tile.reference_m).ok()
+        });
+        // What was surrounded does not cross itself, so there is always an answer.
+        volumes.unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+#[path = "drawn_tests.rs"]
+mod tests;

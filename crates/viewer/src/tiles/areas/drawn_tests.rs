@@ -1,0 +1,45 @@
+use corniche_testing::package::written;
+
+use super::*;
+use crate::tiles::{MapPackage as _, PackageSource, TileSource as _};
+
+/// In plan the volumes over all tiles of a level have the area that was drawn, with a hole by the even-odd rule where its outline turns
+/// around a place twice.
+#[test]
+fn the_parts_in_tiles_make_up_the_area() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("small.pmtiles");
+    std::fs::write(&path, written()).unwrap();
+    let source = PackageSource::open(&path).unwrap();
+    let frame = &source.manifest().frame;
+    let bounds = source.manifest().data_bounds;
+    let at = |x: f64, y: f64| {
+        let at_m = [bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()];
+        frame.snap(at_m).unwrap()
+    };
+    // A bow tie: two triangles of a quarter of the square each.
+    let area = DrawnArea::new(&[at(0.2, 0.2), at(0.8, 0.8), at(0.8, 0.2), at(0.2, 0.8)]).unwrap();
+    let expected_m2 = 0.5 * 0.36 * bounds.width() * bounds.height();
+    let covered = |id| {
+        let tile = source.load(id).unwrap();
+        let volumes = area.over(&tile, frame);
+        assert!(volumes.classes.iter().all(|of| of.class == Style::DRAWN_AREAS));
+        let triangles = volumes.triangles.as_chunks::<3>().0.iter();
+        let doubled = triangles.map(|corners| {
+            let [a, b, c] =
+                corners.map(|corner| volumes.corners[corner as usize].place_in_tile.map(f64::from));
+            (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        });
+        doubled.sum::<f64>() / 2.0
+    };
+    let root_m2 = covered(corniche_geom::TileId::ROOT);
+    assert!((root_m2 - expected_m2).abs() < 1e-3 * expected_m2, "{root_m2} {expected_m2}");
+    // A quarter of it lies in each child. Along the borders of tiles volumes reach a quarter of a cell outwards.
+    let children = corniche_geom::TileId::ROOT.children().map(covered);
+    let with_ground: Vec<f64> = children.into_iter().filter(|area_m2| *area_m2 > 0.0).collect();
+    assert!(!with_ground.is_empty());
+    for area_m2 in with_ground {
+        let strips_m2 = area_m2 - expected_m2 / 4.0;
+        assert!((0.0..0.05 * expected_m2).contains(&strips_m2), "{area_m2} {expected_m2}");
+    }
+}
