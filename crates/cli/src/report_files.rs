@@ -28,12 +28,14 @@ impl ReportFiles {
             let reason = format!("--svg and {option} name one file; give each its own");
             return Err(Failure::unusable(reason));
         }
-        svg.map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
         let begin = |path: &'a Path| {
             let targets = svg.into_iter().chain(list).filter(|&target| target != path);
             let others: Vec<&Path> = inputs.iter().copied().chain(targets).collect();
             Output::create(path, existing, &others)
         };
-        Ok(Self { svg: svg.map(begin).transpose()?, list: list.map(begin).transpose()? })
+        let files = Self { svg: svg.map(begin).transpose()?, list: list.map(begin).transpose()? };
+        // What is no file at all is told first.
+        svg.map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+        Ok(files)
     }
 }

@@ -36,18 +36,27 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     option("--style", shown.style.clone());
     let [width, height] = shown.size_px;
     option("--size", format!("{width}x{height}"));
-    if let CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } =
-        shown.camera
-    {
-        // To a centimetre on the ground, and to a hundredth of a pixel in direction.
-        option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
-        if let Some(height_m) = height_m {
-            option("--height", format!("{height_m:.2}"));
+    match shown.camera {
+        CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
+            // To a centimetre on the ground, and to a hundredth of a pixel in direction.
+            option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
+            if let Some(height_m) = height_m {
+                option("--height", format!("{height_m:.2}"));
+            }
+            option("--distance", format!("{distance_m:.2}"));
+            option("--heading", format!("{:.4}", orientation.heading_deg));
+            option("--pitch", format!("{:.4}", orientation.pitch_deg));
         }
-        option("--distance", format!("{distance_m:.2}"));
-        option("--heading", format!("{:.4}", orientation.heading_deg));
-        option("--pitch", format!("{:.4}", orientation.pitch_deg));
+        CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => {
+            option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
+            // To a micrometre.
+            option("--pixel", format!("{pixel_m:.6}"));
+            option("--heading", format!("{heading_deg:.4}"));
+            words.push("--ortho".to_owned());
+        }
+        CameraRequest::Overview | CameraRequest::OverviewFromAbove => {}
     }
+    let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     option("--exaggeration", shown.exaggeration.to_string());
     option("--screen-space-error", shown.screen_space_error_px.to_string());
     option("--cell-px", shown.cell_px.to_string());

@@ -143,3 +143,16 @@ fn every_look_of_roads_is_read_as_it_was() {
         assert_eq!(read("a", &shown).look.areas.in_window(), areas);
     }
 }
+
+#[test]
+fn a_view_from_above_is_drawn_from_above() {
+    let camera = CameraRequest::FromAbove {
+        lon_deg: 9.521_234_5,
+        lat_deg: -47.140_123_4,
+        pixel_m: 3.123_456,
+        heading_deg: -12.5,
+    };
+    let shown = ShownView { camera, ..shown(RoadOptions::of(RoadMethod::Geometry)) };
+    let args = read("p.pmtiles", &shown);
+    assert_eq!(args.from_above.request(&args.camera), camera);
+}

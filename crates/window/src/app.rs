@@ -212,6 +212,7 @@ impl App {
             Command::NorthUp => self.input(&Input::NorthUp, now_s),
             Command::Reset => self.input(&Input::Reset, now_s),
             Command::ToggleFly => self.input(&Input::ToggleFly, now_s),
+            Command::ToggleAbove => self.input(&Input::ToggleAbove, now_s),
             Command::GoTo => self.go_to(now_s),
             Command::CopyView => self.copy_view(now_s),
             Command::TogglePanel => self.settings.is_panel_open = !self.settings.is_panel_open,

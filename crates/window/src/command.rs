@@ -41,6 +41,8 @@ pub(crate) enum Command {
     Reset,
     /// Change from map to fly mode, or back.
     ToggleFly,
+    /// Change to a view straight from above, or back.
+    ToggleAbove,
     /// Look at the place that is typed in the panel.
     GoTo,
     /// Put a command that draws this view on the clipboard.

@@ -221,8 +221,8 @@ impl KnownGround for ShownGround<'_> {
         f64::midpoint(lowest_m, highest_m) * self.vertical_scale
     }
 
-    fn lowest_height(&self) -> f64 {
-        self.height_range_m[0] * self.vertical_scale
+    fn heights(&self) -> [f64; 2] {
+        self.height_range_m.map(|height_m| height_m * self.vertical_scale)
     }
 }
 

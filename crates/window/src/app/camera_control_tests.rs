@@ -23,14 +23,19 @@ impl KnownGround for Level {
         0.0
     }
 
-    fn lowest_height(&self) -> f64 {
-        0.0
+    fn heights(&self) -> [f64; 2] {
+        [0.0; 2]
     }
 }
 
 fn view_at(x: f64) -> View {
     let orientation = Orientation { heading_deg: 0.0, pitch_deg: 30.0 };
-    View { eye_in_world: DVec3::new(x, 500.0, 1000.0), orientation, focus_m: 1000.0 }
+    View {
+        eye_in_world: DVec3::new(x, 500.0, 1000.0),
+        orientation,
+        focus_m: 1000.0,
+        from_above: None,
+    }
 }
 
 fn control() -> CameraControl {

@@ -166,8 +166,9 @@ impl<'a> Seen<'a> {
 
     /// The point of the ground that is seen there, in points of the screen.
     fn under(&self, at: DVec2) -> Option<Point> {
-        let ray = self.camera.ray_in_world(at * self.pixels_per_point);
-        let hit = self.ground.hit(self.camera.eye_in_world(), ray)?;
+        let at_px = at * self.pixels_per_point;
+        let (start, ray) = (self.camera.ray_start_in_world(at_px), self.camera.ray_in_world(at_px));
+        let hit = self.ground.hit(start, ray)?;
         let at_m = [hit.x, hit.y];
         Some(Point { lon_lat_deg: self.manifest.coordinates.wgs84_from_working(at_m), at_m })
     }

@@ -27,9 +27,9 @@ impl GroundProbe {
         coordinates: &CoordinateTable,
     ) {
         let pixel_m = |at_px: DVec2| {
-            let hit = ground.hit(camera.eye_in_world(), camera.ray_in_world(at_px))?;
-            let (_, depth) = camera.project(hit)?;
-            Some((hit, depth * camera.pixel_at_unit_depth_m()))
+            let hit = ground.hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))?;
+            let (_, depth_m) = camera.project(hit)?;
+            Some((hit, camera.pixel_at_depth_m(depth_m)))
         };
         if is_new {
             let [width, height] = camera.size_px().map(f64::from);

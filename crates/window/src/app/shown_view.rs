@@ -23,12 +23,15 @@ impl App {
         let target_in_world = ground.hit(view.eye_in_world, ahead).unwrap_or_else(in_air);
         let settings = &self.settings;
         let shown = ShownView {
-            camera: camera_request(
-                &view,
-                target_in_world,
-                self.package.vertical_scale(settings.exaggeration),
-                self.package.manifest(),
-            ),
+            camera: match view.from_above {
+                None => camera_request(
+                    &view,
+                    target_in_world,
+                    self.package.vertical_scale(settings.exaggeration),
+                    self.package.manifest(),
+                ),
+                Some(_) => request_from_above(&view, size_px, self.package.manifest()),
+            },
             size_px,
             roads: settings.roads,
             style: self.styles.names().get(settings.style)?.clone(),
@@ -78,4 +81,14 @@ pub(crate) fn camera_request(
     let distance_m = view.eye_in_world.distance(target_in_world) / manifest.point_scale;
     let height_m = Some(target_in_world.z / vertical_scale);
     CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation: view.orientation }
+}
+
+/// The same for a view from above.
+fn request_from_above(view: &View, size_px: [u32; 2], manifest: &Manifest) -> CameraRequest {
+    let eye = view.eye_in_world;
+    let [lon_deg, lat_deg] = manifest.coordinates.wgs84_from_working([eye.x, eye.y]);
+    // At any depth.
+    let pixel_m = view.camera(size_px).pixel_at_depth_m(0.0) / manifest.point_scale;
+    let heading_deg = view.orientation.heading_deg;
+    CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg }
 }

@@ -101,7 +101,8 @@ impl BoundedView {
         pitch_deg: f64,
         ground: &dyn KnownGround,
     ) {
-        let pitch_deg = pitch_deg.clamp(0.0, self.limits.max_pitch_deg);
+        let most_deg = if self.view.from_above.is_some() { 0.0 } else { self.limits.max_pitch_deg };
+        let pitch_deg = pitch_deg.clamp(0.0, most_deg);
         let with = |pitch_deg| {
             let heading_deg = half_turn(heading_deg);
             self.view.turned_about(pivot, Orientation { heading_deg, pitch_deg })
@@ -124,7 +125,10 @@ impl BoundedView {
     /// Zooms in unless the eye would be too low or too near to the pivot, or out unless it would be too far away.
     pub(crate) fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn KnownGround) -> Moved {
         let zoomed = self.view.zoomed_at(pivot, (-levels).exp2());
-        let distance_m = zoomed.eye_in_world.distance(pivot);
+        let distance_m = match zoomed.from_above {
+            None => zoomed.eye_in_world.distance(pivot),
+            Some(_) => zoomed.focus_m,
+        };
         let is_too_low = levels > 0.0
             && (zoomed.lacks_m(self.limits.clearance_m, ground) > 0.0
                 || distance_m < 2.0 * self.limits.clearance_m);
@@ -141,11 +145,16 @@ impl BoundedView {
     pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         let pivot = self.middle(ground);
         self.view.eye_in_world.z += pivot.z * (factor - 1.0);
+        self.view.from_above = self.view.from_above.map(|heights| heights.map(|z| z * factor));
         self.home.eye_in_world.z += ground.base_height() * (factor - 1.0);
     }
 
     /// The same direction and distance, with another place in the middle of the picture.
     pub(crate) fn looking_at(&self, target_in_world: DVec3, ground: &dyn KnownGround) -> View {
+        if self.view.from_above.is_some() {
+            let eye_in_world = target_in_world + DVec3::Z * self.view.focus_m;
+            return View { eye_in_world, ..self.view };
+        }
         let distance_m = self.middle(ground).distance(self.view.eye_in_world);
         let distance_m = distance_m.clamp(2.0 * self.limits.clearance_m, self.limits.far_m());
         let Orientation { heading_deg, pitch_deg } = self.view.orientation;
@@ -157,7 +166,7 @@ impl BoundedView {
 
     /// Whether some of the data would be seen in the view.
     pub(crate) fn shows_data(&self, view: &View, ground: &dyn KnownGround) -> bool {
-        sees_data(view, self.size_px, self.limits.data, ground.lowest_height())
+        sees_data(view, self.size_px, self.limits.data, ground.heights()[0])
     }
 
     /// Brings the eye back over the data and above the ground, and adapts the focus.

@@ -121,4 +121,6 @@ pub(crate) enum Input {
     },
     /// Change from map to fly mode, or back.
     ToggleFly,
+    /// Change to a view straight from above with parallel rays, or back to perspective.
+    ToggleAbove,
 }

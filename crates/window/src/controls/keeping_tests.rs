@@ -13,7 +13,7 @@ fn finds_data(navigator: &Navigator) -> bool {
                 160.0 + 480.0 * f64::from(k) / 79.0,
                 120.0 + 360.0 * f64::from(l) / 79.0,
             );
-            let at = view.on_plane(camera.ray_in_world(at_px), 400.0, 1e6);
+            let at = view.on_plane(at_px, camera.size_px(), 400.0, 1e6);
             at.is_some_and(|at| {
                 (-500.0..=10_500.0).contains(&at.x) && (-500.0..=10_500.0).contains(&at.y)
             })

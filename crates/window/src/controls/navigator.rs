@@ -174,6 +174,7 @@ impl Navigator {
                 self.travel_to(self.seen.looking_at(target_in_world, ground), now_s);
             }
             Input::ToggleFly => self.toggle_fly(),
+            Input::ToggleAbove => self.toggle_above(ground),
         }
         self.seen.settle(ground);
         self.keep_data_in_view(ground);
@@ -238,12 +239,33 @@ impl Navigator {
         self.stop();
         self.gesture = None;
         self.mode = Mode::Map;
+        if view.from_above.is_none() {
+            self.seen.view = self.seen.view.in_perspective();
+        }
         self.travel = Some(Travel::begin(self.seen.view, view, now_s));
+    }
+
+    fn toggle_above(&mut self, ground: &dyn KnownGround) {
+        self.stop();
+        self.gesture = None;
+        self.flying.let_go();
+        self.mode = Mode::Map;
+        let view = &self.seen.view;
+        self.seen.view = match view.from_above {
+            None => {
+                let middle = self.seen.middle(ground);
+                let limits = &self.seen.limits;
+                let range_m = [2.0 * limits.clearance_m, limits.far_m()];
+                view.seen_from_above(middle, range_m, ground.heights())
+            }
+            Some(_) => view.in_perspective(),
+        };
     }
 
     fn toggle_fly(&mut self) {
         self.stop();
         self.gesture = None;
+        self.seen.view = self.seen.view.in_perspective();
         self.flying.let_go();
         self.mode = match self.mode {
             Mode::Map => Mode::Fly,

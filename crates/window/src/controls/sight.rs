@@ -18,6 +18,14 @@ const INNER_SHARE: f64 = 0.6;
 /// The rectangle is clipped by the four sides of the pyramid between the eye and the inner part of the picture: Sutherland &
 /// Hodgman 1974, *Reentrant Polygon Clipping*.
 pub(crate) fn sees_data(view: &View, size_px: [u32; 2], data: Bounds, lowest_m: f64) -> bool {
+    // From above the same of the plane at that height is seen in perspective from the distance of the focus.
+    let eye = view.eye_in_world;
+    let view = match view.from_above {
+        None => *view,
+        Some(_) => {
+            View { eye_in_world: eye.with_z(lowest_m + view.focus_m), ..view.in_perspective() }
+        }
+    };
     let camera = view.camera(size_px);
     let [width, height] = size_px.map(f64::from);
     let middle_px = DVec2::new(width, height) / 2.0;

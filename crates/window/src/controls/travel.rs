@@ -46,7 +46,7 @@ impl Travel {
                 heading_deg: from.heading_deg + share * turn_deg,
                 pitch_deg: from.pitch_deg + share * (to.pitch_deg - from.pitch_deg),
             },
-            focus_m: self.to.focus_m,
+            ..self.to
         };
         (view, false)
     }

@@ -13,8 +13,8 @@ pub(crate) trait KnownGround {
     /// A height in the middle of the range of heights, world metres. Where no ground is known, a plane at this height is
     /// taken for it.
     fn base_height(&self) -> f64;
-    /// No ground of the package lies below this height, world metres.
-    fn lowest_height(&self) -> f64;
+    /// All ground of the package lies between these heights, world metres.
+    fn heights(&self) -> [f64; 2];
 }
 
 /// Where the eye is and how it looks.
@@ -26,13 +26,21 @@ pub(crate) struct View {
     pub(crate) orientation: Orientation,
     /// About how far away the ground is that is looked at; near plane and haze follow from it.
     pub(crate) focus_m: f64,
+    /// In a view from above, with parallel rays: all ground lies between these heights, world metres. The eye is then over the middle of
+    /// the picture, at about the height from which things look as large, and looks straight down.
+    pub(crate) from_above: Option<[f64; 2]>,
 }
 
 impl View {
-    /// The view of a camera, whose direction is `orientation`.
+    /// The view of a camera in perspective, whose direction is `orientation`.
     #[must_use]
     pub(crate) fn of(camera: &Camera, orientation: Orientation) -> Self {
-        Self { eye_in_world: camera.eye_in_world(), orientation, focus_m: camera.focus_m() }
+        Self {
+            eye_in_world: camera.eye_in_world(),
+            orientation,
+            focus_m: camera.focus_m(),
+            from_above: None,
+        }
     }
 
     /// The camera for a picture of this size.
@@ -40,7 +48,41 @@ impl View {
     pub(crate) fn camera(&self, size_px: [u32; 2]) -> Camera {
         let backward = self.world_from_view().z_axis;
         let target = self.eye_in_world - backward * self.focus_m;
-        Camera::look_at(target, self.focus_m, self.orientation, size_px)
+        let camera = Camera::look_at(target, self.focus_m, self.orientation, size_px);
+        match self.from_above {
+            None => camera,
+            Some(heights) => Camera::from_above(
+                self.eye_in_world.truncate(),
+                camera.pixel_at_depth_m(self.focus_m),
+                self.orientation.heading_deg,
+                heights,
+                size_px,
+            ),
+        }
+    }
+
+    /// What is seen straight from above with parallel rays: `middle` in the middle of the picture, as large as now, within a range of
+    /// distances.
+    #[must_use]
+    pub(crate) fn seen_from_above(
+        &self,
+        middle: DVec3,
+        [least_m, most_m]: [f64; 2],
+        heights: [f64; 2],
+    ) -> Self {
+        let focus_m = self.eye_in_world.distance(middle).clamp(least_m, most_m);
+        Self {
+            eye_in_world: middle + DVec3::Z * focus_m,
+            orientation: Orientation { pitch_deg: 0.0, ..self.orientation },
+            focus_m,
+            from_above: Some(heights),
+        }
+    }
+
+    /// The same place in perspective.
+    #[must_use]
+    pub(crate) fn in_perspective(&self) -> Self {
+        Self { from_above: None, ..*self }
     }
 
     /// Columns: right, up, backward.
@@ -60,18 +102,26 @@ impl View {
         most_m: f64,
         ground: &dyn KnownGround,
     ) -> Option<DVec3> {
-        let ray = self.camera(size_px).ray_in_world(at_px);
+        let camera = self.camera(size_px);
         ground
-            .hit(self.eye_in_world, ray)
-            .or_else(|| self.on_plane(ray, ground.base_height(), most_m))
+            .hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))
+            .or_else(|| self.on_plane(at_px, size_px, ground.base_height(), most_m))
     }
 
-    /// Where a ray from the eye meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
+    /// Where the ray through a pixel meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
     #[must_use]
-    pub(crate) fn on_plane(&self, ray: DVec3, height_m: f64, most_m: f64) -> Option<DVec3> {
-        let depth = (height_m - self.eye_in_world.z) / ray.z;
+    pub(crate) fn on_plane(
+        &self,
+        at_px: DVec2,
+        size_px: [u32; 2],
+        height_m: f64,
+        most_m: f64,
+    ) -> Option<DVec3> {
+        let camera = self.camera(size_px);
+        let (start, ray) = (camera.ray_start_in_world(at_px), camera.ray_in_world(at_px));
+        let depth = (height_m - start.z) / ray.z;
         let is_ahead = depth.is_finite() && depth > 0.0 && depth * ray.length() <= most_m;
-        is_ahead.then(|| self.eye_in_world + ray * depth)
+        is_ahead.then(|| start + ray * depth)
     }
 
     /// The view from another direction in which `pivot` stays on its pixel, at the same distance.
@@ -85,7 +135,10 @@ impl View {
     /// The view with the eye `factor` times as far from `pivot`, which stays on its pixel.
     #[must_use]
     pub(crate) fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
-        Self { eye_in_world: pivot + (self.eye_in_world - pivot) * factor, ..*self }
+        let eye_in_world = pivot + (self.eye_in_world - pivot) * factor;
+        // In perspective the focus follows from the eye's height.
+        let focus_m = if self.from_above.is_some() { self.focus_m * factor } else { self.focus_m };
+        Self { eye_in_world, focus_m, ..*self }
     }
 
     /// The eye moved in plan so that `anchor` is seen at a pixel; `None` where that would take it more than `most_m` away
@@ -98,8 +151,7 @@ impl View {
         size_px: [u32; 2],
         most_m: f64,
     ) -> Option<Self> {
-        let ray = self.camera(size_px).ray_in_world(at_px);
-        self.on_plane(ray, anchor.z, most_m)
+        self.on_plane(at_px, size_px, anchor.z, most_m)
             .map(|beneath| Self { eye_in_world: self.eye_in_world + (anchor - beneath), ..*self })
     }
 
@@ -107,16 +159,24 @@ impl View {
     #[must_use]
     pub(crate) fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
+        if self.from_above.is_some() {
+            return f64::NEG_INFINITY;
+        }
         ground
             .height([eye.x, eye.y])
             .map_or(f64::NEG_INFINITY, |height_m| height_m + clearance_m - eye.z)
     }
 
-    /// The same view with the focus that follows from its height above the ground, by the rule for flights.
+    /// The same view with the focus that follows from its height above the ground, by the rule for flights; from above, with the height
+    /// that follows from the focus.
     #[must_use]
     pub(crate) fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
+        if self.from_above.is_some() {
+            let eye_in_world = eye.with_z(below_m + self.focus_m);
+            return Self { eye_in_world, ..*self };
+        }
         let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);
         Self { focus_m, ..*self }
     }

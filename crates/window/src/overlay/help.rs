@@ -10,7 +10,7 @@ use crate::command::Command;
 const MOST: [f32; 2] = [470.0, 630.0];
 
 /// What to do with mouse and keys, and what it does.
-const ROWS: [(&str, &str); 23] = [
+const ROWS: [(&str, &str); 24] = [
     ("left drag", "move the map; in fly mode look around"),
     ("right drag, Ctrl + left drag", "turn and tilt around the middle"),
     ("middle drag", "turn and tilt around the cursor"),
@@ -21,6 +21,7 @@ const ROWS: [(&str, &str); 23] = [
     ("R, Home", "back to the first view"),
     ("N", "north up"),
     ("F", "fly mode, and back"),
+    ("T", "straight from above, and back"),
     ("W A S D, Q E", "in fly mode: fly, sink, rise"),
     ("Shift", "in fly mode: faster"),
     ("V", "copy this view as a command"),

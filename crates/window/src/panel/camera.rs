@@ -34,11 +34,13 @@ pub(crate) fn show(
             commands.push(Command::GoTo);
         }
     });
-    if ui
-        .button("Copy this view (V)")
-        .on_hover_text("Puts a command that draws this view on the clipboard")
-        .clicked()
-    {
-        commands.push(Command::CopyView);
-    }
+    ui.horizontal(|ui| {
+        if ui.button("From above (T)").on_hover_text("With parallel rays, and back").clicked() {
+            commands.push(Command::ToggleAbove);
+        }
+        let copy = ui.button("Copy this view (V)");
+        if copy.on_hover_text("Puts a command that draws this view on the clipboard").clicked() {
+            commands.push(Command::CopyView);
+        }
+    });
 }

@@ -278,6 +278,7 @@ fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Comma
             "n" => Some(Command::NorthUp),
             "r" => Some(Command::Reset),
             "f" => Some(Command::ToggleFly),
+            "t" => Some(Command::ToggleAbove),
             "c" => Some(Command::ToggleRecording),
             "v" => Some(Command::CopyView),
             "?" => Some(Command::ToggleHelp),
