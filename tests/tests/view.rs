@@ -457,3 +457,77 @@ fn a_line_is_drawn_changed_and_saved() {
     let ran = e2e::corniche(words);
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
+
+/// Geometries of a GeoJSON file: what they are, and how many positions their first line has.
+fn geometries(path: &Path) -> Vec<(String, usize)> {
+    let text = fs::read_to_string(path).expect("it is saved");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("as JSON");
+    let features = document["features"].as_array().expect("a collection");
+    let geometry = |feature: &serde_json::Value| {
+        let geometry = &feature["geometry"];
+        let kind = geometry["type"].as_str().expect("a word").to_owned();
+        let coordinates = geometry["coordinates"].as_array().expect("a list");
+        let count = match kind.as_str() {
+            "Polygon" => coordinates[0].as_array().expect("a ring").len(),
+            _ => coordinates.len(),
+        };
+        (kind, count)
+    };
+    features.iter().map(geometry).collect()
+}
+
+#[test]
+fn an_area_is_drawn_from_above_and_its_corners_are_rounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("areas.geojson");
+    let draw = path.to_str().expect("paths are UTF-8").to_owned();
+    let near = ["--look-at", "9.53,46.88", "--distance", "5000", "--draw", &draw];
+    let Some(mut desk) = Desk::open(&near) else { return };
+    desk.focus();
+    desk.xdotool("key Tab");
+    desk.xdotool("key t");
+    let bare = desk.picture("p", 1);
+    desk.xdotool("key l");
+    for (x, y) in [(300, 200), (420, 210), (410, 330), (310, 320)] {
+        desk.click(x, y);
+    }
+    desk.xdotool("key g");
+    let drawn = desk.picture("p", 2);
+    // Inside, well away from the outline, every pixel is more yellow than the bare map, and beside it none is.
+    let is_tinted = |x: u32, y: u32| {
+        let [red, green, blue] = [0, 1, 2].map(|channel| {
+            i32::from(drawn.get_pixel(x, y)[channel]) - i32::from(bare.get_pixel(x, y)[channel])
+        });
+        red.min(green) - blue > 20
+    };
+    let count = |columns: std::ops::Range<u32>, rows: std::ops::Range<u32>| {
+        columns
+            .flat_map(|x| rows.clone().map(move |y| (x, y)))
+            .filter(|&(x, y)| is_tinted(x, y))
+            .count()
+    };
+    assert_eq!(count(330..400, 225..310), 70 * 85, "inside");
+    assert_eq!(count(200..285, 225..310), 0, "beside");
+
+    let saved = |is_right: &dyn Fn(&[(String, usize)]) -> bool| {
+        desk.xdotool("key ctrl+s");
+        let begun = Instant::now();
+        loop {
+            let found = if path.exists() { geometries(&path) } else { Vec::new() };
+            if is_right(&found) {
+                return;
+            }
+            assert!(begun.elapsed() < Duration::from_mins(1), "{found:?}");
+            thread::sleep(Duration::from_millis(100));
+        }
+    };
+    saved(&|found| found == [("Polygon".to_owned(), 5)]);
+    // Four sides in eight pieces each.
+    desk.xdotool("key m");
+    saved(&|found| found == [("Polygon".to_owned(), 33)]);
+    desk.xdotool("key ctrl+z");
+    desk.xdotool("key ctrl+z");
+    saved(&|found| found == [("LineString".to_owned(), 4)]);
+    desk.xdotool("key ctrl+q");
+    assert_eq!(ended(&mut desk.window).code, 0);
+}
