@@ -185,6 +185,67 @@ fn methods_agree_and_dashes_leave_gaps() {
     assert!(count(&dashed_sv).abs_diff(dashed) * 50 < dashed);
 }
 
+/// Groups of neighbouring pixels: how many there are, and the sides of the rectangle around them.
+fn groups(picture: &RgbaImage) -> Vec<(usize, [u32; 2])> {
+    let is_line = |x: u32, y: u32| {
+        let pixel = picture.get_pixel(x, y);
+        pixel.0[0] > 200 && pixel.0[1] < 60
+    };
+    let [width, height] = [picture.width(), picture.height()];
+    let mut seen = vec![false; (width * height) as usize];
+    let mut found = Vec::new();
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let mut waiting = vec![(x, y)];
+        let (mut count, mut low, mut high) = (0, [x, y], [x, y]);
+        while let Some((x, y)) = waiting.pop() {
+            let place = (y * width + x) as usize;
+            if !is_line(x, y) || std::mem::replace(&mut seen[place], true) {
+                continue;
+            }
+            count += 1;
+            low = [low[0].min(x), low[1].min(y)];
+            high = [high[0].max(x), high[1].max(y)];
+            waiting.extend((x > 0).then(|| (x - 1, y)));
+            waiting.extend((y > 0).then(|| (x, y - 1)));
+            waiting.extend((x + 1 < width).then_some((x + 1, y)));
+            waiting.extend((y + 1 < height).then_some((x, y + 1)));
+        }
+        if count > 0 {
+            found.push((count, [high[0] - low[0] + 1, high[1] - low[1] + 1]));
+        }
+    }
+    found
+}
+
+/// A pattern half as long as its line is wide makes circles on the picture, also where the ground is seen obliquely.
+#[test]
+fn dots_are_round() {
+    let scene = Scene::new();
+    let line =
+        scene.write_line("line.geojson", &[[-1500.0, -600.0], [-100.0, 500.0], [1500.0, 100.0]]);
+    let dots = format!("{},color=#FF00FF,width=12,pattern=dots/24", text(&line));
+    // Where slopes turn away from the eye lines are narrower.
+    let view = ["--distance", "3000", "--pitch", "25", "--heading", "30"];
+    for roads in ["geo", "sv"] {
+        let above = scene.seen_from_above(&format!("above-{roads}.png"), roads, &[&dots]);
+        let oblique = scene.render(&format!("oblique-{roads}.png"), roads, &[&dots], &view);
+        for (name, picture, least) in [("above", above, 0.75), ("oblique", oblique, 0.5)] {
+            let groups = groups(&picture);
+            assert!(groups.len() >= 8, "{name}, {roads}: {} dots", groups.len());
+            let is_round = |&&(count, [width, height]): &&(usize, [u32; 2])| {
+                let share = count as f64 / f64::from(width * height);
+                (9..=15).contains(&width)
+                    && width.abs_diff(height) <= 3
+                    && (0.65..0.9).contains(&share)
+            };
+            let round = groups.iter().filter(is_round).count();
+            // Some lie on corners, borders of tiles or the edge of the picture, or where lines are narrower.
+            let share = round as f64 / groups.len() as f64;
+            assert!(share >= least, "{name}, {roads}: {round} of {groups:?}");
+        }
+    }
+}
+
 /// The same lines in four formats and two coordinate systems make the same picture.
 #[test]
 fn every_format_is_read_alike() {

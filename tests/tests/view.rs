@@ -509,25 +509,25 @@ fn an_area_is_drawn_from_above_and_its_corners_are_rounded() {
     assert_eq!(count(330..400, 225..310), 70 * 85, "inside");
     assert_eq!(count(200..285, 225..310), 0, "beside");
 
-    let saved = |is_right: &dyn Fn(&[(String, usize)]) -> bool| {
+    let saved = |kind: &str, positions: usize| {
         desk.xdotool("key ctrl+s");
         let begun = Instant::now();
         loop {
             let found = if path.exists() { geometries(&path) } else { Vec::new() };
-            if is_right(&found) {
+            if found == [(kind.to_owned(), positions)] {
                 return;
             }
             assert!(begun.elapsed() < Duration::from_mins(1), "{found:?}");
             thread::sleep(Duration::from_millis(100));
         }
     };
-    saved(&|found| found == [("Polygon".to_owned(), 5)]);
+    saved("Polygon", 5);
     // Four sides in eight pieces each.
     desk.xdotool("key m");
-    saved(&|found| found == [("Polygon".to_owned(), 33)]);
+    saved("Polygon", 33);
     desk.xdotool("key ctrl+z");
     desk.xdotool("key ctrl+z");
-    saved(&|found| found == [("LineString".to_owned(), 4)]);
+    saved("LineString", 4);
     desk.xdotool("key ctrl+q");
     assert_eq!(ended(&mut desk.window).code, 0);
 }

@@ -1,3 +1,5 @@
+#![expect(clippy::float_cmp, reason = "these numbers are exact")]
+
 use super::*;
 
 #[test]
@@ -13,5 +15,47 @@ fn a_pattern_is_divided_into_shares() {
 fn what_is_no_pattern_is_refused() {
     for wrong in [&[3.0][..], &[1.0, 2.0, 3.0], &[1.0; 5], &[4.0, 0.0], &[4.0, f32::NAN]] {
         assert!(Dash::new(wrong).is_err(), "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_texture_says_how_wide_the_line_is() {
+    let even = Dash::textured(20.0, &[0.5]).unwrap();
+    assert_eq!((even.widths(), even.least_px()), (Some([0.5; Dash::WIDTHS]), 20.0));
+    let own: Vec<f32> = (0..16).map(|place| place as f32 / 15.0).collect();
+    assert_eq!(Dash::textured(20.0, &own).unwrap().widths().unwrap()[..], own[..]);
+    // Two shares: a step between them that is as long as the distance between their middles.
+    let step = Dash::textured(20.0, &[0.0, 1.0]).unwrap().widths().unwrap();
+    assert!(
+        step[..4].iter().all(|share| *share == 0.0) && step[12..].iter().all(|share| *share == 1.0)
+    );
+    assert!(step.is_sorted());
+    assert_eq!(Dash::new(&[4.0, 4.0]).unwrap().widths(), None);
+}
+
+#[test]
+fn shapes_are_symmetric_or_point_ahead() {
+    let dots = Dash::dots(12.0).unwrap().widths().unwrap();
+    for place in 0..8 {
+        assert!((dots[place] - dots[7 - place]).abs() < 1e-6, "{dots:?}");
+    }
+    assert!(dots[8..].iter().all(|share| *share == 0.0) && dots[3] > 0.97);
+    assert!(Dash::beads(12.0).unwrap().widths().unwrap().iter().all(|share| *share >= 0.25));
+    let arrows = Dash::arrows(12.0).unwrap().widths().unwrap();
+    assert_eq!((arrows[0], arrows[1], arrows[15]), (0.0, 1.0, 0.0));
+    assert!(arrows[1..].is_sorted_by(|a, b| a >= b));
+}
+
+#[test]
+fn what_is_no_texture_is_refused() {
+    for (length_px, shares) in [
+        (20.0, &[][..]),
+        (20.0, &[0.5; 17]),
+        (20.0, &[1.5]),
+        (20.0, &[f32::NAN]),
+        (1.0, &[1.0]),
+        (900.0, &[1.0]),
+    ] {
+        assert!(Dash::textured(length_px, shares).is_err(), "{length_px} {shares:?}");
     }
 }

@@ -25,6 +25,16 @@ pub enum StyleError {
         "a pattern of dashes has two or four lengths, dash and gap in turn, or none for a solid line; not {count}"
     )]
     DashCount { count: usize },
+    #[error("a line has either dashes or a pattern of widths; leave one of them out")]
+    DashAndPattern,
+    #[error("a pattern has 1 to {most} widths, not {count}")]
+    PatternCount { count: usize, most: usize },
+    #[error(
+        "a width of {value} in a pattern is out of range; it must be 0 to 1, a share of the line's width"
+    )]
+    PatternShare { value: f32 },
+    #[error("a pattern of {value} pixels is out of range; it must be 2 to {most}")]
+    PatternLength { value: f32, most: f32 },
     #[error("a dash or gap of {value} pixels is out of range; it must be 1 to {most}")]
     DashLength { value: f32, most: f32 },
     #[error("a style has 2 to {most} [[tint]] entries, not {count}")]

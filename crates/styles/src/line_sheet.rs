@@ -25,8 +25,30 @@ pub(crate) struct LineSheet {
     /// Dash and gap in pixels, twice if wanted; left out: a solid line.
     #[serde(default)]
     dash: Vec<f32>,
+    /// How wide it is along a pattern; not together with `dash`.
+    pattern: Option<PatternSheet>,
     /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
     max_pixel_m: Option<f64>,
+}
+
+/// A texture with one row along a line.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PatternSheet {
+    /// Its length on the picture, 2 to 800 pixels.
+    length_px: f32,
+    /// 1 to 16 shares of the line's width, at equal distances.
+    widths: Vec<f32>,
+}
+
+impl LineSheet {
+    fn pattern(&self) -> Result<Dash, StyleError> {
+        match &self.pattern {
+            None => Dash::new(&self.dash),
+            Some(_) if !self.dash.is_empty() => Err(StyleError::DashAndPattern),
+            Some(PatternSheet { length_px, widths }) => Dash::textured(*length_px, widths),
+        }
+    }
 }
 
 /// The boundaries by class: those that are named, and `others` for the rest.
@@ -51,7 +73,7 @@ pub(crate) fn boundaries(
             width_px: sheet.width_px as f32,
             casing: sheet.casing.map(Rgb::from),
             opacity: opacity as f32,
-            dash: Dash::new(&sheet.dash)?,
+            dash: sheet.pattern()?,
             max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
         };
     }

@@ -149,7 +149,7 @@ pub(crate) struct LookArgs {
     pub(crate) boundaries: Areas,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
-    /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP in pixels.
+    /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
     pub(crate) overlay: Vec<OverlayArg>,
     /// How roads begin, bend and end

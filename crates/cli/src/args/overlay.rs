@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use corniche_styles::{Dash, LineStyle, Rgb, Style};
 
 /// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=#RRGGBB`, `,width=PX`,
-/// `,opacity=SHARE` and `,dash=DASH/GAP` in any order.
+/// `,opacity=SHARE` and `,dash=DASH/GAP` or `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OverlayArg {
     path: PathBuf,
@@ -19,7 +19,7 @@ pub(crate) struct OverlayArg {
 
 /// Whether a name of an entry is one of a style. What follows another name belongs to the file's name.
 fn is_entry(name: &str) -> bool {
-    ["color", "width", "opacity", "dash"].contains(&name)
+    ["color", "width", "opacity", "dash", "pattern"].contains(&name)
 }
 
 impl OverlayArg {
@@ -79,6 +79,10 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
             "color" => found.color = Some(color(value)?),
             "width" => found.width_px = Some(number(0.5..=50.0)?),
             "opacity" => found.opacity = Some(number(0.01..=1.0)?),
+            _ if found.dash.is_some() => {
+                return Err("give a line either a dash or a pattern".to_owned());
+            }
+            "pattern" => found.dash = Some(pattern(value)?),
             _ => found.dash = Some(dash(value)?),
         }
         rest = before;
@@ -105,6 +109,20 @@ fn dash(text: &str) -> Result<Dash, String> {
     let lengths =
         lengths.map_err(|_| format!("{text:?} is no pattern; write pixels like dash=8/4"))?;
     Dash::new(&lengths).map_err(|error| error.to_string())
+}
+
+/// A pattern by its name, and its length in pixels.
+fn pattern(text: &str) -> Result<Dash, String> {
+    let wrong = || format!("{text:?} is no pattern; write dots/12, beads/16 or arrows/20");
+    let (name, length) = text.split_once('/').ok_or_else(wrong)?;
+    let length_px = length.parse().map_err(|_| wrong())?;
+    let pattern = match name {
+        "dots" => Dash::dots(length_px),
+        "beads" => Dash::beads(length_px),
+        "arrows" => Dash::arrows(length_px),
+        _ => return Err(wrong()),
+    };
+    pattern.map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -26,6 +26,10 @@ fn what_is_wrong_is_told() {
         ("a.gpx,color=red", "is no colour"),
         ("a.gpx,width=0", "width must be 0.5 to 50"),
         ("a.gpx,dash=8-4", "is no pattern"),
+        ("a.gpx,pattern=dots", "is no pattern"),
+        ("a.gpx,pattern=stars/9", "is no pattern"),
+        ("a.gpx,pattern=dots/9000", "out of range"),
+        ("a.gpx,pattern=dots/12,dash=8/4", "either a dash or a pattern"),
         ("a.gpx,dash=8/4/2", "two or four lengths"),
         ("a.gpx,opacity=nan", "opacity must be"),
         (",width=3", "name a file"),
@@ -34,4 +38,11 @@ fn what_is_wrong_is_told() {
         let error = parse(text).unwrap_err();
         assert!(error.contains(part), "{text}: {error}");
     }
+}
+
+#[test]
+fn patterns_have_names() {
+    let found = parse("a.gpx,pattern=arrows/20,width=6").unwrap();
+    let usual = LineStyle::solid([0.0; 3], 3.0);
+    assert_eq!(found.style(usual).dash, Dash::arrows(20.0).unwrap());
 }

@@ -218,12 +218,12 @@ impl DrawTile<'_> {
 
     /// Its areas with its index in the list of tiles of the frame, and how they are counted; `None` without areas.
     pub(crate) fn areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
-        self.counted(index, self.buffers.areas.as_ref()?, view)
+        Some(self.counted(index, self.buffers.areas.as_ref()?, view))
     }
 
     /// The same of areas that a person draws.
     pub(crate) fn drawn_areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
-        self.counted(index, self.buffers.drawn_areas.as_ref()?, view)
+        Some(self.counted(index, self.buffers.drawn_areas.as_ref()?, view))
     }
 
     fn counted<'a>(
@@ -231,7 +231,7 @@ impl DrawTile<'_> {
         index: usize,
         areas: &'a AreaBuffers,
         view: &FrameView<'_>,
-    ) -> Option<AreaTile<'a>> {
+    ) -> AreaTile<'a> {
         let [low, high] =
             areas.box_in_tile().map(|corner| DVec3::from_array(corner.map(f64::from)));
         let reference = DVec3::from_array(self.buffers.reference_m);
@@ -246,7 +246,7 @@ impl DrawTile<'_> {
         // From above no face is cut off by the near plane.
         let is_near = view.camera.projection() == Projection::Perspective
             && volumes.distance_m(view.camera.eye_in_world()) <= reach_m;
-        Some((index, areas, if is_near { Counting::Behind } else { Counting::InFront }))
+        (index, areas, if is_near { Counting::Behind } else { Counting::InFront })
     }
 
     /// What shaders are told of it.

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use corniche_styles::{OwnWidths, RoadBands};
+use corniche_styles::{Dash, OwnWidths, RoadBands};
 
 use crate::{
     camera::Projection,
@@ -99,6 +99,11 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.extend(style.roads.iter().map(|road| {
         let [first, gap, second] = road.dash.ends();
         [first, gap, second, road.dash.least_px()]
+    }));
+    rows.extend(style.roads.iter().flat_map(|road| {
+        // Without a pattern, a number that is no width.
+        let widths = road.dash.widths().unwrap_or([-1.0; Dash::WIDTHS]);
+        bytemuck::cast::<_, [[f32; 4]; Dash::WIDTHS / 4]>(widths)
     }));
     rows
 }

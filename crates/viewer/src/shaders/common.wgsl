@@ -9,6 +9,8 @@
 const CLASSES = 9u;
 // The most bands of a road.
 const BANDS = 16u;
+// How many widths a pattern has along a line: `Dash::WIDTHS`.
+const PATTERN_WIDTHS = 16u;
 
 struct Frame {
     clip_from_relative: mat4x4<f32>,
@@ -42,6 +44,8 @@ struct Frame {
     // The dashes of each class. xyz: where the first dash, the first gap and the second dash end, as shares of the pattern; w: least
     // length of the pattern in pixels of the final picture, 0 without gaps.
     dashes: array<vec4<f32>, CLASSES>,
+    // How wide the lines of each class are along their pattern, as shares of their width, four in each row; below 0 without.
+    pattern_widths: array<vec4<f32>, PATTERN_WIDTHS / 4u * CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -142,10 +142,11 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -
 }
 
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
-fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32) -> u32 {
+// `width_share` says how wide the road is there, of its width.
+fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32, width_share: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = distance_to(position);
-    if !is_shown(road, distance_m) {
+    if !is_shown(road, distance_m) || width_share == 0.0 {
         return NOTHING;
     }
     let plan_m = length(from_segment(position.xy, segment));
@@ -154,7 +155,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     }
     // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
     let bands = band_count(road);
-    let part = part_share(road, distance_m);
+    let part = width_share * part_share(road, distance_m);
     let half_m = part * scaled_half_width_m(road, distance_m);
     let looks_m = part * stretch_of(distance_m, position.z)
         * least_half_width_m(road, scale_depth_of(depth_buffer));
@@ -204,13 +205,62 @@ fn band_label(road: Road, within: u32) -> u32 {
 // The smallest number of pixels that a dash of a tunnel and the gap after it may have together. They have fewer than twice as many.
 const TUNNEL_DASH_PX = 12.0;
 
-// Where in a pattern of dashes a place of a line is, 0 to 1. The pattern is at least so long on the picture.
+// Where in its pattern a place of a line is.
+struct InPattern {
+    // 0 to 1.
+    share: f32,
+    // How many times longer the pattern is on the picture than it is at least: 1 to 2.
+    stretch: f32,
+}
+
+// `from_start_m` is how far from the segment's start the place is, in plan along the segment.
+fn in_pattern(in: RoadFragment, position: vec3<f32>, from_start_m: f32, least_px: f32) -> InPattern {
+    let along_m = in.dash.x + in.dash.y * from_start_m;
+    let least_m = least_px * pixel_m_at(distance_to(position));
+    // Lengths are counted modulo 2^16 metres (tiles/roads/dashes.rs).
+    let pattern_m = min(exp2(ceil(log2(least_m))), 65536.0);
+    return InPattern(fract(along_m / pattern_m), pattern_m / least_m);
+}
+
 fn dash_share(in: RoadFragment, position: vec3<f32>, least_px: f32) -> f32 {
     let segment_m = max(length(in.start_to_end), 1e-6);
-    let along_m = in.dash.x + in.dash.y * dot(position.xy - in.start, in.start_to_end) / segment_m;
-    // Lengths are counted modulo 2^16 metres (tiles/roads/dashes.rs).
-    let pattern_m = min(exp2(ceil(log2(least_px * pixel_m_at(distance_to(position))))), 65536.0);
-    return fract(along_m / pattern_m);
+    let from_start_m = dot(position.xy - in.start, in.start_to_end) / segment_m;
+    return in_pattern(in, position, from_start_m, least_px).share;
+}
+
+fn pattern_width(class_number: u32, place: u32) -> f32 {
+    return frame.pattern_widths[class_number * (PATTERN_WIDTHS / 4u) + place / 4u][place % 4u];
+}
+
+// How far from the start of a segment, in plan along it, its point is that is seen nearest to the middle of a pixel. In plan another
+// one is nearest: shapes across the line would be sheared on the picture.
+fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> f32 {
+    let right = plan_step(pixel, vec2(1, 0), depth_buffer, position, segment);
+    let down = plan_step(pixel, vec2(0, 1), depth_buffer, position, segment);
+    let area = right.x * down.y - right.y * down.x;
+    let segment_m = length(segment.start_to_end);
+    if area == 0.0 || segment_m < 1e-6 {
+        return dot(position - segment.start, segment.start_to_end) / max(segment_m, 1e-6);
+    }
+    let px_from_m = mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
+    let from_start = px_from_m * (position - segment.start);
+    let along = px_from_m * segment.start_to_end;
+    return segment_m * dot(from_start, along) / max(dot(along, along), 1e-12);
+}
+
+// How wide a line is at a place, as a share of its width. What its pattern has keeps its length where the pattern gets longer.
+fn width_share(in: RoadFragment, pixel: vec2<i32>, depth_buffer: f32, position: vec3<f32>) -> f32 {
+    let class_number = in.class_and_other & 15u;
+    if pattern_width(class_number, 0u) < 0.0 {
+        return 1.0;
+    }
+    let from_start_m = seen_from_start_m(pixel, depth_buffer, position.xy, segment_of(in));
+    let found = in_pattern(in, position, from_start_m, frame.dashes[class_number].w);
+    let last = f32(PATTERN_WIDTHS - 1u);
+    let at = clamp(found.share * found.stretch * f32(PATTERN_WIDTHS) - 0.5, 0.0, last);
+    let before = u32(at);
+    let after = min(before + 1u, PATTERN_WIDTHS - 1u);
+    return mix(pattern_width(class_number, before), pattern_width(class_number, after), fract(at));
 }
 
 // The label of a line at a place: none in a gap. The label of a tunnel is odd on a dash.

@@ -258,9 +258,11 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     let road = road_of(in);
-    let label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y);
+    let position = position_at(in.clip.xy, depth_buffer);
+    let share = width_share(in, pixel, depth_buffer, position);
+    let label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y, share);
     if label == NOTHING {
         discard;
     }
-    return stored(label_on(label, in, position_at(in.clip.xy, depth_buffer)));
+    return stored(label_on(label, in, position));
 }

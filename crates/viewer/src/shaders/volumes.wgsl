@@ -197,14 +197,16 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     }
     let road = road_of(in);
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
+    let position = position_at(in.clip.xy, depth_buffer);
     var label: u32;
     if frame.road_options.y > 0.5 {
         label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road);
     } else {
-        label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y);
+        let share = width_share(in, pixel, depth_buffer, position);
+        label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y, share);
     }
     if label == NOTHING {
         discard;
     }
-    return stored(label_on(label, in, position_at(in.clip.xy, depth_buffer)));
+    return stored(label_on(label, in, position));
 }

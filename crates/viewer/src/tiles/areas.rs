@@ -12,7 +12,6 @@
 //! Source: Schneider & Klein 2007, *Efficient and Accurate Rendering of Vector Data on Virtual Landscapes*, Journal of WSCG 15.
 
 mod border_strips;
-mod drawn;
 mod plan_mesh;
 
 use std::ops::Range;
@@ -21,7 +20,6 @@ use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
-pub use self::drawn::DrawnArea;
 use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
@@ -136,16 +134,14 @@ impl AreaVolumes {
 
     /// Several sets of volumes of one tile as one.
     #[must_use]
-    pub fn joined<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self {
+    pub fn joined(parts: &[&Self]) -> Self {
         let mut joined = Self::default();
         for class in AreaClass::ALL {
             let (first_wall, first_index) = (joined.walls.len(), joined.triangles.len());
             let mut around = NOWHERE;
             let mut polygons = 0;
-            let of_class = |part: &'a Self| {
-                part.classes.iter().find(|of| of.class == class).map(|of| (part, of))
-            };
-            for (part, of) in parts.clone().filter_map(of_class) {
+            for part in parts {
+                let Some(of) = part.classes.iter().find(|of| of.class == class) else { continue };
                 let in_list = |range: &Range<u32>| range.start as usize..range.end as usize;
                 let first = joined.corners.len() as u32;
                 joined.walls.extend_from_slice(&part.walls[in_list(&of.walls)]);

@@ -6,6 +6,7 @@
 //! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
 pub(crate) mod areas;
+mod drawn_area;
 mod geometry;
 mod ground_mesh;
 mod line_layers;
@@ -28,7 +29,8 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
-    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes, DrawnArea},
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
+    drawn_area::DrawnArea,
     geometry::TileGeometry,
     line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,

@@ -28,7 +28,7 @@ fn styles_that_cannot_change_are_never_asked_about() {
 #[test]
 fn the_first_style_is_asked_about_once_a_second_and_stays_if_it_is_broken() {
     let mut answers =
-        VecDeque::from([None, Some(Err("no such colour".to_owned())), Some(Ok(wide(7)))]);
+        VecDeque::from(vec![None, Some(Err("no such colour".to_owned())), Some(Ok(wide(7)))]);
     let reload: Reload = Box::new(move || answers.pop_front().expect("asked too often"));
     let mut list = StyleList::new(vec![named("a", 1), named("b", 2)], Some(reload));
     assert_eq!(list.reload(0.5), None, "too early");

@@ -161,7 +161,8 @@ impl LaidTile {
 
     fn joined(&self) -> (TileLayer, AreaVolumes) {
         let outlines = TileLayer::joined(self.lines.values().map(|line| &line.outline));
-        (outlines, AreaVolumes::joined(self.lines.values().map(|line| &line.inside)))
+        let inside: Vec<&AreaVolumes> = self.lines.values().map(|line| &line.inside).collect();
+        (outlines, AreaVolumes::joined(&inside))
     }
 }
 

@@ -37,8 +37,8 @@ pub(crate) fn smoothed(line: &Line, place: impl Fn([f64; 2]) -> Point) -> Option
     };
     let segments = if line.is_area { count } else { count - 1 };
     let mut curve = Vec::with_capacity(segments * MOST_PIECES + 1);
-    for index in 0..segments {
-        curve.push(points[index]);
+    for (index, point) in points.iter().enumerate().take(segments) {
+        curve.push(*point);
         let corners = [before(index), at(index), at(index + 1), after(index)];
         let between = (1..MOST_PIECES).map(|piece| piece as f64 / MOST_PIECES as f64);
         curve.extend(between.map(|share| place(on_curve(corners, share).to_array())));

@@ -5,8 +5,7 @@ use corniche_geom::{Frame, LatticeBounds, LatticePoint};
 use corniche_styles::Style;
 use corniche_tileset::{AreaRecord, AreaRings};
 
-use super::AreaVolumes;
-use crate::tiles::TileGeometry;
+use super::{AreaVolumes, TileGeometry};
 
 /// An area that a person draws, in plan. Where its outline crosses itself, the even-odd rule says what is inside.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -49,5 +48,5 @@ impl DrawnArea {
 }
 
 #[cfg(test)]
-#[path = "drawn_tests.rs"]
+#[path = "drawn_area_tests.rs"]
 mod tests;
