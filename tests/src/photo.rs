@@ -11,6 +11,14 @@ use corniche_testing::ColourImage;
 
 use crate::{Ran, build_pass, corniche, manifest, sample, text};
 
+/// The colour that [`photo`] has at a longitude and latitude; `bounds_deg` are west, south, east and north of the sample.
+#[must_use]
+pub fn colour([lon, lat]: [f64; 2], [west, south, east, north]: [f64; 4]) -> [u8; 3] {
+    let (u, v) = ((lon - west) / (east - west), (lat - south) / (north - south));
+    let wave = |t: f64| (127.0 + 100.0 * (t * 40.0).sin()) as u8;
+    [wave(u), wave(v), wave(u + v)]
+}
+
 /// A photo over the middle of the sample `pass`, in degrees; the sample is in UTM zone 32. Its colours change over some cells.
 ///
 /// # Panics
@@ -22,11 +30,7 @@ pub fn photo(folder: &Path, west: f64, name: &str) -> PathBuf {
     let at = |key: &str| bounds[key].as_f64().unwrap();
     let (min_x, max_x, min_y, max_y) = (at("min_x"), at("max_x"), at("min_y"), at("max_y"));
     let (width, height) = (max_x - min_x, max_y - min_y);
-    let value = |[x, y]: [f64; 2]| {
-        let (u, v) = ((x - min_x) / width, (y - min_y) / height);
-        let wave = |t: f64| (127.0 + 100.0 * (t * 40.0).sin()) as u8;
-        vec![wave(u), wave(v), wave(u + v)]
-    };
+    let value = |at: [f64; 2]| colour(at, [min_x, min_y, max_x, max_y]).to_vec();
     let size = 900;
     let (left, top) = (min_x + west * width, max_y - 0.21 * height);
     let step = [0.5 * width / f64::from(size), 0.55 * height / f64::from(size)];

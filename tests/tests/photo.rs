@@ -2,13 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use e2e::{
     Job, When, corniche, draw, manifest,
-    photo::{build, inputs, photo, succeed},
+    photo::{build, colour, inputs, photo, succeed},
     real_data, sample, skipped, text,
 };
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
 #[test]
 fn a_package_with_photos_keeps_its_promises_and_is_the_same_however_it_is_made() {
@@ -179,6 +183,20 @@ fn photos_are_drawn_as_strongly_as_is_asked() {
     assert!(ran.code != 0 && ran.err.contains("from 0 to 1"), "{}", ran.err);
 }
 
+/// The style `photo` without any light or haze.
+fn flat_style(folder: &Path) -> PathBuf {
+    let sheet = fs::read_to_string(e2e::root().join("crates/styles/sheets/photo.toml")).unwrap();
+    let flat = sheet
+        .replace("hillshade = 0.4", "hillshade = 0")
+        .replace("haze_reach = 6", "haze_reach = 1000")
+        .replace("sky = 0.3", "sky = 0")
+        .replace("valley_haze = 0.1", "valley_haze = 0");
+    assert_ne!(flat, sheet);
+    let path = folder.join("flat.toml");
+    fs::write(&path, flat).unwrap();
+    path
+}
+
 /// Over tile borders, and from one level to the next, a smooth photo stays smooth: neighbouring pixels never jump. Without the border
 /// that tiles share, or with a shift of half a texel, they do.
 #[test]
@@ -188,14 +206,6 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
     let (west, east) =
         (photo(folder.path(), 0.05, "west.tif"), photo(folder.path(), 0.45, "east.tif"));
     let _ = build(&inputs(&[&west, &east]), &at("photo.pmtiles"), &["--photo-quality", "95"]);
-    let sheet = fs::read_to_string(e2e::root().join("crates/styles/sheets/photo.toml")).unwrap();
-    let flat = sheet
-        .replace("hillshade = 0.4", "hillshade = 0")
-        .replace("haze_reach = 6", "haze_reach = 1000")
-        .replace("sky = 0.3", "sky = 0")
-        .replace("valley_haze = 0.1", "valley_haze = 0");
-    assert_ne!(flat, sheet);
-    fs::write(at("flat.toml"), flat).unwrap();
     let found = manifest(&at("photo.pmtiles"));
     // Ground without voids, over borders of tiles.
     let at_share = |low: &str, high: &str, share: f64| {
@@ -204,7 +214,7 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
         low + share * (high - low)
     };
     let place = format!("{},{}", at_share("min_x", "max_x", 0.25), at_share("min_y", "max_y", 0.5));
-    let style = at("flat.toml");
+    let style = flat_style(folder.path());
     for distance in ["1500", "4000"] {
         let options = [
             "--size",
@@ -241,6 +251,72 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
         // A pixel between two tiles may show a wall; along a border that is seen there are hundreds.
         assert!(jumps <= 12, "{distance} m: {jumps} jumps");
     }
+}
+
+/// Straight from above every pixel has the colour that the photo has at its place.
+#[test]
+fn from_above_the_photo_lies_where_it_should() {
+    const SIZE: [u32; 2] = [400, 300];
+    const PIXEL_M: f64 = 5.0;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let west = photo(folder.path(), 0.05, "west.tif");
+    let _ = build(&inputs(&[&west]), &at("photo.pmtiles"), &["--photo-quality", "95"]);
+    let found = manifest(&at("photo.pmtiles"));
+    let bounds = ["min_x", "min_y", "max_x", "max_y"]
+        .map(|key| found["wgs84_bounds"][key].as_f64().unwrap());
+    let [min_x, min_y, max_x, max_y] = bounds;
+    // The middle of the photo.
+    let middle_deg = [min_x + 0.3 * (max_x - min_x), max_y - 0.485 * (max_y - min_y)];
+    let look_at = format!("{},{}", middle_deg[0], middle_deg[1]);
+    let (size, pixel) = (format!("{}x{}", SIZE[0], SIZE[1]), PIXEL_M.to_string());
+    let style = flat_style(folder.path());
+    let options = [
+        "--ortho",
+        "--look-at",
+        &look_at,
+        "--pixel",
+        &pixel,
+        "--size",
+        &size,
+        "--supersampling",
+        "1",
+        "--roads",
+        "none",
+        "--style",
+        text(&style),
+    ];
+    if draw("render", &at("photo.pmtiles"), &at("above.png"), &options).is_none() {
+        return;
+    }
+    let picture = image::open(at("above.png")).unwrap().to_rgb8();
+    let [degrees, package] =
+        [SpatialRef::from_epsg(4326), SpatialRef::from_wkt(found["crs_wkt"].as_str().unwrap())]
+            .map(|reference| {
+                let mut reference = reference.unwrap();
+                reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+                reference
+            });
+    let carry = |from: &SpatialRef, to: &SpatialRef, mut x: Vec<f64>, mut y: Vec<f64>| {
+        let transform = CoordTransform::new(from, to).unwrap();
+        transform.transform_coords(&mut x, &mut y, &mut []).unwrap();
+        (x, y)
+    };
+    let (middle_x, middle_y) = carry(&degrees, &package, vec![middle_deg[0]], vec![middle_deg[1]]);
+    let pixels: Vec<[u32; 2]> =
+        (20..260).step_by(3).flat_map(|y| (20..380).step_by(3).map(move |x| [x, y])).collect();
+    let from_middle = |at: u32, side: u32| (f64::from(at) + 0.5 - f64::from(side) / 2.0) * PIXEL_M;
+    let x = pixels.iter().map(|[x, _]| middle_x[0] + from_middle(*x, SIZE[0])).collect();
+    let y = pixels.iter().map(|[_, y]| middle_y[0] - from_middle(*y, SIZE[1])).collect();
+    let (lon, lat) = carry(&package, &degrees, x, y);
+    let mut wrong = 0;
+    for (index, [x, y]) in pixels.iter().enumerate() {
+        let expected = colour([lon[index], lat[index]], bounds);
+        let seen = picture.get_pixel(*x, *y).0;
+        wrong += u32::from((0..3).any(|channel| seen[channel].abs_diff(expected[channel]) > 5));
+    }
+    // Voids of the ground have no photo.
+    assert!(wrong as usize * 50 < pixels.len(), "{wrong} of {}", pixels.len());
 }
 
 /// Real photos: one far finer than its DEM, and one on the grid of a DEM that says `PixelIsPoint`.

@@ -118,15 +118,7 @@ impl AreaVolumes {
                     polygons += 1;
                 }
             }
-            if polygons > 0 {
-                volumes.classes.push(ClassVolumes {
-                    class,
-                    walls: first_wall as u32..volumes.walls.len() as u32,
-                    triangles: first_index as u32..volumes.triangles.len() as u32,
-                    box_in_tile: around,
-                    polygons,
-                });
-            }
+            volumes.end_class(class, [first_wall, first_index], around, polygons);
         }
         volumes.unite_boxes();
         Ok(volumes)
@@ -151,15 +143,7 @@ impl AreaVolumes {
                 around = united(around, of.box_in_tile);
                 polygons += of.polygons;
             }
-            if polygons > 0 {
-                joined.classes.push(ClassVolumes {
-                    class,
-                    walls: first_wall as u32..joined.walls.len() as u32,
-                    triangles: first_index as u32..joined.triangles.len() as u32,
-                    box_in_tile: around,
-                    polygons,
-                });
-            }
+            joined.end_class(class, [first_wall, first_index], around, polygons);
         }
         joined.unite_boxes();
         joined
@@ -169,6 +153,25 @@ impl AreaVolumes {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.classes.is_empty()
+    }
+
+    /// What was added since there were so many walls and indices are the volumes of a class, if there are some.
+    fn end_class(
+        &mut self,
+        class: AreaClass,
+        [first_wall, first_index]: [usize; 2],
+        around: [[f32; 3]; 2],
+        polygons: u32,
+    ) {
+        if polygons > 0 {
+            self.classes.push(ClassVolumes {
+                class,
+                walls: first_wall as u32..self.walls.len() as u32,
+                triangles: first_index as u32..self.triangles.len() as u32,
+                box_in_tile: around,
+                polygons,
+            });
+        }
     }
 
     fn unite_boxes(&mut self) {
