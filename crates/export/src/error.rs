@@ -45,6 +45,12 @@ pub enum ExportError {
     NoWay { package: PathBuf, way_id: i64, level: u8 },
     #[error("no line lies on ground of {package:?}")]
     NoLineOnGround { package: PathBuf },
+    #[error("{package:?} has no ground there; corniche info tells its extent")]
+    NoGround { package: PathBuf },
+    #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
+    GlbAxis,
+    #[error("cannot write {path:?} (disk full?)")]
+    WriteModel { path: PathBuf, source: io::Error },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(
@@ -99,6 +105,7 @@ impl ExportError {
             self,
             Self::NoDriver { .. }
                 | Self::Write { .. }
+                | Self::WriteModel { .. }
                 | Self::NotWhole { .. }
                 | Self::ReadAgain { .. }
                 | Self::Sort { .. }

@@ -1,4 +1,5 @@
-//! Roads and areas of a package as features for other programs: GeoPackage, FlatGeobuf, GeoJSON, CSV.
+//! What a package holds, for other programs: roads and areas as features (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models
+//! (GLB, PLY, OBJ).
 //!
 //! ```text
 //!   tiles of a level ──► pieces ──► cut at the bounds ──► sorted by way, on disk
@@ -17,6 +18,8 @@
 //!
 //! Areas go the same way, sorted by object; what tiles hold of one is joined where both sides of a border have the same segments.
 //!
+//! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
+//!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
 //!
 //! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
@@ -33,6 +36,7 @@ mod growth;
 mod join;
 mod laid_lines;
 mod measures;
+mod mesh;
 mod observer;
 mod piece;
 mod places;
@@ -49,6 +53,7 @@ pub use bounds::DegreeBounds;
 pub use error::ExportError;
 pub use feature::road_fields;
 pub use growth::{WayGrowth, growth_by_way};
+pub use mesh::{MeshFormat, MeshRequest, MeshSummary, UpAxis, export_mesh};
 pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use request::{AreasRequest, Coordinates, RoadsRequest};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 use corniche_areas::AreaClass;
-use corniche_export::{DegreeBounds, VectorFormat};
+use corniche_export::{DegreeBounds, MeshFormat, UpAxis, VectorFormat};
 use corniche_presets::{BoundsChoice, Classes};
 
 #[derive(Debug, Args)]
@@ -19,6 +19,8 @@ pub(crate) enum Export {
     Roads(Box<ExportRoadsArgs>),
     /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
     Areas(Box<ExportAreasArgs>),
+    /// Write the ground of a package and its roads as a model for 3D programs (GLB, PLY, OBJ)
+    Mesh(Box<ExportMeshArgs>),
 }
 
 // What is read, and the file that is written.
@@ -75,6 +77,82 @@ pub(crate) struct ExportAreasArgs {
     /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
     pub(crate) crs: ExportCrs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportMeshArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The file to write; its ending is its format: .glb, .ply or .obj
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// The format of a file with another ending
+    #[arg(short, long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<ModelFormat>,
+    /// The level that is taken [default: the finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+    /// Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
+    pub(crate) bounds: Option<DegreeBounds>,
+    /// Roads as lines on the ground, or none
+    #[arg(long, value_enum, default_value = "lines")]
+    pub(crate) roads: ModelRoads,
+    /// Functional road classes that are taken, such as 0-4,7
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
+    pub(crate) classes: Classes,
+    /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
+    #[arg(long, value_enum, value_name = "AXIS")]
+    pub(crate) up: Option<Up>,
+}
+
+/// Formats of models by the endings of their files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModelFormat {
+    /// Binary glTF 2.0
+    Glb,
+    /// PLY, binary, positions in double precision
+    Ply,
+    /// Wavefront OBJ
+    Obj,
+}
+
+impl From<ModelFormat> for MeshFormat {
+    fn from(format: ModelFormat) -> Self {
+        match format {
+            ModelFormat::Glb => Self::Glb,
+            ModelFormat::Ply => Self::Ply,
+            ModelFormat::Obj => Self::Obj,
+        }
+    }
+}
+
+/// What a model has of roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModelRoads {
+    /// Their centre-lines on the ground
+    Lines,
+    /// Nothing
+    None,
+}
+
+/// The axis of a model that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Up {
+    Y,
+    Z,
+}
+
+impl From<Up> for UpAxis {
+    fn from(up: Up) -> Self {
+        match up {
+            Up::Y => Self::Y,
+            Up::Z => Self::Z,
+        }
+    }
 }
 
 /// Formats by the endings of their files.

@@ -1,0 +1,222 @@
+//! Binary glTF 2.0: a node for each tile, with its ground and the roads of each class as lines.
+//!
+//! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
+//!
+//! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6, 3.7 and 4.4.
+
+use std::{
+    io::{self, Write},
+    path::Path,
+};
+
+use serde_json::{Map, Value, json};
+
+use super::{
+    model::TileMesh,
+    request::UpAxis,
+    spill::Spill,
+    writer::{About, MeshWriter},
+};
+
+const ARRAY_BUFFER: u32 = 34_962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
+const F32: u32 = 5126;
+const U32: u32 = 5125;
+const LINES: u32 = 1;
+const TRIANGLES: u32 = 4;
+const HEADER_BYTES: u64 = 12;
+const CHUNK_HEADER_BYTES: u64 = 8;
+
+pub(crate) struct GlbWriter {
+    bytes: Spill,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    nodes: Vec<Value>,
+    materials: Vec<Value>,
+}
+
+impl GlbWriter {
+    pub(crate) fn new(path: &Path, colors: &[[f32; 3]]) -> io::Result<Self> {
+        let material = |(number, [red, green, blue]): (usize, &[f32; 3])| {
+            let name = match number {
+                0 => "terrain".to_owned(),
+                _ => format!("roads FRC {}", number - 1),
+            };
+            json!({
+                "name": name,
+                "pbrMetallicRoughness": {
+                    // Colours of styles are sRGB, those of glTF linear.
+                    "baseColorFactor": [linear(*red), linear(*green), linear(*blue), 1.0],
+                    "metallicFactor": 0.0,
+                    "roughnessFactor": 1.0,
+                },
+            })
+        };
+        Ok(Self {
+            bytes: Spill::beside(path)?,
+            views: Vec::new(),
+            accessors: Vec::new(),
+            meshes: Vec::new(),
+            nodes: Vec::new(),
+            materials: colors.iter().enumerate().map(material).collect(),
+        })
+    }
+
+    /// Adds numbers to the buffer; returns the number of its accessor.
+    fn add(&mut self, content: &Content<'_>) -> io::Result<usize> {
+        let offset = self.bytes.length();
+        let (target, accessor) = match content {
+            Content::Vectors { vectors, has_range } => {
+                self.bytes.push(
+                    bytes_of(vectors.as_flattened().iter().map(|v| v.to_le_bytes())).as_slice(),
+                )?;
+                let mut accessor = json!({
+                    "componentType": F32, "type": "VEC3", "count": vectors.len(),
+                });
+                if *has_range {
+                    let range = |pick: fn(f32, f32) -> f32| {
+                        [0, 1, 2].map(|axis: usize| {
+                            vectors.iter().map(|vector| vector[axis]).reduce(pick).unwrap_or(0.0)
+                        })
+                    };
+                    accessor["min"] = json!(range(f32::min));
+                    accessor["max"] = json!(range(f32::max));
+                }
+                (ARRAY_BUFFER, accessor)
+            }
+            Content::Indices(indices) => {
+                self.bytes
+                    .push(bytes_of(indices.iter().map(|index| index.to_le_bytes())).as_slice())?;
+                let accessor =
+                    json!({ "componentType": U32, "type": "SCALAR", "count": indices.len() });
+                (ELEMENT_ARRAY_BUFFER, accessor)
+            }
+        };
+        let length = self.bytes.length() - offset;
+        self.views.push(
+            json!({ "buffer": 0, "byteOffset": offset, "byteLength": length, "target": target }),
+        );
+        let mut accessor = accessor;
+        accessor["bufferView"] = json!(self.views.len() - 1);
+        self.accessors.push(accessor);
+        Ok(self.accessors.len() - 1)
+    }
+}
+
+enum Content<'a> {
+    Vectors { vectors: &'a [[f32; 3]], has_range: bool },
+    Indices(&'a [u32]),
+}
+
+fn bytes_of(numbers: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
+    numbers.flatten().collect()
+}
+
+/// A channel of sRGB as a linear one (IEC 61966-2-1).
+fn linear(channel: f32) -> f32 {
+    if channel <= 0.040_45 { channel / 12.92 } else { ((channel + 0.055) / 1.055).powf(2.4) }
+}
+
+impl MeshWriter for GlbWriter {
+    fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
+        let all = tile.corners.iter().map(|corner| corner.at_m);
+        let middle =
+            middle_of(all.chain(tile.roads.iter().flat_map(|road| road.points_m.iter().copied())));
+        let about_middle = |at_m: &[f64; 3]| {
+            UpAxis::Y.along_axes([0, 1, 2].map(|axis| (at_m[axis] - middle[axis]) as f32))
+        };
+        let places: Vec<[f32; 3]> =
+            tile.corners.iter().map(|corner| about_middle(&corner.at_m)).collect();
+        let normals: Vec<[f32; 3]> =
+            tile.corners.iter().map(|corner| UpAxis::Y.along_axes(corner.normal)).collect();
+        let positions = self.add(&Content::Vectors { vectors: &places, has_range: true })?;
+        let normals = self.add(&Content::Vectors { vectors: &normals, has_range: false })?;
+        let indices = self.add(&Content::Indices(tile.triangles.as_flattened()))?;
+        let mut primitives = vec![json!({
+            "attributes": { "POSITION": positions, "NORMAL": normals },
+            "indices": indices, "material": 0, "mode": TRIANGLES,
+        })];
+        let mut classes: Vec<_> = tile.roads.iter().map(|road| road.class).collect();
+        classes.sort_unstable();
+        classes.dedup();
+        for class in classes {
+            let (mut points, mut indices) = (Vec::new(), Vec::new());
+            for road in tile.roads.iter().filter(|road| road.class == class) {
+                let first = points.len() as u32;
+                points.extend(road.points_m.iter().map(about_middle));
+                indices.extend((first + 1..points.len() as u32).flat_map(|end| [end - 1, end]));
+            }
+            let positions = self.add(&Content::Vectors { vectors: &points, has_range: true })?;
+            let indices = self.add(&Content::Indices(&indices))?;
+            primitives.push(json!({
+                "attributes": { "POSITION": positions },
+                "indices": indices, "material": 1 + class.number(), "mode": LINES,
+                "extras": { "frc": class.number() },
+            }));
+        }
+        let name = tile.id.to_string();
+        self.meshes.push(json!({ "name": name, "primitives": primitives }));
+        self.nodes.push(json!({
+            "name": name,
+            "mesh": self.meshes.len() - 1,
+            "translation": UpAxis::Y.along_axes(middle),
+        }));
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+        let Self { bytes, views, accessors, meshes, nodes, materials } = *self;
+        let facts: Map<String, Value> = about
+            .facts
+            .iter()
+            .map(|(name, text)| ((*name).to_owned(), Value::from(text.as_str())))
+            .collect();
+        let document = json!({
+            "asset": {
+                "version": "2.0",
+                "generator": about.fact("generator"),
+                "copyright": about.fact("attribution"),
+                "extras": facts,
+            },
+            "scene": 0,
+            "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+            "nodes": nodes,
+            "meshes": meshes,
+            "materials": materials,
+            "accessors": accessors,
+            "bufferViews": views,
+            "buffers": [{ "byteLength": bytes.length() }],
+        });
+        let mut json = document.to_string().into_bytes();
+        // Chunks are whole fours of bytes; all numbers of the buffer are.
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let total = HEADER_BYTES + 2 * CHUNK_HEADER_BYTES + json.len() as u64 + bytes.length();
+        let too_large = |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB ends at 4 GiB");
+        let length = |bytes: u64| u32::try_from(bytes).map(u32::to_le_bytes).map_err(too_large);
+        let mut into = into;
+        into.write_all(b"glTF")?;
+        into.write_all(&2_u32.to_le_bytes())?;
+        into.write_all(&length(total)?)?;
+        into.write_all(&length(json.len() as u64)?)?;
+        into.write_all(b"JSON")?;
+        into.write_all(&json)?;
+        into.write_all(&length(bytes.length())?)?;
+        into.write_all(b"BIN\0")?;
+        bytes.copy_to(&mut into)
+    }
+}
+
+/// The middle of some points, whole metres.
+fn middle_of(points: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
+    let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let [low, high] =
+        points.fold(nothing, |[low, high], at| {
+            [0, 1].map(|end: usize| {
+                [0, 1, 2].map(|axis: usize| {
+                    if end == 0 { low[axis].min(at[axis]) } else { high[axis].max(at[axis]) }
+                })
+            })
+        });
+    [0, 1, 2].map(|axis: usize| f64::midpoint(low[axis], high[axis]).round())
+}

@@ -1,0 +1,82 @@
+//! Wavefront OBJ: the ground as one group of triangles, roads of each class as a group of lines.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write},
+    path::Path,
+};
+
+use super::{
+    model::TileMesh,
+    request::UpAxis,
+    spill::Spill,
+    weld::Welding,
+    writer::{About, MeshWriter},
+};
+
+pub(crate) struct ObjWriter {
+    up: UpAxis,
+    welding: Welding,
+    /// Everything but the head.
+    lines: Spill,
+    /// Positions so far; the first one has the number 1.
+    positions: u32,
+    /// For each welded corner of the ground, the number of its position; its normal has the corner's own number.
+    position_of: Vec<u32>,
+}
+
+impl ObjWriter {
+    pub(crate) fn new(path: &Path, up: UpAxis) -> io::Result<Self> {
+        let lines = Spill::beside(path)?;
+        Ok(Self { up, welding: Welding::default(), lines, positions: 0, position_of: Vec::new() })
+    }
+}
+
+impl MeshWriter for ObjWriter {
+    fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
+        let Self { up, welding, lines, positions, position_of } = self;
+        // Writing to a text cannot fail. To a tenth of a millimetre.
+        let position = |text: &mut String, at_m: [f64; 3]| {
+            let [x, y, z] = up.along_axes(at_m);
+            let _ = writeln!(text, "v {x:.4} {y:.4} {z:.4}");
+        };
+        let mut text = String::new();
+        let numbers = welding.numbers(tile, |corner| {
+            position(&mut text, corner.at_m);
+            let [x, y, z] = up.along_axes(corner.normal);
+            let _ = writeln!(text, "vn {x:.4} {y:.4} {z:.4}");
+            *positions += 1;
+            position_of.push(*positions);
+            u32::try_from(position_of.len()).map_err(io::Error::other)
+        })?;
+        text.push_str("g terrain\n");
+        for triangle in &tile.triangles {
+            let [a, b, c] = triangle.map(|corner| {
+                let number = numbers[corner as usize];
+                format!("{}//{number}", position_of[number as usize - 1])
+            });
+            let _ = writeln!(text, "f {a} {b} {c}");
+        }
+        for road in &tile.roads {
+            let first = *positions + 1;
+            for point in &road.points_m {
+                position(&mut text, *point);
+                *positions += 1;
+            }
+            let _ = write!(text, "g roads_frc_{}\nl", road.class.number());
+            for number in first..=*positions {
+                let _ = write!(text, " {number}");
+            }
+            text.push('\n');
+        }
+        lines.push(text.as_bytes())
+    }
+
+    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+        let mut into = into;
+        for (name, text) in &about.facts {
+            writeln!(into, "# {name}: {}", text.replace(['\n', '\r'], " "))?;
+        }
+        self.lines.copy_to(&mut into)
+    }
+}
