@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_viewer::{
     CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth, Wireframe,
 };
-use corniche_window::{Areas, CommandOf, ShownView};
+use corniche_window::{CommandOf, ShownView, Visibility};
 
 use corniche_styles::Rgb;
 
@@ -64,10 +64,10 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     if let Some(photo) = shown.photo {
         option("--photo", photo.to_string());
     }
-    if shown.areas == Areas::Hidden {
+    if shown.areas == Visibility::Hidden {
         option("--areas", "off".to_owned());
     }
-    if shown.boundaries == Areas::Hidden {
+    if shown.boundaries == Visibility::Hidden {
         option("--boundaries", "off".to_owned());
     }
     for (number, overlay) in overlays.iter().enumerate() {

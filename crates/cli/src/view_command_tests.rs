@@ -17,8 +17,8 @@ fn shown(roads: RoadOptions) -> ShownView {
         roads,
         style: "my styles/night 'n day.toml".to_owned(),
         photo: Some(0.25),
-        areas: Areas::Shown,
-        boundaries: Areas::Shown,
+        areas: Visibility::Shown,
+        boundaries: Visibility::Shown,
         hidden_overlays: std::collections::BTreeSet::new(),
         overlay_colors: vec![[1.0, 0.5, 0.0], [0.0, 0.0, 1.0]],
         exaggeration: 1.5,
@@ -138,7 +138,7 @@ fn every_look_of_roads_is_read_as_it_was() {
     assert_eq!(count, 84);
     let none = shown(RoadOptions::of(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
-    for areas in [Areas::Shown, Areas::Hidden] {
+    for areas in [Visibility::Shown, Visibility::Hidden] {
         let shown = ShownView { areas, ..none.clone() };
         assert_eq!(read("a", &shown).look.areas.in_window(), areas);
     }

@@ -45,6 +45,6 @@ pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};
 pub use request::{
-    Areas, BeginTrace, ClockS, CommandOf, DrawnLine, NamedStyle, Reload, SaveDrawing, ShownView,
-    WindowRequest,
+    BeginTrace, ClockS, CommandOf, DrawnLine, NamedStyle, Reload, SaveDrawing, ShownView,
+    Visibility, WindowRequest,
 };

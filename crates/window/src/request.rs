@@ -15,9 +15,9 @@ pub struct NamedStyle {
     pub style: Style,
 }
 
-/// Whether areas, or boundaries, are drawn, where the package has some.
+/// Whether a layer is drawn, where the package has it: areas, or boundaries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Areas {
+pub enum Visibility {
     /// Those that the style draws.
     Shown,
     /// None.
@@ -38,9 +38,9 @@ pub struct ShownView {
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
-    pub areas: Areas,
+    pub areas: Visibility,
     /// Whether boundaries are drawn as the style says, or not at all.
-    pub boundaries: Areas,
+    pub boundaries: Visibility,
     /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
     pub hidden_overlays: BTreeSet<usize>,
     /// Colours of the lines of all files, in the style that is shown.
@@ -108,9 +108,9 @@ pub struct WindowRequest {
     /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
     /// Whether areas are drawn at first, as the style says, or not at all.
-    pub areas: Areas,
+    pub areas: Visibility,
     /// Whether boundaries are drawn at first, as the style says, or not at all.
-    pub boundaries: Areas,
+    pub boundaries: Visibility,
     /// What the files of lines are called that the package's tiles carry, in the order of the style's
     /// [`overlays`](corniche_styles::Style::overlays).
     pub overlays: Vec<String>,

@@ -6,7 +6,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions, Wireframe};
 
-use crate::Areas;
+use crate::Visibility;
 
 /// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,9 +56,9 @@ pub(crate) struct Settings {
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub(crate) photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
-    pub(crate) areas: Areas,
+    pub(crate) areas: Visibility,
     /// Whether boundaries are drawn as the style says, or not at all.
-    pub(crate) boundaries: Areas,
+    pub(crate) boundaries: Visibility,
     /// Files of lines that are not shown, by their numbers.
     pub(crate) hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
@@ -98,11 +98,11 @@ impl Settings {
     /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas and lines of files that are not.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = match self.areas {
-            Areas::Shown => style.clone(),
-            Areas::Hidden => style.clone().without_areas(),
+            Visibility::Shown => style.clone(),
+            Visibility::Hidden => style.clone().without_areas(),
         };
         applied.photo = self.photo.unwrap_or(applied.photo);
-        if self.boundaries == Areas::Hidden {
+        if self.boundaries == Visibility::Hidden {
             applied = applied.without_boundaries();
         }
         for (number, line) in applied.overlays.iter_mut().enumerate() {
@@ -131,8 +131,8 @@ pub(crate) fn usual() -> Settings {
         width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
         photo: None,
-        areas: Areas::Shown,
-        boundaries: Areas::Shown,
+        areas: Visibility::Shown,
+        boundaries: Visibility::Shown,
         hidden_overlays: BTreeSet::new(),
         exaggeration: 1.0,
         screen_space_error_px: 2.0,

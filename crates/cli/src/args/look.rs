@@ -97,19 +97,19 @@ pub(crate) enum Outline {
 
 /// Whether areas, or boundaries, are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Areas {
+pub(crate) enum OnOff {
     /// Those that the style draws
     On,
     /// None
     Off,
 }
 
-impl Areas {
+impl OnOff {
     /// The same for a window.
-    pub(crate) fn in_window(self) -> corniche_window::Areas {
+    pub(crate) fn in_window(self) -> corniche_window::Visibility {
         match self {
-            Self::On => corniche_window::Areas::Shown,
-            Self::Off => corniche_window::Areas::Hidden,
+            Self::On => corniche_window::Visibility::Shown,
+            Self::Off => corniche_window::Visibility::Hidden,
         }
     }
 }
@@ -142,11 +142,11 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
     /// Areas (water, forest …), where the package has some: as the style draws them, or none
-    #[arg(long, value_enum, default_value_t = Areas::On)]
-    pub(crate) areas: Areas,
+    #[arg(long, value_enum, default_value_t = OnOff::On)]
+    pub(crate) areas: OnOff,
     /// Boundaries, where the package has some: as the style draws them, or none
-    #[arg(long, value_enum, default_value_t = Areas::On)]
-    pub(crate) boundaries: Areas,
+    #[arg(long, value_enum, default_value_t = OnOff::On)]
+    pub(crate) boundaries: OnOff,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
     /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
@@ -181,12 +181,12 @@ impl LookArgs {
     /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
         let style = match self.areas {
-            Areas::On => style,
-            Areas::Off => style.without_areas(),
+            OnOff::On => style,
+            OnOff::Off => style.without_areas(),
         };
         let style = match self.boundaries {
-            Areas::On => style,
-            Areas::Off => style.without_boundaries(),
+            OnOff::On => style,
+            OnOff::Off => style.without_boundaries(),
         };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)

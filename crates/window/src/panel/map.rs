@@ -2,7 +2,7 @@ use egui::{Color32, ComboBox, RichText, Slider, Ui};
 
 use super::slide::slide;
 use crate::{
-    Areas,
+    Visibility,
     settings::{Settings, range},
     window_content::WindowContent,
 };
@@ -25,15 +25,15 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
         slider.prefix("× ").max_decimals(2).text("heights")
     });
     if content.has.areas {
-        let mut are_shown = settings.areas == Areas::Shown;
+        let mut are_shown = settings.areas == Visibility::Shown;
         ui.checkbox(&mut are_shown, "Areas")
             .on_hover_text("Water, forest … as the style draws them");
-        settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
+        settings.areas = if are_shown { Visibility::Shown } else { Visibility::Hidden };
     }
     if content.has.boundaries {
-        let mut are_shown = settings.boundaries == Areas::Shown;
+        let mut are_shown = settings.boundaries == Visibility::Shown;
         ui.checkbox(&mut are_shown, "Boundaries").on_hover_text("As the style draws them");
-        settings.boundaries = if are_shown { Areas::Shown } else { Areas::Hidden };
+        settings.boundaries = if are_shown { Visibility::Shown } else { Visibility::Hidden };
     }
     for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
     {
