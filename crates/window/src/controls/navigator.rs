@@ -250,6 +250,8 @@ impl Navigator {
         self.gesture = None;
         self.flying.let_go();
         self.mode = Mode::Map;
+        // Going back to a view in perspective would undo this.
+        self.sighted = None;
         let view = &self.seen.view;
         self.seen.view = match view.from_above {
             None => {
