@@ -217,7 +217,7 @@ fn groups(picture: &RgbaImage) -> Vec<(usize, [u32; 2])> {
     found
 }
 
-/// A pattern half as long as its line is wide makes circles on the picture, also where the ground is seen obliquely.
+/// A pattern twice as long as its line is wide makes circles on the picture, also where the ground is seen obliquely.
 #[test]
 fn dots_are_round() {
     let scene = Scene::new();

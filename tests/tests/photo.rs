@@ -253,7 +253,7 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
     }
 }
 
-/// Straight from above every pixel has the colour that the photo has at its place.
+/// Straight from above pixels have the colours that the photo has at their places, and are not shifted by a third of a pixel.
 #[test]
 fn from_above_the_photo_lies_where_it_should() {
     const SIZE: [u32; 2] = [400, 300];
@@ -309,14 +309,42 @@ fn from_above_the_photo_lies_where_it_should() {
     let x = pixels.iter().map(|[x, _]| middle_x[0] + from_middle(*x, SIZE[0])).collect();
     let y = pixels.iter().map(|[_, y]| middle_y[0] - from_middle(*y, SIZE[1])).collect();
     let (lon, lat) = carry(&package, &degrees, x, y);
-    let mut wrong = 0;
+    let expected = |lon: f64, lat: f64| colour([lon, lat], bounds).map(f64::from);
+    let pixel_deg = [PIXEL_M / 76_000.0, PIXEL_M / 111_000.0];
+    // The shift for which colours agree best, by least squares over their change from pixel to pixel.
+    let (mut wrong, mut normal, mut right) = (0, [[0.0; 2]; 2], [0.0; 2]);
     for (index, [x, y]) in pixels.iter().enumerate() {
-        let expected = colour([lon[index], lat[index]], bounds);
-        let seen = picture.get_pixel(*x, *y).0;
-        wrong += u32::from((0..3).any(|channel| seen[channel].abs_diff(expected[channel]) > 5));
+        let (lon, lat) = (lon[index], lat[index]);
+        let (here, seen) = (expected(lon, lat), picture.get_pixel(*x, *y).0.map(f64::from));
+        // Over ten pixels, because colours are whole numbers.
+        let change =
+            [[10.0 * pixel_deg[0], 0.0], [0.0, 10.0 * pixel_deg[1]]].map(|[east, north]| {
+                let [after, before] =
+                    [1.0, -1.0].map(|sign| expected(lon + sign * east, lat + sign * north));
+                [0, 1, 2].map(|channel| (after[channel] - before[channel]) / 20.0)
+            });
+        let off = [0, 1, 2].map(|channel| seen[channel] - here[channel]);
+        if off.iter().any(|off| off.abs() > 5.0) {
+            // Voids of the ground have no photo.
+            wrong += 1;
+            continue;
+        }
+        for channel in 0..3 {
+            for one in 0..2 {
+                right[one] += change[one][channel] * off[channel];
+                for other in 0..2 {
+                    normal[one][other] += change[one][channel] * change[other][channel];
+                }
+            }
+        }
     }
-    // Voids of the ground have no photo.
-    assert!(wrong as usize * 50 < pixels.len(), "{wrong} of {}", pixels.len());
+    assert!(wrong * 50 < pixels.len(), "{wrong} of {}", pixels.len());
+    let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
+    let shift_px = [
+        (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant,
+        (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant,
+    ];
+    assert!(shift_px.iter().all(|shift| shift.abs() < 0.3), "{shift_px:?}");
 }
 
 /// Real photos: one far finer than its DEM, and one on the grid of a DEM that says `PixelIsPoint`.

@@ -107,13 +107,17 @@ fn save(
         None
     });
     let old = known.lines().into_iter();
-    let old: BTreeMap<usize, Vec<[f64; 2]>> =
-        old.map(|(number, _, points_deg)| (number, points_deg)).collect();
+    let old: BTreeMap<usize, (bool, Vec<[f64; 2]>)> = old
+        .map(|(number, shape, points_deg)| (number, (shape == Shape::Area, points_deg)))
+        .collect();
     let mut store = TileStore::new(package);
     let mut saved = Vec::with_capacity(lines.len());
     for line in lines {
         // What has not changed stays as it is in the file.
-        let is_old = line.feature.and_then(|feature| old.get(&feature)) == Some(&line.points_deg);
+        let known = line.feature.and_then(|feature| old.get(&feature));
+        let is_old = known.is_some_and(|(is_area, points_deg)| {
+            (*is_area, points_deg) == (line.is_area, &line.points_deg)
+        });
         let heights_m = match heights.as_ref().filter(|_| !is_old) {
             Some(heights) => {
                 let found = heights_of(line, heights, package, &mut store);

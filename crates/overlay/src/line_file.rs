@@ -25,17 +25,6 @@ pub enum Shape {
     Area,
 }
 
-impl Shape {
-    /// What has fewer points is not saved.
-    #[must_use]
-    pub const fn least_points(self) -> usize {
-        match self {
-            Self::Line => 2,
-            Self::Area => 3,
-        }
-    }
-}
-
 /// A line as it is saved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedLine {
@@ -112,7 +101,7 @@ impl LineFile {
     }
 
     /// The text of a file with these lines in the place of those that this one has. A line whose points are as they were stays as it is,
-    /// heights included. Lines with one point and areas with two are left out: they are none.
+    /// heights included. An area of two points is a line. What has one point is left out.
     #[must_use]
     pub fn text_with(&self, lines: &[SavedLine]) -> String {
         let known = |number: usize| lines.iter().find(|line| line.feature == Some(number));
@@ -156,7 +145,11 @@ fn line_of(feature: &Value) -> Option<(Shape, Vec<[f64; 2]>)> {
     if shape == Shape::Area && points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
-    (points.len() >= shape.least_points()).then_some((shape, points))
+    let least = match shape {
+        Shape::Line => 2,
+        Shape::Area => 3,
+    };
+    (points.len() >= least).then_some((shape, points))
 }
 
 /// Longitude and latitude of a position.
@@ -165,11 +158,14 @@ fn point_of(position: &Value) -> Option<[f64; 2]> {
     Some([part(0)?, part(1)?])
 }
 
-/// A feature with another line; `None` if that has too few points.
+/// A feature with another line; `None` if that has only one point.
 fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
-    if line.points_deg.len() < line.shape.least_points() {
-        return None;
-    }
+    let shape = match line.points_deg.len() {
+        0 | 1 => return None,
+        // A corner was removed from a triangle.
+        2 => Shape::Line,
+        _ => line.shape,
+    };
     // Positions that stay keep all that was known of them.
     let geometry = feature.get("geometry");
     let path = match geometry.and_then(|geometry| geometry.get("type")).and_then(Value::as_str) {
@@ -201,7 +197,7 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
         })
         .collect();
     let mut feature = feature.clone();
-    feature["geometry"] = match line.shape {
+    feature["geometry"] = match shape {
         Shape::Line => json!({"type": "LineString", "coordinates": coordinates}),
         Shape::Area => {
             // Outer rings are counter-clockwise (RFC 7946, section 3.1.6).

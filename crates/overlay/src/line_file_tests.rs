@@ -119,15 +119,17 @@ fn areas_are_polygons_with_a_closed_ring() {
         heights_m: Some(vec![1.0, 2.0, 3.0]),
     };
     let two = SavedLine { points_deg: vec![[0.0, 0.0], [1.0, 1.0]], ..area.clone() };
-    let text = LineFile::default().text_with(&[area, two]);
+    let one = SavedLine { points_deg: vec![[0.0, 0.0]], ..area.clone() };
+    let text = LineFile::default().text_with(&[area, two, one]);
     let written: Value = serde_json::from_str(&text).unwrap();
     let features = written["features"].as_array().unwrap();
-    assert_eq!(features.len(), 1, "two points are no area");
+    assert_eq!(features.len(), 2, "one point is nothing");
+    assert_eq!(features[1]["geometry"]["type"], "LineString", "two points are no area");
     let ring = json!([[1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 0.0, 1.0], [1.0, 1.0, 3.0]]);
     assert_eq!(features[0]["geometry"], json!({"type": "Polygon", "coordinates": [ring]}));
     let file = LineFile::parse(&text).unwrap();
     let points = vec![[1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
-    assert_eq!(file.lines(), [(0, Shape::Area, points)]);
+    assert_eq!(file.lines()[0], (0, Shape::Area, points));
     // A point that stays keeps its elevation, as an area and as a line.
     let mut lines = saved(&file);
     lines[0].points_deg[0] = [2.0, 0.5];

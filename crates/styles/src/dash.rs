@@ -116,11 +116,12 @@ impl Dash {
         Self::textured(length_px, &head)
     }
 
-    /// A dot over the first half, at least so wide.
+    /// A dot over about half of the pattern, at least so wide. What is beside it is the same on both sides.
     fn dot(least: f32) -> [f32; Self::WIDTHS] {
-        let middle = Self::WIDTHS as f32 / 4.0;
+        let half = Self::WIDTHS as f32 / 4.0;
         std::array::from_fn(|place| {
-            let from_middle = (place as f32 + 0.5 - middle) / middle;
+            // The first place lies before the dot.
+            let from_middle = (place as f32 - 0.5 - half) / half;
             (1.0 - from_middle * from_middle).max(0.0).sqrt().max(least)
         })
     }

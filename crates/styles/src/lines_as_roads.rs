@@ -52,7 +52,7 @@ impl Style {
     /// How much of the map they hide.
     const DRAWN_AREAS_OPACITY: f32 = 0.3;
 
-    /// This style for a picture whose only areas are drawn by a person: inside as their outlines, half transparent.
+    /// This style for a picture whose only areas are drawn by a person: inside in the colour of their outlines, and the map shows through.
     #[must_use]
     pub fn with_drawn_areas(&self) -> Self {
         let mut areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });

@@ -51,6 +51,9 @@ use crate::{
     trace::Trace,
 };
 
+/// Flights are in perspective.
+const NO_FLIGHT_FROM_ABOVE: &str = "flights are recorded in perspective: not from above";
+
 /// The beginning of the notice that a style's file cannot be used.
 const STYLE_STAYS: &str = "the style stays as it was: ";
 /// The beginning of the notice that the map cannot go where it was asked to.
@@ -212,6 +215,9 @@ impl App {
             Command::NorthUp => self.input(&Input::NorthUp, now_s),
             Command::Reset => self.input(&Input::Reset, now_s),
             Command::ToggleFly => self.input(&Input::ToggleFly, now_s),
+            Command::ToggleAbove if self.captures.is_recording() => {
+                self.notices.tell(NO_FLIGHT_FROM_ABOVE.to_owned(), now_s);
+            }
             Command::ToggleAbove => self.input(&Input::ToggleAbove, now_s),
             Command::GoTo => self.go_to(now_s),
             Command::CopyView => self.copy_view(now_s),
@@ -222,6 +228,11 @@ impl App {
             Command::Draw(command) => self.draw_command(command, now_s),
             Command::Take(shot) => self.captures.want(shot),
             Command::ToggleRecording if self.captures.is_recording() => self.stop_recording(now_s),
+            Command::ToggleRecording | Command::StartRecording
+                if self.camera.view().from_above.is_some() =>
+            {
+                self.notices.tell(NO_FLIGHT_FROM_ABOVE.to_owned(), now_s);
+            }
             Command::ToggleRecording | Command::StartRecording => {
                 self.captures.start_recording(now_s, self.pose());
             }

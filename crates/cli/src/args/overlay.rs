@@ -67,6 +67,7 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
         text: text.to_owned(),
     };
     let mut rest = text;
+    let mut given = Vec::new();
     while let Some((before, entry)) = rest.rsplit_once(',')
         && let Some((name, value)) = entry.split_once('=')
         && is_entry(name)
@@ -75,6 +76,10 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
             let value = value.parse().ok().filter(|number| range.contains(number));
             value.ok_or_else(|| format!("{name} must be {} to {}", range.start(), range.end()))
         };
+        if given.contains(&name) {
+            return Err(format!("{name} is given twice"));
+        }
+        given.push(name);
         match name {
             "color" => found.color = Some(color(value)?),
             "width" => found.width_px = Some(number(0.5..=50.0)?),

@@ -30,6 +30,8 @@ fn what_is_wrong_is_told() {
         ("a.gpx,pattern=stars/9", "is no pattern"),
         ("a.gpx,pattern=dots/9000", "out of range"),
         ("a.gpx,pattern=dots/12,dash=8/4", "either a dash or a pattern"),
+        ("a.gpx,dash=8/4,dash=8/4", "dash is given twice"),
+        ("a.gpx,width=3,color=#FF0000,width=4", "width is given twice"),
         ("a.gpx,dash=8/4/2", "two or four lengths"),
         ("a.gpx,opacity=nan", "opacity must be"),
         (",width=3", "name a file"),

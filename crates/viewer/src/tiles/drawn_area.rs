@@ -20,7 +20,7 @@ impl DrawnArea {
         surrounded(&[outline], 1).ok().map(|polygons| Self { polygons })
     }
 
-    /// The volumes over the part of it in a tile. Their class is [`Style::DRAWN_AREAS`].
+    /// The volumes over the part of it in a tile; none where that is far too intricate. Their class is [`Style::DRAWN_AREAS`].
     #[must_use]
     pub fn over(&self, tile: &TileGeometry, frame: &Frame) -> AreaVolumes {
         let bounds = frame.tile_lattice_bounds(tile.id);
@@ -42,7 +42,6 @@ impl DrawnArea {
             };
             AreaVolumes::new(&[area], tile.id, frame, &tile.ground, tile.reference_m).ok()
         });
-        // What was surrounded does not cross itself, so there is always an answer.
         volumes.unwrap_or_default()
     }
 }

@@ -82,15 +82,16 @@ impl App {
                 tool.remove_line(document);
             }
             DrawingCommand::Turn => {
-                tool.turn(document);
+                if let Err(why) = tool.turn(document) {
+                    self.notices.tell(format!("no area: {why}"), now_s);
+                }
             }
             DrawingCommand::Smooth => {
                 let coordinates = &self.package.manifest().coordinates;
                 let point =
                     |at_m| Point { lon_lat_deg: coordinates.wgs84_from_working(at_m), at_m };
-                if !tool.smooth(document, point) {
-                    let told = "nothing to smooth: pick a line with at least three points";
-                    self.notices.tell(told.to_owned(), now_s);
+                if let Err(why) = tool.smooth(document, point) {
+                    self.notices.tell(format!("no corners rounded: {why}"), now_s);
                 }
             }
             DrawingCommand::Undo => document.undo(),

@@ -145,7 +145,6 @@ impl BoundedView {
     pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         let pivot = self.middle(ground);
         self.view.eye_in_world.z += pivot.z * (factor - 1.0);
-        self.view.from_above = self.view.from_above.map(|heights| heights.map(|z| z * factor));
         self.home.eye_in_world.z += ground.base_height() * (factor - 1.0);
     }
 

@@ -175,7 +175,7 @@ impl View {
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
         if self.from_above.is_some() {
             let eye_in_world = eye.with_z(below_m + self.focus_m);
-            return Self { eye_in_world, ..*self };
+            return Self { eye_in_world, from_above: Some(ground.heights()), ..*self };
         }
         let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);
         Self { focus_m, ..*self }

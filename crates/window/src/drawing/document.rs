@@ -28,9 +28,9 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Whether it has points enough to be saved.
+    /// Whether it has points enough to be saved: an area of two is saved as a line.
     fn is_whole(&self) -> bool {
-        self.points.len() >= if self.is_area { 3 } else { 2 }
+        self.points.len() >= 2
     }
 }
 
@@ -78,7 +78,7 @@ impl Document {
 
     /// Whether there is something that is not saved.
     pub(crate) fn is_changed(&self) -> bool {
-        // One point is no line, and two are no area.
+        // One point is no line.
         fn lines(all: &Lines) -> impl Iterator<Item = &Arc<Line>> + Clone {
             all.iter().filter(|line| line.is_whole())
         }
@@ -143,9 +143,14 @@ impl Document {
         });
     }
 
-    /// Makes a line of an area, or an area of a line.
+    /// Makes a line of an area, or an area of a line. A closed line has its first point only once then.
     pub(crate) fn turn(&mut self, id: u64) {
-        self.change_line(id, |line| line.is_area = !line.is_area);
+        self.change_line(id, |line| {
+            line.is_area = !line.is_area;
+            if line.is_area && line.points.len() > 3 && line.points.first() == line.points.last() {
+                line.points.pop();
+            }
+        });
     }
 
     /// Gives a line other points.

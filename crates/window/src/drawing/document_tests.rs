@@ -105,3 +105,14 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_closed_line_becomes_an_area_without_its_point_twice() {
+    let closed = vec![point(1.0), point(2.0), point(3.0), point(1.0)];
+    let mut document = Document::of(vec![(None, false, closed)]);
+    let id = document.lines()[0].id;
+    document.turn(id);
+    assert_eq!(places(&document), [vec![1.0, 2.0, 3.0]]);
+    document.undo();
+    assert_eq!(places(&document), [vec![1.0, 2.0, 3.0, 1.0]]);
+}

@@ -77,8 +77,6 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
     assert_eq!(areas.classes.iter().map(|class| class.polygons).collect::<Vec<_>>(), [2]);
     // Two squares of four walls each, and of two triangles.
     assert_eq!((areas.walls.len(), areas.triangles.len()), (8, 12));
-    let ways: std::collections::BTreeSet<_> = document.lines().iter().map(|line| line.id).collect();
-    assert_eq!(ways.len(), 3);
     let before = outlines.segments.all().len();
 
     // As a line the second one has no inside, and lacks the side that closed it.
@@ -94,4 +92,28 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
         panic!("one tile");
     };
     assert_eq!(areas.walls.len(), 8);
+}
+
+/// Tiles inside an area have none of its outline.
+#[test]
+fn a_tile_inside_an_area_is_filled() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = source(folder.path());
+    let manifest = source.manifest();
+    let children = TileId::ROOT.children();
+    let tiles: Vec<TileGeometry> =
+        children.into_iter().map(|id| source.load(id).unwrap().without_roads()).collect();
+    let bounds = manifest.data_bounds;
+    let at = |x: f64, y: f64| {
+        point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
+    };
+    let around = vec![at(-0.5, -0.5), at(1.5, -0.5), at(1.5, 1.5), at(-0.5, 1.5)];
+    let document = Document::of(vec![(None, true, around)]);
+    let mut laid = LaidLines::default();
+    let relaid = laid.update(&document, tiles.iter(), manifest);
+    let with_ground = tiles.iter().filter(|tile| tile.summary.is_some()).count();
+    assert_eq!(relaid.changed.len(), with_ground);
+    for (id, outlines, areas) in &relaid.changed {
+        assert!(outlines.is_empty() && areas.classes[0].polygons == 1, "{id}");
+    }
 }

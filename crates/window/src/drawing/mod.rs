@@ -10,9 +10,11 @@ mod document;
 mod laid;
 mod smooth;
 mod tool;
+mod unchanged;
 
 pub(crate) use self::{
     document::{Document, Line, Point},
     laid::LaidLines,
     tool::Tool,
+    unchanged::Unchanged,
 };

@@ -2,27 +2,37 @@
 
 use glam::DVec2;
 
-use super::{Line, Point};
+use super::{Line, Point, Unchanged};
 
 /// New points between two neighbours at most.
 const MOST_PIECES: usize = 8;
 /// A line does not become longer than this by it.
 const MOST_POINTS: usize = 1 << 20;
 
-/// The points of a curve through all points of a line, or around an area; `None` for one without corners.
+/// The points of a curve through all points of a line, or around an area.
 ///
 /// Points stay, and others come between them: a centripetal Catmull-Rom spline, which makes no loops and no cusps within a piece.
 ///
 /// Source: Yuksel, Schaefer & Keyser 2011, *Parameterization and applications of Catmull-Rom curves*, Computer-Aided Design 43.
-pub(crate) fn smoothed(line: &Line, place: impl Fn([f64; 2]) -> Point) -> Option<Vec<Point>> {
+pub(crate) fn smoothed(
+    line: &Line,
+    place: impl Fn([f64; 2]) -> Point,
+) -> Result<Vec<Point>, Unchanged> {
+    let bits = |point: &Point| point.at_m.map(f64::to_bits);
     let mut points = line.points.clone();
-    points.dedup_by_key(|point| point.at_m.map(f64::to_bits));
+    points.dedup_by_key(|point| bits(point));
+    if line.is_area && points.len() > 1 && points.first().map(bits) == points.last().map(bits) {
+        points.pop();
+    }
     let count = points.len();
-    if count < 3 || count * MOST_PIECES > MOST_POINTS {
-        return None;
+    if count < 3 {
+        return Err(Unchanged::FewPoints);
+    }
+    if count * MOST_PIECES > MOST_POINTS {
+        return Err(Unchanged::ManyPoints { most: MOST_POINTS / MOST_PIECES });
     }
     let at = |index: usize| DVec2::from_array(points[index % count].at_m);
-    // Beyond the ends of a line, its ends are mirrored at their neighbours' places.
+    // Beyond the ends of a line, their neighbours are mirrored at them.
     let before = |index: usize| match index {
         0 if line.is_area => at(count - 1),
         0 => 2.0 * at(0) - at(1),
@@ -46,7 +56,7 @@ pub(crate) fn smoothed(line: &Line, place: impl Fn([f64; 2]) -> Point) -> Option
     if !line.is_area {
         curve.push(points[count - 1]);
     }
-    Some(curve)
+    Ok(curve)
 }
 
 /// The place on the curve between the second and the third of four corners (Barry & Goldman 1988, *A recursive evaluation algorithm for

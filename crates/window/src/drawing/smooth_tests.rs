@@ -45,6 +45,17 @@ fn a_polygon_becomes_a_circle() {
 
 #[test]
 fn what_has_no_corner_stays() {
-    assert_eq!(smoothed(&line(&[[0.0, 0.0], [1.0, 1.0]], false), place), None);
-    assert_eq!(smoothed(&line(&[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]], false), place), None);
+    let few = |places: &[[f64; 2]], is_area| {
+        assert_eq!(
+            smoothed(&line(places, is_area), place),
+            Err(Unchanged::FewPoints),
+            "{places:?}"
+        );
+    };
+    few(&[[0.0, 0.0], [1.0, 1.0]], false);
+    few(&[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]], false);
+    few(&[[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]], true);
+    let many: Vec<[f64; 2]> = (0..=MOST_POINTS / MOST_PIECES).map(|x| [x as f64, 0.0]).collect();
+    let told = smoothed(&line(&many, false), place).unwrap_err();
+    assert!(matches!(told, Unchanged::ManyPoints { .. }));
 }

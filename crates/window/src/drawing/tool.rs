@@ -1,8 +1,10 @@
 //! What the mouse does to the lines.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
-use super::{Document, Line, Point, smooth::smoothed};
+use super::{Document, Line, Point, Unchanged, smooth::smoothed};
 
 /// The cursor is at a point of a line if it is no farther from it than this, screen points.
 const NEAR_POINTS: f64 = 9.0;
@@ -147,27 +149,33 @@ impl Tool {
         true
     }
 
-    /// Makes an area of the picked line, or a line of the picked area. Whether there was one.
-    pub(crate) fn turn(&mut self, document: &mut Document) -> bool {
-        let Some(Picked { line, .. }) = self.picked(document) else { return false };
-        document.turn(line);
-        true
+    /// Makes an area of the picked line, or a line of the picked area.
+    pub(crate) fn turn(&mut self, document: &mut Document) -> Result<(), Unchanged> {
+        let line = self.picked_line(document)?;
+        if !line.is_area && line.points.len() < 3 {
+            return Err(Unchanged::FewPoints);
+        }
+        let id = line.id;
+        document.turn(id);
+        Ok(())
     }
 
-    /// Makes a curve of the picked line; `place` makes a point of a place in the working CRS. Whether there was one that has corners.
+    /// Makes a curve of the picked line; `place` makes a point of a place in the working CRS.
     pub(crate) fn smooth(
         &mut self,
         document: &mut Document,
         place: impl Fn([f64; 2]) -> Point,
-    ) -> bool {
-        let Some(line) = self.picked(document).and_then(|picked| document.line(picked.line)) else {
-            return false;
-        };
-        let Some(points) = smoothed(line, place) else { return false };
-        let id = line.id;
+    ) -> Result<(), Unchanged> {
+        let line = self.picked_line(document)?;
+        let (id, points) = (line.id, smoothed(line, place)?);
         document.replace_points(id, points);
         self.picked = None;
-        true
+        Ok(())
+    }
+
+    fn picked_line<'a>(&self, document: &'a Document) -> Result<&'a Line, Unchanged> {
+        let picked = self.picked(document).and_then(|picked| document.line(picked.line));
+        picked.map(Arc::as_ref).ok_or(Unchanged::NothingPicked)
     }
 
     /// Removes the picked line. Whether there was one.
