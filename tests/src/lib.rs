@@ -243,3 +243,28 @@ pub fn build_from([dem, osm]: [&Path; 2], package: &Path, options: &[&str]) {
     let ran = corniche(inputs.iter().chain(options));
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
+
+/// The package of these inputs and settings, made part by part with a plan and a store in `folder`.
+///
+/// # Panics
+/// When one of the commands fails.
+#[must_use]
+pub fn built_in_parts<S: AsRef<str>>(folder: &Path, inputs: &[S]) -> Vec<u8> {
+    let succeed = |words: &[&str]| {
+        let ran = corniche(words);
+        assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    };
+    let [plan, store, merged] =
+        ["plan.json", "store", "merged.pmtiles"].map(|name| folder.join(name));
+    let (plan, store) = (text(&plan), text(&store));
+    let inputs: Vec<&str> = inputs.iter().map(AsRef::as_ref).collect();
+    succeed(&[&["plan", "-o", plan], &inputs[..]].concat());
+    for step in ["hashes", "roads", "heights", "top", "tiles"] {
+        let subtree: &[&str] =
+            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
+        let words = ["part", plan, "-q", "--step", step];
+        succeed(&[&words[..], subtree, &["--store", store]].concat());
+    }
+    succeed(&["merge", plan, "-q", "-o", text(&merged), "--store", store]);
+    fs::read(&merged).unwrap_or_else(|error| panic!("{}: {error}", merged.display()))
+}

@@ -5,7 +5,8 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use e2e::{
-    Job, Ran, When, corniche, extract_with_areas, extract_with_coast, json, manifest, sample, text,
+    Job, Ran, When, built_in_parts, corniche, extract_with_areas, extract_with_coast, json,
+    manifest, sample, text,
 };
 use serde_json::Value;
 
@@ -112,16 +113,7 @@ fn areas_are_the_same_however_the_package_is_made() {
         build(&at("without.pmtiles"), &without, &[]) == fs::read(&plain).unwrap(),
         "areas are left out"
     );
-    let (plan, store, merged) = (at("plan.json"), at("store"), at("merged.pmtiles"));
-    succeed(corniche([&["plan", "-o", text(&plan)], &inputs[..]].concat()));
-    for step in ["hashes", "roads", "heights", "top", "tiles"] {
-        let subtree: &[&str] =
-            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
-        let words = ["part", text(&plan), "-q", "--step", step, "--store", text(&store)];
-        succeed(corniche([&words[..5], subtree, &words[5..]].concat()));
-    }
-    succeed(corniche(["merge", text(&plan), "-q", "-o", text(&merged), "--store", text(&store)]));
-    assert!(fs::read(&merged).unwrap() == bytes, "in parts");
+    assert!(built_in_parts(folder.path(), &inputs) == bytes, "in parts");
 }
 
 #[test]

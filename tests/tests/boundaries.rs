@@ -5,7 +5,8 @@
 use std::{fs, path::Path};
 
 use e2e::{
-    Job, Ran, When, corniche, extract_with_boundaries, lacks_adapter, manifest, sample, text,
+    Job, Ran, When, built_in_parts, corniche, extract_with_boundaries, lacks_adapter, manifest,
+    sample, text,
 };
 
 fn succeed(ran: Ran) -> Ran {
@@ -61,16 +62,7 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     assert!(build(&at("onto.pmtiles"), &onto, &[]) == bytes, "onto recorded terrain");
     let without = ["--terrain", text(&whole), "--osm", text(&osm)];
     assert!(build(&at("without.pmtiles"), &without, &[]) == plain_bytes, "left out");
-    let (plan, store, merged) = (at("plan.json"), at("store"), at("merged.pmtiles"));
-    succeed(corniche([&["plan", "-o", text(&plan)], &inputs[..]].concat()));
-    for step in ["hashes", "roads", "heights", "top", "tiles"] {
-        let subtree: &[&str] =
-            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
-        let words = ["part", text(&plan), "-q", "--step", step, "--store", text(&store)];
-        succeed(corniche([&words[..5], subtree, &words[5..]].concat()));
-    }
-    succeed(corniche(["merge", text(&plan), "-q", "-o", text(&merged), "--store", text(&store)]));
-    assert!(fs::read(&merged).unwrap() == bytes, "in parts");
+    assert!(built_in_parts(folder.path(), &inputs) == bytes, "in parts");
 }
 
 #[test]

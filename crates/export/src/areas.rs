@@ -4,13 +4,12 @@ use std::path::Path;
 
 use corniche_areas::{AreaClass, OutlineWay, Polygon, assemble};
 use corniche_geom::{LatticePoint, TileId, wgs84};
-use corniche_store::Sorter;
+use corniche_store::{Groups, Sorter};
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 
 use crate::{
     area_piece::AreaPiece,
     error::ExportError,
-    groups::Groups,
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,

@@ -31,7 +31,6 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
-mod groups;
 mod growth;
 mod join;
 mod laid_lines;

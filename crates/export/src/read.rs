@@ -3,7 +3,7 @@
 use corniche_drape::DrapedVertex;
 use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, pmtiles_order};
+use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, TilePayload, pmtiles_order};
 use corniche_tin::{Placement, Surface};
 
 use crate::{
@@ -11,6 +11,11 @@ use crate::{
     error::ExportError,
     piece::{Piece, PieceKey, Vertex},
 };
+
+/// What pieces of roads are read from.
+pub(crate) fn road_sections() -> Sections {
+    Sections::ROADS_GEO | Sections::ATTRIBUTES
+}
 
 /// Positions along each side of a tile that tell where it is: enough for tiles that the CRS bends.
 const SIDE: usize = 9;
@@ -61,10 +66,21 @@ pub(crate) fn pieces(
     id: TileId,
     classes: &[FunctionalRoadClass],
 ) -> Result<Vec<Piece>, ExportError> {
-    let wanted = Sections::ROADS_GEO | Sections::ATTRIBUTES;
-    let Some(payload) = package.payload(id, wanted)? else { return Ok(Vec::new()) };
+    match package.payload(id, road_sections())? {
+        Some(payload) => pieces_of(&payload, package.manifest(), classes),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// The same of a payload that was read with [`road_sections`].
+pub(crate) fn pieces_of(
+    payload: &TilePayload,
+    manifest: &Manifest,
+    classes: &[FunctionalRoadClass],
+) -> Result<Vec<Piece>, ExportError> {
+    let id = payload.id;
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
-    let Manifest { frame, vertical, .. } = package.manifest();
+    let Manifest { frame, vertical, .. } = manifest;
     let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, id, vertical.quantum_m));
     let mut pieces = Vec::new();
     for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {

@@ -4,12 +4,11 @@ use std::path::Path;
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
-use corniche_store::Sorter;
+use corniche_store::{Groups, Sorter};
 use corniche_tileset::FilePackage;
 
 use crate::{
     error::ExportError,
-    groups::Groups,
     observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, SortedPiece},
     read,

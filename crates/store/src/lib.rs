@@ -33,6 +33,7 @@ mod artifacts;
 mod disk;
 mod error;
 mod files;
+mod groups;
 mod local;
 mod memory;
 mod place;
@@ -45,6 +46,7 @@ pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
+pub use groups::Groups;
 pub use local::{
     Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME, SYNC_INTERVAL,
     SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,

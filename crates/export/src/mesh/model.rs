@@ -47,7 +47,8 @@ impl TileMesh {
         places: &Places<'_>,
         local: &LocalMetres,
     ) -> Result<Option<Self>, ExportError> {
-        let Some(payload) = package.payload(id, Sections::TERRAIN)? else { return Ok(None) };
+        let wanted = Sections::TERRAIN | read::road_sections();
+        let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
         let Some(terrain) = &payload.terrain else { return Ok(None) };
         let manifest = package.manifest();
         let frame = &manifest.frame;
@@ -90,7 +91,7 @@ impl TileMesh {
             });
         }
         let triangles = wanted.iter().map(|own| own.map(|index| place[index as usize])).collect();
-        let pieces = read::pieces(package, id, &request.classes)?;
+        let pieces = read::pieces_of(&payload, manifest, &request.classes)?;
         let cut = |piece: Piece| match &request.bounds {
             Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
             None => vec![piece],

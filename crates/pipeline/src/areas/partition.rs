@@ -7,7 +7,7 @@
 use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_osm::{AreaLoss, ReadOsmError, ReadRequest, read_areas};
-use corniche_store::{Artifacts, SortRecord, Sorter};
+use corniche_store::{Artifacts, Groups, SortRecord, Sorter};
 use corniche_tileset::{AreaRecord, AreaRings, encode_areas, pmtiles_order};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -213,21 +213,20 @@ fn put_sections(
     store: &dyn Artifacts,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
-    let mut current: Option<(u64, Vec<AreaRecord>)> = None;
-    for record in parts.finish().map_err(BuildError::Storage)? {
-        let PartRecord { tile, bytes, .. } = record.map_err(BuildError::Storage)?;
-        if let Some((before, areas)) = current.take_if(|(current, _)| *current != tile) {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
-            put_section(before, &areas, splitting, store)?;
+    let mut tiles = Groups::of(parts.finish().map_err(BuildError::Storage)?);
+    while let Some(records) = tiles.next_by(|record| record.tile).map_err(BuildError::Storage)? {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
         }
-        let key = Kind::AreaSection.item(tile);
-        let area = StoredArea::of_bytes(&bytes)
-            .ok_or_else(|| damaged(key, &"what was read back is no area"))?;
-        current.get_or_insert_with(|| (tile, Vec::new())).1.push(area);
+        let tile = records[0].tile;
+        let no_part = || damaged(Kind::AreaSection.item(tile), &"what was read back is no area");
+        let parts: Result<Vec<_>, _> = records
+            .into_iter()
+            .map(|record| StoredArea::of_bytes(&record.bytes).ok_or_else(no_part))
+            .collect();
+        put_section(tile, &parts?, splitting, store)?;
     }
-    current.map_or(Ok(()), |(tile, areas)| put_section(tile, &areas, splitting, store))
+    Ok(())
 }
 
 fn put_section(

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::{Boundary, ReadOsmError, ReadRequest, read_boundaries};
-use corniche_store::{Artifacts, SortRecord, Sorter};
+use corniche_store::{Artifacts, Groups, SortRecord, Sorter};
 use corniche_tileset::{BoundaryRecord, encode_boundaries, pmtiles_order};
 use serde::{Deserialize, Serialize};
 
@@ -145,22 +145,19 @@ fn put_sections(
     store: &dyn Artifacts,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
-    let mut current: Option<(u64, Vec<BoundaryRecord>)> = None;
-    for record in parts.finish().map_err(BuildError::Storage)? {
-        let record = record.map_err(BuildError::Storage)?;
-        let tile = record.tile;
-        if let Some((before, boundaries)) = current.take_if(|(current, _)| *current != tile) {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
-            put_section(before, &boundaries, splitting, store)?;
+    let mut tiles = Groups::of(parts.finish().map_err(BuildError::Storage)?);
+    while let Some(records) = tiles.next_by(|record| record.tile).map_err(BuildError::Storage)? {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
         }
-        let key = Kind::BoundarySection.item(tile);
-        let part =
-            record.record().ok_or_else(|| damaged(key, &"what was read back is no boundary"))?;
-        current.get_or_insert_with(|| (tile, Vec::new())).1.push(part);
+        let tile = records[0].tile;
+        let no_part =
+            || damaged(Kind::BoundarySection.item(tile), &"what was read back is no boundary");
+        let parts: Result<Vec<_>, _> =
+            records.into_iter().map(|record| record.record().ok_or_else(no_part)).collect();
+        put_section(tile, &parts?, splitting, store)?;
     }
-    current.map_or(Ok(()), |(tile, boundaries)| put_section(tile, &boundaries, splitting, store))
+    Ok(())
 }
 
 fn put_section(

@@ -8,9 +8,10 @@ use corniche_tileset::{AreaLevelRecord, AreaRecord, FilePackage, decode_areas, p
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::each_tile,
     error::VerifyError,
 };
-use crate::{Observer, workers};
+use crate::Observer;
 
 /// What is found in one tile.
 struct Found {
@@ -30,19 +31,17 @@ pub(crate) fn verify(
     findings.look(CheckId::AreaSums, is_counted == manifest.settings.areas.is_some(), || {
         "areas are counted without a table of areas, or there is a table and they are not counted".to_owned()
     });
-    let ids = package.tile_ids()?;
     let mut levels: BTreeMap<u8, AreaLevelRecord> = BTreeMap::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| Ok(look_at(package, ids[index])),
-        |index, found: Found| {
+        observer,
+        |id| Ok(look_at(package, id)),
+        |id, found: Found| {
             findings.merge(found.findings);
             let [areas, points, bytes] = found.counts;
             if areas > 0 {
-                let level = ids[index].z();
+                let level = id.z();
                 let none = AreaLevelRecord { level, tiles: 0, areas: 0, points: 0, bytes: 0 };
                 let sums = levels.entry(level).or_insert(none);
                 sums.tiles += 1;
@@ -50,7 +49,6 @@ pub(crate) fn verify(
                 sums.points += points;
                 sums.bytes += bytes;
             }
-            Ok(())
         },
     )?;
     let found: Vec<AreaLevelRecord> = levels.into_values().collect();

@@ -9,9 +9,10 @@ use corniche_tileset::{
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::each_tile,
     error::VerifyError,
 };
-use crate::{Observer, workers};
+use crate::Observer;
 
 /// What is found in one tile.
 struct Found {
@@ -31,19 +32,17 @@ pub(crate) fn verify(
     findings.look(CheckId::BoundarySums, is_counted == manifest.settings.boundaries, || {
         "boundaries are counted and were not asked for, or the other way round".to_owned()
     });
-    let ids = package.tile_ids()?;
     let mut levels: BTreeMap<u8, BoundaryLevelRecord> = BTreeMap::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| Ok(look_at(package, ids[index])),
-        |index, found: Found| {
+        observer,
+        |id| Ok(look_at(package, id)),
+        |id, found: Found| {
             findings.merge(found.findings);
             let [parts, points, bytes] = found.counts;
             if parts > 0 {
-                let level = ids[index].z();
+                let level = id.z();
                 let none = BoundaryLevelRecord { level, tiles: 0, parts: 0, points: 0, bytes: 0 };
                 let sums = levels.entry(level).or_insert(none);
                 sums.tiles += 1;
@@ -51,7 +50,6 @@ pub(crate) fn verify(
                 sums.points += points;
                 sums.bytes += bytes;
             }
-            Ok(())
         },
     )?;
     let found: Vec<BoundaryLevelRecord> = levels.into_values().collect();

@@ -9,6 +9,7 @@ mod dem_inputs;
 mod derived_records;
 mod deviation_checks;
 mod deviations;
+mod each_tile;
 mod error;
 mod geo_against_sv;
 mod georeference;

@@ -7,12 +7,13 @@ use corniche_tileset::{AreaRecord, FilePackage, Manifest, decode_areas};
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::{compare_in_order, each_tile},
     error::VerifyError,
 };
 use crate::{
     Observer,
     areas::{sections::TileAreas, totals::AreaTotals},
-    settings_record, workers,
+    settings_record,
 };
 
 /// The table that the package's areas were made with, out of the one that is given; `None` if the package has no areas.
@@ -41,17 +42,12 @@ pub(crate) fn compare(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let ids = package.tile_ids()?;
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| look_at(package, ids[index], store),
-        |_, found| {
-            findings.merge(found);
-            Ok(())
-        },
+        observer,
+        |id| look_at(package, id, store),
+        |_, found| findings.merge(found),
     )?;
     let found = AreaTotals::get(store)?.map(|totals| totals.counts());
     let recorded = package.manifest().areas.as_ref().map(|areas| areas.counts.clone());
@@ -75,24 +71,12 @@ fn look_at(
         Some(areas) => areas.into_section().decode(id, frame).unwrap_or_default(),
         None => Vec::new(),
     };
-    let count = recorded.len().max(expected.len());
-    let (mut recorded, mut expected) = (recorded.iter(), expected.iter());
-    for _ in 0..count {
-        let (recorded, expected) = (recorded.next(), expected.next());
-        findings.look(CheckId::OsmAreas, recorded == expected, || {
-            format!("tile {id} has {}, the extract gives {}", name(recorded), name(expected))
-        });
-    }
+    compare_in_order(CheckId::OsmAreas, id, [&recorded, &expected], name, &mut findings);
     Ok(findings)
 }
 
-fn name(area: Option<&AreaRecord>) -> String {
-    area.map_or_else(
-        || "nothing".to_owned(),
-        |area| {
-            let rings = area.polygons.iter().flat_map(|part| &part.rings);
-            let points: usize = rings.map(Vec::len).sum();
-            format!("{} {} with {points} points", area.class, area.object)
-        },
-    )
+fn name(area: &AreaRecord) -> String {
+    let rings = area.polygons.iter().flat_map(|part| &part.rings);
+    let points: usize = rings.map(Vec::len).sum();
+    format!("{} {} with {points} points", area.class, area.object)
 }

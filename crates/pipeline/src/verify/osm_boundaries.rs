@@ -6,12 +6,12 @@ use corniche_tileset::{BoundaryRecord, FilePackage, decode_boundaries};
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::{compare_in_order, each_tile},
     error::VerifyError,
 };
 use crate::{
     Observer,
     boundaries::{sections::TileBoundaries, totals::BoundaryTotals},
-    workers,
 };
 
 /// Compares the boundaries of each tile, and their counts, with those that the store has now.
@@ -22,17 +22,12 @@ pub(crate) fn compare(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let ids = package.tile_ids()?;
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| look_at(package, ids[index], store),
-        |_, found| {
-            findings.merge(found);
-            Ok(())
-        },
+        observer,
+        |id| look_at(package, id, store),
+        |_, found| findings.merge(found),
     )?;
     let found = BoundaryTotals::get(store)?.map(|totals| totals.counts());
     let recorded = package.manifest().boundaries.as_ref().map(|of| of.counts.clone());
@@ -55,20 +50,10 @@ fn look_at(
         Some(boundaries) => boundaries.into_section().decode(id).unwrap_or_default(),
         None => Vec::new(),
     };
-    let count = recorded.len().max(expected.len());
-    let (mut recorded, mut expected) = (recorded.iter(), expected.iter());
-    for _ in 0..count {
-        let (recorded, expected) = (recorded.next(), expected.next());
-        findings.look(CheckId::OsmBoundaries, recorded == expected, || {
-            format!("tile {id} has {}, the extract gives {}", name(recorded), name(expected))
-        });
-    }
+    compare_in_order(CheckId::OsmBoundaries, id, [&recorded, &expected], name, &mut findings);
     Ok(findings)
 }
 
-fn name(boundary: Option<&BoundaryRecord>) -> String {
-    boundary.map_or_else(
-        || "nothing".to_owned(),
-        |of| format!("{} way {} with {} points", of.class, of.way_id, of.points.len()),
-    )
+fn name(boundary: &BoundaryRecord) -> String {
+    format!("{} way {} with {} points", boundary.class, boundary.way_id, boundary.points.len())
 }

@@ -10,9 +10,10 @@ use corniche_tileset::{
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::each_tile,
     error::VerifyError,
 };
-use crate::{Observer, workers};
+use crate::Observer;
 
 /// The largest root mean square difference of two codings of the same texels, in grey levels, over some hundreds of texels.
 ///
@@ -45,23 +46,20 @@ pub(crate) fn verify(
         });
         return Ok(());
     };
-    let ids = package.tile_ids()?;
-    let all: BTreeSet<TileId> = ids.iter().copied().collect();
+    let all: BTreeSet<TileId> = package.tile_ids()?.into_iter().collect();
     let mut sums: BTreeMap<u8, [u64; 2]> = BTreeMap::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| Ok(look_at(package, &all, ids[index], record)),
-        |index, found: Found| {
+        observer,
+        |id| Ok(look_at(package, &all, id, record)),
+        |id, found: Found| {
             findings.merge(found.findings);
             if found.bytes > 0 {
-                let [tiles, bytes] = sums.entry(ids[index].z()).or_default();
+                let [tiles, bytes] = sums.entry(id.z()).or_default();
                 *tiles += 1;
                 *bytes += found.bytes;
             }
-            Ok(())
         },
     )?;
     let sums =

@@ -129,6 +129,11 @@ fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec
     return position - behind.position;
 }
 
+// Maps plan to pixels, where `right` and `down` map pixels to plan and span this area.
+fn px_from_plan(right: vec2<f32>, down: vec2<f32>, area: f32) -> mat2x2<f32> {
+    return mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
+}
+
 // Distance in pixels from the middle of this pixel to the image of a segment. `right` and `down` map pixels to plan; their
 // inverse maps the segment to pixels. (Its nearest point in the picture is not its nearest in plan.)
 fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -> f32 {
@@ -136,7 +141,7 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -
     if area == 0.0 {
         return NEVER;
     }
-    let px_from_m = mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
+    let px_from_m = px_from_plan(right, down, area);
     let seen = Segment(px_from_m * (segment.start - at), px_from_m * segment.start_to_end, segment.flat_start, segment.flat_end);
     return length(from_segment(vec2(0.0), seen));
 }
@@ -242,7 +247,7 @@ fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, s
     if area == 0.0 || segment_m < 1e-6 {
         return dot(position - segment.start, segment.start_to_end) / max(segment_m, 1e-6);
     }
-    let px_from_m = mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
+    let px_from_m = px_from_plan(right, down, area);
     let from_start = px_from_m * (position - segment.start);
     let along = px_from_m * segment.start_to_end;
     return segment_m * dot(from_start, along) / max(dot(along, along), 1e-12);

@@ -1,0 +1,52 @@
+//! What several checks do alike: look at all tiles side by side, and take what is found in their order.
+
+use std::fmt::Display;
+
+use corniche_geom::TileId;
+use corniche_tileset::FilePackage;
+
+use super::{
+    checks::{CheckId, Findings},
+    error::VerifyError,
+};
+use crate::{Observer, workers};
+
+/// Looks at each tile of a package, on so many threads, and takes what is found in the order of tiles.
+pub(crate) fn each_tile<T: Send>(
+    package: &FilePackage,
+    threads: usize,
+    observer: &dyn Observer,
+    look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
+    mut take: impl FnMut(TileId, T),
+) -> Result<(), VerifyError> {
+    let ids = package.tile_ids()?;
+    workers::in_order_unless_cancelled(
+        observer,
+        threads,
+        ids.len(),
+        || Ok::<_, VerifyError>(()),
+        |(), index| look(ids[index]),
+        |index, found| {
+            take(ids[index], found);
+            Ok(())
+        },
+    )
+}
+
+/// Compares what a tile has with what the extract gives, one by one. `name` says what something is.
+pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
+    check: CheckId,
+    id: TileId,
+    [recorded, expected]: [&[T]; 2],
+    name: impl Fn(&T) -> N,
+    findings: &mut Findings,
+) {
+    let name =
+        |one: Option<&T>| one.map_or_else(|| "nothing".to_owned(), |one| name(one).to_string());
+    for index in 0..recorded.len().max(expected.len()) {
+        let (recorded, expected) = (recorded.get(index), expected.get(index));
+        findings.look(check, recorded == expected, || {
+            format!("tile {id} has {}, the extract gives {}", name(recorded), name(expected))
+        });
+    }
+}
