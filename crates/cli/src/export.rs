@@ -1,5 +1,7 @@
 //! `corniche export`: what a package holds, for other programs.
 
+mod tiles3d;
+
 use std::{cell::RefCell, io::stderr, path::Path};
 
 use corniche_areas::AreaClass;
@@ -35,6 +37,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         Export::Roads(args) => roads(args),
         Export::Areas(args) => areas(args),
         Export::Mesh(args) => mesh(args),
+        Export::Tiles3d(args) => tiles3d::run(args),
     }
 }
 

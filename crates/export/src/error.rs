@@ -6,6 +6,8 @@ use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId};
 use corniche_tileset::{OpenError, ReadError};
 
+use crate::tiles3d::CutError;
+
 /// Why roads or areas could not be exported.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
@@ -51,6 +53,10 @@ pub enum ExportError {
     GlbAxis,
     #[error("cannot write {path:?} (disk full?)")]
     WriteModel { path: PathBuf, source: io::Error },
+    #[error("cannot write into {folder:?} (disk full?)")]
+    WriteTiles { folder: PathBuf, source: io::Error },
+    #[error("tile {tile} cannot be written with its roads as surfaces; --roads line or none does without")]
+    Cut { tile: TileId, source: CutError },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(
@@ -77,6 +83,8 @@ pub enum ExportError {
     Crs(#[source] Box<DemError>),
     #[error("positions cannot be carried to WGS84")]
     Project(#[from] ProjectError),
+    #[error("a position of the ground has no longitude and latitude in WGS84")]
+    NoGroundPosition,
     #[error("a position of way {way_id} has no longitude and latitude in WGS84")]
     NoPosition { way_id: i64 },
     #[error(
@@ -106,6 +114,8 @@ impl ExportError {
             Self::NoDriver { .. }
                 | Self::Write { .. }
                 | Self::WriteModel { .. }
+                | Self::WriteTiles { .. }
+                | Self::Cut { .. }
                 | Self::NotWhole { .. }
                 | Self::ReadAgain { .. }
                 | Self::Sort { .. }

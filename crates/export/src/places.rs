@@ -92,6 +92,45 @@ impl<'a> Places<'a> {
         wgs84::short_distance_m(self.wgs84(from), self.wgs84(to))
     }
 
+    /// Replaces positions in working metres by longitude and latitude, and heights by those that were asked for.
+    pub(crate) fn to_wgs84(
+        &self,
+        plan: &mut [[f64; 2]],
+        heights_m: &mut [f64],
+    ) -> Result<(), ExportError> {
+        let datum = || self.manifest.vertical.datum.clone();
+        if let Target::Wgs84 { heights: Some(heights), .. } = &self.target {
+            heights.to_wgs84_m(plan, heights_m).map_err(|source| ExportError::Heights {
+                datum: datum(),
+                source: Box::new(source),
+            })?;
+        }
+        self.to_wgs84_plan(plan)?;
+        for (&[lon, lat], height_m) in plan.iter().zip(heights_m) {
+            if !height_m.is_finite() {
+                return Err(ExportError::NoHeightHere { datum: datum(), lon, lat });
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces positions in working metres by longitude and latitude.
+    pub(crate) fn to_wgs84_plan(&self, plan: &mut [[f64; 2]]) -> Result<(), ExportError> {
+        match &self.target {
+            Target::Wgs84 { projection, .. } => projection.wgs84_from_working(plan)?,
+            Target::Package => {
+                for position in plan.iter_mut() {
+                    *position = self.manifest.coordinates.wgs84_from_working(*position);
+                }
+            }
+        }
+        if plan.iter().flatten().all(|degrees| degrees.is_finite()) {
+            Ok(())
+        } else {
+            Err(ExportError::NoGroundPosition)
+        }
+    }
+
     /// A ring of an area in the features' coordinates.
     pub(crate) fn carry_ring(
         &self,

@@ -1,10 +1,10 @@
 //! Commands that give what a package holds to other programs.
 
-use std::path::PathBuf;
+use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use corniche_areas::AreaClass;
-use corniche_export::{DegreeBounds, MeshFormat, UpAxis, VectorFormat};
+use corniche_export::{DegreeBounds, MeshFormat, TileRoads, UpAxis, VectorFormat};
 use corniche_presets::{BoundsChoice, Classes};
 
 #[derive(Debug, Args)]
@@ -21,6 +21,9 @@ pub(crate) enum Export {
     Areas(Box<ExportAreasArgs>),
     /// Write the ground of a package and its roads as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),
+    /// Write a package as 3D Tiles, with its roads cut into the ground, for CesiumJS, three.js, deck.gl and game engines
+    #[command(name = "3dtiles")]
+    Tiles3d(Box<ExportTiles3dArgs>),
 }
 
 // What is read, and the file that is written.
@@ -107,6 +110,78 @@ pub(crate) struct ExportMeshArgs {
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportTiles3dArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The folder to write: tileset.json and what it names
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+    /// Replace the folder, once the new one is complete, if it is an earlier export
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// How roads are there: cut (surfaces of their true width in the ground's own triangles), line (centre-lines just above
+    /// the ground) or none
+    #[arg(long, value_enum, default_value = "cut", value_name = "HOW", hide_possible_values = true)]
+    pub(crate) roads: TileRoadsArg,
+    /// Functional road classes that are taken, such as 0-4,7
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
+    pub(crate) classes: Classes,
+    /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
+    #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
+    pub(crate) style: String,
+    /// The finest level that is written [default: the package's finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) finest_level: Option<u8>,
+    /// Walls below the borders of tiles, which hide gaps between levels
+    #[arg(long, value_enum, default_value = "on", value_name = "on|none", hide_possible_values = true)]
+    pub(crate) skirts: Skirts,
+    /// Compression of vertices without loss: meshopt (EXT_meshopt_compression), or none
+    #[arg(long, value_enum, default_value = "meshopt", value_name = "HOW", hide_possible_values = true)]
+    pub(crate) compress: Compress,
+    /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
+    #[arg(long, value_enum, value_name = "as-is")]
+    pub(crate) heights: Option<Heights>,
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+/// What 3D Tiles have of roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TileRoadsArg {
+    /// Surfaces in the ground's triangles
+    Cut,
+    /// Centre-lines above the ground
+    Line,
+    /// Nothing
+    None,
+}
+
+impl From<TileRoadsArg> for TileRoads {
+    fn from(roads: TileRoadsArg) -> Self {
+        match roads {
+            TileRoadsArg::Cut => Self::Cut,
+            TileRoadsArg::Line => Self::Line,
+            TileRoadsArg::None => Self::None,
+        }
+    }
+}
+
+/// Walls below the borders of tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Skirts {
+    On,
+    None,
+}
+
+/// How files are compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Compress {
+    Meshopt,
+    None,
 }
 
 /// Formats of models by the endings of their files.

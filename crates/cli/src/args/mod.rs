@@ -27,8 +27,8 @@ use clap::{
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs, ExportRoadsArgs, ExportTarget,
-    ModelRoads,
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs, ExportRoadsArgs,
+    ExportTarget, ExportTiles3dArgs, ModelRoads, Skirts,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;

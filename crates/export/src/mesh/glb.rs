@@ -17,15 +17,10 @@ use super::{
     spill::Spill,
     writer::{About, MeshWriter},
 };
-
-const ARRAY_BUFFER: u32 = 34_962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
-const F32: u32 = 5126;
-const U32: u32 = 5125;
-const LINES: u32 = 1;
-const TRIANGLES: u32 = 4;
-const HEADER_BYTES: u64 = 12;
-const CHUNK_HEADER_BYTES: u64 = 8;
+use crate::gltf::{
+    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U32, linear, range_of,
+    write_container,
+};
 
 pub(crate) struct GlbWriter {
     bytes: Spill,
@@ -75,13 +70,9 @@ impl GlbWriter {
                     "componentType": F32, "type": "VEC3", "count": vectors.len(),
                 });
                 if *has_range {
-                    let range = |pick: fn(f32, f32) -> f32| {
-                        [0, 1, 2].map(|axis: usize| {
-                            vectors.iter().map(|vector| vector[axis]).reduce(pick).unwrap_or(0.0)
-                        })
-                    };
-                    accessor["min"] = json!(range(f32::min));
-                    accessor["max"] = json!(range(f32::max));
+                    let [least, largest] = range_of(vectors);
+                    accessor["min"] = json!(least);
+                    accessor["max"] = json!(largest);
                 }
                 (ARRAY_BUFFER, accessor)
             }
@@ -111,11 +102,6 @@ enum Content<'a> {
 
 fn bytes_of(numbers: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
     numbers.flatten().collect()
-}
-
-/// A channel of sRGB as a linear one (IEC 61966-2-1).
-fn linear(channel: f32) -> f32 {
-    if channel <= 0.040_45 { channel / 12.92 } else { ((channel + 0.055) / 1.055).powf(2.4) }
 }
 
 impl MeshWriter for GlbWriter {
@@ -188,22 +174,8 @@ impl MeshWriter for GlbWriter {
             "bufferViews": views,
             "buffers": [{ "byteLength": bytes.length() }],
         });
-        let mut json = document.to_string().into_bytes();
-        // Chunks are whole fours of bytes; all numbers of the buffer are.
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let total = HEADER_BYTES + 2 * CHUNK_HEADER_BYTES + json.len() as u64 + bytes.length();
-        let too_large = |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB ends at 4 GiB");
-        let length = |bytes: u64| u32::try_from(bytes).map(u32::to_le_bytes).map_err(too_large);
-        let mut into = into;
-        into.write_all(b"glTF")?;
-        into.write_all(&2_u32.to_le_bytes())?;
-        into.write_all(&length(total)?)?;
-        into.write_all(&length(json.len() as u64)?)?;
-        into.write_all(b"JSON")?;
-        into.write_all(&json)?;
-        into.write_all(&length(bytes.length())?)?;
-        into.write_all(b"BIN\0")?;
-        bytes.copy_to(&mut into)
+        let length = bytes.length();
+        write_container(into, &document, length, |mut into| bytes.copy_to(&mut into))
     }
 }
 

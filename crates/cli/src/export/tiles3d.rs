@@ -1,0 +1,71 @@
+//! `corniche export 3dtiles`.
+
+use std::io::stderr;
+
+use corniche_export::{
+    Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, TileRoads, export_tiles3d,
+};
+use corniche_tileset::{FilePackage, Manifest};
+
+use super::{Bars, named};
+use crate::{
+    args::{Compress, ExportTiles3dArgs, Skirts},
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    settings, styles,
+    table::{Digits, bytes},
+};
+
+pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
+    let style = styles::style(&args.style)?;
+    let package = FilePackage::open(&args.package)?;
+    let request = Tiles3dRequest {
+        finest_level: args.finest_level,
+        roads: TileRoads::from(args.roads),
+        classes: args.classes.classes(),
+        style,
+        skirts: args.skirts == Skirts::On,
+        compress: args.compress == Compress::Meshopt,
+        coordinates: match args.heights {
+            None => Coordinates::Wgs84,
+            Some(_) => Coordinates::Wgs84WithPackageHeights,
+        },
+        threads: settings::threads(args.threads),
+    };
+    std::fs::create_dir_all(&args.output).unwrap();
+    let bars = Bars::default();
+    let exported = export_tiles3d(&package, &request, &args.output, &bars);
+    bars.end();
+    let summary = exported.map_err(|error| named(error, &args.output))?;
+    messages::note(&to_text(args, &summary, package.manifest()));
+    Ok(ExitCode::Done)
+}
+
+fn to_text(args: &ExportTiles3dArgs, summary: &Tiles3dSummary, manifest: &Manifest) -> String {
+    let count = |number| Digits::on(&stderr()).count(number);
+    let level = |level: &Tiles3dLevel| {
+        format!(
+            "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
+            level.level,
+            count(level.tiles),
+            count(level.triangles),
+            count(level.package_triangles),
+            count(level.road_triangles),
+            bytes(level.bytes),
+            level.error_m,
+            level.cut_s * 1e3 / level.tiles.max(1) as f64,
+        )
+    };
+    let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
+    format!(
+        "{}: {} tiles, {}, {} tileset documents\n{}heights: {}\nto be shown with it: {}",
+        args.output.display(),
+        count(total(|level| level.tiles)),
+        bytes(total(|level| level.bytes)),
+        count(summary.documents),
+        summary.levels.iter().map(level).collect::<String>(),
+        summary.heights,
+        manifest.attribution.join("; "),
+    )
+}

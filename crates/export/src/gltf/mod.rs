@@ -1,0 +1,11 @@
+//! What all glTF files have in common.
+//!
+//! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6 and 4.4.
+
+mod container;
+mod numbers;
+
+pub(crate) use container::{CHUNK_ALIGNMENT, write_container};
+pub(crate) use numbers::{
+    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U8, U16, U32, linear, range_of,
+};

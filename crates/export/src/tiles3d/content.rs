@@ -1,0 +1,295 @@
+//! From a tile of the package to a tile of glTF.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    cut::{self, Ground},
+    lines::{Road, TileLines},
+    parts::{Part, PartKind, RoadRow, TileContent, y_up},
+    placed::{PlacedTile, PlacedVertex, Placing, TileBox},
+    request::{TileRoads, Tiles3dRequest},
+    ribbon::Ribbon,
+    skirt::Skirt,
+};
+use crate::{error::ExportError, gltf::linear, read};
+
+/// Lines are lifted by this share of their tile's error, and by [`LEAST_LIFT_M`] at least: less than a fifth of a pixel where a tile is shown with
+/// two pixels of error.
+const LIFT_OF_ERROR: f64 = 0.1;
+const LEAST_LIFT_M: f64 = 0.02;
+
+/// What a level's tiles have in common.
+pub(crate) struct LevelOfTiles {
+    /// Edges that go further are divided: lattice steps for a true metre, and true metres.
+    pub(crate) steps_per_m: f64,
+    pub(crate) longest_edge_m: f64,
+    /// Step of positions.
+    pub(crate) step_m: f64,
+    /// What dividing and rounding leave of the difference to the package, metres.
+    pub(crate) sag_m: f64,
+    /// Depth of walls.
+    pub(crate) skirt_m: f64,
+}
+
+/// A tile's content, and what the tileset says of it.
+pub(crate) struct MadeTile {
+    pub(crate) content: TileContent,
+    pub(crate) tile_box: TileBox,
+    pub(crate) facts: TileFacts,
+}
+
+/// What is known of a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct TileFacts {
+    /// The package's bound against the full-resolution DEM.
+    pub(crate) bound_m: f64,
+    /// The same of what is written: with sag and rounding.
+    pub(crate) error_m: f64,
+    /// Triangles of the package.
+    pub(crate) package_triangles: u64,
+    /// Triangles of the ground that are written, roads included, and of roads alone.
+    pub(crate) triangles: u64,
+    pub(crate) road_triangles: u64,
+    /// Time for cutting roads in.
+    pub(crate) cut_s: f64,
+}
+
+/// Makes one tile; `None` without ground.
+pub(crate) fn make(
+    package: &FilePackage,
+    id: TileId,
+    request: &Tiles3dRequest,
+    lines: &TileLines<'_>,
+    placing: &Placing<'_>,
+    level: &LevelOfTiles,
+) -> Result<Option<MadeTile>, ExportError> {
+    let wanted = match request.roads {
+        TileRoads::Line => Sections::TERRAIN | read::road_sections(),
+        TileRoads::Cut | TileRoads::None => Sections::TERRAIN,
+    };
+    let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
+    let Some(terrain) = &payload.terrain else { return Ok(None) };
+    let manifest = package.manifest();
+    let frame = &manifest.frame;
+    let surface =
+        Surface::new(&terrain.tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
+    if surface.triangles().is_empty() {
+        return Ok(None);
+    }
+    let ground = Ground {
+        surface: &surface,
+        normals: &terrain.normals,
+        tile: frame.tile_lattice_bounds(id),
+    };
+    let roads = match request.roads {
+        TileRoads::Cut => lines.around(id)?,
+        TileRoads::Line | TileRoads::None => Vec::new(),
+    };
+    let ribbons: Vec<Ribbon> = roads.iter().map(|road| Ribbon::around(&road.center)).collect();
+    let begun = std::time::Instant::now();
+    let mut mesh =
+        cut::cut(&ground, &ribbons).map_err(|source| ExportError::Cut { tile: id, source })?;
+    let cut_s = begun.elapsed().as_secs_f64();
+    let longest = level.longest_edge_m * level.steps_per_m;
+    mesh.split_long_edges(|[east, north]| east.hypot(north) > longest);
+    let placed = placing.place(id, &mesh)?;
+    let skirt =
+        if request.skirts { Skirt::below(&placed, level.skirt_m) } else { Skirt::default() };
+    let bound_m = terrain.geometric_error_m;
+    let facts = TileFacts {
+        bound_m,
+        error_m: bound_m + level.sag_m,
+        package_triangles: surface.triangles().len() as u64,
+        triangles: placed.triangles.len() as u64,
+        road_triangles: placed.labels.iter().filter(|label| **label != 0).count() as u64,
+        cut_s,
+    };
+    let mut builder = Builder::new(manifest, request, &placed);
+    builder.ground(&roads);
+    builder.skirt(&skirt);
+    if request.roads == TileRoads::Line {
+        builder.lines(&payload, placing, facts.error_m)?;
+    }
+    let mut tile_box = TileBox::along(placed.axes);
+    let around_middle = |at: [f32; 3]| [0, 1, 2].map(|k| placed.middle_m[k] + f64::from(at[k]));
+    for vertex in &placed.vertices {
+        tile_box.include(around_middle(vertex.at_m));
+    }
+    for (at, _) in &skirt.vertices {
+        tile_box.include(around_middle(*at));
+    }
+    for at in &builder.line_positions {
+        tile_box.include(around_middle(*at));
+    }
+    Ok(Some(MadeTile { content: builder.finish(id), tile_box, facts }))
+}
+
+/// Sorts triangles and lines into parts.
+struct Builder<'a> {
+    manifest: &'a Manifest,
+    request: &'a Tiles3dRequest,
+    placed: &'a PlacedTile,
+    parts: Vec<(PartKind, Part)>,
+    rows: BTreeMap<i64, RoadRow>,
+    /// Ways of features, until rows have their numbers.
+    ways: Vec<Vec<i64>>,
+    line_positions: Vec<[f32; 3]>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(manifest: &'a Manifest, request: &'a Tiles3dRequest, placed: &'a PlacedTile) -> Self {
+        Self {
+            manifest,
+            request,
+            placed,
+            parts: Vec::new(),
+            rows: BTreeMap::new(),
+            ways: Vec::new(),
+            line_positions: Vec::new(),
+        }
+    }
+
+    /// The colour of the ground at a height.
+    fn color(&self, vertex: &PlacedVertex) -> [u8; 4] {
+        let Manifest { vertical, wgs84_bounds, .. } = self.manifest;
+        let latitude = wgs84_bounds.center()[1];
+        let color =
+            self.request.style.tint.color_at(vertex.height_m, vertical.range_m, latitude);
+        let [red, green, blue] = color.map(|channel| (linear(channel) * 255.0).round() as u8);
+        [red, green, blue, u8::MAX]
+    }
+
+    fn ground(&mut self, roads: &[Road]) {
+        let mut labels: Vec<u32> = self.placed.labels.clone();
+        labels.sort_unstable();
+        labels.dedup();
+        // Parts in the order of classes, ground first; roads come sorted by class.
+        let mut by_class: BTreeMap<Option<FunctionalRoadClass>, Vec<u32>> = BTreeMap::new();
+        for label in labels {
+            let class = (label != 0).then(|| roads[label as usize - 1].class);
+            by_class.entry(class).or_default().push(label);
+        }
+        let mut of_label: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
+        for (triangle, label) in self.placed.triangles.iter().zip(&self.placed.labels) {
+            of_label.entry(*label).or_default().push(*triangle);
+        }
+        for (class, labels) in by_class {
+            let (mut part, mut ways) = (Part::default(), Vec::new());
+            for label in labels {
+                let road = (label != 0).then(|| &roads[label as usize - 1]);
+                let mut place = BTreeMap::new();
+                for corner in of_label[&label].as_flattened() {
+                    let vertex = &self.placed.vertices[*corner as usize];
+                    let index = *place.entry(*corner).or_insert_with(|| {
+                        part.positions.push(y_up(vertex.at_m));
+                        part.normals.push(y_up(vertex.normal));
+                        match road {
+                            Some(road) => ways.push(road.way_id),
+                            None => part.colors.push(self.color(vertex)),
+                        }
+                        part.positions.len() as u32 - 1
+                    });
+                    part.indices.push(index);
+                }
+                if let Some(road) = road {
+                    self.rows
+                        .entry(road.way_id)
+                        .or_insert_with(|| row(road.way_id, road.class, &road.attributes));
+                }
+            }
+            let kind = class.map_or(PartKind::Terrain, PartKind::RoadSurfaces);
+            self.parts.push((kind, part));
+            self.ways.push(ways);
+        }
+    }
+
+    fn skirt(&mut self, skirt: &Skirt) {
+        if skirt.triangles.is_empty() {
+            return;
+        }
+        let mut part = Part::default();
+        for (at, top) in &skirt.vertices {
+            let vertex = &self.placed.vertices[*top as usize];
+            part.positions.push(y_up(*at));
+            part.normals.push(y_up(vertex.normal));
+            part.colors.push(self.color(vertex));
+        }
+        part.indices.extend(skirt.triangles.as_flattened());
+        self.parts.push((PartKind::Skirt, part));
+        self.ways.push(Vec::new());
+    }
+
+    /// Centre-lines, lifted.
+    fn lines(
+        &mut self,
+        payload: &TilePayload,
+        placing: &Placing<'_>,
+        error_m: f64,
+    ) -> Result<(), ExportError> {
+        let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
+        let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
+        let mut by_class: BTreeMap<FunctionalRoadClass, (Part, Vec<i64>)> = BTreeMap::new();
+        for piece in pieces {
+            if piece.attributes.structure == Structure::Tunnel {
+                continue;
+            }
+            let (part, ways) = by_class.entry(piece.class).or_default();
+            let places: Vec<([f64; 2], f64)> =
+                piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m)).collect();
+            let first = part.positions.len() as u32;
+            for at in placing.positions(&places, self.placed.middle_m)? {
+                self.line_positions.push(at);
+                part.positions.push(y_up(at));
+                ways.push(piece.key.way_id);
+            }
+            let end = part.positions.len() as u32;
+            part.indices.extend((first + 1..end).flat_map(|next| [next - 1, next]));
+            self.rows
+                .entry(piece.key.way_id)
+                .or_insert_with(|| row(piece.key.way_id, piece.class, &piece.attributes));
+        }
+        for (class, (part, ways)) in by_class {
+            self.parts.push((PartKind::RoadLines(class), part));
+            self.ways.push(ways);
+        }
+        Ok(())
+    }
+
+    fn finish(self, id: TileId) -> TileContent {
+        let Self { mut parts, rows, ways, request, placed, manifest, .. } = self;
+        let number: BTreeMap<i64, u32> = rows.keys().copied().zip(0..).collect();
+        for ((_, part), ways) in parts.iter_mut().zip(ways) {
+            part.features = ways.iter().map(|way| number[way]).collect();
+        }
+        TileContent {
+            name: id.to_string(),
+            translation: y_up(placed.middle_m),
+            parts,
+            roads: rows.into_values().collect(),
+            colors: request.style.roads.map(|road| road.bands.main_color()),
+            copyright: manifest.attribution.join("; "),
+            generator: manifest.generator.clone(),
+        }
+    }
+}
+
+fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {
+    let structure = match attributes.structure {
+        Structure::Ground => "",
+        Structure::Bridge => "bridge",
+        Structure::Tunnel => "tunnel",
+    };
+    RoadRow {
+        way_id,
+        class: class.number() as u8,
+        name: attributes.name.clone(),
+        reference: attributes.reference.clone(),
+        highway: attributes.highway.clone(),
+        structure: structure.to_owned(),
+    }
+}

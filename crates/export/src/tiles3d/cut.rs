@@ -1,0 +1,326 @@
+//! Roads cut into the triangles of a tile: the same surface, divided along the outlines of roads.
+//!
+//! ```text
+//!   triangles that no outline comes near ───────────────────────────────► unchanged
+//!   the others ──► constrained triangulation of their edges ──► outlines added, edges divided where they cross ──► new triangles
+//! ```
+//!
+//! New vertices lie on the plane of the triangle that they divide, so the surface stays the same, and so does what depth tests see of it. Points
+//! on the tile's border follow from the outlines alone ([`plan_cut`](super::plan_cut)): the tile beyond has the same.
+//!
+//! The triangulation is spade's, whose predicates are exact; where outlines cross, its new points are rounded to f64, 10⁻⁶ lattice steps at the
+//! very most.
+
+use std::collections::HashMap;
+
+use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_tin::{Surface, decode_normal};
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation as _};
+
+use super::{
+    ground::{GroundMesh, GroundVertex},
+    label_index::LabelIndex,
+    plan_cut::within,
+    ribbon::Ribbon,
+};
+
+/// A tile's ground before the cut.
+pub(crate) struct Ground<'a> {
+    pub(crate) surface: &'a Surface,
+    /// Of the TIN's vertices, as they are stored.
+    pub(crate) normals: &'a [[i8; 2]],
+    /// The tile's rectangle.
+    pub(crate) tile: LatticeBounds,
+}
+
+/// The outlines of a tile's roads make no triangulation with its ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the outlines of its roads cannot be triangulated")]
+pub struct CutError;
+
+/// A vertex of the triangulation, from the middle of the tile.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    at: Point2<f64>,
+    /// The TIN's vertex.
+    own: Option<u32>,
+}
+
+impl HasPosition for Node {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.at
+    }
+}
+
+type Cdt = ConstrainedDelaunayTriangulation<Node>;
+
+/// Divides the ground along roads. Ribbons come in their order of importance: where they overlap, the first is seen. Labels of triangles are places in
+/// `ribbons`, counted from 1; 0 is ground without road.
+pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh, CutError> {
+    let Ground { surface, tile, .. } = ground;
+    let middle = LatticePoint::new(
+        tile.min.u + (tile.max.u - tile.min.u) / 2,
+        tile.min.v + (tile.max.v - tile.min.v) / 2,
+    );
+    let labels = LabelIndex::new(ribbons, tile);
+    let outlines = Outlines::within(ribbons, tile);
+    let mut is_touched = vec![false; surface.triangles().len()];
+    for bounds in outlines.bounds() {
+        surface.visit_triangles_near(bounds, |triangle| {
+            let [a, b, c] =
+                surface.triangles()[triangle as usize].map(|v| surface.points()[v as usize]);
+            let own = LatticeBounds { min: a, max: a }
+                .union(&LatticeBounds { min: b, max: b })
+                .union(&LatticeBounds { min: c, max: c });
+            is_touched[triangle as usize] |= own.intersects(&bounds);
+        });
+    }
+    let mut mesh = GroundMesh::new(middle);
+    for (vertex, at) in surface.points().iter().enumerate() {
+        mesh.vertices.push(GroundVertex {
+            at: mesh.from_middle(*at),
+            height_m: surface.heights_m()[vertex],
+            normal: decode_normal(ground.normals[vertex]),
+        });
+    }
+    for (triangle, corners) in surface.triangles().iter().enumerate() {
+        if !is_touched[triangle] {
+            mesh.add(*corners, labels.at(mesh.centroid(*corners)));
+        }
+    }
+    if is_touched.contains(&true) {
+        let cdt = triangulate(ground, &outlines, &is_touched, &mesh)?;
+        add_faces(ground, &cdt, &is_touched, &labels, &mut mesh)?;
+    }
+    mesh.drop_unused();
+    Ok(mesh)
+}
+
+/// The outlines of all ribbons as far as they lie in the tile.
+struct Outlines {
+    segments: Vec<[LatticePoint; 2]>,
+    /// Points where an outline only touches the tile.
+    points: Vec<LatticePoint>,
+}
+
+impl Outlines {
+    fn within(ribbons: &[Ribbon], tile: &LatticeBounds) -> Self {
+        let (mut segments, mut points) = (Vec::new(), Vec::new());
+        for &segment in ribbons.iter().flat_map(|ribbon| &ribbon.outline) {
+            let inside = within(segment, tile);
+            match inside.as_slice() {
+                [] => {}
+                [point] => points.push(*point),
+                more => segments.extend(more.windows(2).map(|pair| [pair[0], pair[1]])),
+            }
+        }
+        Self { segments, points }
+    }
+
+    fn bounds(&self) -> impl Iterator<Item = LatticeBounds> {
+        let of_point = |p: LatticePoint| LatticeBounds { min: p, max: p };
+        let of_segments =
+            self.segments.iter().map(move |[one, other]| of_point(*one).union(&of_point(*other)));
+        of_segments.chain(self.points.iter().map(move |point| of_point(*point)))
+    }
+}
+
+fn triangulate(
+    ground: &Ground<'_>,
+    outlines: &Outlines,
+    is_touched: &[bool],
+    mesh: &GroundMesh,
+) -> Result<Cdt, CutError> {
+    let surface = ground.surface;
+    let mut place: HashMap<u32, usize> = HashMap::new();
+    let (mut nodes, mut edges) = (Vec::new(), Vec::new());
+    for (triangle, corners) in surface.triangles().iter().enumerate() {
+        if !is_touched[triangle] {
+            continue;
+        }
+        for corner in *corners {
+            place.entry(corner).or_insert_with(|| {
+                let [x, y] = mesh.vertices[corner as usize].at;
+                nodes.push(Node { at: Point2::new(x, y), own: Some(corner) });
+                nodes.len() - 1
+            });
+        }
+        for k in 0..3 {
+            let half_edge = 3 * triangle as u32 + k;
+            let twin = surface.twin(half_edge);
+            // One of both sides adds the edge.
+            let is_other = twin != corniche_tin::NO_TWIN
+                && is_touched[twin as usize / 3]
+                && twin < half_edge;
+            if !is_other {
+                edges.push(surface.ends(half_edge).map(|vertex| place[&vertex]));
+            }
+        }
+    }
+    let mut conflicts = 0_usize;
+    let cdt = Cdt::try_bulk_load_cdt(nodes, edges, |_| conflicts += 1);
+    let mut cdt = cdt.map_err(|_| CutError)?;
+    if conflicts > 0 {
+        return Err(CutError);
+    }
+    let node = |at: LatticePoint| {
+        let [x, y] = mesh.from_middle(at);
+        Node { at: Point2::new(x, y), own: None }
+    };
+    let put = |cdt: &mut Cdt, at: LatticePoint| {
+        let new = node(at);
+        match cdt.locate(new.at) {
+            spade::PositionInTriangulation::OnVertex(known) => Ok(known),
+            _ => cdt.insert(new).map_err(|_| CutError),
+        }
+    };
+    for point in &outlines.points {
+        put(&mut cdt, *point)?;
+    }
+    for [one, other] in &outlines.segments {
+        let (one, other) = (put(&mut cdt, *one)?, put(&mut cdt, *other)?);
+        cdt.add_constraint_and_split(one, other, |at| Node { at, own: None });
+    }
+    Ok(cdt)
+}
+
+/// Adds the triangles that lie on touched ground.
+fn add_faces(
+    ground: &Ground<'_>,
+    cdt: &Cdt,
+    is_touched: &[bool],
+    labels: &LabelIndex<'_>,
+    mesh: &mut GroundMesh,
+) -> Result<(), CutError> {
+    let above = Above { ground, is_touched, middle: mesh.middle };
+    let mut places: Vec<Option<u32>> = vec![None; cdt.num_vertices()];
+    for face in cdt.inner_faces() {
+        let corners = face.vertices();
+        let at = corners.map(|corner| [corner.position().x, corner.position().y]);
+        let middle = [0, 1].map(|axis| (at[0][axis] + at[1][axis] + at[2][axis]) / 3.0);
+        // The triangulation fills holes and bays of touched ground.
+        if !above.is_on_touched(middle) {
+            continue;
+        }
+        let mut triangle = [0; 3];
+        for (place_in_mesh, corner) in triangle.iter_mut().zip(corners) {
+            let place = &mut places[corner.fix().index()];
+            let node = corner.data();
+            *place_in_mesh = match (*place, node.own) {
+                (Some(known), _) | (None, Some(known)) => known,
+                (None, None) => {
+                    mesh.vertices.push(above.vertex([node.at.x, node.at.y]).ok_or(CutError)?);
+                    (mesh.vertices.len() - 1) as u32
+                }
+            };
+            *place = Some(*place_in_mesh);
+        }
+        mesh.add(triangle, labels.at(middle));
+    }
+    Ok(())
+}
+
+/// What of the ground is above a position.
+struct Above<'a> {
+    ground: &'a Ground<'a>,
+    is_touched: &'a [bool],
+    middle: LatticePoint,
+}
+
+impl Above<'_> {
+    /// The touched triangle in which a position from the middle lies deepest, and the shares of its corners there.
+    fn triangle(&self, at: [f64; 2]) -> Option<(u32, [f64; 3])> {
+        let surface = self.ground.surface;
+        let [u, v] =
+            [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64].map(|steps| steps.floor());
+        let min = LatticePoint::new(u as i64 - 1, v as i64 - 1);
+        let bounds = LatticeBounds { min, max: LatticePoint::new(min.u + 3, min.v + 3) };
+        let mut best: Option<(u32, [f64; 3])> = None;
+        surface.visit_triangles_near(bounds, |triangle| {
+            if !self.is_touched[triangle as usize] {
+                return;
+            }
+            let shares = self.shares(triangle, at);
+            let depth = |shares: [f64; 3]| shares.into_iter().fold(f64::INFINITY, f64::min);
+            if best.is_none_or(|(_, known)| depth(known) < depth(shares)) {
+                best = Some((triangle, shares));
+            }
+        });
+        best
+    }
+
+    fn shares(&self, triangle: u32, [x, y]: [f64; 2]) -> [f64; 3] {
+        let surface = self.ground.surface;
+        let [a, b, c] = surface.triangles()[triangle as usize].map(|vertex| {
+            let point = surface.points()[vertex as usize];
+            [(point.u - self.middle.u) as f64, (point.v - self.middle.v) as f64]
+        });
+        let twice = |p: [f64; 2], q: [f64; 2]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
+        let (of_a, of_b, of_c) = (twice(b, c), twice(c, a), twice(a, b));
+        let whole = of_a + of_b + of_c;
+        [of_a / whole, of_b / whole, of_c / whole]
+    }
+
+    fn is_on_touched(&self, at: [f64; 2]) -> bool {
+        self.triangle(at).is_some_and(|(_, shares)| shares.iter().all(|share| *share >= 0.0))
+    }
+
+    /// The vertex at a position on touched ground, or beside it by the rounding of a crossing.
+    fn vertex(&self, at: [f64; 2]) -> Option<GroundVertex> {
+        let surface = self.ground.surface;
+        let of_corner = |vertex: u32| decode_normal(self.ground.normals[vertex as usize]);
+        let (triangle, shares) = self.triangle(at)?;
+        let corners = surface.triangles()[triangle as usize];
+        if let Some([one, other]) = self.border_edge(triangle, at) {
+            let [p, q] = [one, other].map(|vertex| surface.points()[vertex as usize]);
+            // From the smaller end, so that both tiles of a border compute the same.
+            let ([one, other], [p, q]) =
+                if q < p { ([other, one], [q, p]) } else { ([one, other], [p, q]) };
+            let from_p =
+                [at[0] - (p.u - self.middle.u) as f64, at[1] - (p.v - self.middle.v) as f64];
+            let along = from_p[0].abs() + from_p[1].abs();
+            let share = along / ((q.u - p.u).abs() + (q.v - p.v).abs()) as f64;
+            let [one_m, other_m] = [one, other].map(|vertex| surface.heights_m()[vertex as usize]);
+            let [from, to] = [one, other].map(of_corner);
+            let normal =
+                [0, 1, 2].map(|axis| from[axis] + share as f32 * (to[axis] - from[axis]));
+            let height_m = one_m + share * (other_m - one_m);
+            return Some(GroundVertex { at, height_m, normal: unit(normal) });
+        }
+        let mut normal = [0.0_f32; 3];
+        for (corner, share) in corners.iter().zip(shares) {
+            for (sum, axis) in normal.iter_mut().zip(of_corner(*corner)) {
+                *sum += share as f32 * axis;
+            }
+        }
+        let on_lattice = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
+        let height_m = surface.height_in_triangle_m(triangle, on_lattice);
+        Some(GroundVertex { at, height_m, normal: unit(normal) })
+    }
+
+    /// The edge of the triangle along the tile's border on which a position lies.
+    fn border_edge(&self, triangle: u32, at: [f64; 2]) -> Option<[u32; 2]> {
+        let surface = self.ground.surface;
+        let LatticeBounds { min, max } = self.ground.tile;
+        let side = |axis: fn(LatticePoint) -> i64, here: f64, middle: i64| {
+            let line = [axis(min), axis(max)]
+                .into_iter()
+                .find(|line| ((line - middle) as f64).to_bits() == (here + 0.0).to_bits())?;
+            (0..3).map(|k| surface.ends(3 * triangle + k)).find(|ends| {
+                ends.iter().all(|vertex| axis(surface.points()[*vertex as usize]) == line)
+            })
+        };
+        side(|p| p.u, at[0], self.middle.u).or_else(|| side(|p| p.v, at[1], self.middle.v))
+    }
+}
+
+pub(crate) fn unit(vector: [f32; 3]) -> [f32; 3] {
+    let length = vector.iter().map(|axis| axis * axis).sum::<f32>().sqrt();
+    vector.map(|axis| axis / length)
+}
+
+#[cfg(test)]
+#[path = "cut_tests.rs"]
+mod tests;

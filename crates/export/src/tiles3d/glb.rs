@@ -1,0 +1,325 @@
+//! One tile as binary glTF: ground, walls and roads, with a table of the roads.
+//!
+//! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`, `EXT_structural_metadata`, `EXT_meshopt_compression`,
+//! `KHR_materials_unlit`.
+
+use std::io::{self, Write};
+
+use corniche_styles::Rgb;
+use serde_json::{Map, Value, json};
+
+use super::parts::{Part, PartKind, RoadRow, TileContent};
+use crate::gltf::{
+    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U8, U16, U32,
+    linear, range_of, write_container,
+};
+
+/// Views of tables begin at multiples of this.
+const TABLE_ALIGNMENT: usize = 8;
+/// Speed against size in the codec of vertices; version 0 of which is the one that the extension knows.
+const VERTEX_LEVEL: i32 = 2;
+const VERTEX_VERSION: i32 = 0;
+/// Indices are of 16 bits below; the largest number restarts a primitive.
+const SHORT_INDICES: usize = 65_535;
+
+/// Writes a tile.
+pub(crate) fn write(
+    tile: &TileContent,
+    is_compressed: bool,
+    into: &mut dyn Write,
+) -> io::Result<()> {
+    let mut file = File { is_compressed, ..File::default() };
+    let (mut primitives, mut materials) = (Vec::new(), Vec::new());
+    for (kind, part) in &tile.parts {
+        let mut primitive = file.primitive(*kind, part)?;
+        primitive["material"] = json!(materials.len());
+        materials.push(material(*kind, &tile.colors));
+        primitives.push(primitive);
+    }
+    let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)) };
+    let document = file.document(tile, primitives, materials, table);
+    write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
+}
+
+fn material(kind: PartKind, colors: &[Rgb]) -> Value {
+    let base = |rgb: [f32; 3]| {
+        let [red, green, blue] = rgb;
+        json!({
+            "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
+        })
+    };
+    let name = kind.name();
+    match kind {
+        PartKind::Terrain | PartKind::Skirt => {
+            json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) })
+        }
+        // Colours of roads are those of the legend, whatever the light.
+        PartKind::RoadSurfaces(class) | PartKind::RoadLines(class) => json!({
+            "name": name,
+            "pbrMetallicRoughness": base(colors[usize::from(class.number())].map(linear)),
+            "extensions": { "KHR_materials_unlit": {} },
+        }),
+    }
+}
+
+#[derive(Default)]
+struct File {
+    bytes: Vec<u8>,
+    /// Length of what compressed views decode to.
+    decoded: usize,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    is_compressed: bool,
+}
+
+impl File {
+    fn primitive(&mut self, kind: PartKind, part: &Part) -> io::Result<Value> {
+        let count = part.positions.len();
+        let mut attributes = Map::new();
+        let [least, largest] = range_of(&part.positions);
+        let view = self.vertices(&part.positions)?;
+        attributes.insert(
+            "POSITION".to_owned(),
+            self.accessor(json!({
+                "bufferView": view, "componentType": F32, "type": "VEC3", "count": count,
+                "min": least, "max": largest,
+            })),
+        );
+        if !part.normals.is_empty() {
+            let view = self.vertices(&part.normals)?;
+            let accessor = json!({
+                "bufferView": view, "componentType": F32, "type": "VEC3", "count": count,
+            });
+            attributes.insert("NORMAL".to_owned(), self.accessor(accessor));
+        }
+        if !part.colors.is_empty() {
+            let view = self.vertices(&part.colors)?;
+            let accessor = json!({
+                "bufferView": view, "componentType": U8, "normalized": true, "type": "VEC4",
+                "count": count,
+            });
+            attributes.insert("COLOR_0".to_owned(), self.accessor(accessor));
+        }
+        let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
+        if let PartKind::RoadSurfaces(class) | PartKind::RoadLines(class) = kind {
+            // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
+            let features: Vec<f32> = part.features.iter().map(|row| *row as f32).collect();
+            let view = self.vertices(&features)?;
+            let accessor = json!({
+                "bufferView": view, "componentType": F32, "type": "SCALAR", "count": count,
+            });
+            attributes.insert("_FEATURE_ID_0".to_owned(), self.accessor(accessor));
+            let mut rows = part.features.clone();
+            rows.sort_unstable();
+            rows.dedup();
+            primitive["extensions"] = json!({ "EXT_mesh_features": { "featureIds": [{
+                "featureCount": rows.len(), "attribute": 0, "propertyTable": 0, "label": "way",
+            }] } });
+            primitive["extras"]["frc"] = json!(class.number());
+        }
+        if matches!(kind, PartKind::RoadLines(_)) {
+            primitive["mode"] = json!(LINES);
+        }
+        primitive["attributes"] = Value::Object(attributes);
+        primitive["indices"] = self.indices(&part.indices, count, kind)?;
+        Ok(primitive)
+    }
+
+    fn accessor(&mut self, accessor: Value) -> Value {
+        self.accessors.push(accessor);
+        json!(self.accessors.len() - 1)
+    }
+
+    /// A view of vertices; returns its number.
+    fn vertices<T: bytemuck::Pod>(&mut self, vertices: &[T]) -> io::Result<usize> {
+        let plain: &[u8] = bytemuck::cast_slice(vertices);
+        let stride = size_of::<T>();
+        if self.is_compressed {
+            let encoded = meshopt::encode_vertex_buffer_level(
+                vertices,
+                VERTEX_LEVEL,
+                Some(VERTEX_VERSION),
+            );
+            let encoded = encoded.map_err(io::Error::other)?;
+            let how = json!({ "mode": "ATTRIBUTES", "count": vertices.len() });
+            return Ok(self.compressed(&encoded, plain.len(), stride, how, ARRAY_BUFFER));
+        }
+        Ok(self.plain(plain, json!({ "byteStride": stride, "target": ARRAY_BUFFER })))
+    }
+
+    fn indices(&mut self, indices: &[u32], vertices: usize, kind: PartKind) -> io::Result<Value> {
+        let is_short = vertices < SHORT_INDICES;
+        let short: Vec<u16> =
+            if is_short { indices.iter().map(|index| *index as u16).collect() } else { Vec::new() };
+        let plain: &[u8] =
+            if is_short { bytemuck::cast_slice(&short) } else { bytemuck::cast_slice(indices) };
+        let stride = if is_short { 2 } else { 4 };
+        let view = if self.is_compressed {
+            let (encoded, mode) = match kind {
+                PartKind::RoadLines(_) => {
+                    (meshopt::encode_index_sequence(indices, vertices), "INDICES")
+                }
+                _ => (meshopt::encode_index_buffer(indices, vertices), "TRIANGLES"),
+            };
+            let encoded = encoded.map_err(io::Error::other)?;
+            let how = json!({ "mode": mode, "count": indices.len() });
+            self.compressed(&encoded, plain.len(), stride, how, ELEMENT_ARRAY_BUFFER)
+        } else {
+            self.plain(plain, json!({ "target": ELEMENT_ARRAY_BUFFER }))
+        };
+        let component = if is_short { U16 } else { U32 };
+        Ok(self.accessor(json!({
+            "bufferView": view, "componentType": component, "type": "SCALAR", "count": indices.len(),
+        })))
+    }
+
+    fn plain(&mut self, bytes: &[u8], mut view: Value) -> usize {
+        view["buffer"] = json!(0);
+        view["byteOffset"] = json!(self.bytes.len());
+        view["byteLength"] = json!(bytes.len());
+        self.put(bytes, CHUNK_ALIGNMENT);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    /// A view whose bytes are decoded into a second buffer, which no file has.
+    fn compressed(
+        &mut self,
+        encoded: &[u8],
+        decoded: usize,
+        stride: usize,
+        mut how: Value,
+        target: u32,
+    ) -> usize {
+        how["buffer"] = json!(0);
+        how["byteOffset"] = json!(self.bytes.len());
+        how["byteLength"] = json!(encoded.len());
+        how["byteStride"] = json!(stride);
+        let mut view = json!({
+            "buffer": 1, "byteOffset": self.decoded, "byteLength": decoded, "target": target,
+            "extensions": { "EXT_meshopt_compression": how },
+        });
+        if target == ARRAY_BUFFER {
+            view["byteStride"] = json!(stride);
+        }
+        self.decoded = (self.decoded + decoded).next_multiple_of(CHUNK_ALIGNMENT);
+        self.put(encoded, CHUNK_ALIGNMENT);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn put(&mut self, bytes: &[u8], alignment: usize) {
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(alignment), 0);
+    }
+
+    /// The table of roads, column by column.
+    fn table(&mut self, rows: &[RoadRow]) -> Value {
+        self.bytes.resize(self.bytes.len().next_multiple_of(TABLE_ALIGNMENT), 0);
+        let mut column = |bytes: &[u8]| {
+            let view = json!({
+                "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len().max(1),
+            });
+            // A view has a byte at least.
+            self.bytes.extend(if bytes.is_empty() { &[0] } else { bytes });
+            self.bytes.resize(self.bytes.len().next_multiple_of(TABLE_ALIGNMENT), 0);
+            self.views.push(view);
+            self.views.len() - 1
+        };
+        let ids: Vec<u8> = rows.iter().flat_map(|row| row.way_id.to_le_bytes()).collect();
+        let classes: Vec<u8> = rows.iter().map(|row| row.class).collect();
+        let mut properties = json!({
+            "way_id": { "values": column(&ids) },
+            "class": { "values": column(&classes) },
+        });
+        let texts: [(&str, fn(&RoadRow) -> &str); 4] = [
+            ("name", |row| &row.name),
+            ("ref", |row| &row.reference),
+            ("highway", |row| &row.highway),
+            ("structure", |row| &row.structure),
+        ];
+        for (name, text) in texts {
+            let mut ends = vec![0_u32];
+            let mut bytes = Vec::new();
+            for row in rows {
+                bytes.extend(text(row).as_bytes());
+                ends.push(bytes.len() as u32);
+            }
+            let offsets: Vec<u8> = ends.iter().flat_map(|end| end.to_le_bytes()).collect();
+            properties[name] = json!({
+                "values": column(&bytes), "stringOffsets": column(&offsets),
+                "stringOffsetType": "UINT32",
+            });
+        }
+        json!({
+            "schema": {
+                "id": "corniche_roads",
+                "classes": { "road": {
+                    "name": "OpenStreetMap way",
+                    "properties": {
+                        "way_id": { "type": "SCALAR", "componentType": "INT64", "required": true },
+                        "class": {
+                            "type": "SCALAR", "componentType": "UINT8", "required": true,
+                            "description": "functional road class, 0 is the most important",
+                        },
+                        "name": { "type": "STRING" },
+                        "ref": { "type": "STRING" },
+                        "highway": { "type": "STRING" },
+                        "structure": { "type": "STRING" },
+                    },
+                } },
+            },
+            "propertyTables": [{
+                "name": "roads", "class": "road", "count": rows.len(), "properties": properties,
+            }],
+        })
+    }
+
+    fn document(
+        &self,
+        tile: &TileContent,
+        primitives: Vec<Value>,
+        materials: Vec<Value>,
+        table: Option<Value>,
+    ) -> Value {
+        let mut used = Vec::new();
+        let mut buffers = vec![json!({ "byteLength": self.bytes.len() })];
+        if self.is_compressed {
+            used.push("EXT_meshopt_compression");
+            buffers.push(json!({
+                "byteLength": self.decoded,
+                "extensions": { "EXT_meshopt_compression": { "fallback": true } },
+            }));
+        }
+        if table.is_some() {
+            used.extend(["EXT_mesh_features", "EXT_structural_metadata", "KHR_materials_unlit"]);
+        }
+        let mut document = json!({
+            "asset": {
+                "version": "2.0", "generator": tile.generator, "copyright": tile.copyright,
+            },
+            "scene": 0,
+            "scenes": [{ "nodes": [0] }],
+            "nodes": [{ "name": tile.name, "mesh": 0, "translation": tile.translation }],
+            "meshes": [{ "name": tile.name, "primitives": primitives }],
+            "materials": materials,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": buffers,
+        });
+        if let Some(table) = table {
+            document["extensions"] = json!({ "EXT_structural_metadata": table });
+        }
+        if !used.is_empty() {
+            document["extensionsUsed"] = json!(used);
+        }
+        if self.is_compressed {
+            document["extensionsRequired"] = json!(["EXT_meshopt_compression"]);
+        }
+        document
+    }
+}
+
+#[cfg(test)]
+#[path = "glb_tests.rs"]
+mod tests;

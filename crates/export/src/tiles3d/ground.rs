@@ -1,0 +1,134 @@
+//! A tile's ground as triangles with labels, in plan on the lattice.
+
+use std::collections::HashMap;
+
+use corniche_geom::LatticePoint;
+
+use super::cut::unit;
+
+/// A vertex of the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct GroundVertex {
+    /// Lattice steps from the middle of the tile.
+    pub(crate) at: [f64; 2],
+    /// Height in the package's datum.
+    pub(crate) height_m: f64,
+    /// Unit normal: east, north, up along the axes of the package's CRS.
+    pub(crate) normal: [f32; 3],
+}
+
+/// Triangles with labels.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct GroundMesh {
+    /// What positions are counted from.
+    pub(crate) middle: LatticePoint,
+    pub(crate) vertices: Vec<GroundVertex>,
+    /// Counter-clockwise from above.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Of each triangle: 0 is ground, others are roads.
+    pub(crate) labels: Vec<u32>,
+}
+
+impl GroundMesh {
+    pub(crate) fn new(middle: LatticePoint) -> Self {
+        Self { middle, vertices: Vec::new(), triangles: Vec::new(), labels: Vec::new() }
+    }
+
+    /// A lattice point from the middle of the tile.
+    pub(crate) fn from_middle(&self, point: LatticePoint) -> [f64; 2] {
+        [(point.u - self.middle.u) as f64, (point.v - self.middle.v) as f64]
+    }
+
+    /// A vertex's place on the lattice.
+    pub(crate) fn on_lattice(&self, vertex: &GroundVertex) -> [f64; 2] {
+        [vertex.at[0] + self.middle.u as f64, vertex.at[1] + self.middle.v as f64]
+    }
+
+    pub(crate) fn add(&mut self, triangle: [u32; 3], label: u32) {
+        self.triangles.push(triangle);
+        self.labels.push(label);
+    }
+
+    pub(crate) fn centroid(&self, triangle: [u32; 3]) -> [f64; 2] {
+        let corners = triangle.map(|vertex| self.vertices[vertex as usize].at);
+        [0, 1].map(|axis| (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3.0)
+    }
+
+    /// Leaves out vertices that no triangle has.
+    pub(crate) fn drop_unused(&mut self) {
+        let mut place = vec![u32::MAX; self.vertices.len()];
+        let mut kept = Vec::with_capacity(self.vertices.len());
+        for corner in self.triangles.as_flattened_mut() {
+            let place = &mut place[*corner as usize];
+            if *place == u32::MAX {
+                *place = kept.len() as u32;
+                kept.push(self.vertices[*corner as usize]);
+            }
+            *corner = *place;
+        }
+        self.vertices = kept;
+    }
+
+    /// Divides edges in the middle until none is too long; `is_long` sees how far it goes east and north, in steps.
+    ///
+    /// The rule sees the edge alone, so triangles on both sides, and tiles on both sides of a border, divide it the same way.
+    pub(crate) fn split_long_edges(&mut self, is_long: impl Fn([f64; 2]) -> bool) {
+        loop {
+            let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
+            let (mut triangles, mut labels) = (Vec::new(), Vec::new());
+            let old = std::mem::take(&mut self.triangles);
+            for (triangle, label) in old.into_iter().zip(std::mem::take(&mut self.labels)) {
+                let middle = [0, 1, 2].map(|k| {
+                    let (one, other) = (triangle[k], triangle[(k + 1) % 3]);
+                    let [from, to] = [one, other].map(|vertex| self.vertices[vertex as usize].at);
+                    is_long([to[0] - from[0], to[1] - from[1]]).then(|| {
+                        let ends = [one.min(other), one.max(other)];
+                        *middles.entry(ends).or_insert_with(|| {
+                            let [one, other] = ends.map(|vertex| self.vertices[vertex as usize]);
+                            self.vertices.push(GroundVertex::between(&one, &other));
+                            (self.vertices.len() - 1) as u32
+                        })
+                    })
+                });
+                let parts = divided(triangle, middle);
+                labels.extend(std::iter::repeat_n(label, parts.len()));
+                triangles.extend(parts);
+            }
+            (self.triangles, self.labels) = (triangles, labels);
+            if middles.is_empty() {
+                return;
+            }
+        }
+    }
+}
+
+impl GroundVertex {
+    /// Halfway between two others: the same whichever comes first.
+    fn between(one: &Self, other: &Self) -> Self {
+        let middle = |one: f64, other: f64| (one + other) / 2.0;
+        let normal = [0, 1, 2].map(|axis| one.normal[axis] + other.normal[axis]);
+        Self {
+            at: [middle(one.at[0], other.at[0]), middle(one.at[1], other.at[1])],
+            height_m: middle(one.height_m, other.height_m),
+            normal: unit(normal),
+        }
+    }
+}
+
+/// A triangle whose edges (from corner k to the next) are divided where there is a middle.
+fn divided([a, b, c]: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
+    match middles {
+        [None, None, None] => vec![[a, b, c]],
+        [Some(m), None, None] => vec![[a, m, c], [m, b, c]],
+        [None, Some(m), None] => vec![[b, m, a], [m, c, a]],
+        [None, None, Some(m)] => vec![[c, m, b], [m, a, b]],
+        [Some(m), Some(n), None] => vec![[m, b, n], [a, m, n], [a, n, c]],
+        [None, Some(m), Some(n)] => vec![[m, c, n], [b, m, n], [b, n, a]],
+        [Some(n), None, Some(m)] => vec![[m, a, n], [c, m, n], [c, n, b]],
+        [Some(m), Some(n), Some(o)] => vec![[a, m, o], [m, b, n], [o, n, c], [m, n, o]],
+    }
+}
+
+#[cfg(test)]
+#[path = "ground_tests.rs"]
+mod tests;

@@ -1,0 +1,30 @@
+//! A package as 3D Tiles 1.1: explicit tilesets of binary glTF, with roads cut into the ground.
+//!
+//! ```text
+//!   tile of the package ──► lines of it and its neighbours ──► ribbons ──► cut into the triangles ──► long edges divided
+//!                                                                                                        │
+//!   tileset.json ◄── boxes and errors from the finest level upwards ◄── GLB ◄── placed on the globe ◄────┘
+//! ```
+//!
+//! All tiles are in one frame (east, north and up in the middle of the data), so one matrix leads to the earth's, and vertices that two tiles of a level
+//! share have the same bits.
+
+mod content;
+mod cut;
+mod glb;
+mod globe;
+mod ground;
+mod label_index;
+mod lines;
+mod parts;
+mod placed;
+mod plan_cut;
+mod request;
+mod ribbon;
+mod run;
+mod skirt;
+mod tree;
+
+pub use cut::CutError;
+pub use request::{TileRoads, Tiles3dRequest};
+pub use run::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};

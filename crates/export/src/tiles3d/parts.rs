@@ -1,0 +1,68 @@
+//! What a tile is made of, ready to be written.
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Rgb;
+
+/// A list of vertices of one material, as glTF has it: y upwards.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) normals: Vec<[f32; 3]>,
+    /// Linear red, green and blue, and 255.
+    pub(crate) colors: Vec<[u8; 4]>,
+    /// Rows of the table of roads.
+    pub(crate) features: Vec<u32>,
+    /// Three to a triangle, two to a line.
+    pub(crate) indices: Vec<u32>,
+}
+
+/// What a part is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PartKind {
+    Terrain,
+    Skirt,
+    RoadSurfaces(FunctionalRoadClass),
+    RoadLines(FunctionalRoadClass),
+}
+
+impl PartKind {
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Terrain => "terrain".to_owned(),
+            Self::Skirt => "skirt".to_owned(),
+            Self::RoadSurfaces(class) | Self::RoadLines(class) => {
+                format!("roads FRC {}", class.number())
+            }
+        }
+    }
+}
+
+/// A row of the table of roads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct RoadRow {
+    pub(crate) way_id: i64,
+    pub(crate) class: u8,
+    pub(crate) name: String,
+    pub(crate) reference: String,
+    pub(crate) highway: String,
+    pub(crate) structure: String,
+}
+
+/// A tile of glTF.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TileContent {
+    pub(crate) name: String,
+    /// Of the node, y upwards.
+    pub(crate) translation: [f64; 3],
+    pub(crate) parts: Vec<(PartKind, Part)>,
+    pub(crate) roads: Vec<RoadRow>,
+    /// Colours of roads by class.
+    pub(crate) colors: [Rgb; FunctionalRoadClass::COUNT],
+    pub(crate) copyright: String,
+    pub(crate) generator: String,
+}
+
+/// A position or direction of the root frame along glTF's axes.
+pub(crate) fn y_up<T: std::ops::Neg<Output = T>>([x, y, z]: [T; 3]) -> [T; 3] {
+    [x, z, -y]
+}

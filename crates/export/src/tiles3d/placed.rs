@@ -1,0 +1,239 @@
+//! A tile's triangles on the globe.
+
+use std::collections::HashMap;
+
+use corniche_geom::{LatticeBounds, TileId};
+use corniche_tileset::Manifest;
+
+use super::{
+    globe::{RootFrame, cross, dot, unit},
+    ground::GroundMesh,
+};
+use crate::{error::ExportError, places::Places};
+
+/// The finest grid of positions: 2⁻¹⁰ m.
+const FINEST_STEP_LOG2: i32 = -10;
+/// Whole numbers that an f32 holds.
+const F32_WHOLE_LOG2: i32 = 24;
+
+/// Positions of a level are multiples of this, metres, so that a tile's middle plus an offset in f32 is exact: the largest power of two for tiles
+/// whose corners are no further than `reach_m` from their middle.
+pub(crate) fn step_m(reach_m: f64) -> f64 {
+    let needed = reach_m.log2().ceil() as i32 - F32_WHOLE_LOG2;
+    2.0_f64.powi(needed.max(FINEST_STEP_LOG2))
+}
+
+/// A vertex on the globe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlacedVertex {
+    /// From the tile's middle, along the root frame's axes, metres.
+    pub(crate) at_m: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    /// Height in the package's datum, which tells the colour.
+    pub(crate) height_m: f64,
+    /// The tile's sides on which it lies: west, east, south, north.
+    pub(crate) sides: [bool; 4],
+}
+
+/// A tile on the globe.
+#[derive(Debug, Clone)]
+pub(crate) struct PlacedTile {
+    /// In the root frame; whole steps.
+    pub(crate) middle_m: [f64; 3],
+    pub(crate) vertices: Vec<PlacedVertex>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) labels: Vec<u32>,
+    /// Grid east, grid north and up in the middle of the tile, in the root frame: unit vectors, at right angles.
+    pub(crate) axes: [[f64; 3]; 3],
+}
+
+/// Where a tile goes.
+pub(crate) struct Placing<'a> {
+    pub(crate) manifest: &'a Manifest,
+    pub(crate) places: &'a Places<'a>,
+    pub(crate) root: &'a RootFrame,
+    /// Step of the level's positions.
+    pub(crate) step_m: f64,
+}
+
+impl Placing<'_> {
+    /// Carries a tile's triangles to the globe, each vertex by itself. Vertices that come to the same place become one, and triangles without an inside
+    /// are left out.
+    pub(crate) fn place(&self, id: TileId, mesh: &GroundMesh) -> Result<PlacedTile, ExportError> {
+        let frame = &self.manifest.frame;
+        let bounds = frame.tile_lattice_bounds(id);
+        let mut plan: Vec<[f64; 2]> = mesh
+            .vertices
+            .iter()
+            .map(|vertex| frame.position_of_fraction_m(mesh.on_lattice(vertex)))
+            .collect();
+        let mut heights_m: Vec<f64> = mesh.vertices.iter().map(|vertex| vertex.height_m).collect();
+        self.places.to_wgs84(&mut plan, &mut heights_m)?;
+        let axes = self.axes(mesh)?;
+        let at: Vec<[f64; 3]> = plan
+            .iter()
+            .zip(&heights_m)
+            .map(|(&[lon, lat], &height_m)| {
+                self.root.of([lon, lat, height_m]).map(|axis| self.snap(axis))
+            })
+            .collect();
+        let middle_m = middle_of(&at).map(|axis| self.snap(axis));
+        let mut tile = PlacedTile {
+            middle_m,
+            vertices: Vec::with_capacity(at.len()),
+            triangles: Vec::with_capacity(mesh.triangles.len()),
+            labels: Vec::with_capacity(mesh.labels.len()),
+            axes,
+        };
+        let mut known: HashMap<[u32; 3], u32> = HashMap::with_capacity(at.len());
+        let mut number = Vec::with_capacity(at.len());
+        for (index, vertex) in mesh.vertices.iter().enumerate() {
+            let at_m = [0, 1, 2].map(|axis| (at[index][axis] - middle_m[axis]) as f32);
+            let next = tile.vertices.len() as u32;
+            // Adding 0 makes one of both zeros.
+            let place = *known.entry(at_m.map(|axis| (axis + 0.0).to_bits())).or_insert(next);
+            number.push(place);
+            let sides = sides(mesh.on_lattice(vertex), &bounds);
+            if place == next {
+                let normal = turned(vertex.normal, axes, self.root.up_at(plan[index]));
+                let height_m = vertex.height_m;
+                tile.vertices.push(PlacedVertex { at_m, normal, height_m, sides });
+            } else {
+                let own = &mut tile.vertices[place as usize].sides;
+                *own = [0, 1, 2, 3].map(|side| own[side] || sides[side]);
+            }
+        }
+        for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {
+            let [a, b, c] = triangle.map(|corner| number[corner as usize]);
+            if a != b && b != c && c != a {
+                tile.triangles.push([a, b, c]);
+                tile.labels.push(*label);
+            }
+        }
+        Ok(tile)
+    }
+
+    /// Places on the lattice with heights, from the middle of a tile.
+    pub(crate) fn positions(
+        &self,
+        places: &[([f64; 2], f64)],
+        middle_m: [f64; 3],
+    ) -> Result<Vec<[f32; 3]>, ExportError> {
+        let frame = &self.manifest.frame;
+        let mut plan: Vec<[f64; 2]> =
+            places.iter().map(|(at, _)| frame.position_of_fraction_m(*at)).collect();
+        let mut heights_m: Vec<f64> = places.iter().map(|(_, height_m)| *height_m).collect();
+        self.places.to_wgs84(&mut plan, &mut heights_m)?;
+        let placed = plan.iter().zip(heights_m).map(|(&[lon, lat], height_m)| {
+            let at = self.root.of([lon, lat, height_m]);
+            [0, 1, 2].map(|axis| (self.snap(at[axis]) - middle_m[axis]) as f32)
+        });
+        Ok(placed.collect())
+    }
+
+    fn snap(&self, metres: f64) -> f64 {
+        (metres / self.step_m).round() * self.step_m
+    }
+
+    /// Grid east, grid north and up in the middle of a tile, from two places beside it.
+    fn axes(&self, mesh: &GroundMesh) -> Result<[[f64; 3]; 3], ExportError> {
+        let frame = &self.manifest.frame;
+        let [x, y] = frame.position_m(mesh.middle);
+        let beside = frame.cell().north_m;
+        let mut plan = [[x, y - beside], [x, y + beside], [x, y]];
+        self.places.to_wgs84_plan(&mut plan)?;
+        let [south, north, middle] = plan;
+        let at = |[lon, lat]: [f64; 2]| self.root.of([lon, lat, 0.0]);
+        let ([s, n], up) = ([at(south), at(north)], self.root.up_at(middle));
+        let northwards = [0, 1, 2].map(|axis| n[axis] - s[axis]);
+        let east = unit(cross(northwards, up));
+        Ok([east, cross(up, east), up])
+    }
+}
+
+/// A normal of the package, east, north and up of the grid, where `up` is upwards.
+fn turned(
+    [east, north, upwards]: [f32; 3],
+    [_, grid_north, _]: [[f64; 3]; 3],
+    up: [f64; 3],
+) -> [f32; 3] {
+    let e = unit(cross(grid_north, up));
+    let n = cross(up, e);
+    let [x, y, z] = [east, north, upwards].map(f64::from);
+    unit([0, 1, 2].map(|axis| x * e[axis] + y * n[axis] + z * up[axis])).map(|axis| axis as f32)
+}
+
+/// The middle of the box around some positions.
+fn middle_of(at: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| {
+        let [low, high] = at.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at[axis]), high.max(at[axis])]
+        });
+        f64::midpoint(low, high)
+    })
+}
+
+fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
+    let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
+    [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
+}
+
+/// A box along some axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TileBox {
+    axes: [[f64; 3]; 3],
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl TileBox {
+    /// An empty box.
+    pub(crate) fn along(axes: [[f64; 3]; 3]) -> Self {
+        Self { axes, low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
+    }
+
+    pub(crate) fn include(&mut self, at_m: [f64; 3]) {
+        for (axis, along) in self.axes.iter().enumerate() {
+            let place = dot(*along, at_m);
+            self.low[axis] = self.low[axis].min(place);
+            self.high[axis] = self.high[axis].max(place);
+        }
+    }
+
+    pub(crate) fn include_box(&mut self, other: &Self) {
+        for corner in 0..8_usize {
+            let along = [0, 1, 2].map(|axis: usize| {
+                if corner >> axis & 1 == 0 { other.low[axis] } else { other.high[axis] }
+            });
+            self.include([0, 1, 2].map(|k: usize| {
+                (0..3).map(|axis| along[axis] * other.axes[axis][k]).sum::<f64>()
+            }));
+        }
+    }
+
+    /// The longest way through it.
+    pub(crate) fn diagonal_m(&self) -> f64 {
+        let along = [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis]);
+        dot(along, along).sqrt()
+    }
+
+    /// As 3D Tiles write it: the middle and three half axes. A little larger, so that rounding leaves nothing out.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        const MARGIN_M: f64 = 0.01;
+        let middle: [f64; 3] = [0, 1, 2].map(|k: usize| {
+            (0..3)
+                .map(|axis| self.axes[axis][k] * f64::midpoint(self.low[axis], self.high[axis]))
+                .sum()
+        });
+        let half = (0..3).flat_map(|axis| {
+            let length = (self.high[axis] - self.low[axis]) / 2.0 + MARGIN_M;
+            self.axes[axis].map(move |part| part * length)
+        });
+        // Tenths of a millimetre are enough beside the margin.
+        middle.into_iter().chain(half).map(|number| (number * 1e4).round() / 1e4).collect()
+    }
+}
+
+#[cfg(test)]
+#[path = "placed_tests.rs"]
+mod tests;

@@ -1,0 +1,268 @@
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{self, BufWriter, Write as _},
+    path::Path,
+    sync::{
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc,
+    },
+};
+
+use corniche_geom::TileId;
+use corniche_tileset::{FilePackage, Manifest};
+
+use super::{
+    content::{self, LevelOfTiles, TileFacts},
+    glb,
+    globe::RootFrame,
+    lines::TileLines,
+    placed::{Placing, TileBox, step_m},
+    request::Tiles3dRequest,
+    tree::{Tree, content_name},
+};
+use crate::{
+    error::ExportError,
+    observer::{Observer, Stage, stop_if_asked},
+    places::Places,
+};
+
+/// A chord of this length is so far from the earth's surface: its square by eight radii. The smallest radius of curvature of the ellipsoid is taken.
+const LEAST_RADIUS_M: f64 = 6_335_400.0;
+/// What an edge may be from the ground that it stands for, metres.
+const LARGEST_SAG_M: f64 = 0.004;
+/// No edge is longer, whatever the sag.
+const LONGEST_EDGE_M: f64 = 550.0;
+/// On tiles of many kilometres the sag may be larger, so that the earth's curvature alone never divides a side into more parts.
+const MOST_PARTS_OF_A_SIDE: f64 = 64.0;
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tiles3dSummary {
+    /// Each level, root first.
+    pub levels: Vec<Tiles3dLevel>,
+    /// How many tilesets there are: documents that refer to one another.
+    pub documents: u64,
+    /// What heights are, in words.
+    pub heights: String,
+}
+
+/// What was exported of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tiles3dLevel {
+    /// The level.
+    pub level: u8,
+    /// Tiles with ground.
+    pub tiles: u64,
+    /// Triangles of the package's ground.
+    pub package_triangles: u64,
+    /// Triangles that were written, roads included, walls not.
+    pub triangles: u64,
+    /// Those of roads.
+    pub road_triangles: u64,
+    /// Bytes of the tiles' files.
+    pub bytes: u64,
+    /// Time for cutting roads in, of all tiles, seconds.
+    pub cut_s: f64,
+    /// Largest `geometricError`.
+    pub error_m: f64,
+    /// Step of positions, metres.
+    pub step_m: f64,
+}
+
+/// Writes a package as 3D Tiles into an empty folder. After an error what is in it is of no use.
+///
+/// # Errors
+/// When heights cannot be told above the ellipsoid, the package has no such level or is damaged, or something cannot be written.
+pub fn export_tiles3d(
+    package: &FilePackage,
+    request: &Tiles3dRequest,
+    folder: &Path,
+    observer: &dyn Observer,
+) -> Result<Tiles3dSummary, ExportError> {
+    let manifest = package.manifest();
+    let finest = crate::read::level(package, request.finest_level)?;
+    let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
+    let mut ids = package.tile_ids()?;
+    ids.retain(|id| id.z() <= finest);
+    let failed = |source| ExportError::WriteTiles { folder: folder.to_path_buf(), source };
+    make_folders(folder, &ids).map_err(failed)?;
+    let root = RootFrame::at(
+        manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()),
+    );
+    let job = Job {
+        package,
+        request,
+        folder,
+        lines: TileLines::new(package, request),
+        levels: (0..=finest).map(|level| level_of(manifest, level)).collect(),
+        root,
+        ids: &ids,
+        next: AtomicUsize::new(0),
+        is_stopped: AtomicBool::new(false),
+    };
+    let made = job.run(observer)?;
+    let mut levels: Vec<Tiles3dLevel> = (0..=finest)
+        .map(|level| Tiles3dLevel {
+            level,
+            step_m: job.levels[usize::from(level)].step_m,
+            ..Tiles3dLevel::default()
+        })
+        .collect();
+    let tree = Tree::new(
+        manifest,
+        made.iter().map(|(id, (tile_box, facts, _))| (*id, *tile_box, *facts)),
+    );
+    for (id, (_, facts, bytes)) in &made {
+        let level = &mut levels[usize::from(id.z())];
+        level.tiles += 1;
+        level.package_triangles += facts.package_triangles;
+        level.triangles += facts.triangles;
+        level.road_triangles += facts.road_triangles;
+        level.bytes += bytes;
+        level.cut_s += facts.cut_s;
+        level.error_m = level.error_m.max(facts.error_m);
+    }
+    if made.is_empty() {
+        return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+    }
+    let documents = tree.write(folder, &job.root).map_err(failed)?;
+    Ok(Tiles3dSummary { levels, documents, heights })
+}
+
+/// Folders for all tiles.
+fn make_folders(folder: &Path, ids: &[TileId]) -> io::Result<()> {
+    for id in ids {
+        fs::create_dir_all(folder.join(id.z().to_string()).join(id.x().to_string()))?;
+    }
+    Ok(())
+}
+
+fn level_of(manifest: &Manifest, level: u8) -> LevelOfTiles {
+    let frame = &manifest.frame;
+    let record = &manifest.levels[usize::from(level)];
+    let [least_x, least_y] = manifest.scale.least;
+    // So many working metres are a true one at least: then no edge is longer than it seems.
+    let scale = least_x.min(least_y);
+    let tile = frame.tile_bounds(TileId::ROOT);
+    let tiles = f64::from(1_u32 << level);
+    let side_m = tile.width().max(tile.height()) / tiles / scale;
+    let relief_m = manifest.vertical.range_m[1] - manifest.vertical.range_m[0];
+    let step_m = step_m(side_m.hypot(relief_m));
+    let of_curvature = (side_m / MOST_PARTS_OF_A_SIDE).powi(2) / (8.0 * LEAST_RADIUS_M);
+    let largest_sag_m = LARGEST_SAG_M.max(of_curvature);
+    let by_sag = (8.0 * LEAST_RADIUS_M * largest_sag_m).sqrt();
+    let longest_edge_m =
+        if of_curvature > LARGEST_SAG_M { by_sag } else { by_sag.min(LONGEST_EDGE_M) };
+    // Inside a triangle it is four thirds of that at its edges, and each axis is rounded by half a step.
+    let sag_m = largest_sag_m * 4.0 / 3.0 + step_m * 3.0_f64.sqrt() / 2.0;
+    let above = &manifest.levels[usize::from(level.saturating_sub(1))];
+    LevelOfTiles {
+        steps_per_m: scale / frame.lattice_step_m(),
+        longest_edge_m,
+        step_m,
+        sag_m,
+        // Ground of this level and of the next coarser one are so far apart at most.
+        skirt_m: record.geometric_error_m + above.geometric_error_m + 2.0 * sag_m,
+    }
+}
+
+/// A tile that was written: its box, what is known of it, and its bytes.
+type Written = (TileBox, TileFacts, u64);
+
+/// All tiles, made by several threads.
+struct Job<'a> {
+    package: &'a FilePackage,
+    request: &'a Tiles3dRequest,
+    folder: &'a Path,
+    lines: TileLines<'a>,
+    levels: Vec<LevelOfTiles>,
+    root: RootFrame,
+    ids: &'a [TileId],
+    next: AtomicUsize,
+    is_stopped: AtomicBool,
+}
+
+impl Job<'_> {
+    fn run(&self, observer: &dyn Observer) -> Result<BTreeMap<TileId, Written>, ExportError> {
+        let mut made = BTreeMap::new();
+        let threads = self.request.threads.clamp(1, self.ids.len().max(1));
+        std::thread::scope(|scope| {
+            let (send, receive) = mpsc::sync_channel(threads);
+            for _ in 0..threads {
+                let send = send.clone();
+                scope.spawn(move || self.work(&send));
+            }
+            drop(send);
+            let mut first_failure = None;
+            for (done, (id, result)) in receive.iter().enumerate() {
+                match result {
+                    Ok(Some(written)) => {
+                        made.insert(id, written);
+                    }
+                    Ok(None) => {}
+                    Err(failure) => {
+                        first_failure.get_or_insert(failure);
+                    }
+                }
+                observer.done(Stage::Tiles, done as u64 + 1, self.ids.len() as u64);
+                if let Err(stopped) = stop_if_asked(observer) {
+                    first_failure.get_or_insert(stopped);
+                }
+                if first_failure.is_some() {
+                    self.is_stopped.store(true, Ordering::Relaxed);
+                }
+            }
+            first_failure.map_or(Ok(()), Err)
+        })?;
+        Ok(made)
+    }
+
+    /// Takes the next tile until there is none.
+    fn work(&self, send: &mpsc::SyncSender<(TileId, Result<Option<Written>, ExportError>)>) {
+        // PROJ's objects belong to one thread each.
+        let places = match Places::new(self.package.manifest(), self.request.coordinates) {
+            Ok(places) => places,
+            Err(failure) => {
+                self.is_stopped.store(true, Ordering::Relaxed);
+                // Nobody listens only where all is over.
+                let _ = send.send((TileId::ROOT, Err(failure)));
+                return;
+            }
+        };
+        while !self.is_stopped.load(Ordering::Relaxed) {
+            let Some(&id) = self.ids.get(self.next.fetch_add(1, Ordering::Relaxed)) else { return };
+            if send.send((id, self.tile(id, &places))).is_err() {
+                return;
+            }
+        }
+    }
+
+    fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, ExportError> {
+        let level = &self.levels[usize::from(id.z())];
+        let placing = Placing {
+            manifest: self.package.manifest(),
+            places,
+            root: &self.root,
+            step_m: level.step_m,
+        };
+        let made =
+            content::make(self.package, id, self.request, &self.lines, &placing, level)?;
+        let Some(made) = made else { return Ok(None) };
+        let path = self.folder.join(content_name(id));
+        let bytes = write_content(&path, &made.content, self.request.compress)
+            .map_err(|source| ExportError::WriteTiles { folder: self.folder.to_path_buf(), source })?;
+        Ok(Some((made.tile_box, made.facts, bytes)))
+    }
+}
+
+fn write_content(
+    path: &Path,
+    content: &super::parts::TileContent,
+    is_compressed: bool,
+) -> io::Result<u64> {
+    let mut file = BufWriter::new(fs::File::create(path)?);
+    glb::write(content, is_compressed, &mut file)?;
+    file.flush()?;
+    Ok(file.get_ref().metadata()?.len())
+}
