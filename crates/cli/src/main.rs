@@ -13,6 +13,7 @@ mod exit;
 mod export;
 mod failure;
 mod fly;
+mod folder_output;
 mod free_memory;
 mod growth;
 mod info;

@@ -55,7 +55,9 @@ pub enum ExportError {
     WriteModel { path: PathBuf, source: io::Error },
     #[error("cannot write into {folder:?} (disk full?)")]
     WriteTiles { folder: PathBuf, source: io::Error },
-    #[error("tile {tile} cannot be written with its roads as surfaces; --roads line or none does without")]
+    #[error(
+        "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
+    )]
     Cut { tile: TileId, source: CutError },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },

@@ -59,5 +59,7 @@ pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
-pub use tiles3d::{CutError, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, TileRoads, export_tiles3d};
+pub use tiles3d::{
+    CutError, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
+};
 pub use vector::{Field, FieldKind, VectorFormat};

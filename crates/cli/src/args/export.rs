@@ -124,7 +124,13 @@ pub(crate) struct ExportTiles3dArgs {
     pub(crate) overwrite: bool,
     /// How roads are there: cut (surfaces of their true width in the ground's own triangles), line (centre-lines just above
     /// the ground) or none
-    #[arg(long, value_enum, default_value = "cut", value_name = "HOW", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_enum,
+        default_value = "cut",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
     pub(crate) roads: TileRoadsArg,
     /// Functional road classes that are taken, such as 0-4,7
     #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
@@ -136,10 +142,22 @@ pub(crate) struct ExportTiles3dArgs {
     #[arg(long, value_name = "Z")]
     pub(crate) finest_level: Option<u8>,
     /// Walls below the borders of tiles, which hide gaps between levels
-    #[arg(long, value_enum, default_value = "on", value_name = "on|none", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_enum,
+        default_value = "on",
+        value_name = "on|none",
+        hide_possible_values = true
+    )]
     pub(crate) skirts: Skirts,
     /// Compression of vertices without loss: meshopt (EXT_meshopt_compression), or none
-    #[arg(long, value_enum, default_value = "meshopt", value_name = "HOW", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_enum,
+        default_value = "meshopt",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
     pub(crate) compress: Compress,
     /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]

@@ -3,7 +3,7 @@
 use std::io::stderr;
 
 use corniche_export::{
-    Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, TileRoads, export_tiles3d,
+    Coordinates, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
 };
 use corniche_tileset::{FilePackage, Manifest};
 
@@ -12,7 +12,9 @@ use crate::{
     args::{Compress, ExportTiles3dArgs, Skirts},
     exit::ExitCode,
     failure::Failure,
+    folder_output::FolderOutput,
     messages,
+    output::existing_of,
     settings, styles,
     table::{Digits, bytes},
 };
@@ -33,16 +35,23 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         },
         threads: settings::threads(args.threads),
     };
-    std::fs::create_dir_all(&args.output).unwrap();
+    let existing = existing_of(args.overwrite);
+    let output = FolderOutput::create(&args.output, existing, &[&args.package])?;
     let bars = Bars::default();
-    let exported = export_tiles3d(&package, &request, &args.output, &bars);
+    let exported = export_tiles3d(&package, &request, output.path(), &bars);
     bars.end();
     let summary = exported.map_err(|error| named(error, &args.output))?;
-    messages::note(&to_text(args, &summary, package.manifest()));
+    let size = output.place("3D Tiles")?;
+    messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
-fn to_text(args: &ExportTiles3dArgs, summary: &Tiles3dSummary, manifest: &Manifest) -> String {
+fn to_text(
+    args: &ExportTiles3dArgs,
+    summary: &Tiles3dSummary,
+    manifest: &Manifest,
+    size: u64,
+) -> String {
     let count = |number| Digits::on(&stderr()).count(number);
     let level = |level: &Tiles3dLevel| {
         format!(
@@ -62,7 +71,7 @@ fn to_text(args: &ExportTiles3dArgs, summary: &Tiles3dSummary, manifest: &Manife
         "{}: {} tiles, {}, {} tileset documents\n{}heights: {}\nto be shown with it: {}",
         args.output.display(),
         count(total(|level| level.tiles)),
-        bytes(total(|level| level.bytes)),
+        bytes(size),
         count(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
         summary.heights,

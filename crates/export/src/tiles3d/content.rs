@@ -158,8 +158,7 @@ impl<'a> Builder<'a> {
     fn color(&self, vertex: &PlacedVertex) -> [u8; 4] {
         let Manifest { vertical, wgs84_bounds, .. } = self.manifest;
         let latitude = wgs84_bounds.center()[1];
-        let color =
-            self.request.style.tint.color_at(vertex.height_m, vertical.range_m, latitude);
+        let color = self.request.style.tint.color_at(vertex.height_m, vertical.range_m, latitude);
         let [red, green, blue] = color.map(|channel| (linear(channel) * 255.0).round() as u8);
         [red, green, blue, u8::MAX]
     }

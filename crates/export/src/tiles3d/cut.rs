@@ -151,9 +151,8 @@ fn triangulate(
             let half_edge = 3 * triangle as u32 + k;
             let twin = surface.twin(half_edge);
             // One of both sides adds the edge.
-            let is_other = twin != corniche_tin::NO_TWIN
-                && is_touched[twin as usize / 3]
-                && twin < half_edge;
+            let is_other =
+                twin != corniche_tin::NO_TWIN && is_touched[twin as usize / 3] && twin < half_edge;
             if !is_other {
                 edges.push(surface.ends(half_edge).map(|vertex| place[&vertex]));
             }
@@ -284,8 +283,7 @@ impl Above<'_> {
             let share = along / ((q.u - p.u).abs() + (q.v - p.v).abs()) as f64;
             let [one_m, other_m] = [one, other].map(|vertex| surface.heights_m()[vertex as usize]);
             let [from, to] = [one, other].map(of_corner);
-            let normal =
-                [0, 1, 2].map(|axis| from[axis] + share as f32 * (to[axis] - from[axis]));
+            let normal = [0, 1, 2].map(|axis| from[axis] + share as f32 * (to[axis] - from[axis]));
             let height_m = one_m + share * (other_m - one_m);
             return Some(GroundVertex { at, height_m, normal: unit(normal) });
         }

@@ -135,11 +135,8 @@ impl File {
         let plain: &[u8] = bytemuck::cast_slice(vertices);
         let stride = size_of::<T>();
         if self.is_compressed {
-            let encoded = meshopt::encode_vertex_buffer_level(
-                vertices,
-                VERTEX_LEVEL,
-                Some(VERTEX_VERSION),
-            );
+            let encoded =
+                meshopt::encode_vertex_buffer_level(vertices, VERTEX_LEVEL, Some(VERTEX_VERSION));
             let encoded = encoded.map_err(io::Error::other)?;
             let how = json!({ "mode": "ATTRIBUTES", "count": vertices.len() });
             return Ok(self.compressed(&encoded, plain.len(), stride, how, ARRAY_BUFFER));

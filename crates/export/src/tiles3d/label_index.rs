@@ -47,7 +47,8 @@ impl<'a> LabelIndex<'a> {
         }
         let number = self.parts.len() as u32;
         self.parts.push((label, part));
-        let [from, to] = [own.min, own.max].map(|p| [self.column(p.u as f64), self.row(p.v as f64)]);
+        let [from, to] =
+            [own.min, own.max].map(|p| [self.column(p.u as f64), self.row(p.v as f64)]);
         for row in from[1]..=to[1] {
             for column in from[0]..=to[0] {
                 self.squares[row * SQUARES + column].push(number);

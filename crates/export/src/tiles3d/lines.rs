@@ -123,9 +123,7 @@ impl<'a> TileLines<'a> {
             .collect();
         roads.sort_by(|one, other| {
             let key = |road: &Road| (road.class.number(), road.way_id);
-            key(one)
-                .cmp(&key(other))
-                .then_with(|| one.center.points.cmp(&other.center.points))
+            key(one).cmp(&key(other)).then_with(|| one.center.points.cmp(&other.center.points))
         });
         Ok(roads)
     }
@@ -147,7 +145,9 @@ impl TileLine {
         }
         let source = piece.vertices.iter().filter(|vertex| vertex.is_source);
         let mut points: Vec<LatticePoint> = source
-            .map(|vertex| LatticePoint::new(vertex.at[0].round() as i64, vertex.at[1].round() as i64))
+            .map(|vertex| {
+                LatticePoint::new(vertex.at[0].round() as i64, vertex.at[1].round() as i64)
+            })
             .collect();
         points.dedup();
         (points.len() > 1).then(|| Self {

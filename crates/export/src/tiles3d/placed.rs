@@ -205,9 +205,11 @@ impl TileBox {
             let along = [0, 1, 2].map(|axis: usize| {
                 if corner >> axis & 1 == 0 { other.low[axis] } else { other.high[axis] }
             });
-            self.include([0, 1, 2].map(|k: usize| {
-                (0..3).map(|axis| along[axis] * other.axes[axis][k]).sum::<f64>()
-            }));
+            self.include(
+                [0, 1, 2].map(|k: usize| {
+                    (0..3).map(|axis| along[axis] * other.axes[axis][k]).sum::<f64>()
+                }),
+            );
         }
     }
 

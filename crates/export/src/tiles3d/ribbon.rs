@@ -78,7 +78,12 @@ impl Ribbon {
         };
         let mut start = sides_at(from);
         if before.is_none() {
-            ribbon.cap(first, left_normal(points[0], points[1]).map(|n| -n), *half_width, is_met[0]);
+            ribbon.cap(
+                first,
+                left_normal(points[0], points[1]).map(|n| -n),
+                *half_width,
+                is_met[0],
+            );
         }
         for index in from..end {
             let stop = sides_at(index + 1);

@@ -87,9 +87,8 @@ pub fn export_tiles3d(
     ids.retain(|id| id.z() <= finest);
     let failed = |source| ExportError::WriteTiles { folder: folder.to_path_buf(), source };
     make_folders(folder, &ids).map_err(failed)?;
-    let root = RootFrame::at(
-        manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()),
-    );
+    let root =
+        RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
     let job = Job {
         package,
         request,
@@ -109,10 +108,8 @@ pub fn export_tiles3d(
             ..Tiles3dLevel::default()
         })
         .collect();
-    let tree = Tree::new(
-        manifest,
-        made.iter().map(|(id, (tile_box, facts, _))| (*id, *tile_box, *facts)),
-    );
+    let tree =
+        Tree::new(manifest, made.iter().map(|(id, (tile_box, facts, _))| (*id, *tile_box, *facts)));
     for (id, (_, facts, bytes)) in &made {
         let level = &mut levels[usize::from(id.z())];
         level.tiles += 1;
@@ -246,12 +243,13 @@ impl Job<'_> {
             root: &self.root,
             step_m: level.step_m,
         };
-        let made =
-            content::make(self.package, id, self.request, &self.lines, &placing, level)?;
+        let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
         let path = self.folder.join(content_name(id));
-        let bytes = write_content(&path, &made.content, self.request.compress)
-            .map_err(|source| ExportError::WriteTiles { folder: self.folder.to_path_buf(), source })?;
+        let bytes =
+            write_content(&path, &made.content, self.request.compress).map_err(|source| {
+                ExportError::WriteTiles { folder: self.folder.to_path_buf(), source }
+            })?;
         Ok(Some((made.tile_box, made.facts, bytes)))
     }
 }

@@ -1,0 +1,102 @@
+use std::{fs, path::Path};
+
+use tempfile::TempDir;
+
+use super::{FolderOutput, MARKER};
+use crate::{exit::ExitCode, output::Existing};
+
+fn write(target: &Path, existing: Existing, text: &str) {
+    let output = FolderOutput::create(target, existing, &[]).unwrap();
+    fs::create_dir(output.path().join("0")).unwrap();
+    fs::write(output.path().join("0/a"), text).unwrap();
+    // The marker counts, too.
+    assert!(output.place("a test").unwrap() > text.len() as u64);
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_folder_is_there_when_it_is_complete_and_replaced_as_a_whole() {
+    let folder = TempDir::new().unwrap();
+    let target = folder.path().join("out");
+    {
+        let output = FolderOutput::create(&target, Existing::Keep, &[]).unwrap();
+        fs::write(output.path().join("a"), "half").unwrap();
+        assert!(!target.exists());
+    }
+    assert_eq!(names(folder.path()), [""; 0]);
+    write(&target, Existing::Keep, "one");
+    assert_eq!(names(folder.path()), ["out"]);
+    assert_eq!(names(&target), ["0", MARKER]);
+    fs::write(target.join("older"), "older").unwrap();
+    let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
+    assert!(kept.to_string().contains("-O"), "{kept}");
+    write(&target, Existing::Replace, "two");
+    assert_eq!(fs::read(target.join("0/a")).unwrap(), b"two");
+    assert_eq!(names(&target), ["0", MARKER]);
+    assert_eq!(names(folder.path()), ["out"]);
+}
+
+#[test]
+fn an_empty_folder_is_taken_and_any_other_is_left_alone() {
+    let folder = TempDir::new().unwrap();
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    write(&empty, Existing::Keep, "one");
+    let mine = folder.path().join("mine");
+    fs::create_dir(&mine).unwrap();
+    fs::write(mine.join("file"), "mine").unwrap();
+    let missing = folder.path().join("no/out");
+    let package = empty.join("p.pmtiles");
+    fs::write(&package, "p").unwrap();
+    for (target, used, word) in [
+        (mine.as_path(), None, "other things"),
+        (mine.join("file").as_path(), None, "it is a file"),
+        (missing.as_path(), None, "its folder"),
+        (empty.as_path(), Some(package.as_path()), "p.pmtiles is in it"),
+    ] {
+        let used: Vec<&Path> = used.into_iter().collect();
+        let refused = FolderOutput::create(target, Existing::Replace, &used).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable);
+        assert!(refused.to_string().contains(word), "{refused}");
+    }
+    assert_eq!(fs::read(mine.join("file")).unwrap(), b"mine");
+    assert_eq!(fs::read(package).unwrap(), b"p");
+}
+
+/// Two at once would write into each other's folder.
+#[test]
+fn only_one_writes_at_a_time() {
+    let folder = TempDir::new().unwrap();
+    let target = folder.path().join("out");
+    let first = FolderOutput::create(&target, Existing::Keep, &[]).unwrap();
+    let second = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
+    assert!(second.to_string().contains("another program"), "{second}");
+    drop(first);
+    write(&target, Existing::Keep, "one");
+}
+
+/// A kill between the two renames of a replacement loses nothing.
+#[test]
+fn what_a_kill_leaves_is_put_right() {
+    let folder = TempDir::new().unwrap();
+    let target = folder.path().join("out");
+    write(&target, Existing::Keep, "one");
+    let replaced = folder.path().join(".out.replaced");
+    fs::rename(&target, &replaced).unwrap();
+    let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
+    assert!(kept.to_string().contains("exists already"), "{kept}");
+    assert_eq!(fs::read(target.join("0/a")).unwrap(), b"one");
+    // After the second rename only the old one is left over.
+    fs::create_dir(&replaced).unwrap();
+    fs::write(replaced.join(MARKER), "").unwrap();
+    write(&target, Existing::Replace, "two");
+    assert_eq!(names(folder.path()), ["out"]);
+}

@@ -1,0 +1,233 @@
+//! What must hold of tiles.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use crate::{
+    package::FromEarth,
+    tiles::{Part, Tile, Tiles},
+};
+
+/// How far the ground of tiles is from the package's.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    pub(crate) points: usize,
+    pub(crate) largest_m: f64,
+    /// Points where the package has no ground.
+    pub(crate) off_ground: usize,
+}
+
+fn ground(tile: &Tile) -> impl Iterator<Item = &Part> {
+    tile.parts.iter().filter(|part| part.name != "skirt")
+}
+
+/// A small generator of numbers from 0 to 1: the same every time (Steele, Lea & Flood 2014, *SplitMix*).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Carries every vertex, and so many random points inside triangles of each tile, back to the package's CRS, and compares their heights.
+pub(crate) fn check_heights(tiles: &Tiles, crs: &str, inside: usize) -> Findings {
+    let from_earth = FromEarth::to(crs);
+    let mut numbers = Numbers(1);
+    let mut found = Findings::default();
+    for tile in &tiles.tiles {
+        let mut points: Vec<[f64; 3]> = Vec::new();
+        for part in ground(tile) {
+            points.extend(&part.at_m);
+        }
+        let triangles: Vec<[[f64; 3]; 3]> = ground(tile)
+            .flat_map(|part| part.triangles.iter().map(|corners| corners.map(|k| part.at_m[k])))
+            .collect();
+        for _ in 0..inside {
+            let [a, b, c] = triangles[(numbers.next() * triangles.len() as f64) as usize];
+            let (mut s, mut t) = (numbers.next(), numbers.next());
+            if s + t > 1.0 {
+                (s, t) = (1.0 - s, 1.0 - t);
+            }
+            points.push([0, 1, 2].map(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k])));
+        }
+        let on_earth: Vec<_> = points.iter().map(|at| tiles.on_earth(*at)).collect();
+        for [x, y, z] in from_earth.carry(&on_earth) {
+            found.points += 1;
+            match tile.ground.height([x, y]) {
+                Some(height) => found.largest_m = found.largest_m.max((height - z).abs()),
+                None => found.off_ground += 1,
+            }
+        }
+    }
+    found
+}
+
+type Place = [u64; 3];
+
+fn place(at: [f64; 3]) -> Place {
+    at.map(|axis| (axis + 0.0).to_bits())
+}
+
+/// The edges of a tile's ground that only one triangle has, by their places.
+fn open_edges(tile: &Tile) -> Result<HashSet<[Place; 2]>, String> {
+    let mut balance: HashMap<[Place; 2], i32> = HashMap::new();
+    for part in ground(tile) {
+        for corners in &part.triangles {
+            let at = corners.map(|k| place(part.at_m[k]));
+            for k in 0..3 {
+                let (one, other) = (at[k], at[(k + 1) % 3]);
+                if one == other {
+                    return Err(format!("{}: an edge without length", tile.name));
+                }
+                *balance.entry([one.min(other), one.max(other)]).or_default() +=
+                    if one < other { 1 } else { -1 };
+            }
+        }
+    }
+    Ok(balance.into_iter().filter(|(_, sum)| *sum != 0).map(|(edge, _)| edge).collect())
+}
+
+/// Every edge has triangles on both sides, or lies where the package's ground ends.
+pub(crate) fn check_watertight(tiles: &Tiles) -> Result<(), String> {
+    for tile in &tiles.tiles {
+        let open = open_edges(tile)?;
+        // Length of the package's own boundary and of what is open here, in plan.
+        let mut edges: HashMap<[usize; 2], i32> = HashMap::new();
+        for corners in &tile.ground.triangles {
+            for k in 0..3 {
+                let (one, other) = (corners[k], corners[(k + 1) % 3]);
+                *edges.entry([one.min(other), one.max(other)]).or_default() += 1;
+            }
+        }
+        let own: f64 = edges
+            .iter()
+            .filter(|(_, count)| **count == 1)
+            .map(|([one, other], _)| {
+                let [a, b] = [one, other].map(|k| tile.ground.corners[*k]);
+                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
+            })
+            .sum();
+        let here: f64 = open
+            .iter()
+            .map(|edge| {
+                let [a, b] = edge.map(|at| at.map(f64::from_bits));
+                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
+            })
+            .sum();
+        // The CRS is not quite the earth's: a part in a thousand.
+        if (own - here).abs() > own * 1e-3 {
+            return Err(format!("{}: {here} m of edges are open, not {own}", tile.name));
+        }
+    }
+    Ok(())
+}
+
+/// Tiles of a level have the same points on the border between them.
+pub(crate) fn check_borders(tiles: &Tiles) -> Result<(), String> {
+    let mut open: BTreeMap<[u32; 3], HashSet<[Place; 2]>> = BTreeMap::new();
+    for tile in &tiles.tiles {
+        let name: Vec<u32> = tile.name.split('/').map(|part| part.parse().unwrap()).collect();
+        open.insert(name.try_into().unwrap(), open_edges(tile)?);
+    }
+    let from_earth = FromEarth::to(crate::WITH_GEOID);
+    let grounds: BTreeMap<&str, &Tile> =
+        tiles.tiles.iter().map(|tile| (tile.name.as_str(), tile)).collect();
+    // The places of a tile's open edges that lie on a line of the CRS where its neighbour has ground, too.
+    let on_line = |edges: &HashSet<[Place; 2]>, beside: &Tile, axis: usize, line: f64| {
+        let places: Vec<Place> = edges.iter().flatten().copied().collect();
+        let on_earth: Vec<_> =
+            places.iter().map(|at| tiles.on_earth(at.map(f64::from_bits))).collect();
+        let carried = from_earth.carry(&on_earth);
+        let is_shared = |at: &[f64; 3]| {
+            (at[axis] - line).abs() < 0.005 && beside.ground.height([at[0], at[1]]).is_some()
+        };
+        places
+            .into_iter()
+            .zip(carried)
+            .filter(|(_, at)| is_shared(at))
+            .map(|(at, _)| at)
+            .collect::<HashSet<Place>>()
+    };
+    let mut shared = 0;
+    for (&[z, x, y], edges) in &open {
+        let tile = grounds[format!("{z}/{x}/{y}").as_str()];
+        let [_, south, east, _] = tile.ground.bounds;
+        for (beside, axis, line) in [([z, x + 1, y], 0, east), ([z, x, y + 1], 1, south)] {
+            let Some(others) = open.get(&beside) else { continue };
+            let other_tile = grounds[beside.map(|part| part.to_string()).join("/").as_str()];
+            let own = on_line(edges, other_tile, axis, line);
+            let other = on_line(others, tile, axis, line);
+            if own != other {
+                let missing = own.symmetric_difference(&other).count();
+                return Err(format!("{z}/{x}/{y} and {beside:?}: {missing} points differ"));
+            }
+            shared += own.len();
+        }
+    }
+    if shared > 100 { Ok(()) } else { Err(format!("only {shared} points are shared")) }
+}
+
+/// Well inside of a road is road, of that way or one above it, and away from all roads is ground.
+pub(crate) fn check_roads(tiles: &Tiles) -> Result<(), String> {
+    let from_earth = FromEarth::to(crate::WITH_GEOID);
+    let mut seen = [0_usize; 2];
+    for tile in &tiles.tiles {
+        for part in ground(tile) {
+            let centroids: Vec<[f64; 3]> = part
+                .triangles
+                .iter()
+                .map(|corners| {
+                    let at = corners.map(|k| part.at_m[k]);
+                    tiles.on_earth([0, 1, 2].map(|k| (at[0][k] + at[1][k] + at[2][k]) / 3.0))
+                })
+                .collect();
+            for (number, [x, y, _]) in from_earth.carry(&centroids).into_iter().enumerate() {
+                let nearest = tile
+                    .ground
+                    .roads
+                    .iter()
+                    .map(|(_, class, line)| (distance(line, [x, y]), *class))
+                    .min_by(|one, other| one.0.0.total_cmp(&other.0.0));
+                let Some(((nearest_m, is_beside), class)) = nearest else { continue };
+                let way = part.triangles[number].iter().find_map(|k| part.ways.get(*k));
+                match way {
+                    // Half of the widest road is 12 m, and a mitre reaches twice as far.
+                    Some(_) if nearest_m > 26.0 && is_inside(tile, [x, y], 30.0) => {
+                        return Err(format!("{}: a road {nearest_m} m from any", tile.name));
+                    }
+                    // The narrowest road is a path of 1.5 m or more. Dead ends are cut straight.
+                    None if nearest_m < 0.5 && is_beside => {
+                        return Err(format!("{}: no road on a road of class {class}", tile.name));
+                    }
+                    Some(_) => seen[0] += 1,
+                    None => seen[1] += 1,
+                }
+            }
+        }
+    }
+    if seen.iter().all(|count| *count > 1000) { Ok(()) } else { Err(format!("only {seen:?}")) }
+}
+
+fn is_inside(tile: &Tile, [x, y]: [f64; 2], margin: f64) -> bool {
+    let [west, south, east, north] = tile.ground.bounds;
+    x > west + margin && x < east - margin && y > south + margin && y < north - margin
+}
+
+/// The distance to a line, and whether its nearest point is none of its ends.
+fn distance(line: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, bool) {
+    let last = line.len() - 2;
+    let of_segment = |(number, pair): (usize, &[[f64; 2]])| {
+        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
+        let (dx, dy) = (bx - ax, by - ay);
+        let share = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy);
+        let is_beyond = (number == 0 && share < 0.0) || (number == last && share > 1.0);
+        let share = share.clamp(0.0, 1.0);
+        ((ax + share * dx - x).hypot(ay + share * dy - y), !is_beyond)
+    };
+    let all = line.windows(2).enumerate().map(of_segment);
+    all.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap()
+}

@@ -1,0 +1,153 @@
+//! `export 3dtiles`: decoded by a reader of our own, carried back by PROJ and compared with the package.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+mod checks;
+mod glb;
+mod package;
+mod tiles;
+
+use std::{collections::BTreeMap, fs, path::PathBuf};
+
+use checks::{Findings, check_borders, check_heights, check_roads, check_watertight};
+use e2e::{build_pass, corniche, text};
+use tempfile::TempDir;
+use tiles::Tiles;
+
+/// What EGM96 heights of the sample are carried to by PROJ itself. The grid comes with PROJ.
+const WITH_GEOID: &str = "EPSG:32632+5773";
+
+/// The sample with heights above the geoid of EGM96.
+fn built(folder: &TempDir) -> PathBuf {
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--dem-vertical-crs", "EPSG:5773", "--relief", "off"]);
+    package
+}
+
+fn export(package: &std::path::Path, name: &str, more: &[&str]) -> PathBuf {
+    let folder = package.with_file_name(name);
+    let words = ["export", "3dtiles", text(package), "-o", text(&folder), "--compress", "none"];
+    let ran = corniche([&words[..], more].concat());
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    folder
+}
+
+/// Everywhere on the ground, on every level, within a centimetre of the package; the same at borders; closed; roads where they should be.
+#[test]
+fn tiles_are_the_package_s_ground_with_its_roads() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let tiles = Tiles::read(&export(&package, "cut", &[]), &package);
+    let found = check_heights(&tiles, WITH_GEOID, 1000);
+    assert!(found.points > 100_000, "{found:?}");
+    assert!(found.largest_m <= 0.01 && found.off_ground == 0, "{found:?}");
+    check_borders(&tiles).unwrap();
+    check_watertight(&tiles).unwrap();
+    check_roads(&tiles).unwrap();
+    tiles.check_tree().unwrap();
+    tiles.check_against_dem(WITH_GEOID).unwrap();
+}
+
+/// The checks see what is drawn wrong.
+#[test]
+fn wrong_drawings_are_seen() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let right = Tiles::read(&export(&package, "cut", &["--roads", "none"]), &package);
+    let is_wrong = |found: &Findings| found.largest_m > 0.01 || found.off_ground > 0;
+    let found = check_heights(&right, WITH_GEOID, 50);
+    assert!(!is_wrong(&found), "{found:?}");
+    let mut flipped = right.clone();
+    flipped.for_each_vertex(|_, at| at[1] = -at[1]);
+    assert!(is_wrong(&check_heights(&flipped, WITH_GEOID, 50)), "y flipped");
+    assert!(is_wrong(&check_heights(&right, "EPSG:4979", 0)), "another CRS");
+    // Above the ellipsoid: the CRS without the geoid.
+    let without_geoid = check_heights(&right, "EPSG:32632+4979", 0);
+    assert!((45.0..55.0).contains(&without_geoid.largest_m), "{without_geoid:?}");
+    let mut straight = right.clone();
+    straight.by_one_matrix_a_tile(WITH_GEOID);
+    assert!(is_wrong(&check_heights(&straight, WITH_GEOID, 50)), "one matrix a tile");
+    let mut halved = right.clone();
+    halved.halve_errors();
+    assert!(halved.check_against_dem(WITH_GEOID).is_err(), "errors halved");
+    let mut torn = right.clone();
+    torn.for_each_vertex(|vertex, at| {
+        if vertex == 7 {
+            at[2] += 0.002;
+        }
+    });
+    assert!(check_watertight(&torn).is_err() || check_borders(&torn).is_err(), "torn");
+}
+
+/// A flat tile of two triangles would hang 3 m below the earth's surface without dividing its edges.
+#[test]
+fn long_edges_are_divided() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let tiles = Tiles::read(&export(&package, "none", &["--roads", "none"]), &package);
+    let longest = tiles.longest_edge_m();
+    assert!((200.0..=451.0).contains(&longest), "{longest}");
+}
+
+/// The bytes are the same at any number of threads, and roads go by the options.
+#[test]
+fn options_do_what_they_say() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let contents = |folder: &PathBuf| -> BTreeMap<String, Vec<u8>> {
+        tiles::files_of(folder)
+            .into_iter()
+            .filter(|(name, _)| name.ends_with(".glb") || name.ends_with(".json"))
+            .filter(|(name, _)| !name.contains("corniche"))
+            .map(|(name, path)| (name, fs::read(path).unwrap()))
+            .collect()
+    };
+    let one = contents(&export(&package, "one", &["--threads", "1"]));
+    assert_eq!(one, contents(&export(&package, "four", &["--threads", "4"])));
+    let parts = |name: &str, more: &[&str]| {
+        let tiles = Tiles::read(&export(&package, name, more), &package);
+        tiles.part_names()
+    };
+    let all = parts("all", &[]);
+    assert!(all.contains("skirt") && all.contains("terrain") && all.contains("roads FRC 0"));
+    let few = parts("few", &["--skirts", "none", "--roads", "none"]);
+    assert_eq!(few.into_iter().collect::<Vec<_>>(), ["terrain"]);
+    let classes = parts("classes", &["--classes", "0-1", "--roads", "line"]);
+    assert!(classes.contains("roads FRC 0") && !classes.contains("roads FRC 3"));
+    let coarse = Tiles::read(&export(&package, "coarse", &["--finest-level", "1"]), &package);
+    assert!(coarse.levels().eq(0..=1));
+    let compressed = folder.path().join("compressed");
+    let words = ["export", "3dtiles", text(&package), "-o", text(&compressed)];
+    assert_eq!(corniche(words).code, 0);
+    let bytes =
+        |contents: &BTreeMap<String, Vec<u8>>| contents.values().map(Vec::len).sum::<usize>();
+    let sizes = [bytes(&contents(&compressed)), bytes(&one)];
+    assert!(sizes[0] * 4 < sizes[1] * 3, "{sizes:?}");
+}
+
+/// What cannot be exported is said, and nothing is left.
+#[test]
+fn what_cannot_be_exported_is_said() {
+    let folder = TempDir::new().unwrap();
+    let package = folder.path().join("unknown.pmtiles");
+    build_pass(&package, &["--relief", "off"]);
+    let target = folder.path().join("out");
+    let refused = |more: &[&str], words: &[&str]| {
+        let all = ["export", "3dtiles", text(&package), "-o", text(&target)];
+        let ran = corniche([&all[..], more].concat());
+        assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+        for word in words {
+            assert!(ran.err.contains(word), "{}", ran.err);
+        }
+        assert!(!target.exists());
+    };
+    refused(&[], &["--heights as-is", "unknown"]);
+    refused(&["--heights", "as-is", "--finest-level", "9"], &["no level 9"]);
+    fs::create_dir(&target).unwrap();
+    fs::write(target.join("mine.txt"), "mine").unwrap();
+    let all =
+        ["export", "3dtiles", text(&package), "-o", text(&target), "--heights", "as-is", "-O"];
+    let ran = corniche(all);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert_eq!(fs::read(target.join("mine.txt")).unwrap(), b"mine");
+}

@@ -1,0 +1,139 @@
+//! What the package says, through `tile --json`, and where it is on the earth, through PROJ.
+
+use std::path::Path;
+
+use e2e::{json, text};
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
+use serde_json::Value;
+
+/// Squares along each side of the index over a tile.
+const SQUARES: usize = 64;
+
+/// Rounding, and the chord of a straight line of the CRS, lead so far beside the edge of the ground.
+const BESIDE_M: f64 = 0.005;
+
+/// The ground of a tile in the package's CRS.
+pub(crate) struct Ground {
+    pub(crate) corners: Vec<[f64; 3]>,
+    pub(crate) triangles: Vec<[usize; 3]>,
+    pub(crate) bounds: [f64; 4],
+    /// Centre-lines with their way and class.
+    pub(crate) roads: Vec<(i64, u8, Vec<[f64; 2]>)>,
+    squares: Vec<Vec<u32>>,
+}
+
+fn vector<const N: usize>(value: &Value) -> [f64; N] {
+    std::array::from_fn(|k| value[k].as_f64().unwrap())
+}
+
+impl Ground {
+    pub(crate) fn read(package: &Path, tile: &str) -> Self {
+        let document = json(&["tile", text(package), tile, "--json"]);
+        let list = |value: &Value| value.as_array().unwrap().clone();
+        let corners = list(&document["tin"]["vertices"]).iter().map(vector).collect();
+        let triangles = list(&document["tin"]["triangles"])
+            .iter()
+            .map(|triangle| vector::<3>(triangle).map(|k| k as usize))
+            .collect();
+        // Tunnels are not on the ground.
+        let is_tunnel = |way: &Value| {
+            let ways = document["attributes"].as_array().unwrap();
+            ways.iter().any(|known| known["way_id"] == *way && known["structure"] == "tunnel")
+        };
+        let roads = list(&document["roads_geo"])
+            .iter()
+            .filter(|road| !is_tunnel(&road["way_id"]))
+            .map(|road| {
+                let way = road["way_id"].as_i64().unwrap();
+                let class = u8::try_from(road["frc"].as_u64().unwrap()).unwrap();
+                (way, class, list(&road["line"]).iter().map(vector).collect())
+            })
+            .collect();
+        let bounds = vector(&document["bounds"]);
+        let squares = vec![Vec::new(); SQUARES * SQUARES];
+        let mut ground = Self { corners, triangles, bounds, roads, squares };
+        for (number, triangle) in ground.triangles.iter().enumerate() {
+            let range = |axis: usize| {
+                let at = triangle.map(|k| ground.corners[k][axis]);
+                at.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], next| {
+                    [low.min(next - BESIDE_M), high.max(next + BESIDE_M)]
+                })
+            };
+            let [[west, east], [south, north]] = [range(0), range(1)];
+            let [low, high] = [ground.square([west, south]), ground.square([east, north])];
+            for row in low[1]..=high[1] {
+                for column in low[0]..=high[0] {
+                    ground.squares[row * SQUARES + column].push(number as u32);
+                }
+            }
+        }
+        ground
+    }
+
+    fn square(&self, [x, y]: [f64; 2]) -> [usize; 2] {
+        let [west, south, east, north] = self.bounds;
+        let of = |share: f64| ((share * SQUARES as f64).max(0.0) as usize).min(SQUARES - 1);
+        [of((x - west) / (east - west)), of((y - south) / (north - south))]
+    }
+
+    /// Height at a position; `None` off the ground, but for what rounding and chords of a bent line leave.
+    pub(crate) fn height(&self, at: [f64; 2]) -> Option<f64> {
+        let [column, row] = self.square(at);
+        let near = &self.squares[row * SQUARES + column];
+        let best = near.iter().map(|number| {
+            let corners = self.triangles[*number as usize].map(|k| self.corners[k]);
+            let shares = shares(corners.map(|[x, y, _]| [x, y]), at);
+            // How far outside of each edge the position lies, metres.
+            let outside = |k: usize| {
+                let [a, b, c] = [0, 1, 2].map(|turn| corners[(k + turn) % 3]);
+                let length = (b[0] - c[0]).hypot(b[1] - c[1]);
+                let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                -shares[k] * twice.abs() / length
+            };
+            let outside_m = (0..3).map(outside).fold(f64::NEG_INFINITY, f64::max);
+            (outside_m, (0..3).map(|k| shares[k] * corners[k][2]).sum::<f64>())
+        });
+        let (outside_m, height) = best.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        (outside_m <= BESIDE_M).then_some(height)
+    }
+}
+
+/// The shares of a triangle's corners in a position.
+pub(crate) fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
+    let twice = |p: [f64; 2], q: [f64; 2]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
+    let parts = [twice(b, c), twice(c, a), twice(a, b)];
+    let whole: f64 = parts.iter().sum();
+    parts.map(|part| part / whole)
+}
+
+/// From the earth's coordinates to a CRS with heights: two steps of PROJ, through EPSG:4979.
+pub(crate) struct FromEarth {
+    to_degrees: CoordTransform,
+    to_crs: CoordTransform,
+}
+
+impl FromEarth {
+    /// `crs` is one with heights, such as "EPSG:32632+5773".
+    pub(crate) fn to(crs: &str) -> Self {
+        let of = |text: &str| {
+            let mut crs = SpatialRef::from_definition(text).unwrap();
+            crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+            crs
+        };
+        let degrees = of("EPSG:4979");
+        Self {
+            to_degrees: CoordTransform::new(&of("EPSG:4978"), &degrees).unwrap(),
+            to_crs: CoordTransform::new(&degrees, &of(crs)).unwrap(),
+        }
+    }
+
+    pub(crate) fn carry(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut axes: Vec<Vec<f64>> =
+            (0..3).map(|axis| at.iter().map(|p| p[axis]).collect()).collect();
+        for step in [&self.to_degrees, &self.to_crs] {
+            let [x, y, z] = axes.get_disjoint_mut([0, 1, 2]).unwrap();
+            step.transform_coords(x, y, z).unwrap();
+        }
+        (0..at.len()).map(|k| [axes[0][k], axes[1][k], axes[2][k]]).collect()
+    }
+}
