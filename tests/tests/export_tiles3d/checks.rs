@@ -199,9 +199,12 @@ pub(crate) fn check_roads(tiles: &Tiles) -> Result<(), String> {
                     Some(_) if nearest_m > 26.0 && is_inside(tile, [x, y], 30.0) => {
                         return Err(format!("{}: a road {nearest_m} m from any", tile.name));
                     }
-                    // The narrowest road is a path of 1.5 m or more. Dead ends are cut straight.
+                    // The narrowest road is a path of 1.5 m or more. Ends and sharp bends are cut straight.
                     None if nearest_m < 0.5 && is_beside => {
-                        return Err(format!("{}: no road on a road of class {class}", tile.name));
+                        return Err(format!(
+                            "{}: no road at {x} {y}, {nearest_m} m from the middle of one of class {class}",
+                            tile.name
+                        ));
                     }
                     Some(_) => seen[0] += 1,
                     None => seen[1] += 1,
@@ -217,17 +220,16 @@ fn is_inside(tile: &Tile, [x, y]: [f64; 2], margin: f64) -> bool {
     x > west + margin && x < east - margin && y > south + margin && y < north - margin
 }
 
-/// The distance to a line, and whether its nearest point is none of its ends.
+/// The distance to a line, and whether its nearest point lies within a segment, rather than at a bend or an end.
 fn distance(line: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, bool) {
-    let last = line.len() - 2;
-    let of_segment = |(number, pair): (usize, &[[f64; 2]])| {
+    let of_segment = |pair: &[[f64; 2]]| {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
         let (dx, dy) = (bx - ax, by - ay);
         let share = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy);
-        let is_beyond = (number == 0 && share < 0.0) || (number == last && share > 1.0);
+        let is_within = (0.0..=1.0).contains(&share);
         let share = share.clamp(0.0, 1.0);
-        ((ax + share * dx - x).hypot(ay + share * dy - y), !is_beyond)
+        ((ax + share * dx - x).hypot(ay + share * dy - y), is_within)
     };
-    let all = line.windows(2).enumerate().map(of_segment);
+    let all = line.windows(2).map(of_segment);
     all.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap()
 }

@@ -143,9 +143,12 @@ impl TileLine {
         if piece.attributes.structure == Structure::Tunnel {
             return None;
         }
-        let source = piece.vertices.iter().filter(|vertex| vertex.is_source);
-        let mut points: Vec<LatticePoint> = source
-            .map(|vertex| {
+        // A line that ends where the ground ends has no point of its own there.
+        let last = piece.vertices.len() - 1;
+        let own = piece.vertices.iter().enumerate();
+        let own = own.filter(|(at, vertex)| vertex.is_source || *at == 0 || *at == last);
+        let mut points: Vec<LatticePoint> = own
+            .map(|(_, vertex)| {
                 LatticePoint::new(vertex.at[0].round() as i64, vertex.at[1].round() as i64)
             })
             .collect();
