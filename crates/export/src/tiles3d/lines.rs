@@ -5,13 +5,15 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use corniche_geom::{LatticePoint, TileId};
+use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_tileset::FilePackage;
+use corniche_tileset::{FilePackage, Manifest};
 
 use super::{request::Tiles3dRequest, ribbon::CenterLine};
 use crate::{error::ExportError, piece::Piece, read};
 
+/// The error that clients allow: Cesium's for ground, which the example asks for.
+const ALLOWED_ERROR_PX: f64 = 2.0;
 /// Tiles whose lines are kept: some rows of neighbours along a Hilbert curve.
 const KEPT_TILES: usize = 256;
 
@@ -38,12 +40,52 @@ struct TileLine {
 pub(crate) struct TileLines<'a> {
     package: &'a FilePackage,
     request: &'a Tiles3dRequest,
+    /// By level.
+    details: Vec<Detail>,
     kept: Mutex<VecDeque<(TileId, Arc<Vec<TileLine>>)>>,
 }
 
+/// How much of roads is seen on a level.
+///
+/// A client that allows two pixels of error draws a tile only where a pixel is at least half its error. What is finer than that is not seen on it.
+#[derive(Debug, Clone, PartialEq)]
+struct Detail {
+    /// Of the classes that were asked for, those that the style draws at that scale and that are about a pixel wide: thinner surfaces break up into dots.
+    classes: Vec<FunctionalRoadClass>,
+    /// A quarter of such a pixel, lattice steps: lines are simplified by it.
+    tolerance_steps: f64,
+}
+
+impl Detail {
+    fn of_level(request: &Tiles3dRequest, manifest: &Manifest, level: u8, finest: u8) -> Self {
+        let errors_m = manifest.levels[usize::from(level)].errors_m;
+        // The finest tiles are drawn however near the eye is; others as near as the smallest error allows.
+        let error_m =
+            if level == finest { 0.0 } else { errors_m.map_or(0.0, |errors_m| errors_m.min) };
+        let pixel_m = error_m / ALLOWED_ERROR_PX;
+        let is_seen = |class: &FunctionalRoadClass| {
+            let road = request.style.road(*class);
+            // The style says how many pixels of the road it insists on: the more, the longer it stays.
+            let stays_m = f64::from(road.width_m * road.min_width_px.max(1.0));
+            stays_m >= pixel_m && road.last_pixel_m() > pixel_m
+        };
+        Self {
+            classes: request.classes.iter().copied().filter(is_seen).collect(),
+            tolerance_steps: pixel_m / 4.0 * manifest.point_scale / manifest.frame.lattice_step_m(),
+        }
+    }
+}
+
 impl<'a> TileLines<'a> {
-    pub(crate) fn new(package: &'a FilePackage, request: &'a Tiles3dRequest) -> Self {
-        Self { package, request, kept: Mutex::default() }
+    /// Lines of the levels down to `finest`.
+    pub(crate) fn new(package: &'a FilePackage, request: &'a Tiles3dRequest, finest: u8) -> Self {
+        let detail = |level| Detail::of_level(request, package.manifest(), level, finest);
+        Self {
+            package,
+            request,
+            details: (0..=finest).map(detail).collect(),
+            kept: Mutex::default(),
+        }
     }
 
     fn of_tile(&self, id: TileId) -> Result<Arc<Vec<TileLine>>, ExportError> {
@@ -51,8 +93,10 @@ impl<'a> TileLines<'a> {
         if let Some((_, known)) = lock().iter().find(|(known, _)| *known == id) {
             return Ok(Arc::clone(known));
         }
-        let pieces = read::pieces(self.package, id, &self.request.classes)?;
-        let lines: Vec<TileLine> = pieces.into_iter().filter_map(TileLine::of_piece).collect();
+        let detail = &self.details[usize::from(id.z())];
+        let pieces = read::pieces(self.package, id, &detail.classes)?;
+        let mut lines: Vec<TileLine> = pieces.into_iter().filter_map(TileLine::of_piece).collect();
+        simplify(&mut lines, detail.tolerance_steps);
         let lines = Arc::new(lines);
         let mut kept = lock();
         kept.push_back((id, Arc::clone(&lines)));
@@ -160,5 +204,29 @@ impl TileLine {
             points,
             goes_on: piece.goes_on,
         })
+    }
+}
+
+/// Leaves out points of lines that nobody sees. Points that lines share stay, so that roads still meet; a tile and its neighbours see the same lines of
+/// each tile, so they simplify them the same way.
+fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
+    let mut uses: HashMap<LatticePoint, u32> = HashMap::new();
+    for line in lines.iter() {
+        for point in &line.points {
+            *uses.entry(*point).or_default() += 1;
+        }
+    }
+    for line in lines {
+        let Ok(whole) = Polyline::new(line.points.clone()) else { continue };
+        let fixed = |(_, point): &(u32, &LatticePoint)| uses[*point] > 1;
+        let fixed = (0..).zip(whole.points()).filter(fixed).map(|(at, _)| at).collect();
+        let road = corniche_roads::Road {
+            way_id: line.way_id,
+            class: line.class,
+            attributes: (*line.attributes).clone(),
+            line: whole,
+            fixed,
+        };
+        line.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
     }
 }

@@ -93,7 +93,7 @@ pub fn export_tiles3d(
         package,
         request,
         folder,
-        lines: TileLines::new(package, request),
+        lines: TileLines::new(package, request, finest),
         levels: (0..=finest).map(|level| level_of(manifest, level)).collect(),
         root,
         ids: &ids,
