@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::{
-    package::FromEarth,
+    package::{FromEarth, Region},
     tiles::{Part, Tile, Tiles},
 };
 
@@ -11,7 +11,10 @@ use crate::{
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) points: usize,
+    /// Largest difference beyond what chords on wide tiles are allowed.
     pub(crate) largest_m: f64,
+    /// The same, chords included.
+    pub(crate) with_chords_m: f64,
     /// Points where the package has no ground.
     pub(crate) off_ground: usize,
 }
@@ -34,8 +37,8 @@ impl Numbers {
 }
 
 /// Carries every vertex, and so many random points inside triangles of each tile, back to the package's CRS, and compares their heights.
-pub(crate) fn check_heights(tiles: &Tiles, crs: &str, inside: usize) -> Findings {
-    let from_earth = FromEarth::to(crs);
+pub(crate) fn check_heights(tiles: &Tiles, region: &Region, inside: usize) -> Findings {
+    let from_earth = FromEarth::to(region);
     let mut numbers = Numbers(1);
     let mut found = Findings::default();
     for tile in &tiles.tiles {
@@ -58,7 +61,11 @@ pub(crate) fn check_heights(tiles: &Tiles, crs: &str, inside: usize) -> Findings
         for [x, y, z] in from_earth.carry(&on_earth) {
             found.points += 1;
             match tile.ground.height([x, y]) {
-                Some(height) => found.largest_m = found.largest_m.max((height - z).abs()),
+                Some(height) => {
+                    let off_m = (height - z).abs();
+                    found.with_chords_m = found.with_chords_m.max(off_m);
+                    found.largest_m = found.largest_m.max(off_m - tile.ground.chord_m());
+                }
                 None => found.off_ground += 1,
             }
         }
@@ -92,7 +99,8 @@ fn open_edges(tile: &Tile) -> Result<HashSet<[Place; 2]>, String> {
 }
 
 /// Every edge has triangles on both sides, or lies where the package's ground ends.
-pub(crate) fn check_watertight(tiles: &Tiles) -> Result<(), String> {
+pub(crate) fn check_watertight(tiles: &Tiles, region: &Region) -> Result<(), String> {
+    let from_earth = FromEarth::to(region);
     for tile in &tiles.tiles {
         let open = open_edges(tile)?;
         // Length of the package's own boundary and of what is open here, in plan.
@@ -111,15 +119,16 @@ pub(crate) fn check_watertight(tiles: &Tiles) -> Result<(), String> {
                 (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
             })
             .sum();
-        let here: f64 = open
+        let ends: Vec<[f64; 3]> =
+            open.iter().flatten().map(|at| tiles.on_earth(at.map(f64::from_bits))).collect();
+        let ends = from_earth.carry(&ends);
+        let here: f64 = ends
+            .as_chunks::<2>()
+            .0
             .iter()
-            .map(|edge| {
-                let [a, b] = edge.map(|at| at.map(f64::from_bits));
-                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
-            })
+            .map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2]))
             .sum();
-        // The CRS is not quite the earth's: a part in a thousand.
-        if (own - here).abs() > own * 1e-3 {
+        if (own - here).abs() > own * 1e-5 {
             return Err(format!("{}: {here} m of edges are open, not {own}", tile.name));
         }
     }
@@ -127,13 +136,13 @@ pub(crate) fn check_watertight(tiles: &Tiles) -> Result<(), String> {
 }
 
 /// Tiles of a level have the same points on the border between them.
-pub(crate) fn check_borders(tiles: &Tiles) -> Result<(), String> {
+pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String> {
     let mut open: BTreeMap<[u32; 3], HashSet<[Place; 2]>> = BTreeMap::new();
     for tile in &tiles.tiles {
         let name: Vec<u32> = tile.name.split('/').map(|part| part.parse().unwrap()).collect();
         open.insert(name.try_into().unwrap(), open_edges(tile)?);
     }
-    let from_earth = FromEarth::to(crate::WITH_GEOID);
+    let from_earth = FromEarth::to(region);
     let grounds: BTreeMap<&str, &Tile> =
         tiles.tiles.iter().map(|tile| (tile.name.as_str(), tile)).collect();
     // The places of a tile's open edges that lie on a line of the CRS where its neighbour has ground, too.
@@ -172,12 +181,14 @@ pub(crate) fn check_borders(tiles: &Tiles) -> Result<(), String> {
 }
 
 /// Well inside of a road is road, of that way or one above it, and away from all roads is ground.
-pub(crate) fn check_roads(tiles: &Tiles) -> Result<(), String> {
-    let from_earth = FromEarth::to(crate::WITH_GEOID);
+pub(crate) fn check_roads(tiles: &Tiles, region: &Region) -> Result<(), String> {
+    let from_earth = FromEarth::to(region);
     let mut seen = [0_usize; 2];
     let finest = tiles.levels().max().unwrap().to_string();
     for tile in &tiles.tiles {
         // Coarser levels leave out what is too thin to be seen.
+        let boxes: Vec<[[f64; 2]; 2]> =
+            tile.ground.roads.iter().map(|(_, _, line)| around(line)).collect();
         let has_all = tile.name.split('/').next() == Some(finest.as_str());
         for part in ground(tile) {
             let centroids: Vec<[f64; 3]> = part
@@ -189,13 +200,14 @@ pub(crate) fn check_roads(tiles: &Tiles) -> Result<(), String> {
                 })
                 .collect();
             for (number, [x, y, _]) in from_earth.carry(&centroids).into_iter().enumerate() {
-                let nearest = tile
-                    .ground
-                    .roads
-                    .iter()
-                    .map(|(_, class, line)| (distance(line, [x, y]), *class))
+                let near = tile.ground.roads.iter().zip(&boxes).filter(|(_, [low, high])| {
+                    (low[0]..=high[0]).contains(&x) && (low[1]..=high[1]).contains(&y)
+                });
+                let nearest = near
+                    .map(|((_, class, line), _)| (distance(line, [x, y]), *class))
                     .min_by(|one, other| one.0.0.total_cmp(&other.0.0));
-                let Some(((nearest_m, is_beside), class)) = nearest else { continue };
+                let ((nearest_m, is_beside), class) =
+                    nearest.unwrap_or(((f64::INFINITY, false), 9));
                 let way = part.triangles[number].iter().find_map(|k| part.ways.get(*k));
                 match way {
                     // Half of the widest road is 12 m, and a mitre reaches twice as far.
@@ -216,6 +228,17 @@ pub(crate) fn check_roads(tiles: &Tiles) -> Result<(), String> {
         }
     }
     if seen.iter().all(|count| *count > 1000) { Ok(()) } else { Err(format!("only {seen:?}")) }
+}
+
+/// What lies 30 m around a line.
+fn around(line: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let all = |pick: fn(f64, f64) -> f64, axis: usize| {
+        line.iter().map(|at| at[axis]).reduce(pick).unwrap()
+    };
+    [
+        [all(f64::min, 0) - 30.0, all(f64::min, 1) - 30.0],
+        [all(f64::max, 0) + 30.0, all(f64::max, 1) + 30.0],
+    ]
 }
 
 fn is_inside(tile: &Tile, [x, y]: [f64; 2], margin: f64) -> bool {

@@ -1,6 +1,6 @@
-//! What the package says, through `tile --json`, and where it is on the earth, through PROJ.
+//! What the package says, in working metres, through `tile --json`, and where it is on the earth, through PROJ.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use e2e::{json, text};
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
@@ -52,11 +52,12 @@ impl Ground {
         let bounds = vector(&document["bounds"]);
         let squares = vec![Vec::new(); SQUARES * SQUARES];
         let mut ground = Self { corners, triangles, bounds, roads, squares };
+        let beside_m = ground.chord_m() + BESIDE_M;
         for (number, triangle) in ground.triangles.iter().enumerate() {
             let range = |axis: usize| {
                 let at = triangle.map(|k| ground.corners[k][axis]);
                 at.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], next| {
-                    [low.min(next - BESIDE_M), high.max(next + BESIDE_M)]
+                    [low.min(next - beside_m), high.max(next + beside_m)]
                 })
             };
             let [[west, east], [south, north]] = [range(0), range(1)];
@@ -68,6 +69,19 @@ impl Ground {
             }
         }
         ground
+    }
+
+    /// On tiles of more than 57 km, chords may be further from the earth's surface than on others: a 128th of a side is not divided. The step of
+    /// positions counts where it is more than 4 mm.
+    pub(crate) fn chord_m(&self) -> f64 {
+        let [west, south, east, north] = self.bounds;
+        let part_m = (east - west).max(north - south) / 128.0;
+        let sag_m = part_m * part_m / (8.0 * 6_335_400.0) * 4.0 / 3.0;
+        let reach_m = 64.0 * part_m * 1.1;
+        let step_m = 2.0_f64.powi(reach_m.log2().ceil() as i32 - 24);
+        // Lines of degrees bend sideways, too.
+        let chord_m = if sag_m > 0.004 * 4.0 / 3.0 { 1.5 * sag_m } else { 0.0 };
+        chord_m + if step_m > 0.004 { step_m } else { 0.0 }
     }
 
     fn square(&self, [x, y]: [f64; 2]) -> [usize; 2] {
@@ -94,7 +108,7 @@ impl Ground {
             (outside_m, (0..3).map(|k| shares[k] * corners[k][2]).sum::<f64>())
         });
         let (outside_m, height) = best.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        (outside_m <= BESIDE_M).then_some(height)
+        (outside_m <= self.chord_m() + BESIDE_M).then_some(height)
     }
 }
 
@@ -110,11 +124,22 @@ pub(crate) fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
 pub(crate) struct FromEarth {
     to_degrees: CoordTransform,
     to_crs: CoordTransform,
+    metres_per_unit: [f64; 2],
+}
+
+/// What a package is of.
+#[derive(Clone)]
+pub(crate) struct Region {
+    /// Its CRS with heights, such as "EPSG:32632+5773".
+    pub(crate) crs: String,
+    /// Working metres to a unit of the CRS, east and north.
+    pub(crate) metres_per_unit: [f64; 2],
+    pub(crate) dem: PathBuf,
 }
 
 impl FromEarth {
-    /// `crs` is one with heights, such as "EPSG:32632+5773".
-    pub(crate) fn to(crs: &str) -> Self {
+    /// To working metres and heights.
+    pub(crate) fn to(region: &Region) -> Self {
         let of = |text: &str| {
             let mut crs = SpatialRef::from_definition(text).unwrap();
             crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
@@ -123,7 +148,8 @@ impl FromEarth {
         let degrees = of("EPSG:4979");
         Self {
             to_degrees: CoordTransform::new(&of("EPSG:4978"), &degrees).unwrap(),
-            to_crs: CoordTransform::new(&degrees, &of(crs)).unwrap(),
+            to_crs: CoordTransform::new(&degrees, &of(&region.crs)).unwrap(),
+            metres_per_unit: region.metres_per_unit,
         }
     }
 
@@ -134,6 +160,7 @@ impl FromEarth {
             let [x, y, z] = axes.get_disjoint_mut([0, 1, 2]).unwrap();
             step.transform_coords(x, y, z).unwrap();
         }
-        (0..at.len()).map(|k| [axes[0][k], axes[1][k], axes[2][k]]).collect()
+        let [east, north] = self.metres_per_unit;
+        (0..at.len()).map(|k| [axes[0][k] * east, axes[1][k] * north, axes[2][k]]).collect()
     }
 }

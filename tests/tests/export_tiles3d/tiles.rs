@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::{
     glb::Glb,
-    package::{FromEarth, Ground, shares},
+    package::{FromEarth, Ground, Region, shares},
 };
 
 /// A list of triangles with its name.
@@ -165,8 +165,8 @@ impl Tiles {
     }
 
     /// Puts each tile on the earth by one matrix, as if a square of the CRS were one of the earth.
-    pub(crate) fn by_one_matrix_a_tile(&mut self, crs: &str) {
-        let from_earth = FromEarth::to(crs);
+    pub(crate) fn by_one_matrix_a_tile(&mut self, region: &Region) {
+        let from_earth = FromEarth::to(region);
         let tiles = std::mem::take(&mut self.tiles);
         for mut tile in tiles {
             for part in &mut tile.parts {
@@ -220,10 +220,13 @@ impl Tiles {
     }
 
     /// No node of the elevation model is further from a tile's ground than its error says.
-    pub(crate) fn check_against_dem(&self, crs: &str) -> Result<(), String> {
-        let from_earth = FromEarth::to(crs);
-        let dem = Dataset::open(e2e::sample("pass/pass-dem.tif")).unwrap();
+    pub(crate) fn check_against_dem(&self, region: &Region) -> Result<(), String> {
+        let from_earth = FromEarth::to(region);
+        let dem = Dataset::open(&region.dem).unwrap();
+        let [east_m, north_m] = region.metres_per_unit;
         let [west, dx, _, north, _, dy] = dem.geo_transform().unwrap();
+        let ([west, dx], [north, dy]) =
+            ([west, dx].map(|x| x * east_m), [north, dy].map(|y| y * north_m));
         let (columns, rows) = dem.raster_size();
         let band = dem.rasterband(1).unwrap();
         let no_data = band.no_data_value().map(|value| value as f32);

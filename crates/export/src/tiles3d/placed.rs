@@ -213,6 +213,11 @@ impl TileBox {
         }
     }
 
+    /// Its longest side.
+    pub(crate) fn longest_side_m(&self) -> f64 {
+        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
+    }
+
     /// The longest way through it.
     pub(crate) fn diagonal_m(&self) -> f64 {
         let along = [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis]);

@@ -15,7 +15,7 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     content::{self, LevelOfTiles, TileFacts},
     glb,
-    globe::RootFrame,
+    globe::{RootFrame, dot, geocentric_m},
     lines::TileLines,
     placed::{Placing, TileBox, step_m},
     request::Tiles3dRequest,
@@ -27,14 +27,18 @@ use crate::{
     places::Places,
 };
 
-/// A chord of this length is so far from the earth's surface: its square by eight radii. The smallest radius of curvature of the ellipsoid is taken.
-const LEAST_RADIUS_M: f64 = 6_335_400.0;
+/// A chord is so far from the earth's surface at least: its square by eight radii, of which the largest is taken.
+const LEAST_BOW: f64 = 1.0 / (8.0 * 6_400_000.0);
+/// Length of the chords that tell how far straight lines of the CRS bend.
+const BOW_CHORD_M: f64 = 5_000.0;
 /// What an edge may be from the ground that it stands for, metres.
 const LARGEST_SAG_M: f64 = 0.004;
+/// What the ground may be from the package's, but on tiles that are very wide.
+const LARGEST_ERROR_M: f64 = 0.009;
 /// No edge is longer, whatever the sag.
 const LONGEST_EDGE_M: f64 = 550.0;
 /// On tiles of many kilometres the sag may be larger, so that the earth's curvature alone never divides a side into more parts.
-const MOST_PARTS_OF_A_SIDE: f64 = 64.0;
+const MOST_PARTS_OF_A_SIDE: f64 = 128.0;
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +98,9 @@ pub fn export_tiles3d(
         request,
         folder,
         lines: TileLines::new(package, request, finest),
-        levels: (0..=finest).map(|level| level_of(manifest, level)).collect(),
+        levels: (0..=finest)
+            .map(|level| level_of(manifest, level, reach_m(manifest, &root, level, &ids)))
+            .collect(),
         root,
         ids: &ids,
         next: AtomicUsize::new(0),
@@ -135,7 +141,53 @@ fn make_folders(folder: &Path, ids: &[TileId]) -> io::Result<()> {
     Ok(())
 }
 
-fn level_of(manifest: &Manifest, level: u8) -> LevelOfTiles {
+/// How far vertices of a level's tiles are from the middle of their tile along any axis of the frame, with some to spare.
+fn reach_m(manifest: &Manifest, root: &RootFrame, level: u8, ids: &[TileId]) -> f64 {
+    let data = manifest.data_bounds;
+    let of_tile = |id: &TileId| {
+        let tile = manifest.frame.tile_bounds(*id);
+        let xs = [tile.min_x.max(data.min_x), tile.center()[0], tile.max_x.min(data.max_x)];
+        let ys = [tile.min_y.max(data.min_y), tile.center()[1], tile.max_y.min(data.max_y)];
+        let mut around = TileBox::along([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        for [x, y] in xs.into_iter().flat_map(|x| ys.map(|y| [x, y])) {
+            let [lon, lat] = manifest.coordinates.wgs84_from_working([x, y]);
+            for height_m in manifest.vertical.range_m {
+                around.include(root.of([lon, lat, height_m]));
+            }
+        }
+        around.longest_side_m() / 2.0
+    };
+    let of_level = ids.iter().filter(|id| id.z() == level).map(of_tile);
+    // Sides bend a little between these places.
+    of_level.fold(1.0, f64::max) * 1.02
+}
+
+/// How far the middle of a straight line of the CRS is from its chord, over the square of its length, at most: by the earth's curvature, and where lines
+/// of the CRS bend sideways, as parallels do.
+fn bow(manifest: &Manifest) -> f64 {
+    let data = manifest.data_bounds;
+    let at = |[x, y]: [f64; 2]| {
+        let [lon, lat] = manifest.coordinates.wgs84_from_working([x, y]);
+        geocentric_m([lon, lat, 0.0])
+    };
+    let mut largest = LEAST_BOW;
+    for place in [[data.min_x, data.min_y], data.center(), [data.max_x, data.max_y]] {
+        for [dx, dy] in [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]] {
+            let ends = [-0.5, 0.5]
+                .map(|way| [place[0] + way * dx * BOW_CHORD_M, place[1] + way * dy * BOW_CHORD_M]);
+            let ([one, other], middle) = (ends.map(at), at(place));
+            let chord = [0, 1, 2].map(|k| other[k] - one[k]);
+            let off = [0, 1, 2].map(|k| middle[k] - f64::midpoint(one[k], other[k]));
+            let share = dot(off, off).sqrt() / dot(chord, chord);
+            if share.is_finite() {
+                largest = largest.max(share);
+            }
+        }
+    }
+    largest
+}
+
+fn level_of(manifest: &Manifest, level: u8, reach_m: f64) -> LevelOfTiles {
     let frame = &manifest.frame;
     let record = &manifest.levels[usize::from(level)];
     let [least_x, least_y] = manifest.scale.least;
@@ -144,13 +196,15 @@ fn level_of(manifest: &Manifest, level: u8) -> LevelOfTiles {
     let tile = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let side_m = tile.width().max(tile.height()) / tiles / scale;
-    let relief_m = manifest.vertical.range_m[1] - manifest.vertical.range_m[0];
-    let step_m = step_m(side_m.hypot(relief_m));
-    let of_curvature = (side_m / MOST_PARTS_OF_A_SIDE).powi(2) / (8.0 * LEAST_RADIUS_M);
-    let largest_sag_m = LARGEST_SAG_M.max(of_curvature);
-    let by_sag = (8.0 * LEAST_RADIUS_M * largest_sag_m).sqrt();
+    let step_m = step_m(reach_m);
+    // Together with rounding, a centimetre is not exceeded where ground is no steeper than 45 degrees.
+    let beside_rounding = (LARGEST_ERROR_M - 2.0 * step_m) * 3.0 / 4.0;
+    let bow = bow(manifest);
+    let of_curvature = (side_m / MOST_PARTS_OF_A_SIDE).powi(2) * bow;
+    let largest_sag_m = LARGEST_SAG_M.min(beside_rounding).max(of_curvature);
+    let by_sag = (largest_sag_m / bow).sqrt();
     let longest_edge_m =
-        if of_curvature > LARGEST_SAG_M { by_sag } else { by_sag.min(LONGEST_EDGE_M) };
+        if of_curvature >= largest_sag_m { by_sag } else { by_sag.min(LONGEST_EDGE_M) };
     // Inside a triangle it is four thirds of that at its edges, and each axis is rounded by half a step.
     let sag_m = largest_sag_m * 4.0 / 3.0 + step_m * 3.0_f64.sqrt() / 2.0;
     let above = &manifest.levels[usize::from(level.saturating_sub(1))];
