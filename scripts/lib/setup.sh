@@ -10,18 +10,15 @@ fail() {
     exit "$code"
 }
 
-# The GDAL library and its headers, to build; a Vulkan driver, to draw.
+# Compilers, the GDAL library and its headers, to build; a Vulkan driver, to draw.
 missing_for_build() {
     command -v cc >/dev/null || { echo gcc; echo libc6-dev; }
+    # meshoptimizer, which compresses tiles for others, is C++.
+    command -v c++ >/dev/null || echo g++
     command -v pkg-config >/dev/null || echo pkg-config
     pkg-config --exists gdal 2>/dev/null || echo libgdal-dev
     has_vulkan_driver || echo mesa-vulkan-drivers
     has_library libvulkan.so.1 || echo libvulkan1
-}
-
-# The fuzz targets link libFuzzer, which is C++; CI makes sure that they compile.
-missing_for_fuzz() {
-    command -v c++ >/dev/null || echo g++
 }
 
 # A python3 with numpy and shapely, for the independent check.
@@ -161,7 +158,7 @@ install_missing() {
     if ! command -v apt-get >/dev/null; then
         say "missing, by Debian's names: ${packages[*]}"
         say "install the packages of your system that have the same: macOS: brew install gdal pkg-config"
-        say "  Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
+        say "  Fedora: dnf install gcc gcc-c++ gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
         exit 2
     fi
     if [ "$(id -u)" -ne 0 ]; then

@@ -10,7 +10,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
     ("window", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
-    ("export", &["tileset", "dem", "store"]),
+    ("export", &["tileset", "dem", "store", "styles"]),
     ("matching", &["tileset", "photo"]),
     ("overlay", &["tileset", "dem"]),
     ("tileset", &["drape", "tin", "roads", "areas"]),

@@ -21,6 +21,7 @@ use crate::{
         ExportTarget, ModelRoads,
     },
     exit::ExitCode,
+    export_bars::{Bars, named},
     failure::Failure,
     interrupt, messages,
     named_output::NamedOutput,
@@ -192,13 +193,6 @@ fn areas_to_text(
     )
 }
 
-/// What could not be written is known to people by the name of the target, not of the file that becomes it.
-fn named(error: ExportError, target: &Path) -> Failure {
-    let is_unwritten = !error.is_unusable_input();
-    let failure = Failure::from(error);
-    if is_unwritten && failure.code() == ExitCode::Failed { failure.about(target) } else { failure }
-}
-
 /// The format that is named, or that of the ending.
 fn format(target: &ExportTarget) -> Result<VectorFormat, Failure> {
     let ExportTarget { format, output, .. } = target;
@@ -244,38 +238,4 @@ fn to_text(
         summary.heights,
         manifest.attribution.join("; "),
     )
-}
-
-/// A bar for each stage, where bars are drawn; and whether the program is asked to end.
-#[derive(Default)]
-pub(crate) struct Bars {
-    running: RefCell<Option<(Stage, ProgressBar)>>,
-}
-
-impl Bars {
-    pub(crate) fn end(&self) {
-        if let Some((_, bar)) = self.running.take() {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-impl Observer for Bars {
-    fn done(&self, stage: Stage, done: u64, total: u64) {
-        if self.running.borrow().as_ref().is_none_or(|(running, _)| *running != stage) {
-            self.end();
-            let title = match stage {
-                Stage::Tiles => "reading tiles",
-                Stage::Pieces => "writing features",
-            };
-            self.running.replace(Some((stage, progress::bar(title, Some(total)))));
-        }
-        if let Some((_, bar)) = &*self.running.borrow() {
-            bar.set_position(done);
-        }
-    }
-
-    fn should_stop(&self) -> bool {
-        interrupt::is_noted()
-    }
 }

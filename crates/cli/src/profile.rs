@@ -15,7 +15,7 @@ use crate::{
     args::ProfileArgs,
     chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other},
     exit::ExitCode,
-    export::Bars,
+    export_bars::Bars,
     failure::Failure,
     output::existing_of,
     report_files::ReportFiles,

@@ -6,7 +6,10 @@ use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId};
 use corniche_tileset::{OpenError, ReadError};
 
-use crate::tiles3d::CutError;
+/// The outlines of a tile's roads make no triangulation with its ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the outlines of its roads cannot be triangulated")]
+pub struct CutError;
 
 /// Why roads or areas could not be exported.
 #[derive(Debug, thiserror::Error)]

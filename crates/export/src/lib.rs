@@ -51,7 +51,7 @@ mod ways;
 
 pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
-pub use error::ExportError;
+pub use error::{CutError, ExportError};
 pub use feature::road_fields;
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, UpAxis, export_mesh};
@@ -59,7 +59,5 @@ pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
-pub use tiles3d::{
-    CutError, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
-};
+pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 pub use vector::{Field, FieldKind, VectorFormat};

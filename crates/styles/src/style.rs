@@ -29,6 +29,11 @@ pub struct RoadStyle {
     pub dash: Dash,
 }
 
+impl RoadStyle {
+    /// Width of slip roads and service roads as a share of that of their class.
+    pub const NARROW_WIDTH_SHARE: f32 = 0.6;
+}
+
 /// How much roads widen with distance (the paper, section 6.2 and Fig. 10).
 ///
 /// Up to `threshold_m` a road has its true width. Beyond, the width is multiplied by

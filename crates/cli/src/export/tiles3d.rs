@@ -7,10 +7,10 @@ use corniche_export::{
 };
 use corniche_tileset::{FilePackage, Manifest};
 
-use super::{Bars, named};
 use crate::{
     args::{Compress, ExportTiles3dArgs, Skirts},
     exit::ExitCode,
+    export_bars::{Bars, named},
     failure::Failure,
     folder_output::FolderOutput,
     messages,

@@ -9,7 +9,8 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     exit::ExitCode,
-    export::{Bars, MEMORY_BYTES},
+    export::MEMORY_BYTES,
+    export_bars::Bars,
     failure::Failure,
     messages,
     output::{Output, failed},

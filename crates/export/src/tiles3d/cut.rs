@@ -21,11 +21,12 @@ use corniche_tin::{Surface, decode_normal};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 
 use super::{
-    ground::{GroundMesh, GroundVertex},
+    ground::{GroundMesh, GroundVertex, unit},
     label_index::LabelIndex,
     plan_cut::within,
     ribbon::Ribbon,
 };
+use crate::error::CutError;
 
 /// Crossings that are made before the outlines are given up: real ones need a few.
 const CROSSINGS_PER_SEGMENT: usize = 100;
@@ -40,11 +41,6 @@ pub(crate) struct Ground<'a> {
     /// The tile's rectangle.
     pub(crate) tile: LatticeBounds,
 }
-
-/// The outlines of a tile's roads make no triangulation with its ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the outlines of its roads cannot be triangulated")]
-pub struct CutError;
 
 /// A vertex of the triangulation, from the middle of the tile.
 #[derive(Debug, Clone, Copy)]
@@ -368,11 +364,6 @@ impl Above<'_> {
         };
         side(|p| p.u, at[0], self.middle.u).or_else(|| side(|p| p.v, at[1], self.middle.v))
     }
-}
-
-pub(crate) fn unit(vector: [f32; 3]) -> [f32; 3] {
-    let length = vector.iter().map(|axis| axis * axis).sum::<f32>().sqrt();
-    vector.map(|axis| axis / length)
 }
 
 #[cfg(test)]

@@ -316,7 +316,3 @@ impl File {
         document
     }
 }
-
-#[cfg(test)]
-#[path = "glb_tests.rs"]
-mod tests;

@@ -4,8 +4,6 @@ use std::collections::HashMap;
 
 use corniche_geom::LatticePoint;
 
-use super::cut::unit;
-
 /// A vertex of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GroundVertex {
@@ -113,6 +111,12 @@ impl GroundVertex {
             normal: unit(normal),
         }
     }
+}
+
+/// A vector of length one.
+pub(crate) fn unit(vector: [f32; 3]) -> [f32; 3] {
+    let length = vector.iter().map(|axis| axis * axis).sum::<f32>().sqrt();
+    vector.map(|axis| axis / length)
 }
 
 /// A triangle whose edges (from corner k to the next) are divided where there is a middle.

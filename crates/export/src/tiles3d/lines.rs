@@ -6,7 +6,8 @@ use std::{
 };
 
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_roads::{Form, FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_styles::RoadStyle;
 use corniche_tileset::{FilePackage, Manifest};
 
 use super::{request::Tiles3dRequest, ribbon::CenterLine};
@@ -175,9 +176,12 @@ impl<'a> TileLines<'a> {
     /// Half the width of a road, lattice steps.
     fn half_width(&self, line: &TileLine) -> f64 {
         let manifest = self.package.manifest();
-        let width_m =
-            f64::from(self.request.style.width_m(line.class, line.attributes.own_width()));
-        width_m / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
+        let RoadAttributes { form, highway, .. } = &*line.attributes;
+        // As the viewer draws them.
+        let is_narrow = *form == Form::Link || highway == "service";
+        let share = if is_narrow { RoadStyle::NARROW_WIDTH_SHARE } else { 1.0 };
+        let width_m = self.request.style.width_m(line.class, line.attributes.own_width());
+        f64::from(width_m * share) / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
     }
 }
 

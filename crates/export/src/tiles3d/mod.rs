@@ -25,6 +25,5 @@ mod run;
 mod skirt;
 mod tree;
 
-pub use cut::CutError;
 pub use request::{TileRoads, Tiles3dRequest};
 pub use run::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};

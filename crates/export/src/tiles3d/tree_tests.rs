@@ -1,1 +1,92 @@
+use std::{collections::BTreeSet, fs, path::Path};
 
+use corniche_geom::TileId;
+use corniche_testing::package::manifest;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{Tree, content_name};
+use crate::tiles3d::{content::TileFacts, globe::RootFrame, placed::TileBox};
+
+/// All tiles of so many levels, but for a quarter of the first.
+fn tiles(levels: u8) -> Vec<(TileId, TileBox, TileFacts)> {
+    let mut ids = vec![TileId::ROOT];
+    let mut all = Vec::new();
+    for _ in 0..levels {
+        let children = ids.iter().flat_map(|id| id.children());
+        let next: Vec<TileId> = children
+            .filter(|id| id.z() == 0 || id.ancestor(1) != TileId::new(1, 1, 1).unwrap())
+            .collect();
+        all.append(&mut ids);
+        ids = next;
+    }
+    let made = |id: TileId| {
+        let mut tile_box = TileBox::along([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        let side = 1024.0 / f64::from(1_u32 << id.z());
+        tile_box.include([f64::from(id.x()) * side, f64::from(id.y()) * side, 0.0]);
+        tile_box.include([f64::from(id.x() + 1) * side, f64::from(id.y() + 1) * side, 1.0]);
+        // Errors that are no smaller further down in places.
+        let error_m = f64::from(id.x() % 7) + 1.0;
+        (id, tile_box, TileFacts { bound_m: error_m, error_m, ..TileFacts::default() })
+    };
+    all.into_iter().map(made).collect()
+}
+
+/// Reads a tile and all below, following documents; adds the names of contents.
+fn walk(folder: &Path, from: &Path, tile: &Value, least: f64, found: &mut Vec<String>) {
+    let uri = tile["content"]["uri"].as_str().unwrap();
+    let path = from.join(uri);
+    let error_m = tile["geometricError"].as_f64().unwrap();
+    assert!(error_m <= least);
+    assert_eq!(tile["boundingVolume"]["box"].as_array().unwrap().len(), 12);
+    if Path::new(uri).extension().is_some_and(|ending| ending == "json") {
+        assert!(
+            tile.get("children").is_none(),
+            "a tile in another document has its children there"
+        );
+        let document: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+        assert_eq!(document["asset"]["version"], "1.1");
+        assert!(document["root"].get("transform").is_none(), "the first document has it");
+        return walk(folder, path.parent().unwrap(), &document["root"], error_m, found);
+    }
+    let mut place = Vec::new();
+    for part in path.strip_prefix(folder).unwrap().components() {
+        match part {
+            std::path::Component::ParentDir => drop(place.pop()),
+            other => place.push(other.as_os_str().to_str().unwrap()),
+        }
+    }
+    found.push(place.join("/"));
+    for child in tile["children"].as_array().unwrap_or(&Vec::new()) {
+        walk(folder, from, child, error_m, found);
+    }
+}
+
+/// Whether in one document or in several, each tile is there once, and errors never grow downwards.
+#[test]
+fn every_tile_is_found_once() {
+    let manifest = manifest();
+    let (mut seen, mut documents) = (Vec::new(), Vec::new());
+    for levels in [1, 3, 6] {
+        let tiles = tiles(levels);
+        let expected: BTreeSet<String> = tiles.iter().map(|(id, ..)| content_name(*id)).collect();
+        let folder = TempDir::new().unwrap();
+        for (id, ..) in &tiles {
+            let place = folder.path().join(id.z().to_string()).join(id.x().to_string());
+            fs::create_dir_all(place).unwrap();
+        }
+        let tree = Tree::new(&manifest, tiles);
+        documents.push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0])).unwrap());
+        let first = fs::read(folder.path().join("tileset.json")).unwrap();
+        let first: Value = serde_json::from_slice(&first).unwrap();
+        assert_eq!(first["root"]["transform"].as_array().unwrap().len(), 16);
+        let mut found = Vec::new();
+        walk(folder.path(), folder.path(), &first["root"], f64::INFINITY, &mut found);
+        let names: BTreeSet<String> = found.iter().cloned().collect();
+        assert_eq!(names, expected);
+        assert_eq!(found.len(), names.len());
+        seen.push(found.len());
+    }
+    assert_eq!(seen, [1, 16, 1024]);
+    assert_eq!(documents, [1, 1, 1 + 192]);
+}

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use corniche_styles::{Dash, OwnWidths, RoadBands};
+use corniche_styles::{Dash, OwnWidths, RoadBands, RoadStyle};
 
 use crate::{
     camera::Projection,
@@ -14,9 +14,6 @@ use crate::{
     options::{CapTest, Caps, Quads, RoadMethod},
     tiles::NearHeights,
 };
-
-/// Width of slip roads and service roads as a share of that of their class.
-const LINK_WIDTH_SHARE: f32 = 0.6;
 
 /// Bytes of a tile's block.
 pub(crate) const TILE_BYTES: u64 = 32;
@@ -87,7 +84,12 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     }));
     rows.extend(style.roads.iter().map(|road| {
         let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
-        [limit as f32, LINK_WIDTH_SHARE, road.opacity, road.bands.of_slip_roads() as f32]
+        [
+            limit as f32,
+            RoadStyle::NARROW_WIDTH_SHARE,
+            road.opacity,
+            road.bands.of_slip_roads() as f32,
+        ]
     }));
     rows.extend(style.roads.iter().flat_map(|road| {
         let mut shares = [0.0; RoadBands::MOST];

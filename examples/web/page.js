@@ -1,0 +1,25 @@
+// What both pages have in common.
+
+/** What the address asks for: ?tileset=URL, and for pictures ?view=lon,lat,height,heading,pitch and ?background=COLOUR. */
+export function options() {
+  const asked = new URLSearchParams(location.search);
+  return {
+    tilesetUrl: asked.get("tileset") ?? "tiles/tileset.json",
+    view: asked.get("view")?.split(",").map(Number),
+    background: asked.get("background"),
+  };
+}
+
+/** Whose data it is. Everyone who shows the tiles has to say it. */
+export async function attribution(tilesetUrl) {
+  const { asset } = await (await fetch(tilesetUrl)).json();
+  return asset.copyright ?? "";
+}
+
+/** A road in words. */
+export function described(road) {
+  if (!road) return "No road there.";
+  const name = [road.name, road.ref].filter(Boolean).join(", ") || "without a name";
+  const structure = road.structure ? `, ${road.structure}` : "";
+  return `${name}: ${road.highway}, class ${road.class}${structure} (OpenStreetMap way ${road.way_id})`;
+}

@@ -1,0 +1,224 @@
+// Opens the example pages in Chromium: node browse.mjs FOLDER NAME PACKAGE SITE PICTURES
+//
+// FOLDER has the exports NAME-none and NAME-meshopt and NAME.json, what `corniche info` says.
+import { execFileSync } from "node:child_process";
+import fs from "node:fs";
+import http from "node:http";
+import path from "node:path";
+import { chromium } from "playwright-core";
+import { PNG } from "pngjs";
+import { fail } from "./files.mjs";
+
+const [folder, name, packagePath, site, pictures] = process.argv.slice(2);
+const here = import.meta.dirname;
+/** Others take longer, and show the same. */
+const ALL_VIEWS = process.env.CORNICHE_ALL_VIEWS === "1";
+/** Of which places and heights are known, and that nothing is missing. */
+const isSample = name === "pass";
+const SIZE = { width: 1000, height: 700 };
+/** Behind everything: where it is seen below the horizon, there is a hole. */
+const MAGENTA = [255, 0, 255];
+
+// A plain server of files, as any static host is.
+const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json", ".css": "text/css" };
+const places = [["/node_modules/", path.join(here, "node_modules")], ["/data/", folder], ["/", site]];
+const server = http.createServer((request, answer) => {
+  const asked = decodeURIComponent(new URL(request.url, "http://local").pathname);
+  const [prefix, root] = places.find(([prefix]) => asked.startsWith(prefix));
+  const file = path.join(root, asked.slice(prefix.length));
+  if (!fs.existsSync(file) || !fs.statSync(file).isFile()) return answer.writeHead(404).end();
+  answer.writeHead(200, { "Content-Type": types[path.extname(file)] ?? "application/octet-stream" });
+  fs.createReadStream(file).pipe(answer);
+});
+await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
+const origin = `http://127.0.0.1:${server.address().port}`;
+
+const browser = await chromium.launch({
+  executablePath: "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
+});
+
+/** Opens a page; failed and foreign requests and errors of scripts are faults. */
+async function open(address) {
+  const page = await browser.newPage({ viewport: SIZE });
+  page.on("request", (request) => {
+    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(origin)) fail(`asks ${request.url()}`);
+  });
+  page.on("response", (answer) => { if (answer.status() >= 400) fail(`${answer.status()} for ${answer.url()}`); });
+  page.on("pageerror", (error) => fail(`${address}: ${error}`));
+  await page.goto(`${origin}/${address}`);
+  await page.waitForFunction(() => window.corniche, null, { timeout: 60_000 });
+  return page;
+}
+
+async function picture(page, file) {
+  const bytes = await page.screenshot({ path: path.join(pictures, file) });
+  return PNG.sync.read(bytes);
+}
+
+const isNear = (data, at, color, within = 2) => color.every((channel, k) => Math.abs(data[at + k] - channel) <= within);
+
+/** Pixels of magenta with ground above them: where there is some below the first row of ground of a column. */
+function holes(png) {
+  let count = 0;
+  for (let x = 0; x < png.width; x += 1) {
+    let seen = false;
+    for (let y = 0; y < png.height; y += 1) {
+      const isMagenta = isNear(png.data, 4 * (y * png.width + x), MAGENTA, 20);
+      if (!isMagenta) seen = true;
+      else if (seen && y < png.height - 30) count += 1;
+    }
+  }
+  return count;
+}
+
+const info = JSON.parse(fs.readFileSync(path.join(folder, `${name}.json`))).manifest;
+const [west, south, east, north] = ["min_x", "min_y", "max_x", "max_y"].map((side) => info.wgs84_bounds[side]);
+const high = info.vertical.range_m[1];
+const at = (u, v) => [west + (east - west) * u, south + (north - south) * v];
+const across = (north - south) * 111_000;
+const hideTexts = (page) => page.addStyleTag({ content: "#said, #credit, .cesium-viewer-bottom, .cesium-viewer-toolbar { display: none !important; }" });
+
+// CesiumJS.
+const tileset = `/data/${name}-meshopt/tileset.json`;
+const all = {
+  far: [...at(0.5, -0.35), high + across * 0.5, 0, -30],
+  near: [...at(0.47, 0.66), 1700, 15, -25],
+  steep: [...at(0.5, 0.5), high + 1500, 0, -89],
+};
+const views = ALL_VIEWS ? Object.keys(all) : ["far", "near"];
+for (const view of views) {
+  const numbers = all[view];
+  const page = await open(`cesium.html?tileset=${tileset}&view=${numbers}&background=magenta`);
+  await hideTexts(page);
+  const begin = Date.now();
+  await page.evaluate(() => new Promise((done) => {
+    let idle = 0;
+    const { viewer, tileset } = window.corniche;
+    viewer.scene.postRender.addEventListener(() => {
+      idle = tileset.tilesLoaded ? idle + 1 : 0;
+      if (idle === 6) done();
+    });
+  }));
+  const png = await picture(page, `${name}-cesium-${view}.png`);
+  const statistics = await page.evaluate(() => {
+    const { selected, numberOfTrianglesSelected, numberOfTilesWithContentReady } = window.corniche.tileset.statistics;
+    return { selected, triangles: numberOfTrianglesSelected, ready: numberOfTilesWithContentReady };
+  });
+  const found = holes(png);
+  console.log("CesiumJS", name, view, { ms: Date.now() - begin, holes: found, ...statistics });
+  if (statistics.triangles < 100) fail(`${view}: next to nothing is drawn`);
+  // Other packages may have voids.
+  if (found > 0 && isSample) fail(`${view}: ${found} pixels of holes`);
+  if (view === "near") {
+    const road = await page.evaluate(() => {
+      const { viewer, roadAt } = window.corniche;
+      for (let y = 690; y > 200; y -= 7) {
+        for (let x = 5; x < 1000; x += 7) {
+          const road = roadAt({ x, y });
+          if (road) return { ...road, way_id: String(road.way_id) };
+        }
+      }
+      return null;
+    });
+    console.log("  picked", road);
+    if (isSample && (!road?.way_id || !road.highway)) fail("no road could be picked in CesiumJS");
+  }
+  await page.close();
+}
+
+// Road pixels against `corniche render` from the same eye: where a picture with roads differs from one without.
+const isDifferent = (one, other, at) => [0, 1, 2].some((k) => Math.abs(one.data[at + k] - other.data[at + k]) > 12);
+function mask(one, other) {
+  const found = new Uint8Array(one.width * one.height);
+  for (let k = 0; k < found.length; k += 1) found[k] = isDifferent(one, other, 4 * k) ? 1 : 0;
+  return found;
+}
+const LEAST_IOU = 0.85;
+const looks = isSample ? [[9.47, 46.938, 1000, 2500, 10], [9.47, 46.938, 1000, 2500, 35]] : [[9.5215, 47.139, 460, 1500, 30], [9.5215, 47.139, 460, 2500, 60]];
+for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks : looks.slice(1)).entries()) {
+  const file = (kind) => path.join(pictures, `${name}-same-${number}-${kind}.png`);
+  for (const roads of ["sv", "none"]) {
+    execFileSync(process.env.CORNICHE, ["render", packagePath, "-q", "-O", "-o", file(roads), "--roads", roads,
+      "--look-at", `${lon},${lat}`, "--height", height, "--distance", distance, "--pitch", pitch,
+      "--size", `${SIZE.width}x${SIZE.height}`, "--outline", "none", "--width-growth", "none"]);
+  }
+  // Directions of corniche are those of its grid. The sample's is zone 32 of UTM, whose north is that of 9° E.
+  const heading = isSample ? (lon - 9) * Math.sin((lat * Math.PI) / 180) : 0;
+  const shots = [];
+  for (const kind of ["meshopt", "bare"]) {
+    const page = await open(`cesium.html?tileset=/data/${name}-${kind}/tileset.json&view=${lon},${lat},9000,0,-90`);
+    await hideTexts(page);
+    await page.evaluate(([lon, lat, height, heading, distance, pitch, aspect]) => new Promise((done) => {
+      const { viewer, tileset } = window.corniche;
+      const frustum = viewer.camera.frustum;
+      // corniche's pictures are 45 degrees high; Cesium's angle is that of the longer side.
+      frustum.fov = 2 * Math.atan(Math.tan(Math.PI / 8) * aspect);
+      viewer.camera.lookAt(Cesium.Cartesian3.fromDegrees(lon, lat, height),
+        new Cesium.HeadingPitchRange(Cesium.Math.toRadians(heading), Cesium.Math.toRadians(pitch - 90), distance));
+      let idle = 0;
+      viewer.scene.postRender.addEventListener(() => {
+        idle = tileset.tilesLoaded ? idle + 1 : 0;
+        if (idle === 6) done();
+      });
+    }), [lon, lat, height, heading, distance, pitch, SIZE.width / SIZE.height]);
+    shots.push(await picture(page, `${name}-same-${number}-${kind}.png`));
+    await page.close();
+  }
+  const read = (kind) => PNG.sync.read(fs.readFileSync(file(kind)));
+  const [ours, theirs] = [mask(read("sv"), read("none")), mask(...shots)];
+  let [both, either] = [0, 0];
+  for (let k = 0; k < ours.length; k += 1) {
+    both += ours[k] & theirs[k];
+    either += ours[k] | theirs[k];
+  }
+  const iou = both / either;
+  console.log("CesiumJS against corniche render", name, { distance, pitch, roadPixels: either, iou: Number(iou.toFixed(4)) });
+  // Where working metres are not quite true ones, corniche's own picture is stretched.
+  if (isSample && !(iou > LEAST_IOU)) fail(`roads of Cesium and of corniche differ: ${iou}`);
+}
+
+// three.js, with a plugin that checks that boxes hold what they should.
+{
+  const page = await open(`three.html?tileset=${tileset}&background=magenta`);
+  const warnings = [];
+  page.on("console", (message) => { if (message.type() === "warning") warnings.push(message.text()); });
+  await page.evaluate(async () => {
+    const { TilesetValidationPlugin } = await import("/node_modules/3d-tiles-renderer/src/three/plugins/TilesetValidationPlugin.js");
+    const { tiles } = window.corniche;
+    tiles.registerPlugin(new TilesetValidationPlugin());
+    // Every tile is loaded, down to the finest, and nothing is drawn meanwhile, which takes long without a GPU.
+    tiles.errorTarget = 0.0001;
+    window.corniche.renderer.setAnimationLoop(() => tiles.update());
+    window.loaded = 0;
+    tiles.addEventListener("load-model", () => { window.loaded += 1; });
+  });
+  await hideTexts(page);
+  const idle = () => page.waitForFunction(() => {
+    const { tiles } = window.corniche;
+    const isIdle = tiles.root && tiles.stats.downloading === 0 && tiles.stats.parsing === 0 && tiles.stats.queued === 0;
+    window.idle = isIdle ? (window.idle ?? 0) + 1 : 0;
+    return window.idle > 20;
+  }, null, { timeout: 240_000, polling: 100 });
+  await idle();
+  const { loaded, road } = await page.evaluate(() => {
+    const { renderer, scene, camera, roadAt } = window.corniche;
+    renderer.setAnimationLoop(() => renderer.render(scene, camera));
+    for (let y = -0.9; y < 0.5; y += 0.01) {
+      for (let x = -0.9; x < 0.9; x += 0.02) {
+        const road = roadAt(x, y);
+        if (road) return { loaded: window.loaded, road: { ...road, way_id: String(road.way_id) } };
+      }
+    }
+    return { loaded: window.loaded, road: null };
+  });
+  await picture(page, `${name}-three.png`);
+  const complaints = warnings.filter((text) => /Validation|bounding|outside/i.test(text));
+  console.log("three.js", name, { loaded, complaints: complaints.length, picked: road });
+  if (complaints.length) fail(complaints[0]);
+  if (!road?.way_id) fail("no road could be picked in three.js");
+  await page.close();
+}
+
+await browser.close();
+server.close();
