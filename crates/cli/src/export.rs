@@ -2,18 +2,16 @@
 
 mod tiles3d;
 
-use std::{cell::RefCell, io::stderr, path::Path};
+use std::{io::stderr, path::Path};
 
 use corniche_areas::AreaClass;
 use corniche_export::{
-    AreasRequest, AreasSummary, Coordinates, ExportError, ExportSummary, MeshFormat, MeshRequest,
-    MeshSummary, Observer, RoadsRequest, Stage, UpAxis, VectorFormat, export_areas, export_mesh,
-    export_roads,
+    AreasRequest, AreasSummary, Coordinates, ExportSummary, MeshFormat, MeshRequest, MeshSummary,
+    RoadsRequest, UpAxis, VectorFormat, export_areas, export_mesh, export_roads,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
-use indicatif::ProgressBar;
 
 use crate::{
     args::{
@@ -23,10 +21,9 @@ use crate::{
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
-    interrupt, messages,
+    messages,
     named_output::NamedOutput,
     output::existing_of,
-    progress,
     table::{Digits, bytes, length},
 };
 

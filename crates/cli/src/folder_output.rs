@@ -67,9 +67,8 @@ impl FolderOutput {
         interrupt::remove_at_end(lock.path());
         put_right(&target, &beside("replaced")).map_err(|error| unusable(&error))?;
         match kind_of(&target).map_err(|error| unusable(&error))? {
-            Kind::Free => {}
             Kind::Export if existing == Existing::Keep => return Err(exists(named)),
-            Kind::Export => {}
+            Kind::Free | Kind::Export => {}
             Kind::File => return Err(unusable(&"it is a file; give the name of a folder")),
             Kind::Other => {
                 return Err(unusable(

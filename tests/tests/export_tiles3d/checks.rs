@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use corniche_testing::Random;
+
 use crate::{
     package::{FromEarth, Region},
     tiles::{Part, Tile, Tiles},
@@ -23,23 +25,10 @@ fn ground(tile: &Tile) -> impl Iterator<Item = &Part> {
     tile.parts.iter().filter(|part| part.name != "skirt")
 }
 
-/// A small generator of numbers from 0 to 1: the same every time (Steele, Lea & Flood 2014, *SplitMix*).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// Carries every vertex, and so many random points inside triangles of each tile, back to the package's CRS, and compares their heights.
 pub(crate) fn check_heights(tiles: &Tiles, region: &Region, inside: usize) -> Findings {
     let from_earth = FromEarth::to(region);
-    let mut numbers = Numbers(1);
+    let mut numbers = Random::new(1);
     let mut found = Findings::default();
     for tile in &tiles.tiles {
         let mut points: Vec<[f64; 3]> = Vec::new();
@@ -50,8 +39,8 @@ pub(crate) fn check_heights(tiles: &Tiles, region: &Region, inside: usize) -> Fi
             .flat_map(|part| part.triangles.iter().map(|corners| corners.map(|k| part.at_m[k])))
             .collect();
         for _ in 0..inside {
-            let [a, b, c] = triangles[(numbers.next() * triangles.len() as f64) as usize];
-            let (mut s, mut t) = (numbers.next(), numbers.next());
+            let [a, b, c] = triangles[(numbers.share() * triangles.len() as f64) as usize];
+            let (mut s, mut t) = (numbers.share(), numbers.share());
             if s + t > 1.0 {
                 (s, t) = (1.0 - s, 1.0 - t);
             }

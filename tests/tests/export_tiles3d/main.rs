@@ -137,8 +137,7 @@ fn options_do_what_they_say() {
     let contents = |folder: &PathBuf| -> BTreeMap<String, Vec<u8>> {
         tiles::files_of(folder)
             .into_iter()
-            .filter(|(name, _)| name.ends_with(".glb") || name.ends_with(".json"))
-            .filter(|(name, _)| !name.contains("corniche"))
+            .filter(|(name, _)| tiles::has_ending(name, "glb") || tiles::has_ending(name, "json"))
             .map(|(name, path)| (name, fs::read(path).unwrap()))
             .collect()
     };

@@ -32,7 +32,7 @@ pub(crate) struct Tile {
     pub(crate) parts: Vec<Part>,
     pub(crate) ground: Rc<Ground>,
     pub(crate) error_m: f64,
-    tile_box: Vec<f64>,
+    bounding_box: Vec<f64>,
     above: Option<String>,
 }
 
@@ -61,6 +61,11 @@ pub(crate) fn files_of(folder: &Path) -> BTreeMap<String, PathBuf> {
     found
 }
 
+/// Whether a file's name ends so.
+pub(crate) fn has_ending(name: &str, ending: &str) -> bool {
+    Path::new(name).extension().is_some_and(|own| own == ending)
+}
+
 impl Tiles {
     pub(crate) fn read(folder: &Path, package: &Path) -> Self {
         let document: Value =
@@ -72,7 +77,7 @@ impl Tiles {
         let mut tiles = Self { tiles: Vec::new(), to_earth: to_earth.try_into().unwrap() };
         tiles.add(root, folder, package, None);
         // Every tile that is there is named.
-        let stored = files_of(folder).into_keys().filter(|name| name.ends_with(".glb")).count();
+        let stored = files_of(folder).into_keys().filter(|name| has_ending(name, "glb")).count();
         assert_eq!(stored, tiles.tiles.len());
         tiles
     }
@@ -80,7 +85,7 @@ impl Tiles {
     fn add(&mut self, tile: &Value, folder: &Path, package: &Path, above: Option<&str>) {
         let uri = tile["content"]["uri"].as_str().unwrap();
         let path = folder.join(uri);
-        if uri.ends_with(".json") {
+        if has_ending(uri, "json") {
             let document: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
             for same in ["boundingVolume", "geometricError"] {
                 assert_eq!(document["root"][same], tile[same]);
@@ -122,7 +127,7 @@ impl Tiles {
             ground: Rc::new(Ground::read(package, &name)),
             parts,
             error_m,
-            tile_box: tile["boundingVolume"]["box"]
+            bounding_box: tile["boundingVolume"]["box"]
                 .as_array()
                 .unwrap()
                 .iter()
@@ -270,7 +275,7 @@ impl Tiles {
 
 impl Tile {
     fn holds(&self, at: [f64; 3]) -> bool {
-        let b = &self.tile_box;
+        let b = &self.bounding_box;
         let from = [0, 1, 2].map(|k| at[k] - b[k]);
         (1..4).all(|axis| {
             let half = &b[3 * axis..3 * axis + 3];

@@ -150,7 +150,7 @@ pub(crate) struct ExportTiles3dArgs {
         hide_possible_values = true
     )]
     pub(crate) skirts: Skirts,
-    /// Compression of vertices without loss: meshopt (EXT_meshopt_compression), or none
+    /// Compression of vertices without loss: meshopt, or none
     #[arg(
         long,
         value_enum,

@@ -26,7 +26,7 @@ const LEAST_LIFT_M: f64 = 0.02;
 /// What a level's tiles have in common.
 pub(crate) struct LevelOfTiles {
     /// Edges that go further are divided: lattice steps for a true metre, and true metres.
-    pub(crate) steps_per_m: f64,
+    pub(crate) steps_per_metre: f64,
     pub(crate) longest_edge_m: f64,
     /// Step of positions.
     pub(crate) step_m: f64,
@@ -95,7 +95,7 @@ pub(crate) fn make(
     let mut mesh =
         cut::cut(&ground, &ribbons).map_err(|source| ExportError::Cut { tile: id, source })?;
     let cut_s = begun.elapsed().as_secs_f64();
-    let longest = level.longest_edge_m * level.steps_per_m;
+    let longest = level.longest_edge_m * level.steps_per_metre;
     mesh.split_long_edges(|[east, north]| east.hypot(north) > longest);
     let placed = placing.place(id, &mesh)?;
     let skirt =
@@ -285,7 +285,7 @@ fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> 
     };
     RoadRow {
         way_id,
-        class: class.number() as u8,
+        class: class.number(),
         name: attributes.name.clone(),
         reference: attributes.reference.clone(),
         highway: attributes.highway.clone(),

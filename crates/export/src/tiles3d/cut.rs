@@ -84,7 +84,7 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
     let mut mesh = GroundMesh::new(middle);
     for (vertex, at) in surface.points().iter().enumerate() {
         mesh.vertices.push(GroundVertex {
-            at: mesh.from_middle(*at),
+            at: mesh.seen_from_middle(*at),
             height_m: surface.heights_m()[vertex],
             normal: decode_normal(ground.normals[vertex]),
         });
@@ -172,7 +172,7 @@ fn triangulate(
         return Err(CutError);
     }
     let node = |at: LatticePoint| {
-        let [x, y] = mesh.from_middle(at);
+        let [x, y] = mesh.seen_from_middle(at);
         Node { at: Point2::new(x, y), own: None }
     };
     let put = |cdt: &mut Cdt, at: LatticePoint| {
@@ -284,8 +284,7 @@ impl Above<'_> {
     /// The touched triangle in which a position from the middle lies deepest, and the shares of its corners there.
     fn triangle(&self, at: [f64; 2]) -> Option<(u32, [f64; 3])> {
         let surface = self.ground.surface;
-        let [u, v] =
-            [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64].map(|steps| steps.floor());
+        let [u, v] = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64].map(f64::floor);
         let min = LatticePoint::new(u as i64 - 1, v as i64 - 1);
         let bounds = LatticeBounds { min, max: LatticePoint::new(min.u + 3, min.v + 3) };
         let mut best: Option<(u32, [f64; 3])> = None;

@@ -14,6 +14,9 @@ use crate::gltf::{
     linear, range_of, write_container,
 };
 
+/// A text of a row.
+type TextOf = fn(&RoadRow) -> &str;
+
 /// Views of tables begin at multiples of this.
 const TABLE_ALIGNMENT: usize = 8;
 /// Speed against size in the codec of vertices; version 0 of which is the one that the extension knows.
@@ -37,7 +40,7 @@ pub(crate) fn write(
         primitives.push(primitive);
     }
     let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)) };
-    let document = file.document(tile, primitives, materials, table);
+    let document = file.document(tile, &primitives, &materials, table);
     write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
 }
 
@@ -229,7 +232,7 @@ impl File {
             "way_id": { "values": column(&ids) },
             "class": { "values": column(&classes) },
         });
-        let texts: [(&str, fn(&RoadRow) -> &str); 4] = [
+        let texts: [(&str, TextOf); 4] = [
             ("name", |row| &row.name),
             ("ref", |row| &row.reference),
             ("highway", |row| &row.highway),
@@ -275,8 +278,8 @@ impl File {
     fn document(
         &self,
         tile: &TileContent,
-        primitives: Vec<Value>,
-        materials: Vec<Value>,
+        primitives: &[Value],
+        materials: &[Value],
         table: Option<Value>,
     ) -> Value {
         let mut used = Vec::new();

@@ -56,7 +56,7 @@ impl RootFrame {
     }
 
     /// The matrix from this frame to the earth's, by columns.
-    pub(crate) fn to_earth(&self) -> [f64; 16] {
+    pub(crate) fn to_earth(self) -> [f64; 16] {
         let [e, n, u] = self.axes;
         let o = self.origin_m;
         [e[0], e[1], e[2], 0.0, n[0], n[1], n[2], 0.0, u[0], u[1], u[2], 0.0, o[0], o[1], o[2], 1.0]

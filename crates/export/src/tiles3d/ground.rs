@@ -33,7 +33,7 @@ impl GroundMesh {
     }
 
     /// A lattice point from the middle of the tile.
-    pub(crate) fn from_middle(&self, point: LatticePoint) -> [f64; 2] {
+    pub(crate) fn seen_from_middle(&self, point: LatticePoint) -> [f64; 2] {
         [(point.u - self.middle.u) as f64, (point.v - self.middle.v) as f64]
     }
 
@@ -103,7 +103,7 @@ impl GroundMesh {
 impl GroundVertex {
     /// Halfway between two others: the same whichever comes first.
     fn between(one: &Self, other: &Self) -> Self {
-        let middle = |one: f64, other: f64| (one + other) / 2.0;
+        let middle = f64::midpoint;
         let normal = [0, 1, 2].map(|axis| one.normal[axis] + other.normal[axis]);
         Self {
             at: [middle(one.at[0], other.at[0]), middle(one.at[1], other.at[1])],

@@ -159,7 +159,7 @@ impl Sides {
         let mitre = [0, 1].map(|axis| (before[axis] + after[axis]) / (1.0 + product));
         // How far before the point the inner sides cross: the tangent of half the turn.
         let back = half_width * turn.abs() / (1.0 + product);
-        let inner = if turn > 0.0 { 0 } else { 1 };
+        let inner = usize::from(turn <= 0.0);
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
             if side == inner && back > reach {
                 continue;

@@ -209,7 +209,7 @@ fn level_of(manifest: &Manifest, level: u8, reach_m: f64) -> LevelOfTiles {
     let sag_m = largest_sag_m * 4.0 / 3.0 + step_m * 3.0_f64.sqrt() / 2.0;
     let above = &manifest.levels[usize::from(level.saturating_sub(1))];
     LevelOfTiles {
-        steps_per_m: scale / frame.lattice_step_m(),
+        steps_per_metre: scale / frame.lattice_step_m(),
         longest_edge_m,
         step_m,
         sag_m,

@@ -75,7 +75,7 @@ impl<'a> Tree<'a> {
             for id in self.branches.keys().filter(|id| self.begins_document(**id)) {
                 // Documents lie beside tiles, two folders deep.
                 let tile = self.tile(*id, *id, "../../");
-                let document = self.document(tile, self.branches[id].error_m);
+                let document = self.document(&tile, self.branches[id].error_m);
                 write_json(&folder.join(document_name(*id)), &document)?;
                 count += 1;
             }
@@ -89,7 +89,7 @@ impl<'a> Tree<'a> {
         let diagonal_m = roots.iter().map(|id| self.branches[id].tile_box.diagonal_m());
         // Before anything is drawn, all of it is missing.
         let error_m = diagonal_m.fold(0.0, f64::max);
-        let mut document = self.document(whole, error_m);
+        let mut document = self.document(&whole, error_m);
         document["asset"]["extras"] = json!({ "ion": { "georeferenced": true }, "corniche": {
             "crs": self.manifest.crs,
             "vertical_datum": self.manifest.vertical.datum,
@@ -122,17 +122,14 @@ impl<'a> Tree<'a> {
     fn tile(&self, id: TileId, from: TileId, up: &str) -> Value {
         let Branch { tile_box, error_m, facts } = self.branches[&id];
         let is_elsewhere = self.begins_document(id) && id != from;
-        let uri = if is_elsewhere || (self.begins_document(id) && up.is_empty()) {
-            format!("{up}{}", document_name(id))
-        } else {
-            format!("{up}{}", content_name(id))
-        };
+        let is_named = is_elsewhere || (self.begins_document(id) && up.is_empty());
+        let name = if is_named { document_name(id) } else { content_name(id) };
         let mut tile = json!({
             "boundingVolume": { "box": tile_box.numbers() },
             "geometricError": error_m,
-            "content": { "uri": uri },
+            "content": { "uri": format!("{up}{name}") },
         });
-        if uri.ends_with(".json") {
+        if is_named {
             return tile;
         }
         if id == from {
@@ -152,7 +149,7 @@ impl<'a> Tree<'a> {
         tile
     }
 
-    fn document(&self, root: Value, error_m: f64) -> Value {
+    fn document(&self, root: &Value, error_m: f64) -> Value {
         json!({
             "asset": {
                 "version": "1.1",
