@@ -5,12 +5,13 @@ import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
+import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { PNG } from "pngjs";
 import { fail } from "./files.mjs";
 
 const [folder, name, packagePath, site, pictures] = process.argv.slice(2);
-const here = import.meta.dirname;
+const here = path.dirname(fileURLToPath(import.meta.url));
 /** Others take longer, and show the same. */
 const ALL_VIEWS = process.env.CORNICHE_ALL_VIEWS === "1";
 /** Of which places and heights are known, and that nothing is missing. */

@@ -56,8 +56,8 @@ pub enum ExportError {
     GlbAxis,
     #[error("cannot write {path:?} (disk full?)")]
     WriteModel { path: PathBuf, source: io::Error },
-    #[error("cannot write into {folder:?} (disk full?)")]
-    WriteTiles { folder: PathBuf, source: io::Error },
+    #[error("the tiles cannot be written (disk full?)")]
+    WriteTiles(#[source] io::Error),
     #[error(
         "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
     )]
@@ -119,7 +119,7 @@ impl ExportError {
             Self::NoDriver { .. }
                 | Self::Write { .. }
                 | Self::WriteModel { .. }
-                | Self::WriteTiles { .. }
+                | Self::WriteTiles(_)
                 | Self::Cut { .. }
                 | Self::NotWhole { .. }
                 | Self::ReadAgain { .. }

@@ -89,7 +89,7 @@ pub fn export_tiles3d(
     let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
-    let failed = |source| ExportError::WriteTiles { folder: folder.to_path_buf(), source };
+    let failed = ExportError::WriteTiles;
     make_folders(folder, &ids).map_err(failed)?;
     let root =
         RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
