@@ -300,10 +300,8 @@ impl Job<'_> {
         let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
         let path = self.folder.join(content_name(id));
-        let bytes =
-            write_content(&path, &made.content, self.request.compress).map_err(|source| {
-                ExportError::WriteTiles { folder: self.folder.to_path_buf(), source }
-            })?;
+        let bytes = write_content(&path, &made.content, self.request.compress)
+            .map_err(ExportError::WriteTiles)?;
         Ok(Some((made.tile_box, made.facts, bytes)))
     }
 }
