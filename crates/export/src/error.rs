@@ -62,6 +62,10 @@ pub enum ExportError {
         "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
     )]
     Cut { tile: TileId, source: CutError },
+    #[error(
+        "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
+    )]
+    Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(
@@ -121,6 +125,7 @@ impl ExportError {
                 | Self::WriteModel { .. }
                 | Self::WriteTiles(_)
                 | Self::Cut { .. }
+                | Self::Picture { .. }
                 | Self::NotWhole { .. }
                 | Self::ReadAgain { .. }
                 | Self::Sort { .. }

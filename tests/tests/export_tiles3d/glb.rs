@@ -13,6 +13,8 @@ pub(crate) struct Primitive {
     /// Rows of the table of roads; empty for the ground.
     pub(crate) features: Vec<u32>,
     pub(crate) normals: Vec<[f32; 3]>,
+    /// Where on the picture; empty without one.
+    pub(crate) picture_places: Vec<[f32; 2]>,
 }
 
 pub(crate) struct Glb {
@@ -61,7 +63,11 @@ impl Glb {
                     glb.floats(accessor, 1).into_iter().map(|row| row as u32).collect()
                 });
                 let normals = attributes.get("NORMAL").map_or(Vec::new(), |at| glb.vectors(at));
+                let picture_places = attributes
+                    .get("TEXCOORD_0")
+                    .map_or(Vec::new(), |at| glb.floats(at, 2).as_chunks().0.to_vec());
                 Primitive {
+                    picture_places,
                     name: primitive["extras"]["part"].as_str().unwrap().to_owned(),
                     at_m,
                     indices: glb.indices(&primitive["indices"]),
@@ -106,6 +112,13 @@ impl Glb {
             }
             other => panic!("indices of type {other}"),
         }
+    }
+
+    /// The picture of the ground, a JPEG.
+    pub(crate) fn picture(&self) -> Option<&[u8]> {
+        let image = &self.document.get("images")?[0];
+        assert_eq!(image["mimeType"], "image/jpeg");
+        Some(self.view(&image["bufferView"]))
     }
 
     /// A column of the table of roads: texts.

@@ -5,6 +5,7 @@
 mod checks;
 mod glb;
 mod package;
+mod photos;
 mod tiles;
 
 use std::{collections::BTreeMap, fs, path::PathBuf};

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_styles::Rgb;
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 use corniche_tin::{Placement, Surface};
 
@@ -15,6 +16,7 @@ use super::{
     request::{TileRoads, Tiles3dRequest},
     ribbon::Ribbon,
     skirt::Skirt,
+    texture::Texture,
 };
 use crate::{error::ExportError, gltf::linear, read};
 
@@ -109,7 +111,8 @@ pub(crate) fn make(
         road_triangles: placed.labels.iter().filter(|label| **label != 0).count() as u64,
         cut_s,
     };
-    let mut builder = Builder::new(manifest, request, &placed);
+    let texture = Texture::of_tile(package, id, request, mean_color(manifest, request, &placed))?;
+    let mut builder = Builder::new(manifest, request, &placed, texture);
     builder.ground(&roads);
     builder.skirt(&skirt);
     if request.roads == TileRoads::Line {
@@ -134,6 +137,7 @@ struct Builder<'a> {
     manifest: &'a Manifest,
     request: &'a Tiles3dRequest,
     placed: &'a PlacedTile,
+    texture: Option<Texture>,
     parts: Vec<(PartKind, Part)>,
     rows: BTreeMap<i64, RoadRow>,
     /// Ways of features, until rows have their numbers.
@@ -142,11 +146,17 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(manifest: &'a Manifest, request: &'a Tiles3dRequest, placed: &'a PlacedTile) -> Self {
+    fn new(
+        manifest: &'a Manifest,
+        request: &'a Tiles3dRequest,
+        placed: &'a PlacedTile,
+        texture: Option<Texture>,
+    ) -> Self {
         Self {
             manifest,
             request,
             placed,
+            texture,
             parts: Vec::new(),
             rows: BTreeMap::new(),
             ways: Vec::new(),
@@ -154,13 +164,15 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The colour of the ground at a height.
-    fn color(&self, vertex: &PlacedVertex) -> [u8; 4] {
-        let Manifest { vertical, wgs84_bounds, .. } = self.manifest;
-        let latitude = wgs84_bounds.center()[1];
-        let color = self.request.style.tint.color_at(vertex.height_m, vertical.range_m, latitude);
+    /// Adds how the ground looks at a vertex.
+    fn add_look(&self, vertex: &PlacedVertex, part: &mut Part) {
+        if let Some(texture) = &self.texture {
+            part.picture_places.push(texture.place(vertex.across));
+            return;
+        }
+        let color = color(self.manifest, self.request, vertex.height_m);
         let [red, green, blue] = color.map(|channel| (linear(channel) * 255.0).round() as u8);
-        [red, green, blue, u8::MAX]
+        part.colors.push([red, green, blue, u8::MAX]);
     }
 
     fn ground(&mut self, roads: &[Road]) {
@@ -189,7 +201,7 @@ impl<'a> Builder<'a> {
                         part.normals.push(y_up(vertex.normal));
                         match road {
                             Some(road) => ways.push(road.way_id),
-                            None => part.colors.push(self.color(vertex)),
+                            None => self.add_look(vertex, &mut part),
                         }
                         part.positions.len() as u32 - 1
                     });
@@ -216,7 +228,7 @@ impl<'a> Builder<'a> {
             let vertex = &self.placed.vertices[*top as usize];
             part.positions.push(y_up(*at));
             part.normals.push(y_up(vertex.normal));
-            part.colors.push(self.color(vertex));
+            self.add_look(vertex, &mut part);
         }
         part.indices.extend(skirt.triangles.as_flattened());
         self.parts.push((PartKind::Skirt, part));
@@ -260,7 +272,7 @@ impl<'a> Builder<'a> {
     }
 
     fn finish(self, id: TileId) -> TileContent {
-        let Self { mut parts, rows, ways, request, placed, manifest, .. } = self;
+        let Self { mut parts, rows, ways, request, placed, manifest, texture, .. } = self;
         let number: BTreeMap<i64, u32> = rows.keys().copied().zip(0..).collect();
         for ((_, part), ways) in parts.iter_mut().zip(ways) {
             part.features = ways.iter().map(|way| number[way]).collect();
@@ -271,10 +283,23 @@ impl<'a> Builder<'a> {
             parts,
             roads: rows.into_values().collect(),
             colors: request.style.roads.map(|road| road.bands.main_color()),
+            picture: texture.map(|texture| texture.jpeg),
             copyright: manifest.attribution.join("; "),
             generator: manifest.generator.clone(),
         }
     }
+}
+
+/// The colour of the ground at a height.
+fn color(manifest: &Manifest, request: &Tiles3dRequest, height_m: f64) -> Rgb {
+    let latitude = manifest.wgs84_bounds.center()[1];
+    request.style.tint.color_at(height_m, manifest.vertical.range_m, latitude)
+}
+
+/// That of a tile at its mean height.
+fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile) -> Rgb {
+    let sum: f64 = placed.vertices.iter().map(|vertex| vertex.height_m).sum();
+    color(manifest, request, sum / placed.vertices.len().max(1) as f64)
 }
 
 fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {

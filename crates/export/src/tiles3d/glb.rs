@@ -17,6 +17,10 @@ use crate::gltf::{
 /// A text of a row.
 type TextOf = fn(&RoadRow) -> &str;
 
+/// Filters and wrapping of samplers.
+const LINEAR: u32 = 9729;
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+const CLAMP_TO_EDGE: u32 = 33_071;
 /// Views of tables begin at multiples of this.
 const TABLE_ALIGNMENT: usize = 8;
 /// Speed against size in the codec of vertices; version 0 of which is the one that the extension knows.
@@ -36,11 +40,24 @@ pub(crate) fn write(
     for (kind, part) in &tile.parts {
         let mut primitive = file.primitive(*kind, part)?;
         primitive["material"] = json!(materials.len());
-        materials.push(material(*kind, &tile.colors));
+        let mut material = material(*kind, &tile.colors);
+        if !part.picture_places.is_empty() {
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
+        }
+        materials.push(material);
         primitives.push(primitive);
     }
     let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)) };
-    let document = file.document(tile, &primitives, &materials, table);
+    let picture = tile.picture.as_ref().map(|jpeg| file.plain(jpeg, json!({})));
+    let mut document = file.document(tile, &primitives, &materials, table);
+    if let Some(view) = picture {
+        document["images"] = json!([{ "bufferView": view, "mimeType": "image/jpeg" }]);
+        document["samplers"] = json!([{
+            "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR,
+            "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
+        }]);
+        document["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    }
     write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
 }
 
@@ -102,6 +119,13 @@ impl File {
                 "count": count,
             });
             attributes.insert("COLOR_0".to_owned(), self.accessor(accessor));
+        }
+        if !part.picture_places.is_empty() {
+            let view = self.vertices(&part.picture_places)?;
+            let accessor = json!({
+                "bufferView": view, "componentType": F32, "type": "VEC2", "count": count,
+            });
+            attributes.insert("TEXCOORD_0".to_owned(), self.accessor(accessor));
         }
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
         if let PartKind::RoadSurfaces(class) | PartKind::RoadLines(class) = kind {

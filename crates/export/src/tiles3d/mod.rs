@@ -23,6 +23,7 @@ mod request;
 mod ribbon;
 mod run;
 mod skirt;
+mod texture;
 mod tree;
 
 pub use request::{TileRoads, Tiles3dRequest};

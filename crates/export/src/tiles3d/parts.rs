@@ -8,8 +8,10 @@ use corniche_styles::Rgb;
 pub(crate) struct Part {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) normals: Vec<[f32; 3]>,
-    /// Linear red, green and blue, and 255.
+    /// Linear red, green and blue, and 255; empty with a picture.
     pub(crate) colors: Vec<[u8; 4]>,
+    /// Where on the tile's picture; empty without one, and for roads.
+    pub(crate) picture_places: Vec<[f32; 2]>,
     /// Rows of the table of roads.
     pub(crate) features: Vec<u32>,
     /// Three to a triangle, two to a line.
@@ -58,6 +60,8 @@ pub(crate) struct TileContent {
     pub(crate) roads: Vec<RoadRow>,
     /// Colours of roads by class.
     pub(crate) colors: [Rgb; FunctionalRoadClass::COUNT],
+    /// JPEG of the ground.
+    pub(crate) picture: Option<Vec<u8>>,
     pub(crate) copyright: String,
     pub(crate) generator: String,
 }

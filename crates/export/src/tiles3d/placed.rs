@@ -31,6 +31,8 @@ pub(crate) struct PlacedVertex {
     pub(crate) normal: [f32; 3],
     /// Height in the package's datum, which tells the colour.
     pub(crate) height_m: f64,
+    /// Shares of the way across the tile, from the west and from the north.
+    pub(crate) across: [f32; 2],
     /// The tile's sides on which it lies: west, east, south, north.
     pub(crate) sides: [bool; 4],
 }
@@ -97,7 +99,8 @@ impl Placing<'_> {
             if place == next {
                 let normal = turned(vertex.normal, axes, self.root.up_at(plan[index]));
                 let height_m = vertex.height_m;
-                tile.vertices.push(PlacedVertex { at_m, normal, height_m, sides });
+                let across = across(mesh.on_lattice(vertex), &bounds);
+                tile.vertices.push(PlacedVertex { at_m, normal, height_m, across, sides });
             } else {
                 let own = &mut tile.vertices[place as usize].sides;
                 *own = [0, 1, 2, 3].map(|side| own[side] || sides[side]);
@@ -176,6 +179,11 @@ fn middle_of(at: &[[f64; 3]]) -> [f64; 3] {
 fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
     let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
     [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
+}
+
+fn across([u, v]: [f64; 2], bounds: &LatticeBounds) -> [f32; 2] {
+    let share = |here: f64, from: i64, to: i64| ((here - from as f64) / (to - from) as f64) as f32;
+    [share(u, bounds.min.u, bounds.max.u), 1.0 - share(v, bounds.min.v, bounds.max.v)]
 }
 
 /// A box along some axes.

@@ -90,7 +90,7 @@ impl<'a> Tree<'a> {
         // Before anything is drawn, all of it is missing.
         let error_m = diagonal_m.fold(0.0, f64::max);
         let mut document = self.document(&whole, error_m);
-        document["asset"]["extras"] = json!({ "ion": { "georeferenced": true }, "corniche": {
+        document["asset"]["extras"] = json!({ "corniche": {
             "crs": self.manifest.crs,
             "vertical_datum": self.manifest.vertical.datum,
             "attribution": self.manifest.attribution,
