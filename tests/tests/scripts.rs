@@ -59,6 +59,7 @@ fn too_little_disk_space_is_said_first() {
         ("cargo", "[ \"$1\" = --version ] && echo cargo 99.0.0 || { echo compiled >&2; exit 1; }"),
         ("df", "echo header; echo disk 100 50 1048576 50% /"),
         ("cc", "exit 0"),
+        ("c++", "exit 0"),
         ("pkg-config", "exit 0"),
         ("ldconfig", libraries),
     ]);
