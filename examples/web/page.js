@@ -1,10 +1,15 @@
-// What both pages have in common.
+// What the pages have in common.
 
-/** What the address asks for: ?tileset=URL, and for pictures ?view=lon,lat,height,heading,pitch and ?background=COLOUR. */
+/**
+ * What the address asks for: ?tileset=URL or ?terrain=URL, and for pictures ?view=lon,lat,height,heading,pitch, ?background=COLOUR and
+ * ?sun=azimuth,elevation.
+ */
 export function options() {
   const asked = new URLSearchParams(location.search);
   return {
     tilesetUrl: asked.get("tileset") ?? "tiles/tileset.json",
+    terrainUrl: asked.get("terrain") ?? "terrain",
+    sun: asked.get("sun")?.split(",").map(Number),
     view: asked.get("view")?.split(",").map(Number),
     background: asked.get("background"),
   };

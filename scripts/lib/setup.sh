@@ -27,6 +27,8 @@ missing_for_check() {
     python_with shapely >/dev/null || echo python3-shapely
     # The oracle for areas.
     command -v osmium >/dev/null || echo osmium-tool
+    # A web server for packages by address.
+    command -v busybox >/dev/null || echo busybox
     # Tests send signals with the program kill; a small Debian has only the shell's own.
     type -P kill >/dev/null || echo procps
     # To install moto's server, which stands in for object storage.

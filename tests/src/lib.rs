@@ -2,9 +2,11 @@
 
 #[cfg(target_os = "linux")]
 mod display;
+pub mod ground;
 mod job;
 mod object_storage;
 pub mod photo;
+pub mod web_servers;
 
 use std::{
     fs,

@@ -2,6 +2,7 @@
 
 use std::{
     env,
+    ffi::OsStr,
     io::{BufRead as _, BufReader, Read as _, Write as _},
     net::{Shutdown, TcpListener, TcpStream},
     process::{Child, Command, Stdio},
@@ -24,6 +25,44 @@ pub struct ObjectStorage {
     proxy: Proxy,
 }
 
+/// The Python interpreter that has moto's server. `None`, and says why, where there is none; in CI that is a failure.
+pub(crate) fn python_with_moto() -> Option<String> {
+    let python = env::var("CORNICHE_S3_PYTHON").unwrap_or_default();
+    let python = if python.is_empty() { "python3".to_owned() } else { python };
+    let found = Command::new(&python).args(["-c", "import moto.server"]).output();
+    if found.is_ok_and(|found| found.status.success()) {
+        return Some(python);
+    }
+    assert!(env::var_os("CI").is_none(), "CI needs moto[server] for {python}");
+    skipped("moto[server] is not installed (scripts/test installs it)");
+    None
+}
+
+/// Starts moto's server with more options; also tells where it listens.
+pub(crate) fn start_moto(python: &str, options: &[&OsStr]) -> (Child, String) {
+    let server = Command::new(python)
+        .args(["-m", "moto.server", "-H", "127.0.0.1", "-p", "0"])
+        .args(options)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn();
+    let Ok(mut server) = server else { panic!("moto does not start: {server:?}") };
+    let lines = server.stderr.take().map(|said| BufReader::new(said).lines());
+    let Some(mut lines) = lines else { panic!("moto says nothing") };
+    let mut said = Vec::new();
+    let address = loop {
+        let Some(Ok(line)) = lines.next() else { panic!("moto does not start: {said:?}") };
+        let url = line.split_once("Running on ").and_then(|(_, url)| url.split_once("://"));
+        if let Some((_, address)) = url {
+            break address.trim().to_owned();
+        }
+        said.push(line);
+    };
+    // It says a line for each request; nobody may let it wait.
+    thread::spawn(move || lines.for_each(drop));
+    (server, address)
+}
+
 impl Drop for ObjectStorage {
     fn drop(&mut self) {
         let _ = self.server.kill();
@@ -38,32 +77,7 @@ impl ObjectStorage {
     /// When it does not start, or is not installed in CI.
     #[must_use]
     pub fn start() -> Option<Self> {
-        let python = env::var("CORNICHE_S3_PYTHON").unwrap_or_default();
-        let python = if python.is_empty() { "python3".to_owned() } else { python };
-        let found = Command::new(&python).args(["-c", "import moto.server"]).output();
-        if !found.is_ok_and(|found| found.status.success()) {
-            assert!(env::var_os("CI").is_none(), "CI needs moto[server] for {python}");
-            skipped("moto[server] is not installed (scripts/test installs it)");
-            return None;
-        }
-        let server = Command::new(&python)
-            .args(["-m", "moto.server", "-H", "127.0.0.1", "-p", "0"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn();
-        let Ok(mut server) = server else { panic!("moto does not start: {server:?}") };
-        let lines = server.stderr.take().map(|said| BufReader::new(said).lines());
-        let Some(mut lines) = lines else { panic!("moto says nothing") };
-        let mut said = Vec::new();
-        let address = loop {
-            let Some(Ok(line)) = lines.next() else { panic!("moto does not start: {said:?}") };
-            if let Some((_, address)) = line.split_once("Running on http://") {
-                break address.trim().to_owned();
-            }
-            said.push(line);
-        };
-        // It says a line for each request; nobody may let it wait.
-        thread::spawn(move || lines.for_each(drop));
+        let (server, address) = start_moto(&python_with_moto()?, &[]);
         let proxy = Proxy::start(&address);
         let storage = Self { server, address, proxy };
         assert_eq!(storage.ask("PUT", "/maps", b"").0, 200, "no bucket can be made");

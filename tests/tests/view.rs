@@ -2,6 +2,7 @@
 #![cfg(target_os = "linux")]
 
 use std::{
+    ffi::OsStr,
     fs,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
@@ -9,7 +10,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Display, Ran, binary, build_pass, ended, lacks_adapter, without_display};
+use e2e::{
+    Display, Ran, binary, build_pass, ended, lacks_adapter,
+    web_servers::{WebServer, direct},
+    without_display,
+};
 
 /// A line of the trace that `--trace` writes, by the names of its columns.
 #[derive(Debug, Clone)]
@@ -64,16 +69,21 @@ impl Drop for Desk {
 impl Desk {
     /// `None`, with a line that says why, without Xvfb, xdotool or a graphics adapter.
     fn open(options: &[&str]) -> Option<Self> {
-        let display = Display::start()?;
         let folder = tempfile::tempdir().expect("a temporary folder");
         let package = folder.path().join("pass.pmtiles");
         build_pass(&package, &["--quiet"]);
+        Self::open_place(folder, package.as_os_str(), options)
+    }
+
+    /// Opens the package at a path or an address.
+    fn open_place(folder: tempfile::TempDir, package: &OsStr, options: &[&str]) -> Option<Self> {
+        let display = Display::start()?;
         let (trace, pictures) = (folder.path().join("trace.csv"), folder.path().join("pictures"));
 
-        let mut command = Command::new(binary());
+        let mut command = direct();
         command
             .arg("view")
-            .arg(&package)
+            .arg(package)
             .args(["--size", "640x480", "--motion", "prompt"])
             .arg("--folder")
             .arg(&pictures)
@@ -200,6 +210,25 @@ fn what_is_no_package_opens_no_window() {
     let ran = e2e::corniche(["view".as_ref(), file.as_os_str()]);
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("none.pmtiles"), "{}", ran.err);
+}
+
+/// What is shown of a package on a web server is what is shown of the file.
+#[test]
+fn a_package_on_a_web_server_is_shown() {
+    let map_of = |desk: &Desk| {
+        // The keyboard goes to the window.
+        desk.focus();
+        desk.picture("p", 1)
+    };
+    let Some(desk) = Desk::open(&[]) else { return };
+    let here = map_of(&desk);
+    drop(desk);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    build_pass(&folder.path().join("pass.pmtiles"), &["--quiet"]);
+    let Some(server) = WebServer::busybox(folder.path()) else { return };
+    let url = server.url("pass.pmtiles");
+    let Some(desk) = Desk::open_place(folder, url.as_ref(), &[]) else { return };
+    assert!(colors(&here) > 100 && map_of(&desk) == here);
 }
 
 #[test]

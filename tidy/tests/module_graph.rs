@@ -5,8 +5,12 @@ use std::fs;
 use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
-const MAY_USE: [(&str, &[&str]); 20] = [
-    ("cli", &["window", "viewer", "pipeline", "presets", "export", "matching", "overlay"]),
+const MAY_USE: [(&str, &[&str]); 21] = [
+    (
+        "cli",
+        &["window", "viewer", "pipeline", "presets", "export", "matching", "overlay", "remote"],
+    ),
+    ("remote", &["tileset"]),
     ("window", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),

@@ -1,5 +1,6 @@
 //! `corniche export`: what a package holds, for other programs.
 
+mod quantized_mesh;
 mod tiles3d;
 
 use std::{io::stderr, path::Path};
@@ -11,7 +12,7 @@ use corniche_export::{
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::Manifest;
 
 use crate::{
     args::{
@@ -24,6 +25,7 @@ use crate::{
     messages,
     named_output::NamedOutput,
     output::existing_of,
+    packages,
     table::{Digits, bytes, length},
 };
 
@@ -36,6 +38,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         Export::Areas(args) => areas(args),
         Export::Mesh(args) => mesh(args),
         Export::Tiles3d(args) => tiles3d::run(args),
+        Export::QuantizedMesh(args) => quantized_mesh::run(args),
     }
 }
 
@@ -51,7 +54,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
             ));
         }
     };
-    let package = FilePackage::open(&args.target.package)?;
+    let package = packages::open(&args.target.package)?;
     let request = RoadsRequest {
         format,
         level: args.level,
@@ -63,7 +66,8 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     };
     let name = format!("roads.{}", format.ending());
     let existing = existing_of(args.target.overwrite);
-    let output = NamedOutput::create(&args.target.output, existing, name, &[&args.target.package])?;
+    let output =
+        NamedOutput::create(&args.target.output, existing, name, &[args.target.package.name()])?;
     let bars = Bars::default();
     let exported = export_roads(&package, &request, &output.path(), &bars);
     bars.end();
@@ -75,7 +79,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     let format = format(&args.target)?;
-    let package = FilePackage::open(&args.target.package)?;
+    let package = packages::open(&args.target.package)?;
     let request = AreasRequest {
         format,
         level: args.level,
@@ -92,7 +96,8 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     };
     let name = format!("areas.{}", format.ending());
     let existing = existing_of(args.target.overwrite);
-    let output = NamedOutput::create(&args.target.output, existing, name, &[&args.target.package])?;
+    let output =
+        NamedOutput::create(&args.target.output, existing, name, &[args.target.package.name()])?;
     let bars = Bars::default();
     let exported = export_areas(&package, &request, &output.path(), &bars);
     bars.end();
@@ -114,7 +119,7 @@ fn mesh(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
         no_format(&args.output, &endings)
     })?;
-    let package = FilePackage::open(&args.package)?;
+    let package = packages::open(&args.package)?;
     let style = Style::road_atlas();
     let mut colors = [[0.85, 0.86, 0.78]; 1 + FunctionalRoadClass::COUNT];
     for (color, road) in colors[1..].iter_mut().zip(&style.roads) {
@@ -133,7 +138,7 @@ fn mesh(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     };
     let name = format!("model.{}", format.ending());
     let existing = existing_of(args.overwrite);
-    let output = NamedOutput::create(&args.output, existing, name, &[&args.package])?;
+    let output = NamedOutput::create(&args.output, existing, name, &[args.package.name()])?;
     let bars = Bars::default();
     let exported = export_mesh(&package, &request, &output.path(), &bars);
     bars.end();

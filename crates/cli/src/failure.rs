@@ -3,7 +3,7 @@ use std::{fmt, io};
 use corniche_export::ExportError;
 use corniche_matching::MatchError;
 use corniche_pipeline::{BuildError, VerifyError};
-use corniche_tileset::OpenError;
+use corniche_tileset::{OpenError, ReadError, SourceError};
 use corniche_viewer::gpu::GpuError;
 
 use crate::exit::ExitCode;
@@ -41,7 +41,20 @@ impl Failure {
     }
 
     pub(crate) fn code(&self) -> ExitCode {
-        if self.is_closed_pipe() { ExitCode::Done } else { self.code }
+        match self.code {
+            _ if self.is_closed_pipe() => ExitCode::Done,
+            ExitCode::Unusable if self.may_pass() => ExitCode::Failed,
+            code => code,
+        }
+    }
+
+    /// Whether a package could not be read because a server or the network failed: it need not be unusable.
+    fn may_pass(&self) -> bool {
+        self.error.chain().any(|cause| {
+            cause.downcast_ref::<OpenError>().is_some_and(OpenError::may_pass)
+                || cause.downcast_ref::<ReadError>().is_some_and(ReadError::may_pass)
+                || cause.downcast_ref::<SourceError>().is_some_and(|error| error.may_pass)
+        })
     }
 
     /// Whether the reader of our output has closed the pipe (`corniche info … | head`), which is no failure.

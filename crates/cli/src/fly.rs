@@ -26,7 +26,7 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, messages, overlays, presets, progress, styles,
+    interrupt, messages, overlays, packages, presets, progress, styles,
     table::Digits,
 };
 use corniche_styles::Style;
@@ -35,7 +35,7 @@ use corniche_viewer::{
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
     stream::StreamBudget,
-    tiles::{BlockingPackage, MapPackage as _, Overlays, PackageSource},
+    tiles::{BlockingPackage, MapPackage as _, Overlays},
 };
 use corniche_window::{Watched, watch};
 
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let outputs = Outputs::create(args)?;
     let style = args.look.styled(styles::style(&args.look.style)?);
     let methods = args.look.roads(&args.drawing.roads)?;
-    let package = PackageSource::open(&args.package)?;
+    let package = packages::source(&args.package)?;
     let flight = flight(args, &package)?;
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let (flown, methods) = (&flight, &methods);
@@ -149,7 +149,7 @@ impl Plan<'_> {
         let (window, pictures) = mpsc::sync_channel(1);
         let is_gone = AtomicBool::new(false);
         let watcher = Watcher { window, is_gone: &is_gone };
-        let name = self.args.package.file_name().unwrap_or_default().to_string_lossy();
+        let name = self.args.package.file_name();
         thread::scope(|scope| {
             // When the thread ends, the watcher is dropped, the channel closes, and with it the window.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
@@ -204,7 +204,7 @@ impl Plan<'_> {
     ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
         let package =
-            PackageSource::open(&self.args.package)?.for_look(options.roads.method, &options.style);
+            packages::source(&self.args.package)?.for_look(options.roads.method, &options.style);
         let package = package.with_overlays(Arc::clone(&self.overlays));
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));

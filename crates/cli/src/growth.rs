@@ -13,12 +13,13 @@ use std::{
     path::Path,
 };
 
+use corniche_remote::PackagePlace;
 use corniche_tileset::FilePackage;
 
 use self::compare::Compared;
 use crate::{
     args::GrowthArgs, documents::to_line, exit::ExitCode, failure::Failure, messages,
-    output::existing_of, report_files::ReportFiles, table::Digits,
+    output::existing_of, packages, report_files::ReportFiles, table::Digits,
 };
 
 pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
@@ -26,17 +27,16 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
         chart::refuse_too_many(args.packages.len())?;
     }
     let mut packages = Vec::with_capacity(args.packages.len());
-    for path in &args.packages {
-        let package = FilePackage::open(path)?;
+    for place in &args.packages {
+        let package = packages::open(place)?;
         if package.manifest().growth.is_empty() {
-            let path = path.display();
             return Err(Failure::unusable(format!(
-                "{path} has no roads: it was built without --osm"
+                "{place} has no roads: it was built without --osm"
             )));
         }
         packages.push(package);
     }
-    let compared = Compared::all(&packages, &args.packages);
+    let compared = Compared::all(&packages);
     // Files are written first, because the reader of the table may close the pipe before its end.
     write_files(args, &packages, &compared)?;
     let mut out = io::stdout().lock();
@@ -68,7 +68,7 @@ fn write_files(
             "--per-way tells of one package; run it once for each, with a file of its own",
         ));
     }
-    let inputs: Vec<&Path> = args.packages.iter().map(AsRef::as_ref).collect();
+    let inputs: Vec<&Path> = args.packages.iter().map(PackagePlace::name).collect();
     let list = ("--per-way", args.per_way.as_deref());
     // Both places are looked at before any work is done.
     let files =

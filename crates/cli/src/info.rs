@@ -2,21 +2,19 @@
 
 use std::{
     fmt::Write as _,
-    fs,
     io::{self, Write as _},
 };
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
-use corniche_tileset::{
-    AreasRecord, BoundariesRecord, FilePackage, Manifest, SampleErrorRecord, ScaleRecord,
-};
+use corniche_tileset::{AreasRecord, BoundariesRecord, Manifest, SampleErrorRecord, ScaleRecord};
 
 use crate::{
     args::InfoArgs,
     documents::{info::InfoDocument, to_line},
     exit::ExitCode,
     failure::Failure,
+    packages,
     table::{Digits, Table, bytes, length, wrapped},
 };
 
@@ -24,14 +22,14 @@ use crate::{
 const NAMES: usize = 13;
 
 pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
-    let package = FilePackage::open(&args.package)?;
+    let package = packages::open(&args.package)?;
     let mut out = io::stdout().lock();
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
         let document = InfoDocument { manifest: package.manifest().into(), tiles };
         writeln!(out, "{}", to_line(&document))?;
     } else {
-        let size = fs::metadata(&args.package)?.len();
+        let size = package.bytes()?;
         out.write_all(to_text(package.manifest(), size, Digits::on(&io::stdout())).as_bytes())?;
     }
     Ok(ExitCode::Done)

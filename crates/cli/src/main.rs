@@ -29,6 +29,7 @@ mod names;
 mod open_files;
 mod output;
 mod overlays;
+mod packages;
 mod parent;
 mod part;
 mod plan;
@@ -73,6 +74,7 @@ fn main() -> process::ExitCode {
             (failure.code(), (!failure.is_closed_pipe()).then_some(failure))
         }
     };
+    packages::tell_requests();
     messages::ended(code, failure.as_ref());
     code.into()
 }

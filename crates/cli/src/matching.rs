@@ -13,20 +13,19 @@ use std::{
 
 use corniche_matching::{MatchError, MatchObserver, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
-use corniche_tileset::FilePackage;
 use indicatif::ProgressBar;
 
 use crate::{
-    args::MatchArgs, exit::ExitCode, failure::Failure, interrupt, output::existing_of, progress,
-    report_files::ReportFiles, table::Digits,
+    args::MatchArgs, exit::ExitCode, failure::Failure, interrupt, output::existing_of, packages,
+    progress, report_files::ReportFiles, table::Digits,
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
-    let (path, photos) = args.files()?;
-    let package = FilePackage::open(&path)?;
+    let (place, photos) = args.files()?;
+    let package = packages::open(&place)?;
     let manifest = package.manifest();
     let photos = corniche_pipeline::photo_names(&photos)?;
-    let inputs: Vec<&Path> = photos.iter().chain([&path]).map(AsRef::as_ref).collect();
+    let inputs: Vec<&Path> = photos.iter().map(AsRef::as_ref).chain([place.name()]).collect();
     let list = ("--csv", args.csv.as_deref());
     // Both places are looked at before any work is done.
     let files =

@@ -18,6 +18,7 @@ use crate::{
     export_bars::Bars,
     failure::Failure,
     output::existing_of,
+    packages,
     report_files::ReportFiles,
 };
 
@@ -25,12 +26,12 @@ const HEIGHT: RGBColor = RGBColor(90, 60, 30);
 const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
-    let package = FilePackage::open(&args.package)?;
+    let package = packages::open(&args.package)?;
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
     // Both places are looked at before any work is done.
     let inputs: Vec<&Path> =
-        [&args.package].into_iter().chain(&args.line).map(AsRef::as_ref).collect();
+        [args.package.name()].into_iter().chain(args.line.as_deref()).collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
     let lines = args.line.as_deref().map(|path| placed_lines(path, &package)).transpose()?;
     let bars = Bars::default();

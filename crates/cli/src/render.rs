@@ -4,10 +4,7 @@ use std::path::Path;
 
 use corniche_presets::class_labels;
 use corniche_styles::OwnWidths;
-use corniche_viewer::{
-    RenderError, RenderRequest, Wireframe, render,
-    tiles::{MapPackage as _, PackageSource},
-};
+use corniche_viewer::{RenderError, RenderRequest, Wireframe, render, tiles::MapPackage as _};
 
 use crate::{
     args::{OverlayArg, RenderArgs},
@@ -16,12 +13,12 @@ use crate::{
     interrupt, messages,
     names::Format,
     output::{Output, existing_of, png},
-    overlays, styles,
+    overlays, packages, styles,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let overlay_files = args.look.overlay.iter().map(OverlayArg::path);
-    let used: Vec<&Path> = [Some(args.package.as_path()), styles::file_of(&args.look.style)]
+    let used: Vec<&Path> = [Some(args.package.name()), styles::file_of(&args.look.style)]
         .into_iter()
         .flatten()
         .chain(overlay_files)
@@ -29,7 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
     let request = RenderRequest {
-        name: args.package.display().to_string(),
+        name: args.package.to_string(),
         size_px: args.size,
         roads: args.look.road_options(roads),
         camera: args.from_above.request(&args.camera),
@@ -44,8 +41,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     Format::Picture.refuse_others(&args.output)?;
     request.check()?;
-    let package =
-        PackageSource::open(&args.package)?.for_look(request.roads.method, &request.style);
+    let package = packages::source(&args.package)?.for_look(request.roads.method, &request.style);
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let package = package.with_overlays(overlays);
     let legend = args.legend.then(|| class_labels(&package.manifest().settings.frc_table));

@@ -3,7 +3,7 @@
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 
 use corniche_areas::AreaTable;
@@ -19,7 +19,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
-    messages, presets,
+    messages, packages, presets,
     progress::Progress,
     settings::{polygon, threads},
     table::{Digits, Table},
@@ -27,20 +27,20 @@ use crate::{
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let VerifyFiles { package, dem, photo, osm } = args.files()?;
+    let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
-        package,
         dem: corniche_pipeline::elevation_names(&dem)?,
         photo: corniche_pipeline::photo_names(&photo)?,
         osm,
         polygon: args.polygon.clone().map(polygon).transpose()?,
         threads: threads(args.threads),
     };
-    let report = corniche_pipeline::verify(&settings, &Progress::new())?;
+    let report = corniche_pipeline::verify(&package, &settings, &Progress::new())?;
     let text = if args.json {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
-        let missing = Missing::of(&report, Holds::of_file(&settings.package));
+        let missing = Missing::of(&report, Holds::of(package.manifest()));
         let digits = Digits::on(&io::stdout());
         if messages::voice().is_quiet {
             to_short_text(&report, &missing, digits)
@@ -65,14 +65,13 @@ const MEMORY_BYTES: u64 = 256 << 20;
 fn extract(
     args: &VerifyArgs,
     osm: &[PathBuf],
-    package: &Path,
+    package: &FilePackage,
 ) -> Result<Option<VerifyOsm>, Failure> {
     if osm.is_empty() {
         return Ok(None);
     }
     let paths = corniche_pipeline::extract_names(osm)?;
-    let opened = FilePackage::open(package).map_err(VerifyError::from)?;
-    let manifest = opened.manifest();
+    let manifest = package.manifest();
     if !names_extract(manifest) {
         return Err(VerifyError::NoExtract.into());
     }
@@ -83,22 +82,18 @@ fn extract(
         if frc_preset(name).is_none() {
             return Err(Failure::unusable(format!(
                 "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
-                package.display()
+                package.path().display()
             )));
         }
         presets::frc_table(name)?
     };
-    let areas = areas(args, manifest, package)?;
+    let areas = areas(args, package)?;
     Ok(Some(VerifyOsm { paths, table, areas, memory_bytes: MEMORY_BYTES }))
 }
 
 /// The table of areas that the package names: given, or the preset of that name; `None` if the package has no areas.
-fn areas(
-    args: &VerifyArgs,
-    manifest: &Manifest,
-    package: &Path,
-) -> Result<Option<AreaTable>, Failure> {
-    match (&args.areas, &manifest.settings.areas) {
+fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, Failure> {
+    match (&args.areas, &package.manifest().settings.areas) {
         (Some(table), _) => presets::area_table(table).map(Some),
         (None, None) => Ok(None),
         (None, Some(recorded)) => {
@@ -106,7 +101,7 @@ fn areas(
             if area_preset(name).is_none() {
                 return Err(Failure::unusable(format!(
                     "{} was made with the table of areas {name:?}, which is no preset; give its file with --areas",
-                    package.display()
+                    package.path().display()
                 )));
             }
             presets::area_table(name).map(Some)
@@ -127,13 +122,8 @@ struct Holds {
 }
 
 impl Holds {
-    /// Of a package that was opened before; one that cannot be opened any more has nothing.
-    fn of_file(package: &Path) -> Self {
-        let holds = |package: FilePackage| {
-            let manifest = package.manifest();
-            Self { photos: manifest.settings.photo.is_some(), extract: names_extract(manifest) }
-        };
-        FilePackage::open(package).map(holds).unwrap_or_default()
+    fn of(manifest: &Manifest) -> Self {
+        Self { photos: manifest.settings.photo.is_some(), extract: names_extract(manifest) }
     }
 }
 

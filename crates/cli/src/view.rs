@@ -4,11 +4,7 @@ use std::{fs, io, path::Path, sync::Arc};
 
 use corniche_presets::class_labels;
 use corniche_styles::style_preset_names;
-use corniche_viewer::{
-    RoadMethod,
-    stream::StreamBudget,
-    tiles::{MapPackage as _, PackageSource},
-};
+use corniche_viewer::{RoadMethod, stream::StreamBudget, tiles::MapPackage as _};
 use corniche_window::{
     BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
     run as open_window,
@@ -21,7 +17,7 @@ use crate::{
     failure::Failure,
     interrupt, messages,
     output::{Existing, Output},
-    overlays,
+    overlays, packages,
     styles::{StyleFile, file_of, style},
     view_command::command_of,
 };
@@ -36,7 +32,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
-    let own = [Some(args.package.as_path()), file_of(chosen)].into_iter().flatten();
+    let own = [Some(args.package.name()), file_of(chosen)].into_iter().flatten();
     let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(OverlayArg::path)).collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
@@ -45,7 +41,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             args.folder.display()
         )));
     }
-    let package = PackageSource::open(&args.package)?;
+    let package = packages::source(&args.package)?;
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let package = Arc::new(package.with_overlays(overlays));
     let draw = args.draw.as_deref();
@@ -54,13 +50,13 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         named.style = with_overlays(&args.look.overlay, named.style.clone());
     }
     let request = WindowRequest {
-        name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        name: args.package.file_name(),
         size_px: args.size,
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
         software_method: software_method(args),
         class_labels: class_labels(&package.manifest().settings.frc_table),
-        command_of: command_of(&args.package, &args.look.overlay),
+        command_of: command_of(args.package.name(), &args.look.overlay),
         styles,
         photo: args.look.photo,
         areas: args.look.areas.in_window(),

@@ -66,6 +66,8 @@ pub enum ExportError {
         "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
     )]
     Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
+    #[error("terrain tile {tile} cannot be triangulated")]
+    Triangulate { tile: String, source: corniche_tin::TriangulateError },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(
@@ -126,6 +128,7 @@ impl ExportError {
                 | Self::WriteTiles(_)
                 | Self::Cut { .. }
                 | Self::Picture { .. }
+                | Self::Triangulate { .. }
                 | Self::NotWhole { .. }
                 | Self::ReadAgain { .. }
                 | Self::Sort { .. }

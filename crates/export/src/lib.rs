@@ -20,6 +20,9 @@
 //!
 //! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
 //!
+//! [`export_tiles3d`] writes all levels as 3D Tiles, [`export_quantized_mesh`] the ground as terrain tiles of a globe; only there heights are sampled
+//! on another grid.
+//!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
 //!
 //! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
@@ -31,6 +34,7 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
+mod globe;
 mod gltf;
 mod growth;
 mod join;
@@ -41,6 +45,7 @@ mod observer;
 mod piece;
 mod places;
 mod profile;
+mod quantized_mesh;
 mod read;
 mod request;
 mod roads;
@@ -48,6 +53,7 @@ mod scratch;
 mod tiles3d;
 mod vector;
 mod ways;
+mod workers;
 
 pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
@@ -57,6 +63,10 @@ pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, UpAxis, export_mesh};
 pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
+pub use quantized_mesh::{
+    Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,
+    export_quantized_mesh,
+};
 pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};

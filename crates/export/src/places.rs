@@ -98,17 +98,48 @@ impl<'a> Places<'a> {
         plan: &mut [[f64; 2]],
         heights_m: &mut [f64],
     ) -> Result<(), ExportError> {
-        let datum = || self.manifest.vertical.datum.clone();
-        if let Target::Wgs84 { heights: Some(heights), .. } = &self.target {
-            heights.to_wgs84_m(plan, heights_m).map_err(|source| ExportError::Heights {
-                datum: datum(),
-                source: Box::new(source),
-            })?;
-        }
+        self.to_wanted_heights(plan, heights_m)?;
         self.to_wgs84_plan(plan)?;
-        for (&[lon, lat], height_m) in plan.iter().zip(heights_m) {
-            if !height_m.is_finite() {
-                return Err(ExportError::NoHeightHere { datum: datum(), lon, lat });
+        self.all_have_heights(plan, heights_m)
+    }
+
+    /// Replaces heights of the package, at positions in working metres, by those that were asked for; NaN where there is none.
+    pub(crate) fn to_wanted_heights(
+        &self,
+        positions_m: &[[f64; 2]],
+        heights_m: &mut [f64],
+    ) -> Result<(), ExportError> {
+        let Target::Wgs84 { heights: Some(heights), .. } = &self.target else { return Ok(()) };
+        heights.to_wgs84_m(positions_m, heights_m).map_err(|source| {
+            let datum = self.manifest.vertical.datum.clone();
+            ExportError::Heights { datum, source: Box::new(source) }
+        })
+    }
+
+    /// Fails at the first place, longitude and latitude, without a height.
+    pub(crate) fn all_have_heights(
+        &self,
+        places_deg: &[[f64; 2]],
+        heights_m: &[f64],
+    ) -> Result<(), ExportError> {
+        match places_deg.iter().zip(heights_m).find(|(_, height_m)| !height_m.is_finite()) {
+            None => Ok(()),
+            Some((&[lon, lat], _)) => {
+                let datum = self.manifest.vertical.datum.clone();
+                Err(ExportError::NoHeightHere { datum, lon, lat })
+            }
+        }
+    }
+
+    /// Replaces longitudes and latitudes by positions in working metres; NaN where there is none.
+    pub(crate) fn working_from_wgs84(&self, places: &mut [[f64; 2]]) -> Result<(), ExportError> {
+        match &self.target {
+            Target::Wgs84 { projection, .. } => projection.working_from_wgs84(places)?,
+            Target::Package => {
+                for place in places.iter_mut() {
+                    let known = self.manifest.coordinates.working_from_wgs84(*place);
+                    *place = known.unwrap_or([f64::NAN; 2]);
+                }
             }
         }
         Ok(())

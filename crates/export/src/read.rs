@@ -46,7 +46,7 @@ pub(crate) fn tiles(
 }
 
 /// Longitudes and latitudes over a tile.
-fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
+pub(crate) fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
     let tile = manifest.frame.tile_bounds(id);
     let share = |k: usize| k as f64 / (SIDE - 1) as f64;
     (0..SIDE * SIDE)

@@ -29,14 +29,13 @@ fn checked(dem: &Path, options: Options) -> Manifest {
     let package = folder.path().join("wide.pmtiles");
     build(&settings(dem.to_path_buf(), None, package.clone(), options), &Silent).unwrap();
     let asked = VerifySettings {
-        package: package.clone(),
         dem: vec![dem.to_path_buf()],
         photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,
     };
-    let report = verify(&asked, &Silent).unwrap();
+    let report = verify(&FilePackage::open(&package).unwrap(), &asked, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
     FilePackage::open(&package).unwrap().manifest().clone()

@@ -157,7 +157,7 @@ fn compare(whole: &Path, part: &Path) -> usize {
 }
 
 /// Verifies a package against both inputs.
-fn check_verify(files: &Files, package: PathBuf) {
+fn check_verify(files: &Files, package: &Path) {
     let osm = VerifyOsm {
         paths: vec![files.at("roads.osm.pbf")],
         table: table(),
@@ -165,14 +165,13 @@ fn check_verify(files: &Files, package: PathBuf) {
         memory_bytes: 64 << 20,
     };
     let settings = VerifySettings {
-        package,
         dem: vec![files.at("dem.tif")],
         photo: Vec::new(),
         osm: Some(osm),
         threads: 2,
         polygon: None,
     };
-    let report = verify(&settings, &Silent).unwrap();
+    let report = verify(&FilePackage::open(package).unwrap(), &settings, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
 }
@@ -191,7 +190,7 @@ fn finest_tiles_inside_bounds_have_the_sections_of_the_whole_build() {
         build(&part, &told).unwrap();
         let inside = compare(&whole.output, &part.output);
         assert!(inside >= 1, "{name}: {inside} tiles inside");
-        check_verify(&files, part.output.clone());
+        check_verify(&files, &part.output);
         let [whole, part] =
             [whole, part].map(|settings| FilePackage::open(&settings.output).unwrap());
         assert!(part.manifest().frame.max_level() <= whole.manifest().frame.max_level());
@@ -287,14 +286,13 @@ fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
         let path = files.at(&format!("changed-{number}.pmtiles"));
         support::parts::write(&path, &manifest, &tiles).unwrap();
         let request = VerifySettings {
-            package: path,
             dem: vec![files.at("dem.tif")],
             photo: Vec::new(),
             osm: None,
             threads: 2,
             polygon: None,
         };
-        let report = verify(&request, &Silent).unwrap();
+        let report = verify(&FilePackage::open(&path).unwrap(), &request, &Silent).unwrap();
         let is_broken =
             report.checks.iter().any(|check| check.id == CheckId::DemPlan && !check.holds());
         assert_eq!(is_broken, number < 5, "change {number}");
@@ -331,14 +329,8 @@ fn files_outside_the_bounds_are_not_read() {
     );
     let checked = |dem: Vec<PathBuf>| {
         verify(
-            &VerifySettings {
-                package: part.clone(),
-                dem,
-                photo: Vec::new(),
-                osm: None,
-                threads: 2,
-                polygon: None,
-            },
+            &FilePackage::open(&part).unwrap(),
+            &VerifySettings { dem, photo: Vec::new(), osm: None, threads: 2, polygon: None },
             &Silent,
         )
     };

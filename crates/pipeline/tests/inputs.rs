@@ -9,6 +9,7 @@ use std::{fs, path::Path, sync::Mutex};
 use corniche_pipeline::{
     BuildError, Observer, Silent, Stage, VerifyError, VerifySettings, build, verify,
 };
+use corniche_tileset::FilePackage;
 use support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 
 fn hills() -> Raster {
@@ -159,18 +160,18 @@ fn a_raster_exchanged_while_it_is_verified_is_told() {
     let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
     hills().write(&dem);
     build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &Silent).unwrap();
+    let package = FilePackage::open(&output).unwrap();
     let request = VerifySettings {
-        package: output,
         dem: vec![dem.clone()],
         photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,
     };
-    assert!(verify(&request, &Silent).unwrap().holds());
+    assert!(verify(&package, &request, &Silent).unwrap().holds());
     for stage in [Stage::Hash, Stage::Deviations] {
         let change = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
-        let refused = verify(&request, &change).err().unwrap();
+        let refused = verify(&package, &request, &change).err().unwrap();
         assert!(matches!(&refused, VerifyError::Changed { path } if *path == dem), "{refused}");
         hills().write(&dem);
     }

@@ -100,14 +100,13 @@ impl Files {
             memory_bytes: 64 << 20,
         };
         let settings = VerifySettings {
-            package: package.to_path_buf(),
             dem: vec![self.at("dem.tif")],
             photo: Vec::new(),
             osm: Some(osm),
             threads: 2,
             polygon: polygon.cloned(),
         };
-        verify(&settings, &Silent)
+        verify(&FilePackage::open(package)?, &settings, &Silent)
     }
 
     fn check_verify(&self, package: &Path, polygon: &Polygon) {

@@ -37,14 +37,13 @@ fn roads(size: [usize; 2], shares: &[[f64; 4]]) -> Vec<StraightRoad> {
 /// What verify says of a package, with the DEM it is made of.
 fn report(package: &std::path::Path, dem: &std::path::Path) -> VerifyReport {
     let settings = VerifySettings {
-        package: package.to_path_buf(),
         dem: vec![dem.to_path_buf()],
         photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,
     };
-    verify(&settings, &Silent).unwrap()
+    verify(&FilePackage::open(package).unwrap(), &settings, &Silent).unwrap()
 }
 
 fn manifest(package: &std::path::Path) -> Manifest {

@@ -81,14 +81,13 @@ impl Files {
 fn verified(package: &Path, osm: &[PathBuf]) -> Result<VerifyReport, VerifyError> {
     let paths = extract_names(osm).unwrap();
     let settings = VerifySettings {
-        package: package.to_path_buf(),
         dem: Vec::new(),
         photo: Vec::new(),
         osm: Some(VerifyOsm { paths, table: table(), areas: None, memory_bytes: 64 << 20 }),
         threads: 2,
         polygon: None,
     };
-    verify(&settings, &Silent)
+    verify(&FilePackage::open(package)?, &settings, &Silent)
 }
 
 /// All tiles and counts of a package.

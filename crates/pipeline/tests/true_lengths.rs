@@ -5,6 +5,7 @@
 mod support;
 
 use corniche_pipeline::{Silent, VerifySettings, verify};
+use corniche_tileset::FilePackage;
 use geo::{Distance, Geodesic, Point};
 use support::{Built, Options, build_files, extract, write_samples};
 
@@ -61,15 +62,9 @@ fn built(epsg: u32, first: [f64; 2], spacing: f64) -> Built {
     let built = build_files(&dem, Some(&osm), Options::plain(8.0)).unwrap();
     let package = folder.path().join("again.pmtiles");
     std::fs::write(&package, &built.bytes).unwrap();
-    let settings = VerifySettings {
-        package,
-        dem: vec![dem],
-        photo: Vec::new(),
-        osm: None,
-        threads: 2,
-        polygon: None,
-    };
-    let report = verify(&settings, &Silent).unwrap();
+    let settings =
+        VerifySettings { dem: vec![dem], photo: Vec::new(), osm: None, threads: 2, polygon: None };
+    let report = verify(&FilePackage::open(&package).unwrap(), &settings, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "EPSG:{epsg}: {broken:?}");
     built

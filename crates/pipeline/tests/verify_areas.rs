@@ -113,14 +113,13 @@ impl Apart {
             memory_bytes: 64 << 20,
         };
         let settings = VerifySettings {
-            package: self.put_together(),
             dem: Vec::new(),
             photo: Vec::new(),
             osm: Some(osm),
             polygon: None,
             threads: 2,
         };
-        verify(&settings, &Silent)
+        verify(&FilePackage::open(&self.put_together())?, &settings, &Silent)
     }
 
     /// A finest tile beside another one, an area on the border between both, and the numbers of polygon, ring and two points there.

@@ -91,14 +91,13 @@ impl Apart {
 
     fn against(&self, photo: PathBuf) -> Result<VerifyReport, VerifyError> {
         let settings = VerifySettings {
-            package: self.put_together(),
             dem: Vec::new(),
             photo: vec![photo],
             osm: None,
             polygon: None,
             threads: 2,
         };
-        verify(&settings, &Silent)
+        verify(&FilePackage::open(&self.put_together())?, &settings, &Silent)
     }
 
     fn put_together(&self) -> PathBuf {

@@ -7,6 +7,7 @@ use std::fs;
 
 use corniche_geom::TileId;
 use corniche_pipeline::{CheckId, Silent, VerifySettings, build, verify};
+use corniche_tileset::FilePackage;
 use corniche_tin::{NO_TWIN, Tin, TinVertex};
 use support::{
     Options,
@@ -293,15 +294,9 @@ fn a_package_of_every_seventh_sample_keeps_its_promises() {
     let mut settings = settings(dem.clone(), None, output.clone(), Options::plain(MAX_ERROR_M));
     settings.plan.terrain.plan.cell_every = Some(7);
     build(&settings, &Silent).unwrap();
-    let settings = VerifySettings {
-        package: output,
-        dem: vec![dem],
-        photo: Vec::new(),
-        osm: None,
-        threads: 2,
-        polygon: None,
-    };
-    assert_broken(verify(&settings, &Silent).unwrap(), &[]);
+    let settings =
+        VerifySettings { dem: vec![dem], photo: Vec::new(), osm: None, threads: 2, polygon: None };
+    assert_broken(verify(&FilePackage::open(&output).unwrap(), &settings, &Silent).unwrap(), &[]);
 }
 
 #[test]

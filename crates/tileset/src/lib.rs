@@ -40,12 +40,12 @@ pub use manifest::{
     PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord,
     SettingsRecord, VerticalRecord,
 };
+#[cfg(not(target_arch = "wasm32"))]
+pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
     ToolRecord, pmtiles_order, tile_of_order,
 };
-#[cfg(not(target_arch = "wasm32"))]
-pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{

@@ -19,7 +19,7 @@ pub use file_package::FilePackage;
 pub use metadata::FORMAT_VERSION;
 pub use reader::Package;
 #[cfg(not(target_arch = "wasm32"))]
-pub use source::FileSource;
+pub use source::{AnySource, BlockingSource, FileSource};
 pub use source::{ByteSource, MemorySource, SourceError};
 pub use tile_order::{pmtiles_order, tile_of_order};
 pub use tool_record::ToolRecord;

@@ -53,7 +53,7 @@ impl ByteSource for Server<'_> {
         });
         if answer.await == Line::Broken {
             let (name, reason) = ("https://example.org".to_owned(), "no answer".to_owned());
-            return Err(SourceError { name, offset, length, reason });
+            return Err(SourceError { name, offset, length, reason, may_pass: false });
         }
         self.bytes.read(offset, length).await
     }

@@ -3,11 +3,9 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use corniche_testing::Random;
+use e2e::ground::{FromEarth, Region};
 
-use crate::{
-    package::{FromEarth, Region},
-    tiles::{Part, Tile, Tiles},
-};
+use crate::tiles::{Part, Tile, Tiles};
 
 /// How far the ground of tiles is from the package's.
 #[derive(Debug, Default)]

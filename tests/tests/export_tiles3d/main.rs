@@ -4,15 +4,13 @@
 
 mod checks;
 mod glb;
-mod package;
 mod photos;
 mod tiles;
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use checks::{Findings, check_borders, check_heights, check_roads, check_watertight};
-use e2e::{build_pass, corniche, text};
-use package::Region;
+use e2e::{build_pass, corniche, ground::Region, text};
 use tempfile::TempDir;
 use tiles::Tiles;
 

@@ -3,6 +3,7 @@
 use std::fs;
 
 use e2e::{
+    ground::FromEarth,
     manifest,
     photo::{build, colour, inputs, photo},
 };
@@ -12,7 +13,6 @@ use tempfile::TempDir;
 use crate::{
     export,
     glb::Glb,
-    package::FromEarth,
     pass,
     tiles::{Tiles, files_of, has_ending},
 };

@@ -7,13 +7,11 @@ use std::{
     rc::Rc,
 };
 
+use e2e::ground::{FromEarth, Ground, Region, shares};
 use gdal::{Dataset, raster::Buffer};
 use serde_json::Value;
 
-use crate::{
-    glb::Glb,
-    package::{FromEarth, Ground, Region, shares},
-};
+use crate::glb::Glb;
 
 /// A list of triangles with its name.
 #[derive(Clone)]

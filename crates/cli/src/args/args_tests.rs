@@ -1,3 +1,7 @@
+use std::path::PathBuf;
+
+use corniche_remote::PackagePlace;
+
 use super::*;
 
 #[test]
@@ -141,10 +145,13 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
-        Command::Match(args) => args.files().unwrap(),
+        Command::Match(args) => {
+            let (package, photos) = args.files().unwrap();
+            (path_of(package), photos)
+        }
         Command::Verify(args) => {
             let files = args.files().unwrap();
-            (files.package, [files.dem, files.photo, files.osm].concat())
+            (path_of(files.package), [files.dem, files.photo, files.osm].concat())
         }
         _ => panic!("{arguments:?} has no files to tell apart"),
     };
@@ -176,6 +183,13 @@ fn options_with_several_values_leave_positional_arguments_alone() {
                 "{line}"
             );
         }
+    }
+}
+
+fn path_of(place: PackagePlace) -> PathBuf {
+    match place {
+        PackagePlace::File(path) => path,
+        PackagePlace::Address(address) => panic!("{address} is no file"),
     }
 }
 
@@ -220,7 +234,7 @@ fn verify_finds_its_package_wherever_it_is_named() {
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
         let Command::Verify(args) = arguments.command else { panic!("{line}") };
         let files = args.files().map_err(|failure| failure.to_string())?;
-        Ok::<_, String>((files.package, files.dem, files.osm))
+        Ok::<_, String>((path_of(files.package), files.dem, files.osm))
     };
     let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));
     for line in [

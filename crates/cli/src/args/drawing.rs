@@ -2,20 +2,22 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use corniche_presets::parse_bytes;
+use corniche_remote::PackagePlace;
 
 use super::{
     camera::{CameraArgs, FromAboveArgs},
     ground::GroundArgs,
     look::{LookArgs, Roads},
-    values::parse_size,
+    values::{package_place, parse_size},
 };
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The picture to write (.png)
     #[arg(short, long, value_name = "PNG")]
     pub(crate) output: PathBuf,
@@ -72,8 +74,9 @@ impl Lod {
 
 #[derive(Debug, Args)]
 pub(crate) struct FlyArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The list to write (.csv): one line per frame, with the tiles, triangles, bytes and milliseconds it took
     #[arg(short, long, value_name = "CSV")]
     pub(crate) output: PathBuf,

@@ -2,10 +2,15 @@
 
 use std::{num::NonZeroUsize, path::PathBuf};
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use corniche_areas::AreaClass;
-use corniche_export::{DegreeBounds, MeshFormat, TileRoads, UpAxis, VectorFormat};
+use corniche_export::{
+    Availability, DegreeBounds, MeshFormat, TileRoads, Tiling, UpAxis, VectorFormat,
+};
 use corniche_presets::{BoundsChoice, Classes};
+use corniche_remote::PackagePlace;
+
+use super::values::package_place;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -24,13 +29,17 @@ pub(crate) enum Export {
     /// Write a package as 3D Tiles, with its roads cut into the ground, for CesiumJS, three.js, deck.gl and game engines
     #[command(name = "3dtiles")]
     Tiles3d(Box<ExportTiles3dArgs>),
+    /// Write the ground of a package as quantized-mesh terrain (layer.json and .terrain files) for the globe of CesiumJS
+    #[command(name = "quantized-mesh")]
+    QuantizedMesh(Box<ExportQuantizedMeshArgs>),
 }
 
 // What is read, and the file that is written.
 #[derive(Debug, Args)]
 pub(crate) struct ExportTarget {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
@@ -84,8 +93,9 @@ pub(crate) struct ExportAreasArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportMeshArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The file to write; its ending is its format: .glb, .ply or .obj
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
@@ -114,8 +124,9 @@ pub(crate) struct ExportMeshArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportTiles3dArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The folder to write: tileset.json and what it names
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
@@ -165,6 +176,94 @@ pub(crate) struct ExportTiles3dArgs {
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportQuantizedMeshArgs {
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
+    /// The folder to write: layer.json and a folder for each level
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+    /// Replace the folder, once the new one is complete, if it is an earlier export
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// The grid of tiles: geographic (EPSG:4326) or web-mercator (EPSG:3857)
+    #[arg(
+        long,
+        value_enum,
+        default_value = "geographic",
+        value_name = "GRID",
+        hide_possible_values = true
+    )]
+    pub(crate) tiling: TilingArg,
+    /// The finest level [default: the first one whose error, as CesiumJS assumes it, is at most the package's]
+    #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
+    pub(crate) max_level: Option<u8>,
+    /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with very many tiles)
+    #[arg(
+        long,
+        value_enum,
+        default_value = "layer",
+        value_name = "WHERE",
+        hide_possible_values = true
+    )]
+    pub(crate) availability: AvailabilityArg,
+    /// Compression of files: none, or gzip for servers that then send "Content-Encoding: gzip"
+    #[arg(
+        long,
+        value_enum,
+        default_value = "none",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
+    pub(crate) compress: TerrainCompress,
+    /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
+    #[arg(long, value_enum, value_name = "as-is")]
+    pub(crate) heights: Option<Heights>,
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+/// Grids of terrain tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TilingArg {
+    Geographic,
+    WebMercator,
+}
+
+impl From<TilingArg> for Tiling {
+    fn from(tiling: TilingArg) -> Self {
+        match tiling {
+            TilingArg::Geographic => Self::Geographic,
+            TilingArg::WebMercator => Self::WebMercator,
+        }
+    }
+}
+
+/// Where it is told which tiles there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AvailabilityArg {
+    Layer,
+    Tiles,
+}
+
+impl From<AvailabilityArg> for Availability {
+    fn from(availability: AvailabilityArg) -> Self {
+        match availability {
+            AvailabilityArg::Layer => Self::Layer,
+            AvailabilityArg::Tiles => Self::Tiles,
+        }
+    }
+}
+
+/// How terrain tiles are compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TerrainCompress {
+    None,
+    Gzip,
 }
 
 /// What 3D Tiles have of roads.

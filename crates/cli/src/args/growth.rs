@@ -1,13 +1,16 @@
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueHint};
+use corniche_remote::PackagePlace;
+
+use super::values::package_place;
 
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("files").args(["svg", "per_way"]).multiple(true))]
 pub(crate) struct GrowthArgs {
-    /// The package; several are compared
-    #[arg(value_name = "PACKAGE", required = true)]
-    pub(crate) packages: Vec<PathBuf>,
+    /// The package: a file, or an address on a web server (https://…); several are compared
+    #[arg(value_name = "PACKAGE", required = true, value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) packages: Vec<PackagePlace>,
     /// Print JSON, for programs
     #[arg(long, conflicts_with = "csv")]
     pub(crate) json: bool,

@@ -1,8 +1,10 @@
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueHint};
 use corniche_presets::Classes;
+use corniche_remote::PackagePlace;
 
+use super::values::{package_place, place_of};
 use crate::{failure::Failure, names::is_package_name};
 
 #[derive(Debug, Args)]
@@ -12,9 +14,9 @@ use crate::{failure::Failure, names::is_package_name};
     group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
 )]
 pub(crate) struct MatchArgs {
-    /// The package
-    #[arg(required_unless_present = "photo")]
-    package: Option<PathBuf>,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(required_unless_present = "photo", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    package: Option<PackagePlace>,
     /// Photos of the ground that roads are compared with, as for build --photo: any format and CRS that GDAL reads; the first lies on top
     #[arg(long, value_name = "FILE", num_args = 1..)]
     photo: Vec<PathBuf>,
@@ -46,14 +48,14 @@ impl MatchArgs {
     ///
     /// # Errors
     /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
         if let Some(package) = &self.package {
             return Ok((package.clone(), self.photo.clone()));
         }
         let (mut packages, photos): (Vec<PathBuf>, Vec<PathBuf>) =
             self.photo.iter().cloned().partition(|file| is_package_name(file));
         match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) if !photos.is_empty() => Ok((package, photos)),
+            (Some(package), true) if !photos.is_empty() => Ok((place_of(package)?, photos)),
             _ => Err(Failure::unusable(
                 "which file is the package is not clear; write it first: corniche match PACKAGE --photo FILE...",
             )),

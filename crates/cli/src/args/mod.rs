@@ -27,8 +27,9 @@ use clap::{
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs, ExportRoadsArgs,
-    ExportTarget, ExportTiles3dArgs, ModelRoads, Skirts,
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, ModelRoads, Skirts,
+    TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;

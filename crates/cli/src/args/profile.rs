@@ -1,6 +1,9 @@
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueHint};
+use corniche_remote::PackagePlace;
+
+use super::values::package_place;
 
 #[derive(Debug, Args)]
 #[command(
@@ -8,8 +11,9 @@ use clap::{ArgGroup, Args};
     group = ArgGroup::new("what").args(["way", "line"]).required(true),
 )]
 pub(crate) struct ProfileArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
     #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) way: Vec<i64>,

@@ -2,11 +2,15 @@
 
 use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
+use corniche_remote::PackagePlace;
 
-use super::{ReportArgs, values::parse_position};
+use super::{
+    ReportArgs,
+    values::{package_place, parse_position, place_of},
+};
 use crate::{failure::Failure, names::is_package_name};
 
 /// What `verify --help` ends with: the checks, by their ids.
@@ -24,8 +28,9 @@ fn checks() -> String {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
@@ -34,9 +39,9 @@ pub(crate) struct InfoArgs {
 #[derive(Debug, Args)]
 #[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
-    /// The package
-    #[arg(required_unless_present_any = ["dem", "photo", "osm"])]
-    package: Option<PathBuf>,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    package: Option<PackagePlace>,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     dem: Vec<PathBuf>,
@@ -83,7 +88,9 @@ impl VerifyArgs {
             [split(&self.dem), split(&self.photo), split(&self.osm)];
         packages.extend(of_photo.into_iter().chain(of_osm));
         match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) => Ok(VerifyFiles { package, dem, photo, osm }),
+            (Some(package), true) => {
+                Ok(VerifyFiles { package: place_of(package)?, dem, photo, osm })
+            }
             (Some(_), false) => Err(Failure::unusable(
                 "several files end in .pmtiles; write the package first: corniche verify PACKAGE --dem FILE...",
             )),
@@ -97,7 +104,7 @@ impl VerifyArgs {
 /// The files of a verification.
 #[derive(Debug)]
 pub(crate) struct VerifyFiles {
-    pub(crate) package: PathBuf,
+    pub(crate) package: PackagePlace,
     pub(crate) dem: Vec<PathBuf>,
     pub(crate) photo: Vec<PathBuf>,
     pub(crate) osm: Vec<PathBuf>,
@@ -115,8 +122,9 @@ pub(crate) enum Coordinates {
 
 #[derive(Debug, Args)]
 pub(crate) struct TileArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y", required_unless_present = "at")]
     pub(crate) id: Option<TileId>,

@@ -1,5 +1,25 @@
 //! Texts of single values.
 
+use std::path::PathBuf;
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
+use corniche_remote::PackagePlace;
+
+use crate::failure::Failure;
+
+/// The package that a command reads: a file, or an address on a web server.
+pub(crate) fn package_place() -> impl TypedValueParser<Value = PackagePlace> {
+    OsStringValueParser::new().try_map(PackagePlace::parse)
+}
+
+/// The package that one of several files is.
+///
+/// # Errors
+/// When it is an address that cannot be read.
+pub(crate) fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
+    PackagePlace::parse(file.into()).map_err(Failure::unusable)
+}
+
 /// More than most graphics cards can draw; each says itself what it can.
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text

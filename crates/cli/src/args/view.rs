@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use corniche_presets::parse_bytes;
+use corniche_remote::PackagePlace;
 
 use super::{
     camera::CameraArgs,
     ground::GroundArgs,
     look::{LookArgs, Roads},
-    values::parse_size,
+    values::{package_place, parse_size},
 };
 
 /// How movements of the camera end.
@@ -23,8 +24,9 @@ pub(crate) enum Motion {
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// The package
-    pub(crate) package: PathBuf,
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
     /// How roads are drawn at first [default: sv, and geo without a graphics card, where sv takes long]
     #[arg(long, value_enum)]
     pub(crate) roads: Option<Roads>,

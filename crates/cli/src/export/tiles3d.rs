@@ -5,7 +5,7 @@ use std::io::stderr;
 use corniche_export::{
     Coordinates, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
 };
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::Manifest;
 
 use crate::{
     args::{Compress, ExportTiles3dArgs, Skirts},
@@ -15,13 +15,13 @@ use crate::{
     folder_output::FolderOutput,
     messages,
     output::existing_of,
-    settings, styles,
+    packages, settings, styles,
     table::{Digits, bytes},
 };
 
 pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.style)?;
-    let package = FilePackage::open(&args.package)?;
+    let package = packages::open(&args.package)?;
     let request = Tiles3dRequest {
         finest_level: args.finest_level,
         roads: TileRoads::from(args.roads),
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         threads: settings::threads(args.threads),
     };
     let existing = existing_of(args.overwrite);
-    let output = FolderOutput::create(&args.output, existing, &[&args.package])?;
+    let output = FolderOutput::create(&args.output, existing, &[args.package.name()])?;
     let bars = Bars::default();
     let exported = export_tiles3d(&package, &request, output.path(), &bars);
     bars.end();

@@ -1,6 +1,6 @@
 //! Several packages beside each other.
 
-use std::{fmt::Write as _, path::Path};
+use std::fmt::Write as _;
 
 use corniche_tileset::{FilePackage, InputRecord, Manifest, PolygonRecord, SettingsRecord};
 
@@ -21,20 +21,20 @@ use crate::{
 pub(crate) struct Compared<'a> {
     /// A letter for tables and charts.
     pub(crate) label: String,
-    /// Its path, as it was given.
+    /// Its path as it was given, or its address.
     pub(crate) name: String,
     pub(crate) manifest: &'a Manifest,
 }
 
 impl<'a> Compared<'a> {
     /// The packages in their order: A, B, C and so on.
-    pub(crate) fn all(packages: &'a [FilePackage], paths: &[impl AsRef<Path>]) -> Vec<Self> {
-        let compared = |(index, (package, path)): (usize, (&'a FilePackage, _))| Self {
+    pub(crate) fn all(packages: &'a [FilePackage]) -> Vec<Self> {
+        let compared = |(index, package): (usize, &'a FilePackage)| Self {
             label: letters(index),
-            name: AsRef::<Path>::as_ref(path).display().to_string(),
+            name: package.path().display().to_string(),
             manifest: package.manifest(),
         };
-        packages.iter().zip(paths).enumerate().map(compared).collect()
+        packages.iter().enumerate().map(compared).collect()
     }
 }
 

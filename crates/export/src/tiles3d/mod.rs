@@ -12,7 +12,6 @@
 mod content;
 mod cut;
 mod glb;
-mod globe;
 mod ground;
 mod label_index;
 mod lines;

@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_tileset::Manifest;
 
-use super::{
+use super::ground::GroundMesh;
+use crate::{
+    error::ExportError,
     globe::{RootFrame, cross, dot, unit},
-    ground::GroundMesh,
+    places::Places,
 };
-use crate::{error::ExportError, places::Places};
 
 /// The finest grid of positions: 2⁻¹⁰ m.
 const FINEST_STEP_LOG2: i32 = -10;

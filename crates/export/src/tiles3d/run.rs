@@ -3,10 +3,6 @@ use std::{
     fs,
     io::{self, BufWriter, Write as _},
     path::Path,
-    sync::{
-        atomic::{AtomicBool, AtomicUsize, Ordering},
-        mpsc,
-    },
 };
 
 use corniche_geom::TileId;
@@ -15,7 +11,6 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     content::{self, LevelOfTiles, TileFacts},
     glb,
-    globe::{RootFrame, dot, geocentric_m},
     lines::TileLines,
     placed::{Placing, TileBox, step_m},
     request::Tiles3dRequest,
@@ -23,8 +18,10 @@ use super::{
 };
 use crate::{
     error::ExportError,
-    observer::{Observer, Stage, stop_if_asked},
+    globe::{RootFrame, dot, geocentric_m},
+    observer::Observer,
     places::Places,
+    workers::{Progress, on_all},
 };
 
 /// A chord is so far from the earth's surface at least: its square by eight radii, of which the largest is taken.
@@ -102,11 +99,8 @@ pub fn export_tiles3d(
             .map(|level| level_of(manifest, level, reach_m(manifest, &root, level, &ids)))
             .collect(),
         root,
-        ids: &ids,
-        next: AtomicUsize::new(0),
-        is_stopped: AtomicBool::new(false),
     };
-    let made = job.run(observer)?;
+    let made = job.run(&ids, observer)?;
     let mut levels: Vec<Tiles3dLevel> = (0..=finest)
         .map(|level| Tiles3dLevel {
             level,
@@ -221,7 +215,7 @@ fn level_of(manifest: &Manifest, level: u8, reach_m: f64) -> LevelOfTiles {
 /// A tile that was written: its box, what is known of it, and its bytes.
 type Written = (TileBox, TileFacts, u64);
 
-/// All tiles, made by several threads.
+/// What all tiles are made with.
 struct Job<'a> {
     package: &'a FilePackage,
     request: &'a Tiles3dRequest,
@@ -229,64 +223,24 @@ struct Job<'a> {
     lines: TileLines<'a>,
     levels: Vec<LevelOfTiles>,
     root: RootFrame,
-    ids: &'a [TileId],
-    next: AtomicUsize,
-    is_stopped: AtomicBool,
 }
 
 impl Job<'_> {
-    fn run(&self, observer: &dyn Observer) -> Result<BTreeMap<TileId, Written>, ExportError> {
-        let mut made = BTreeMap::new();
-        let threads = self.request.threads.clamp(1, self.ids.len().max(1));
-        std::thread::scope(|scope| {
-            let (send, receive) = mpsc::sync_channel(threads);
-            for _ in 0..threads {
-                let send = send.clone();
-                scope.spawn(move || self.work(&send));
-            }
-            drop(send);
-            let mut first_failure = None;
-            for (done, (id, result)) in receive.iter().enumerate() {
-                match result {
-                    Ok(Some(written)) => {
-                        made.insert(id, written);
-                    }
-                    Ok(None) => {}
-                    Err(failure) => {
-                        first_failure.get_or_insert(failure);
-                    }
-                }
-                observer.done(Stage::Tiles, done as u64 + 1, self.ids.len() as u64);
-                if let Err(stopped) = stop_if_asked(observer) {
-                    first_failure.get_or_insert(stopped);
-                }
-                if first_failure.is_some() {
-                    self.is_stopped.store(true, Ordering::Relaxed);
-                }
-            }
-            first_failure.map_or(Ok(()), Err)
-        })?;
-        Ok(made)
-    }
-
-    /// Takes the next tile until there is none.
-    fn work(&self, send: &mpsc::SyncSender<(TileId, Result<Option<Written>, ExportError>)>) {
-        // PROJ's objects belong to one thread each.
-        let places = match Places::new(self.package.manifest(), self.request.coordinates) {
-            Ok(places) => places,
-            Err(failure) => {
-                self.is_stopped.store(true, Ordering::Relaxed);
-                // Nobody listens only where all is over.
-                let _ = send.send((TileId::ROOT, Err(failure)));
-                return;
-            }
-        };
-        while !self.is_stopped.load(Ordering::Relaxed) {
-            let Some(&id) = self.ids.get(self.next.fetch_add(1, Ordering::Relaxed)) else { return };
-            if send.send((id, self.tile(id, &places))).is_err() {
-                return;
-            }
-        }
+    fn run(
+        &self,
+        ids: &[TileId],
+        observer: &dyn Observer,
+    ) -> Result<BTreeMap<TileId, Written>, ExportError> {
+        let progress = Progress { observer, done: 0, total: ids.len() as u64 };
+        let made = on_all(
+            ids,
+            self.request.threads,
+            progress,
+            || Places::new(self.package.manifest(), self.request.coordinates),
+            |places, id| self.tile(*id, places),
+        )?;
+        let written = ids.iter().zip(made);
+        Ok(written.filter_map(|(id, written)| Some((*id, written?))).collect())
     }
 
     fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, ExportError> {

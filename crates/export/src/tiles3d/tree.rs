@@ -13,7 +13,8 @@ use corniche_geom::TileId;
 use corniche_tileset::Manifest;
 use serde_json::{Value, json};
 
-use super::{content::TileFacts, globe::RootFrame, placed::TileBox};
+use super::{content::TileFacts, placed::TileBox};
+use crate::globe::RootFrame;
 
 /// The tileset that is opened first.
 pub(crate) const ROOT_NAME: &str = "tileset.json";

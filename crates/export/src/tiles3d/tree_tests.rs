@@ -6,7 +6,10 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{Tree, content_name};
-use crate::tiles3d::{content::TileFacts, globe::RootFrame, placed::TileBox};
+use crate::{
+    globe::RootFrame,
+    tiles3d::{content::TileFacts, placed::TileBox},
+};
 
 /// All tiles of so many levels, but for a quarter of the first.
 fn tiles(levels: u8) -> Vec<(TileId, TileBox, TileFacts)> {

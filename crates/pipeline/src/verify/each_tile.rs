@@ -11,6 +11,12 @@ use super::{
 };
 use crate::{Observer, workers};
 
+/// Fails if some bytes of a package could not be read. That says nothing about the package; but checks take a tile that cannot be read for
+/// one that is not there, or is damaged.
+pub(crate) fn check_readable(package: &FilePackage) -> Result<(), VerifyError> {
+    package.failed_read().map_or(Ok(()), |error| Err(VerifyError::Read(error.clone())))
+}
+
 /// Looks at each tile of a package, on so many threads, and takes what is found in the order of tiles.
 pub(crate) fn each_tile<T: Send>(
     package: &FilePackage,
@@ -25,7 +31,11 @@ pub(crate) fn each_tile<T: Send>(
         threads,
         ids.len(),
         || Ok::<_, VerifyError>(()),
-        |(), index| look(ids[index]),
+        |(), index| {
+            let found = look(ids[index])?;
+            check_readable(package)?;
+            Ok(found)
+        },
         |index, found| {
             take(ids[index], found);
             Ok(())

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_tileset::OpenError;
+use corniche_tileset::{OpenError, SourceError};
 
 use crate::{
     BuildError,
@@ -17,6 +17,8 @@ use crate::{
 pub enum VerifyError {
     #[error(transparent)]
     Open(#[from] OpenError),
+    #[error("the package could not be read to its end")]
+    Read(#[source] SourceError),
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(

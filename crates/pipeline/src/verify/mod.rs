@@ -58,35 +58,46 @@ pub use self::{
 /// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of the build. A broken promise is a
 /// finding, not an error.
 pub fn verify(
+    package: &FilePackage,
     settings: &VerifySettings,
     observer: &dyn Observer,
 ) -> Result<VerifyReport, VerifyError> {
-    let package = FilePackage::open(&settings.package)?;
+    let report = look_at_all(package, settings, observer);
+    // Not all checks look after each tile.
+    each_tile::check_readable(package)?;
+    report
+}
+
+fn look_at_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
     // Before the long work.
     if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
         polygon::check(package.manifest(), settings.polygon.as_ref())?;
     }
     let mut given = vec![Needs::Package];
-    let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
-    photos::verify(&package, settings.threads, &mut findings, observer)?;
-    areas::verify(&package, settings.threads, &mut findings, observer)?;
-    boundaries::verify(&package, settings.threads, &mut findings, observer)?;
+    let (mut report, mut findings) = tiles::verify(package, settings.threads, observer)?;
+    photos::verify(package, settings.threads, &mut findings, observer)?;
+    areas::verify(package, settings.threads, &mut findings, observer)?;
+    boundaries::verify(package, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
-    header::verify(&package, &mut findings)?;
+    header::verify(package, &mut findings)?;
     grid::verify(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
     if !settings.dem.is_empty() {
         given.push(Needs::Dem);
-        dem::verify(&package, settings, &mut report, observer)?;
+        dem::verify(package, settings, &mut report, observer)?;
     }
     if !settings.photo.is_empty() {
         given.push(Needs::Photo);
-        photo_files::verify(&package, settings, &mut findings, observer)?;
+        photo_files::verify(package, settings, &mut findings, observer)?;
     }
     if let Some(osm) = &settings.osm {
         given.push(Needs::Osm);
-        osm::verify(&package, osm, settings, &mut findings, observer)?;
+        osm::verify(package, osm, settings, &mut findings, observer)?;
     }
     findings.merge(std::mem::take(&mut report.checks));
     report.checks = findings.into_checks(&given);

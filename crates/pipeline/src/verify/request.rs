@@ -1,4 +1,4 @@
-//! What to verify, and with which inputs.
+//! With which inputs a package is verified, and how.
 
 use std::path::PathBuf;
 
@@ -6,11 +6,9 @@ use corniche_areas::AreaTable;
 use corniche_dem::Polygon;
 use corniche_roads::FrcTable;
 
-/// What to verify.
+/// With which inputs a package is verified.
 #[derive(Debug, Clone)]
 pub struct VerifySettings {
-    /// The package.
-    pub package: PathBuf,
     /// The elevation files it was made from, to check errors against; empty leaves that out.
     pub dem: Vec<PathBuf>,
     /// The photos it was made from, to check the photos of tiles against; empty leaves that out.

@@ -8,6 +8,7 @@ use corniche_tileset::FilePackage;
 use super::{
     attributes::Ways,
     checks::{CheckId, Findings},
+    each_tile::check_readable,
     error::VerifyError,
     manifest_sums::LENGTH_SHARE,
     one_tile::{Ancestors, Found, look_at},
@@ -40,7 +41,11 @@ pub(crate) fn verify(
         threads,
         ids.len(),
         || Ok::<_, VerifyError>(Ancestors::new()),
-        |above, index| Ok(look_at(package, ids[index], levels.as_ref(), above)),
+        |above, index| {
+            let found = look_at(package, ids[index], levels.as_ref(), above);
+            check_readable(package)?;
+            Ok(found)
+        },
         |index, found: Found| {
             let id = ids[index];
             findings.look(CheckId::Whole, found.damage.is_none(), || {

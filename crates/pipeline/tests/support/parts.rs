@@ -121,14 +121,8 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
         }),
     };
     verify(
-        &VerifySettings {
-            package: path.to_path_buf(),
-            dem,
-            photo: Vec::new(),
-            osm,
-            threads: 2,
-            polygon: None,
-        },
+        &FilePackage::open(path)?,
+        &VerifySettings { dem, photo: Vec::new(), osm, threads: 2, polygon: None },
         &Silent,
     )
 }

@@ -67,6 +67,18 @@ pub enum OpenError {
     },
 }
 
+impl OpenError {
+    /// Whether nothing is known to be wrong with the package: the network or a server failed, and the same may succeed later.
+    #[must_use]
+    pub fn may_pass(&self) -> bool {
+        match self {
+            Self::File { source, .. } => source.may_pass(),
+            Self::Source(error) => error.may_pass,
+            _ => false,
+        }
+    }
+}
+
 /// Why a tile could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -90,4 +102,16 @@ pub enum ReadError {
     /// Its bytes are damaged.
     #[error(transparent)]
     Decode(#[from] DecodeError),
+}
+
+impl ReadError {
+    /// See [`OpenError::may_pass`].
+    #[must_use]
+    pub fn may_pass(&self) -> bool {
+        match self {
+            Self::Source { source, .. } => source.may_pass,
+            Self::Directory { source, .. } => source.may_pass(),
+            Self::Decode(_) => false,
+        }
+    }
 }

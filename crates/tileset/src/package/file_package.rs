@@ -1,17 +1,20 @@
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use corniche_geom::TileId;
 
 use crate::package::error::{OpenError, ReadError};
 use crate::package::reader::Package;
-use crate::package::source::FileSource;
+use crate::package::source::{AnySource, BlockingSource, ByteSource as _, FileSource, SourceError};
 use crate::package::tool_record::ToolRecord;
 use crate::{Manifest, Sections, TilePayload};
 
-/// A package on disk, for callers that wait: the same as [`Package`] without `async`.
+/// A package on disk, or elsewhere where threads can wait for its bytes: the same as [`Package`] without `async`.
 #[derive(Debug)]
 pub struct FilePackage {
-    package: Package<FileSource>,
+    package: Package<AnySource>,
     path: PathBuf,
 }
 
@@ -21,22 +24,45 @@ impl FilePackage {
     /// # Errors
     /// As [`Package::open`], with the name of the file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let named = |source| OpenError::File { path: path.to_path_buf(), source: Box::new(source) };
-        let source = FileSource::open(path).map_err(|error| named(error.into()))?;
-        let package = pollster::block_on(Package::open(source)).map_err(named)?;
-        Ok(Self { package, path: path.to_path_buf() })
+        let source = FileSource::open(path).map_err(|error| named(path, error.into()))?;
+        Self::of_source(path, Arc::new(source))
+    }
+
+    /// Opens what `source` gives. `name` stands for the path of a file: an address, say.
+    ///
+    /// # Errors
+    /// As [`Package::open`], with this name.
+    pub fn of_source(name: &Path, source: Arc<dyn BlockingSource>) -> Result<Self, OpenError> {
+        let opened = pollster::block_on(Package::open(AnySource::new(source)));
+        let package = opened.map_err(|error| named(name, error))?;
+        Ok(Self { package, path: name.to_path_buf() })
     }
 
     /// The package itself, whose methods are `async`.
     #[must_use]
-    pub fn into_package(self) -> Package<FileSource> {
+    pub fn into_package(self) -> Package<AnySource> {
         self.package
     }
 
-    /// The file.
+    /// The file, or the address in its place.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// How many bytes the package has.
+    ///
+    /// # Errors
+    /// When that cannot be found out.
+    pub fn bytes(&self) -> Result<u64, OpenError> {
+        let length = pollster::block_on(self.package.source().length());
+        length.map_err(|error| named(&self.path, error.into()))
+    }
+
+    /// The first read of its bytes that failed, if one has. Those who take a tile that cannot be read for a damaged one ask for it.
+    #[must_use]
+    pub fn failed_read(&self) -> Option<&SourceError> {
+        self.package.source().failure()
     }
 
     /// The table of contents.
@@ -50,8 +76,7 @@ impl FilePackage {
     /// # Errors
     /// As [`Package::tool_record`], with the name of the file.
     pub fn tool_record(&self) -> Result<ToolRecord, OpenError> {
-        pollster::block_on(self.package.tool_record())
-            .map_err(|source| OpenError::File { path: self.path.clone(), source: Box::new(source) })
+        pollster::block_on(self.package.tool_record()).map_err(|error| named(&self.path, error))
     }
 
     /// See [`Package::tile_ids`].
@@ -59,8 +84,7 @@ impl FilePackage {
     /// # Errors
     /// As [`Package::tile_ids`], with the name of the file.
     pub fn tile_ids(&self) -> Result<Vec<TileId>, OpenError> {
-        pollster::block_on(self.package.tile_ids())
-            .map_err(|source| OpenError::File { path: self.path.clone(), source: Box::new(source) })
+        pollster::block_on(self.package.tile_ids()).map_err(|error| named(&self.path, error))
     }
 
     /// See [`Package::tile`].
@@ -78,4 +102,8 @@ impl FilePackage {
     pub fn payload(&self, id: TileId, wanted: Sections) -> Result<Option<TilePayload>, ReadError> {
         pollster::block_on(self.package.payload(id, wanted))
     }
+}
+
+fn named(path: &Path, error: OpenError) -> OpenError {
+    OpenError::File { path: path.to_path_buf(), source: Box::new(error) }
 }

@@ -66,6 +66,12 @@ impl<S: ByteSource> Package<S> {
         Ok(Self { source, header, manifest, root, leaves: Mutex::default() })
     }
 
+    /// Where its bytes come from.
+    #[must_use]
+    pub fn source(&self) -> &S {
+        &self.source
+    }
+
     /// The table of contents.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {

@@ -12,12 +12,14 @@ pub struct SourceError {
     pub length: usize,
     /// What went wrong.
     pub reason: String,
+    /// Whether what was asked for is fine and only the network, a server or a disk failed, so that the same read may succeed later.
+    pub may_pass: bool,
 }
 
 impl SourceError {
     /// Nothing was asked for yet where the source could not even be opened.
     fn text(&self) -> String {
-        let Self { name, offset, length, reason } = self;
+        let Self { name, offset, length, reason, may_pass: _ } = self;
         match length {
             0 => format!("cannot open {name}: {reason}"),
             _ => format!("cannot read {length} bytes at {offset} of {name}: {reason}"),
@@ -70,6 +72,7 @@ impl ByteSource for MemorySource {
                 offset,
                 length,
                 reason: format!("there are only {} bytes", self.bytes.len()),
+                may_pass: false,
             }
         })
     }
@@ -77,6 +80,71 @@ impl ByteSource for MemorySource {
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use file::FileSource;
+#[cfg(not(target_arch = "wasm32"))]
+pub use waiting::{AnySource, BlockingSource};
+
+#[cfg(not(target_arch = "wasm32"))]
+mod waiting {
+    use std::{
+        fmt::Debug,
+        sync::{Arc, OnceLock},
+    };
+
+    use super::{ByteSource, SourceError};
+
+    /// Where the bytes of a package come from, for threads that wait for them: a file, or a server behind a crate of its own.
+    pub trait BlockingSource: Debug + Send + Sync {
+        /// See [`ByteSource::length`].
+        ///
+        /// # Errors
+        /// When it cannot be found out.
+        fn length(&self) -> Result<u64, SourceError>;
+
+        /// See [`ByteSource::read`].
+        ///
+        /// # Errors
+        /// When the bytes cannot be read, or there are fewer.
+        fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError>;
+    }
+
+    /// Any source for threads that wait. Clones read from the same one.
+    #[derive(Debug, Clone)]
+    pub struct AnySource {
+        source: Arc<dyn BlockingSource>,
+        failure: Arc<OnceLock<SourceError>>,
+    }
+
+    impl AnySource {
+        /// Reads from `source`.
+        #[must_use]
+        pub fn new(source: Arc<dyn BlockingSource>) -> Self {
+            Self { source, failure: Arc::default() }
+        }
+
+        /// The first read that failed, if one has: for those who take a tile that cannot be read for a damaged one.
+        #[must_use]
+        pub fn failure(&self) -> Option<&SourceError> {
+            self.failure.get()
+        }
+
+        fn noted<T>(&self, read: Result<T, SourceError>) -> Result<T, SourceError> {
+            read.inspect_err(|error| {
+                // Only the first one is kept.
+                let _ = self.failure.set(error.clone());
+            })
+        }
+    }
+
+    impl ByteSource for AnySource {
+        async fn length(&self) -> Result<u64, SourceError> {
+            self.noted(self.source.length())
+        }
+
+        async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+            self.noted(self.source.read(offset, length))
+        }
+    }
+}
 
 #[cfg(not(target_arch = "wasm32"))]
 mod file {
@@ -86,7 +154,7 @@ mod file {
         path::{Path, PathBuf},
     };
 
-    use super::{ByteSource, SourceError};
+    use super::{BlockingSource, ByteSource, SourceError};
 
     /// A package on disk, read at positions: several threads may read at once.
     #[derive(Debug)]
@@ -116,7 +184,14 @@ mod file {
     }
 
     fn failure(path: &Path, offset: u64, length: usize, error: &io::Error) -> SourceError {
-        SourceError { name: path.display().to_string(), offset, length, reason: error.to_string() }
+        SourceError {
+            name: path.display().to_string(),
+            offset,
+            length,
+            reason: error.to_string(),
+            // What is wrong with a file stays so until someone acts.
+            may_pass: false,
+        }
     }
 
     #[cfg(unix)]
@@ -139,13 +214,23 @@ mod file {
 
     impl ByteSource for FileSource {
         async fn length(&self) -> Result<u64, SourceError> {
+            BlockingSource::length(self)
+        }
+
+        async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+            BlockingSource::read(self, offset, length)
+        }
+    }
+
+    impl BlockingSource for FileSource {
+        fn length(&self) -> Result<u64, SourceError> {
             self.file
                 .metadata()
                 .map(|metadata| metadata.len())
                 .map_err(|error| failure(&self.path, 0, 0, &error))
         }
 
-        async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+        fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
             let mut buffer = vec![0; length];
             read_exact_at(&self.file, &mut buffer, offset)
                 .map_err(|error| failure(&self.path, offset, length, &error))?;

@@ -2,29 +2,34 @@ use std::{path::Path, sync::Arc};
 
 use corniche_geom::{Frame, TileId};
 use corniche_styles::Style;
-use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
+use corniche_tileset::{AnySource, FilePackage, Manifest, OpenError};
 
 use super::{
     LoadTileError, MapPackage, Overlays, PackageTiles, TileCatalog, TileGeometry, TileSource,
 };
 use crate::options::RoadMethod;
 
-/// A package in a file. Threads wait for its tiles.
+/// A package in a file, or elsewhere where threads can wait for its tiles.
 #[derive(Debug)]
-pub struct PackageSource(PackageTiles<FileSource>);
+pub struct PackageSource(PackageTiles<AnySource>);
 
 impl PackageSource {
-    /// Opens a package and lists its tiles.
+    /// Opens a file and lists its tiles.
     ///
     /// # Errors
     /// When it cannot be read or is no package of this version.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let package = FilePackage::open(path)?.into_package();
-        let tiles = pollster::block_on(PackageTiles::new(package));
-        tiles.map(Self).map_err(|source| OpenError::File {
-            path: path.to_path_buf(),
-            source: Box::new(source),
-        })
+        Self::new(FilePackage::open(path)?)
+    }
+
+    /// Lists the tiles of a package that is open.
+    ///
+    /// # Errors
+    /// When its directories cannot be read or are damaged.
+    pub fn new(package: FilePackage) -> Result<Self, OpenError> {
+        let path = package.path().to_path_buf();
+        let tiles = pollster::block_on(PackageTiles::new(package.into_package()));
+        tiles.map(Self).map_err(|source| OpenError::File { path, source: Box::new(source) })
     }
 
     /// See [`PackageTiles::for_method`].

@@ -1,10 +1,13 @@
-//! What the package says, in working metres, through `tile --json`, and where it is on the earth, through PROJ.
+//! What the package says, in working metres, through `tile --json`, and where it is on the earth, through PROJ: an oracle for everything that is exported.
+
+#![allow(clippy::unwrap_used, reason = "what is not there ends the test")]
 
 use std::path::{Path, PathBuf};
 
-use e2e::{json, text};
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use serde_json::Value;
+
+use crate::{json, text};
 
 /// Squares along each side of the index over a tile.
 const SQUARES: usize = 64;
@@ -13,12 +16,15 @@ const SQUARES: usize = 64;
 const BESIDE_M: f64 = 0.005;
 
 /// The ground of a tile in the package's CRS.
-pub(crate) struct Ground {
-    pub(crate) corners: Vec<[f64; 3]>,
-    pub(crate) triangles: Vec<[usize; 3]>,
-    pub(crate) bounds: [f64; 4],
+pub struct Ground {
+    /// Working metres and heights.
+    pub corners: Vec<[f64; 3]>,
+    /// Numbers of corners.
+    pub triangles: Vec<[usize; 3]>,
+    /// West, south, east, north of the tile.
+    pub bounds: [f64; 4],
     /// Centre-lines with their way and class.
-    pub(crate) roads: Vec<(i64, u8, Vec<[f64; 2]>)>,
+    pub roads: Vec<(i64, u8, Vec<[f64; 2]>)>,
     squares: Vec<Vec<u32>>,
 }
 
@@ -27,7 +33,12 @@ fn vector<const N: usize>(value: &Value) -> [f64; N] {
 }
 
 impl Ground {
-    pub(crate) fn read(package: &Path, tile: &str) -> Self {
+    /// Reads a tile, named like `3/4/2`, through `tile --json`.
+    ///
+    /// # Panics
+    /// When it cannot be read.
+    #[must_use]
+    pub fn read(package: &Path, tile: &str) -> Self {
         let document = json(&["tile", text(package), tile, "--json"]);
         let list = |value: &Value| value.as_array().unwrap().clone();
         let corners = list(&document["tin"]["vertices"]).iter().map(vector).collect();
@@ -73,7 +84,8 @@ impl Ground {
 
     /// On tiles of more than 57 km, chords may be further from the earth's surface than on others: a 128th of a side is not divided. The step of
     /// positions counts where it is more than 4 mm.
-    pub(crate) fn chord_m(&self) -> f64 {
+    #[must_use]
+    pub fn chord_m(&self) -> f64 {
         let [west, south, east, north] = self.bounds;
         let part_m = (east - west).max(north - south) / 128.0;
         let sag_m = part_m * part_m / (8.0 * 6_335_400.0) * 4.0 / 3.0;
@@ -91,7 +103,8 @@ impl Ground {
     }
 
     /// Height at a position; `None` off the ground, but for what rounding and chords of a bent line leave.
-    pub(crate) fn height(&self, at: [f64; 2]) -> Option<f64> {
+    #[must_use]
+    pub fn height(&self, at: [f64; 2]) -> Option<f64> {
         let [column, row] = self.square(at);
         let near = &self.squares[row * SQUARES + column];
         let best = near.iter().map(|number| {
@@ -113,7 +126,8 @@ impl Ground {
 }
 
 /// The shares of a triangle's corners in a position.
-pub(crate) fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
+#[must_use]
+pub fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     let twice = |p: [f64; 2], q: [f64; 2]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
     let parts = [twice(b, c), twice(c, a), twice(a, b)];
     let whole: f64 = parts.iter().sum();
@@ -121,7 +135,7 @@ pub(crate) fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
 }
 
 /// From the earth's coordinates to a CRS with heights: two steps of PROJ, through EPSG:4979.
-pub(crate) struct FromEarth {
+pub struct FromEarth {
     to_degrees: CoordTransform,
     to_crs: CoordTransform,
     metres_per_unit: [f64; 2],
@@ -129,17 +143,22 @@ pub(crate) struct FromEarth {
 
 /// What a package is of.
 #[derive(Clone)]
-pub(crate) struct Region {
+pub struct Region {
     /// Its CRS with heights, such as "EPSG:32632+5773".
-    pub(crate) crs: String,
+    pub crs: String,
     /// Working metres to a unit of the CRS, east and north.
-    pub(crate) metres_per_unit: [f64; 2],
-    pub(crate) dem: PathBuf,
+    pub metres_per_unit: [f64; 2],
+    /// The DEM that it was built from.
+    pub dem: PathBuf,
 }
 
 impl FromEarth {
     /// To working metres and heights.
-    pub(crate) fn to(region: &Region) -> Self {
+    ///
+    /// # Panics
+    /// When PROJ does not know the CRS.
+    #[must_use]
+    pub fn to(region: &Region) -> Self {
         let of = |text: &str| {
             let mut crs = SpatialRef::from_definition(text).unwrap();
             crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
@@ -153,7 +172,12 @@ impl FromEarth {
         }
     }
 
-    pub(crate) fn carry(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    /// Carries positions from the earth's centre; heights stay metres.
+    ///
+    /// # Panics
+    /// When PROJ fails.
+    #[must_use]
+    pub fn carry(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut axes: Vec<Vec<f64>> =
             (0..3).map(|axis| at.iter().map(|p| p[axis]).collect()).collect();
         for step in [&self.to_degrees, &self.to_crs] {

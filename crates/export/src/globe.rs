@@ -28,6 +28,12 @@ fn local_axes([lon_deg, lat_deg]: [f64; 2]) -> [[f64; 3]; 3] {
     ]
 }
 
+/// The direction upwards on the ellipsoid.
+pub(crate) fn up_at(place_deg: [f64; 2]) -> [f64; 3] {
+    let [.., up] = local_axes(place_deg);
+    up
+}
+
 /// The frame in which all tiles are: east, north and up at its origin on the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RootFrame {

@@ -1,0 +1,86 @@
+//! `corniche export quantized-mesh`.
+
+use std::io::stderr;
+
+use corniche_export::{
+    Availability, Coordinates, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary,
+    Tiling, export_quantized_mesh,
+};
+use corniche_tileset::Manifest;
+
+use crate::{
+    args::{ExportQuantizedMeshArgs, TerrainCompress},
+    exit::ExitCode,
+    export_bars::{Bars, named},
+    failure::Failure,
+    folder_output::FolderOutput,
+    messages,
+    output::existing_of,
+    packages, settings,
+    table::{Digits, bytes},
+};
+
+pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
+    let package = packages::open(&args.package)?;
+    let request = QuantizedMeshRequest {
+        tiling: Tiling::from(args.tiling),
+        max_level: args.max_level,
+        coordinates: match args.heights {
+            None => Coordinates::Wgs84,
+            Some(_) => Coordinates::Wgs84WithPackageHeights,
+        },
+        availability: Availability::from(args.availability),
+        gzip: args.compress == TerrainCompress::Gzip,
+        threads: settings::threads(args.threads),
+    };
+    let existing = existing_of(args.overwrite);
+    let output = FolderOutput::create(&args.output, existing, &[args.package.name()])?;
+    let bars = Bars::default();
+    let exported = export_quantized_mesh(&package, &request, output.path(), &bars);
+    bars.end();
+    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let size = output.place("quantized-mesh")?;
+    messages::note(&to_text(args, &summary, package.manifest(), size));
+    Ok(ExitCode::Done)
+}
+
+fn to_text(
+    args: &ExportQuantizedMeshArgs,
+    summary: &QuantizedMeshSummary,
+    manifest: &Manifest,
+    size: u64,
+) -> String {
+    let count = |number| Digits::on(&stderr()).count(number);
+    let level = |level: &QuantizedMeshLevel| {
+        let deviation = if level.places == 0 {
+            "not measured: no place with ground is on its raster".to_owned()
+        } else {
+            format!(
+                "{:.3} m from the package at most ({:.3} m rms, {} places)",
+                level.deviation_m,
+                level.deviation_rms_m,
+                count(level.places),
+            )
+        };
+        format!(
+            "  level {}: {} tiles, {} triangles, {}, sampled {} × {}; assumed error {:.3} m, {deviation}\n",
+            level.level,
+            count(level.tiles),
+            count(level.triangles),
+            bytes(level.bytes),
+            level.cells,
+            level.cells,
+            level.assumed_error_m,
+        )
+    };
+    let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
+    format!(
+        "{}: {} tiles, {}\n{}heights: {}\nto be shown with it: {}",
+        args.output.display(),
+        count(tiles),
+        bytes(size),
+        summary.levels.iter().map(level).collect::<String>(),
+        summary.heights,
+        manifest.attribution.join("; "),
+    )
+}

@@ -1,0 +1,130 @@
+//! Heights of a package's finest ground at places on the globe.
+
+use std::{collections::BTreeMap, rc::Rc};
+
+use corniche_geom::{Bounds, LatticePoint, TileId};
+use corniche_tileset::{FilePackage, Manifest, Sections, pmtiles_order};
+use corniche_tin::{Placement, Surface};
+
+use crate::{error::ExportError, places::Places};
+
+/// Surfaces that stay in memory: tiles of the globe lie on few of the package's, and neighbours come one after the other.
+const KEPT: usize = 8;
+
+/// The ground, read tile by tile. It belongs to one thread.
+pub(crate) struct Ground<'a> {
+    package: &'a FilePackage,
+    places: Places<'a>,
+    /// Degrees outside of which there is no ground.
+    around_deg: Bounds,
+    /// The last one was used last.
+    surfaces: Vec<(TileId, Option<Rc<Surface>>)>,
+}
+
+impl<'a> Ground<'a> {
+    pub(crate) fn new(package: &'a FilePackage, places: Places<'a>) -> Self {
+        let data = package.manifest().wgs84_bounds;
+        // Sides of the data may bend a little beyond what was sampled of them.
+        let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
+        let around_deg = Bounds {
+            min_x: data.min_x - margin,
+            min_y: data.min_y - margin,
+            max_x: data.max_x + margin,
+            max_y: data.max_y + margin,
+        };
+        Self { package, places, around_deg, surfaces: Vec::new() }
+    }
+
+    /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
+    /// place.
+    pub(crate) fn heights_m(&mut self, places_deg: &[[f64; 2]]) -> Result<Vec<f64>, ExportError> {
+        let near: Vec<usize> =
+            (0..places_deg.len()).filter(|&k| self.is_near(places_deg[k])).collect();
+        let mut positions: Vec<[f64; 2]> = near.iter().map(|&k| places_deg[k]).collect();
+        self.places.working_from_wgs84(&mut positions)?;
+        let mut own = vec![f64::NAN; positions.len()];
+        for side in [[0, 0], [-1, 0], [0, 1], [-1, 1]] {
+            self.add_heights(&positions, side, &mut own)?;
+        }
+        let on_ground: Vec<usize> = (0..own.len()).filter(|&k| !own[k].is_nan()).collect();
+        let at: Vec<[f64; 2]> = on_ground.iter().map(|&k| positions[k]).collect();
+        let mut wanted: Vec<f64> = on_ground.iter().map(|&k| own[k]).collect();
+        self.places.to_wanted_heights(&at, &mut wanted)?;
+        let of_place = |k: usize| near[on_ground[k]];
+        let at_deg: Vec<[f64; 2]> = (0..at.len()).map(|k| places_deg[of_place(k)]).collect();
+        self.places.all_have_heights(&at_deg, &wanted)?;
+        let mut heights_m = vec![f64::NAN; places_deg.len()];
+        for (k, height_m) in wanted.into_iter().enumerate() {
+            heights_m[of_place(k)] = height_m;
+        }
+        Ok(heights_m)
+    }
+
+    fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {
+        let Bounds { min_x, max_x, .. } = self.around_deg;
+        let turns = ((f64::midpoint(min_x, max_x) - lon) / 360.0).round();
+        self.around_deg.contains([lon + 360.0 * turns, lat])
+    }
+
+    /// Heights, in the package's datum, of positions that have none yet: from the tile that holds the point one step beside. On a border of tiles these
+    /// are all tiles around, of which one may have ground where another has none.
+    fn add_heights(
+        &mut self,
+        positions: &[[f64; 2]],
+        side: [i64; 2],
+        heights_m: &mut [f64],
+    ) -> Result<(), ExportError> {
+        let frame = &self.package.manifest().frame;
+        let finest = frame.max_level();
+        let tile_beside = |point: LatticePoint, [du, dv]: [i64; 2]| {
+            let beside = LatticePoint::new(point.u + du, point.v + dv);
+            let [column, row] = frame.tile_column_row(finest, beside);
+            TileId::new(finest, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()
+        };
+        let mut by_tile: BTreeMap<u64, (TileId, Vec<usize>)> = BTreeMap::new();
+        for (k, position) in positions.iter().enumerate() {
+            let Some(point) = frame.snap(*position).filter(|_| heights_m[k].is_nan()) else {
+                continue;
+            };
+            let tile = tile_beside(point, side);
+            if side != [0, 0] && tile == tile_beside(point, [0, 0]) {
+                continue;
+            }
+            if let Some(id) = tile {
+                by_tile.entry(pmtiles_order(id)).or_insert((id, Vec::new())).1.push(k);
+            }
+        }
+        for (id, members) in by_tile.into_values() {
+            let Some(surface) = self.surface(id)? else { continue };
+            for k in members {
+                let Some(point) = frame.snap(positions[k]) else { continue };
+                if let Some(triangle) = surface.locate(point) {
+                    let at = frame.fraction_of_position(positions[k]);
+                    heights_m[k] = surface.height_in_triangle_m(triangle, at);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn surface(&mut self, id: TileId) -> Result<Option<Rc<Surface>>, ExportError> {
+        if let Some(place) = self.surfaces.iter().position(|(known, _)| *known == id) {
+            let found = self.surfaces.remove(place);
+            self.surfaces.push(found);
+        } else {
+            let Manifest { frame, vertical, .. } = self.package.manifest();
+            let payload = self.package.payload(id, Sections::TERRAIN)?;
+            let surface = payload.and_then(|payload| payload.terrain).map(|terrain| {
+                Rc::new(Surface::new(
+                    &terrain.tin,
+                    Placement::of_tile(frame, id, vertical.quantum_m),
+                ))
+            });
+            if self.surfaces.len() >= KEPT {
+                self.surfaces.remove(0);
+            }
+            self.surfaces.push((id, surface));
+        }
+        Ok(self.surfaces.last().and_then(|(_, surface)| surface.clone()))
+    }
+}

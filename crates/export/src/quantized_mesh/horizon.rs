@@ -1,0 +1,58 @@
+//! What a viewer needs to know before it draws a tile: where it is, and when the earth hides it.
+
+use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
+
+use super::mesh::TileMesh;
+use crate::globe::{cross, dot, unit};
+
+/// Stands for a point that is infinitely far away, in the earth's radii.
+const FAR_AWAY: f64 = 1e9;
+
+/// Middle and radius of a sphere that holds all vertices, and so all triangles, from the earth's centre.
+pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
+    let middle = [0, 1, 2].map(|axis| {
+        let along = mesh.vertices.iter().map(|vertex| vertex.at_m[axis]);
+        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at), high.max(at)]
+        });
+        f64::midpoint(low, high)
+    });
+    let distance_m = |at: [f64; 3]| {
+        let from = [0, 1, 2].map(|axis| at[axis] - middle[axis]);
+        dot(from, from).sqrt()
+    };
+    let radius_m = mesh.vertices.iter().map(|vertex| distance_m(vertex.at_m)).fold(0.0, f64::max);
+    (middle, radius_m)
+}
+
+/// The point that is hidden behind the horizon only when the whole tile is, from the earth's centre in the ellipsoid's radii.
+///
+/// ```text
+///        P        in the direction of the tile's middle, so far out that the tangent through each vertex,
+///       / \       the lower one of two, meets that direction below P
+///     _/_ _\_
+///    /       \
+/// ```
+///
+/// Tiles as wide as half the globe have no such point; for them it is at infinity, which is exact for a smooth hemisphere.
+///
+/// Source: Ring 2013, *Computing the horizon occlusion point* (Cesium's blog), after Cozzi & Ring 2011, *3D Engine Design for Virtual Globes*.
+pub(crate) fn occlusion_point(mesh: &TileMesh, middle_m: [f64; 3]) -> [f64; 3] {
+    let semi_minor_m = SEMI_MAJOR_M * (1.0 - ECCENTRICITY_2).sqrt();
+    let radii_m = [SEMI_MAJOR_M, SEMI_MAJOR_M, semi_minor_m];
+    let scaled = |at_m: [f64; 3]| [0, 1, 2].map(|axis| at_m[axis] / radii_m[axis]);
+    let towards = unit(scaled(middle_m));
+    let far = mesh.vertices.iter().map(|vertex| {
+        let at = scaled(vertex.at_m);
+        // What lies below the ellipsoid counts as lying on it.
+        let out = dot(at, at).sqrt().max(1.0);
+        let direction = unit(at);
+        let across = cross(direction, towards);
+        let [cos_alpha, sin_alpha] = [dot(direction, towards), dot(across, across).sqrt()];
+        let [cos_beta, sin_beta] = [1.0 / out, (out * out - 1.0).sqrt() / out];
+        let reach = cos_alpha * cos_beta - sin_alpha * sin_beta;
+        if reach > 1.0 / FAR_AWAY { 1.0 / reach } else { FAR_AWAY }
+    });
+    let far = far.fold(0.0, f64::max);
+    towards.map(|axis| axis * far)
+}

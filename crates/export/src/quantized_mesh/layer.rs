@@ -1,0 +1,84 @@
+//! layer.json, which tells a viewer what tiles there are.
+
+use corniche_tileset::Manifest;
+use serde_json::{Value, json};
+
+use super::{
+    available::{Block, beneath, to_json},
+    encode::{METADATA_NAME, NORMALS_NAME},
+    request::{Availability, QuantizedMeshRequest},
+    summary::QuantizedMeshSummary,
+    tiling::TerrainTile,
+};
+
+/// The file's name.
+pub(crate) const LAYER: &str = "layer.json";
+
+/// Each so many levels there are tiles that tell which tiles lie beneath them. Ten is what other writers use.
+pub(crate) const METADATA_LEVELS: u8 = 10;
+
+/// What layer.json says. With [`Availability::Layer`] it names all tiles.
+///
+/// `corniche` is a part of our own, which viewers pass over: the format has no place for errors.
+pub(crate) fn layer(
+    manifest: &Manifest,
+    request: &QuantizedMeshRequest,
+    available: &[Vec<Block>],
+    summary: &QuantizedMeshSummary,
+) -> Value {
+    let data = manifest.wgs84_bounds;
+    let levels: Vec<Value> = summary
+        .levels
+        .iter()
+        .map(|level| {
+            json!({
+                "level": level.level,
+                "tiles": level.tiles,
+                "assumed_error_m": rounded(level.assumed_error_m),
+                "deviation_m": (level.places > 0).then(|| rounded(level.deviation_m)),
+                "deviation_rms_m": (level.places > 0).then(|| rounded(level.deviation_rms_m)),
+            })
+        })
+        .collect();
+    let mut layer = json!({
+        "tilejson": "2.1.0",
+        "format": "quantized-mesh-1.0",
+        "version": "1.0.0",
+        "scheme": "tms",
+        "projection": request.tiling.projection(),
+        "tiles": ["{z}/{x}/{y}.terrain"],
+        "minzoom": 0,
+        "maxzoom": available.len() - 1,
+        "bounds": [data.min_x, data.min_y, data.max_x, data.max_y],
+        "extensions": [NORMALS_NAME],
+        "attribution": manifest.attribution.join("; "),
+        "description": format!("heights: {}", summary.heights),
+        "corniche": { "levels": levels },
+    });
+    match request.availability {
+        Availability::Layer => layer["available"] = to_json(available),
+        Availability::Tiles => {
+            layer["extensions"] = json!([NORMALS_NAME, METADATA_NAME]);
+            layer["metadataAvailability"] = METADATA_LEVELS.into();
+        }
+    }
+    layer
+}
+
+/// What a tile tells of those beneath it, if it does.
+///
+/// `CesiumJS` (1.145) fails at a tile with metadata where layer.json has no `metadataAvailability`, so with [`Availability::Layer`] none has.
+pub(crate) fn metadata(
+    request: &QuantizedMeshRequest,
+    available: &[Vec<Block>],
+    tile: TerrainTile,
+) -> Option<String> {
+    let tells = request.availability == Availability::Tiles && tile.z.is_multiple_of(METADATA_LEVELS);
+    let beneath = || beneath(available, tile, METADATA_LEVELS);
+    tells.then(|| json!({ "available": to_json(&beneath()) }).to_string())
+}
+
+/// Millimetres are enough.
+fn rounded(metres: f64) -> f64 {
+    (metres * 1e3).round() / 1e3
+}

@@ -1,0 +1,273 @@
+//! A tile's raster as triangles.
+
+use corniche_geom::{HeightGrid, wgs84::SEMI_MAJOR_M};
+use corniche_tin::{Tin, TinSpec, TriangulateError, height_quantum_m, triangulate};
+use spade::{
+    DelaunayTriangulation, HasPosition, InsertionError, Point2, PositionInTriangulation,
+    Triangulation as _,
+    handles::{FixedFaceHandle, FixedVertexHandle, InnerTag},
+};
+
+use super::{
+    raster::{Sample, TileRaster},
+    tiling::LAST_STEP,
+};
+use crate::globe::{cross, dot, geocentric_m};
+
+/// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
+const SHARE_OF_TIN: f64 = 0.75;
+/// The part from which on a place becomes a vertex. The rest is for the rounding of heights.
+const SHARE_OF_VERTICES: f64 = 0.95;
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MeshVertex {
+    pub(crate) u: u16,
+    pub(crate) v: u16,
+    /// Longitude, latitude and height above the ellipsoid.
+    pub(crate) place: [f64; 3],
+    /// In 32 767ths of the range, once the mesh is finished.
+    pub(crate) height: u16,
+    /// From the earth's centre.
+    pub(crate) at_m: [f64; 3],
+    /// Of the ground, in the same axes.
+    pub(crate) normal: [f64; 3],
+}
+
+impl HasPosition for MeshVertex {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        Point2::new(f64::from(self.u), f64::from(self.v))
+    }
+}
+
+impl MeshVertex {
+    fn new([u, v]: [u16; 2], place: [f64; 3], normal: [f64; 3]) -> Self {
+        Self { u, v, place, height: 0, at_m: geocentric_m(place), normal }
+    }
+}
+
+/// A tile, as it is written.
+#[derive(Debug, Clone)]
+pub(crate) struct TileMesh {
+    pub(crate) vertices: Vec<MeshVertex>,
+    /// Counter-clockwise from above.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Heights of the lowest and the highest vertex, as they are written.
+    pub(crate) range_m: [f32; 2],
+}
+
+/// How far triangles, flat as they are drawn on the globe, are from the ground.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Deviation {
+    /// Places with ground that were looked at.
+    pub(crate) places: u64,
+    pub(crate) largest_m: f64,
+    /// Sum of squares.
+    pub(crate) squares_m2: f64,
+}
+
+impl Deviation {
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.places += other.places;
+        self.largest_m = self.largest_m.max(other.largest_m);
+        self.squares_m2 += other.squares_m2;
+    }
+}
+
+/// The vertices of a TIN over the nodes of a raster, within a part of a level's error, which counts from the flat triangles that are drawn on the globe.
+///
+/// Edges are chords of the globe. `triangulate` knows a plane, so it sees heights with the bulge of the globe over the tile's own frame added: what is
+/// flat on the globe is nearly flat then, too, and what bulges is divided. The bulge is 0 in the corners, and on a border it depends on the border alone:
+///
+/// ```text
+///        ___---___          R/2 · (Δlat² · v (1 − v) + cos² lat · Δlon² · u (1 − u)),  u and v from 0 to 1
+///      /           \
+///     ●─────────────●
+/// ```
+pub(crate) fn tin_of(raster: &TileRaster, error_m: f64) -> Result<Tin, TriangulateError> {
+    let side = raster.side();
+    let nodes = raster.nodes;
+    let [width, height] = raster.size_rad();
+    let bent = |share: f64| share * (1.0 - share);
+    let grid = HeightGrid::from_fn(side + 2, side + 2, |column, row| {
+        let at = row * (side + 2) + column;
+        // Nodes around the tile only tell that there is ground.
+        let across = (column.clamp(1, side) - 1) as i64;
+        let along = (side - row.clamp(1, side)) as i64;
+        let cos = raster.lat_deg[row].to_radians().cos();
+        let bulge = height * height * bent(nodes.share(along))
+            + cos * cos * width * width * bent(nodes.share(across));
+        (raster.heights_m[at] + SEMI_MAJOR_M / 2.0 * bulge) as f32
+    });
+    let max_error_m = error_m * SHARE_OF_TIN;
+    triangulate(&grid, TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) })
+}
+
+/// A tile that is being made.
+pub(crate) struct Mesh {
+    triangles: DelaunayTriangulation<MeshVertex>,
+    range_m: [f32; 2],
+}
+
+impl Mesh {
+    pub(crate) fn new(raster: &TileRaster, tin: &Tin) -> Result<Self, InsertionError> {
+        let side = raster.side();
+        let vertices = tin.vertices().iter().map(|vertex| {
+            let [column, row] = [vertex.column, vertex.row].map(usize::from);
+            let at = raster.at(column, row);
+            let steps = [column, side - 1 - row].map(|node| raster.nodes.step(node as i64));
+            MeshVertex::new(steps, raster.place(at), raster.normal(at))
+        });
+        let triangles = DelaunayTriangulation::bulk_load(vertices.collect())?;
+        Ok(Self { triangles, range_m: [0.0; 2] })
+    }
+
+    /// Makes vertices of those samples that are too far from the triangles, the farthest of each triangle first, until none is. Borders stay as they are:
+    /// neighbours have the same.
+    pub(crate) fn refine(
+        &mut self,
+        raster: &TileRaster,
+        samples: &[Sample],
+        error_m: f64,
+    ) -> Result<(), InsertionError> {
+        let inside = 1..LAST_STEP;
+        let limit_m = error_m * SHARE_OF_VERTICES;
+        let may_be_vertex =
+            |sample: &&Sample| sample.steps.iter().all(|step| inside.contains(step));
+        let samples: Vec<&Sample> = samples.iter().filter(may_be_vertex).collect();
+        loop {
+            let mut worst: Vec<Option<(f64, &Sample)>> = vec![None; self.triangles.num_all_faces()];
+            self.each(samples.iter().copied(), |face, sample, off_m| {
+                let worst = &mut worst[face.index()];
+                if off_m > limit_m && worst.is_none_or(|(known_m, _)| off_m > known_m) {
+                    *worst = Some((off_m, sample));
+                }
+            });
+            if worst.iter().all(Option::is_none) {
+                return Ok(());
+            }
+            for (_, sample) in worst.into_iter().flatten() {
+                let vertex = MeshVertex::new(sample.steps, sample.place, raster.normal_at(sample));
+                self.triangles.insert(vertex)?;
+            }
+        }
+    }
+
+    /// Rounds heights, as they are written.
+    pub(crate) fn finish(&mut self) {
+        let heights_m = self.triangles.vertices().map(|vertex| vertex.data().place[2]);
+        let range_m = heights_m
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height_m| {
+                [low.min(height_m), high.max(height_m)]
+            });
+        self.range_m = range_m.map(|height_m| height_m as f32);
+        let vertices: Vec<FixedVertexHandle> = self.triangles.fixed_vertices().collect();
+        for handle in vertices {
+            let vertex = self.triangles.vertex_data_mut(handle);
+            let [lon, lat, height_m] = vertex.place;
+            vertex.height = quantized(height_m, self.range_m);
+            vertex.at_m = geocentric_m([lon, lat, dequantized(vertex.height, self.range_m)]);
+        }
+    }
+
+    pub(crate) fn deviation(&self, samples: &[Sample]) -> Deviation {
+        let mut found = Deviation::default();
+        self.each(samples.iter(), |_, _, off_m| {
+            found.places += 1;
+            found.largest_m = found.largest_m.max(off_m);
+            found.squares_m2 += off_m * off_m;
+        });
+        found
+    }
+
+    /// Tells of each sample in which triangle it is and how far from it, vertically.
+    fn each<'s>(
+        &self,
+        samples: impl Iterator<Item = &'s Sample>,
+        mut tell: impl FnMut(FixedFaceHandle<InnerTag>, &'s Sample, f64),
+    ) {
+        let mut hint = None;
+        for sample in samples {
+            let [u, v] = sample.steps.map(f64::from);
+            let Some(face) = self.face_at(Point2::new(u, v), hint) else { continue };
+            let corners = self.triangles.face(face).vertices();
+            hint = Some(corners[0].fix());
+            let off_m = sample.above_plane_m(corners.map(|corner| corner.data().at_m));
+            tell(face, sample, off_m.abs());
+        }
+    }
+
+    /// A triangle that holds a point, its border included.
+    fn face_at(
+        &self,
+        at: Point2<f64>,
+        hint: Option<FixedVertexHandle>,
+    ) -> Option<FixedFaceHandle<InnerTag>> {
+        let found = match hint {
+            Some(hint) => self.triangles.locate_with_hint(at, hint),
+            None => self.triangles.locate(at),
+        };
+        match found {
+            PositionInTriangulation::OnFace(face) => Some(face),
+            PositionInTriangulation::OnEdge(edge) => {
+                let edge = self.triangles.directed_edge(edge);
+                let face = edge.face().as_inner().or_else(|| edge.rev().face().as_inner());
+                face.map(|face| face.fix())
+            }
+            PositionInTriangulation::OnVertex(vertex) => {
+                let vertex = self.triangles.vertex(vertex);
+                vertex.out_edges().find_map(|edge| edge.face().as_inner()).map(|face| face.fix())
+            }
+            PositionInTriangulation::OutsideOfConvexHull(_)
+            | PositionInTriangulation::NoTriangulation => None,
+        }
+    }
+
+    /// Vertices from the south and the west, triangles sorted, each from its first vertex.
+    pub(crate) fn to_tile(&self) -> TileMesh {
+        let place = |vertex: &MeshVertex| (vertex.v, vertex.u);
+        let mut order: Vec<FixedVertexHandle> = self.triangles.fixed_vertices().collect();
+        order.sort_unstable_by_key(|handle| place(self.triangles.vertex(*handle).data()));
+        let mut number = vec![0_u32; order.len()];
+        for (new, handle) in order.iter().enumerate() {
+            number[handle.index()] = new as u32;
+        }
+        let mut triangles: Vec<[u32; 3]> = self
+            .triangles
+            .inner_faces()
+            .map(|face| {
+                let mut corners = face.vertices().map(|vertex| number[vertex.index()]);
+                let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+                corners.rotate_left(first);
+                corners
+            })
+            .collect();
+        triangles.sort_unstable();
+        let vertices = order.iter().map(|handle| *self.triangles.vertex(*handle).data()).collect();
+        TileMesh { vertices, triangles, range_m: self.range_m }
+    }
+}
+
+impl Sample {
+    /// How far the ground is above a plane, along the vertical.
+    fn above_plane_m(&self, [a, b, c]: [[f64; 3]; 3]) -> f64 {
+        let from = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|axis| other[axis] - one[axis]);
+        let across = cross(from(a, b), from(a, c));
+        dot(from(a, self.at_m), across) / dot(self.up, across)
+    }
+}
+
+fn quantized(height_m: f64, [low, high]: [f32; 2]) -> u16 {
+    let [low, high] = [low, high].map(f64::from);
+    if high <= low {
+        return 0;
+    }
+    let steps = (height_m - low) / (high - low) * f64::from(LAST_STEP);
+    steps.round().clamp(0.0, f64::from(LAST_STEP)) as u16
+}
+
+fn dequantized(height: u16, [low, high]: [f32; 2]) -> f64 {
+    let [low, high] = [low, high].map(f64::from);
+    low + (high - low) * f64::from(height) / f64::from(LAST_STEP)
+}

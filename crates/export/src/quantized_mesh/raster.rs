@@ -1,0 +1,267 @@
+//! Heights at the nodes of a tile, with one more node on each side, also where there is no ground.
+
+use super::{
+    ground::Ground,
+    tiling::{Nodes, TerrainTile},
+};
+use crate::{
+    error::ExportError,
+    globe::{cross, dot, geocentric_m, unit, up_at},
+};
+
+/// What is far from all ground lies on the ellipsoid, as the globe of a viewer without terrain does.
+const FAR_FROM_GROUND_M: f64 = 0.0;
+
+/// The heights of a tile. Row 0 and column 0 are those of the neighbours in the north and the west.
+#[derive(Debug, Clone)]
+pub(crate) struct TileRaster {
+    pub(crate) nodes: Nodes,
+    tile: TerrainTile,
+    /// Longitudes of columns, from the west.
+    pub(crate) lon_deg: Vec<f64>,
+    /// Latitudes of rows, from the north.
+    pub(crate) lat_deg: Vec<f64>,
+    pub(crate) heights_m: Vec<f64>,
+    /// Whether there is ground, rather than a height made up.
+    pub(crate) is_ground: Vec<bool>,
+}
+
+/// A rectangle of the nodes of a level, with one more node on each side.
+struct Window {
+    nodes: Nodes,
+    /// Column and row, counted from the south, of the south-western node, those around not counted.
+    from: [i64; 2],
+    to: [i64; 2],
+    /// Row by row from the south, the nodes around included; NaN where there is no ground.
+    heights_m: Vec<f64>,
+}
+
+impl Window {
+    fn sample(
+        nodes: Nodes,
+        from: [i64; 2],
+        to: [i64; 2],
+        ground: &mut Ground<'_>,
+    ) -> Result<Self, ExportError> {
+        let lats: Vec<f64> = (from[1] - 1..=to[1] + 1).map(|j| nodes.lat_deg(j)).collect();
+        let lons: Vec<f64> = (from[0] - 1..=to[0] + 1).map(|i| nodes.lon_deg(i)).collect();
+        let places: Vec<[f64; 2]> =
+            lats.iter().flat_map(|&lat| lons.iter().map(move |&lon| [lon, lat])).collect();
+        let heights_m = ground.heights_m(&places)?;
+        Ok(Self { nodes, from, to, heights_m })
+    }
+
+    /// The nodes of the level above between which those of this window lie.
+    fn above(&self, ground: &mut Ground<'_>) -> Result<Option<Self>, ExportError> {
+        let Some(nodes) = self.nodes.above() else { return Ok(None) };
+        let from = self.from.map(|index| index.div_euclid(2));
+        let to = self.to.map(|index| (index + 1).div_euclid(2));
+        Self::sample(nodes, from, to, ground).map(Some)
+    }
+
+    /// The nodes, without those around, row by row from the south.
+    fn inner(&self) -> impl Iterator<Item = [i64; 2]> + use<> {
+        let ([west, south], [east, north]) = (self.from, self.to);
+        (south..=north).flat_map(move |j| (west..=east).map(move |i| [i, j]))
+    }
+
+    fn at(&self, [i, j]: [i64; 2]) -> usize {
+        let columns = self.to[0] - self.from[0] + 3;
+        ((j - self.from[1] + 1) * columns + i - self.from[0] + 1) as usize
+    }
+
+    fn height_m(&self, node: [i64; 2]) -> f64 {
+        self.heights_m[self.at(node)]
+    }
+
+    fn has_gap(&self) -> bool {
+        self.inner().any(|node| self.height_m(node).is_nan())
+    }
+
+    /// Gives a height to each node without ground: the mean of its neighbours with ground, where it has some; else what lies there on the level above;
+    /// else the ellipsoid's.
+    fn fill(&mut self, above: Option<&Self>) {
+        let beside_ground = |[i, j]: [i64; 2]| {
+            let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
+            mean(around.map(|node| self.height_m(node)).filter(|height_m| !height_m.is_nan()))
+        };
+        let between = |above: &Self, node: [i64; 2]| {
+            let [low, high] = [0, 1].map(|up| node.map(|index| (index + up).div_euclid(2)));
+            let around = [low, [high[0], low[1]], [low[0], high[1]], high];
+            mean(around.into_iter().map(|node| above.height_m(node)))
+        };
+        let gaps = self.inner().filter(|node| self.height_m(*node).is_nan());
+        let found: Vec<(usize, f64)> = gaps
+            .map(|node| {
+                let height_m = beside_ground(node).or_else(|| between(above?, node));
+                (self.at(node), height_m.unwrap_or(FAR_FROM_GROUND_M))
+            })
+            .collect();
+        for (at, height_m) in found {
+            self.heights_m[at] = height_m;
+        }
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+impl TileRaster {
+    /// Samples the ground. Where there is none, heights come from ever coarser nodes around, and at last from the ellipsoid: the rule looks at places over
+    /// the whole globe, so that neighbours have the same heights on their border.
+    pub(crate) fn sample(
+        nodes: Nodes,
+        tile: TerrainTile,
+        ground: &mut Ground<'_>,
+    ) -> Result<Self, ExportError> {
+        let n = nodes.per_tile;
+        let [i, j] = [i64::from(tile.x) * n, i64::from(tile.y) * n];
+        let (from, to) = ([i - 1, j - 1], [i + n + 1, j + n + 1]);
+        let mut window = Window::sample(nodes, from, to, ground)?;
+        // Rows of the raster go southwards.
+        let order: Vec<usize> = (from[1]..=to[1])
+            .rev()
+            .flat_map(|j| (from[0]..=to[0]).map(move |i| [i, j]))
+            .map(|node| window.at(node))
+            .collect();
+        let is_ground = order.iter().map(|&at| !window.heights_m[at].is_nan()).collect();
+        let mut coarser = Vec::new();
+        while let Some(above) = {
+            let last = coarser.last().unwrap_or(&window);
+            if last.has_gap() { last.above(ground)? } else { None }
+        } {
+            coarser.push(above);
+        }
+        let mut above: Option<Window> = None;
+        while let Some(mut next) = coarser.pop() {
+            next.fill(above.as_ref());
+            above = Some(next);
+        }
+        window.fill(above.as_ref());
+        Ok(Self {
+            nodes,
+            tile,
+            lon_deg: (from[0]..=to[0]).map(|i| nodes.lon_deg(i)).collect(),
+            lat_deg: (from[1]..=to[1]).rev().map(|j| nodes.lat_deg(j)).collect(),
+            heights_m: order.iter().map(|&at| window.heights_m[at]).collect(),
+            is_ground,
+        })
+    }
+
+    /// Whether there is ground in the tile.
+    pub(crate) fn has_ground(&self) -> bool {
+        let mut nodes = (0..self.side()).flat_map(|row| (0..self.side()).map(move |c| [c, row]));
+        nodes.any(|[column, row]| self.is_ground[self.at(column, row)])
+    }
+
+    /// Nodes along each side of the tile, those around it not counted.
+    pub(crate) fn side(&self) -> usize {
+        self.nodes.per_tile as usize + 1
+    }
+
+    /// Where a node of the tile is in the raster.
+    pub(crate) fn at(&self, column: usize, row: usize) -> usize {
+        (row + 1) * self.lon_deg.len() + column + 1
+    }
+
+    /// Longitude, latitude and height of a node of the raster.
+    pub(crate) fn place(&self, at: usize) -> [f64; 3] {
+        let columns = self.lon_deg.len();
+        [self.lon_deg[at % columns], self.lat_deg[at / columns], self.heights_m[at]]
+    }
+
+    /// How far the tile goes in longitude and latitude.
+    pub(crate) fn size_rad(&self) -> [f64; 2] {
+        let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
+        [east - west, north - south].map(f64::to_radians)
+    }
+
+    /// Normal of the ground at a node, from its neighbours on all sides: the same in all tiles that have the node.
+    pub(crate) fn normal(&self, at: usize) -> [f64; 3] {
+        let columns = self.lon_deg.len();
+        let of = |at: usize| geocentric_m(self.place(at));
+        let between = |from: usize, to: usize| {
+            let (from, to) = (of(from), of(to));
+            [0, 1, 2].map(|axis| to[axis] - from[axis])
+        };
+        let across = cross(between(at - 1, at + 1), between(at + columns, at - columns));
+        let [lon, lat, _] = self.place(at);
+        // At a pole all longitudes are one place.
+        if dot(across, across) > 0.0 { unit(across) } else { up_at([lon, lat]) }
+    }
+
+    /// Normal of the ground at a sample.
+    pub(crate) fn normal_at(&self, sample: &Sample) -> [f64; 3] {
+        match sample.around {
+            Around::Node(at) => self.normal(at),
+            Around::Cell(at) => {
+                let below = at + self.lon_deg.len();
+                let normals = [at, at + 1, below, below + 1].map(|at| self.normal(at));
+                unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
+            }
+        }
+    }
+
+    /// The ground of the tile: at nodes, and in the middles of cells, where it is read again.
+    pub(crate) fn samples(&self, ground: &mut Ground<'_>) -> Result<Vec<Sample>, ExportError> {
+        let last = self.side() - 1;
+        let nodes_of =
+            |side: usize| (0..side).flat_map(move |row| (0..side).map(move |c| [c, row]));
+        let step = |node: usize| self.nodes.step(node as i64);
+        let mut samples = Vec::new();
+        for [column, row] in nodes_of(last + 1) {
+            let at = self.at(column, row);
+            if self.is_ground[at] {
+                let steps = [step(column), step(last - row)];
+                samples.push(Sample::new(steps, self.place(at), Around::Node(at)));
+            }
+        }
+        let middles: Vec<_> = nodes_of(last)
+            .map(|[column, row]| {
+                let between = |node: usize| step(node).midpoint(step(node + 1));
+                let steps = [between(column), between(last - row - 1)];
+                (steps, self.nodes.place_deg(self.tile, steps), self.at(column, row))
+            })
+            .collect();
+        let places: Vec<[f64; 2]> = middles.iter().map(|(_, place, _)| *place).collect();
+        let heights_m = ground.heights_m(&places)?;
+        for ((steps, [lon, lat], at), height_m) in middles.into_iter().zip(heights_m) {
+            if !height_m.is_nan() {
+                samples.push(Sample::new(steps, [lon, lat, height_m], Around::Cell(at)));
+            }
+        }
+        Ok(samples)
+    }
+}
+
+/// Where a sample is in its raster.
+#[derive(Debug, Clone, Copy)]
+enum Around {
+    /// At a node.
+    Node(usize),
+    /// In the middle of the cell whose north-western node this is.
+    Cell(usize),
+}
+
+/// A place with ground.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    /// u and v.
+    pub(crate) steps: [u16; 2],
+    /// Longitude, latitude and height above the ellipsoid.
+    pub(crate) place: [f64; 3],
+    around: Around,
+    /// From the earth's centre.
+    pub(crate) at_m: [f64; 3],
+    /// The vertical.
+    pub(crate) up: [f64; 3],
+}
+
+impl Sample {
+    fn new(steps: [u16; 2], place: [f64; 3], around: Around) -> Self {
+        let [lon, lat, _] = place;
+        Self { steps, place, around, at_m: geocentric_m(place), up: up_at([lon, lat]) }
+    }
+}

@@ -1,0 +1,28 @@
+use super::tiling::Tiling;
+use crate::request::Coordinates;
+
+/// What of a package becomes terrain tiles, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuantizedMeshRequest {
+    /// The grid of tiles.
+    pub tiling: Tiling,
+    /// The finest level; `None` is the first one whose error is not above the package's.
+    pub max_level: Option<u8>,
+    /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.
+    pub coordinates: Coordinates,
+    /// Where it is told which tiles there are.
+    pub availability: Availability,
+    /// Whether files are compressed with gzip; a server must then say so for each.
+    pub gzip: bool,
+    /// How many tiles are made at the same time.
+    pub threads: usize,
+}
+
+/// Where it is told which tiles there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Availability {
+    /// In layer.json, as rectangles of tiles.
+    Layer,
+    /// In tiles of each tenth level, for those beneath: layer.json stays small with any number of tiles.
+    Tiles,
+}

@@ -1,0 +1,181 @@
+use std::{f64::consts::PI, fmt};
+
+use corniche_geom::wgs84::SEMI_MAJOR_M;
+
+/// The largest value of u and v: they are 0 in the west and south of a tile and this in its east and north.
+pub(crate) const LAST_STEP: u16 = 32_767;
+
+/// The finest level that can be asked for: tiles of some metres.
+pub(crate) const FINEST: u8 = 24;
+
+/// How the globe is divided into terrain tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tiling {
+    /// Squares of degrees, from two of 180° (EPSG:4326).
+    Geographic,
+    /// Squares of the Mercator projection, from one to 85.05° (EPSG:3857).
+    WebMercator,
+}
+
+/// A tile of the globe's grid, named as in the tile map service: rows count from the south.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct TerrainTile {
+    pub(crate) z: u8,
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+}
+
+impl TerrainTile {
+    pub(crate) fn parent(self) -> Option<Self> {
+        (self.z > 0).then(|| Self { z: self.z - 1, x: self.x / 2, y: self.y / 2 })
+    }
+}
+
+impl fmt::Display for TerrainTile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.z, self.x, self.y)
+    }
+}
+
+impl Tiling {
+    /// The CRS of the grid, as layer.json names it.
+    #[must_use]
+    pub fn projection(self) -> &'static str {
+        match self {
+            Self::Geographic => "EPSG:4326",
+            Self::WebMercator => "EPSG:3857",
+        }
+    }
+
+    /// The error that CesiumJS takes ground of a level to have, metres: that of a raster of 65 × 65 heights.
+    ///
+    /// Source: CesiumJS 1.145, `TerrainProvider.getEstimatedLevelZeroGeometricErrorForAHeightmap`, halved at each level.
+    #[must_use]
+    pub fn level_error_m(self, level: u8) -> f64 {
+        const QUALITY: f64 = 0.25;
+        const RASTER: f64 = 65.0;
+        let root_m = SEMI_MAJOR_M * 2.0 * PI * QUALITY / (RASTER * self.columns(0) as f64);
+        root_m / f64::from(1_u32 << level)
+    }
+
+    pub(crate) fn columns(self, level: u8) -> i64 {
+        match self {
+            Self::Geographic => 2 << level,
+            Self::WebMercator => 1 << level,
+        }
+    }
+
+    pub(crate) fn rows(level: u8) -> i64 {
+        1 << level
+    }
+
+    /// All tiles of level 0.
+    pub(crate) fn roots(self) -> impl Iterator<Item = TerrainTile> {
+        (0..self.columns(0) as u32).map(|x| TerrainTile { z: 0, x, y: 0 })
+    }
+
+    /// Longitude of the western edge of a column. Exact, so that neighbours have the same.
+    pub(crate) fn lon_deg(self, level: u8, column: i64) -> f64 {
+        let columns = self.columns(level);
+        (180 * (2 * column - columns)) as f64 / columns as f64
+    }
+
+    /// Latitude of the southern edge of a row.
+    pub(crate) fn lat_deg(self, level: u8, row: i64) -> f64 {
+        let rows = Self::rows(level);
+        match self {
+            Self::Geographic => (90 * (2 * row - rows)) as f64 / rows as f64,
+            Self::WebMercator => {
+                let y = PI * (2 * row - rows) as f64 / rows as f64;
+                y.sinh().atan().to_degrees()
+            }
+        }
+    }
+
+    /// Column of a longitude, which may be beyond ±180.
+    pub(crate) fn column_of(self, level: u8, lon_deg: f64) -> i64 {
+        ((lon_deg + 180.0) / 360.0 * self.columns(level) as f64).floor() as i64
+    }
+
+    /// Row of a latitude; that of the edge for latitudes beyond the grid.
+    pub(crate) fn row_of(self, level: u8, lat_deg: f64) -> i64 {
+        let share = match self {
+            Self::Geographic => (lat_deg + 90.0) / 180.0,
+            Self::WebMercator => f64::midpoint(lat_deg.to_radians().tan().asinh() / PI, 1.0),
+        };
+        ((share * Self::rows(level) as f64).floor() as i64).clamp(0, Self::rows(level) - 1)
+    }
+
+    /// Whether a tile is wider than half the globe, so that no point stands for it at the horizon.
+    pub(crate) fn is_around_the_globe(self, tile: TerrainTile) -> bool {
+        self == Self::WebMercator && tile.z == 0
+    }
+}
+
+/// The places of a level's rasters: a grid of nodes over the globe, so many along each side of a tile.
+///
+/// ```text
+///   node k of a tile, 0 to n      u = k · 32767 / n, rounded      node n of a tile is node 0 of the next
+/// ```
+///
+/// Nodes lie where u and v can be, so that no vertex moves when it is written. Longitude and latitude are linear in u and v, in Mercator's tiles, too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Nodes {
+    pub(crate) tiling: Tiling,
+    pub(crate) level: u8,
+    /// Cells along each side of a tile.
+    pub(crate) per_tile: i64,
+}
+
+impl Nodes {
+    /// u or v of a node of a tile.
+    pub(crate) fn step(self, node: i64) -> u16 {
+        ((2 * node * i64::from(LAST_STEP) + self.per_tile) / (2 * self.per_tile)) as u16
+    }
+
+    /// How far node `node` of a tile is across it, from 0 to 1.
+    pub(crate) fn share(self, node: i64) -> f64 {
+        f64::from(self.step(node)) / f64::from(LAST_STEP)
+    }
+
+    /// Longitude of a column of nodes, counted over the globe and around it.
+    pub(crate) fn lon_deg(self, i: i64) -> f64 {
+        let Self { tiling, level, per_tile } = self;
+        let column = i.div_euclid(per_tile).rem_euclid(tiling.columns(level));
+        let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
+        west + (east - west) * self.share(i.rem_euclid(per_tile))
+    }
+
+    /// Latitude of a row of nodes, counted from the south; beyond the grid, that of its edge.
+    pub(crate) fn lat_deg(self, j: i64) -> f64 {
+        let Self { tiling, level, per_tile } = self;
+        let j = j.clamp(0, Tiling::rows(level) * per_tile);
+        let row = j.div_euclid(per_tile);
+        let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
+        south + (north - south) * self.share(j.rem_euclid(per_tile))
+    }
+
+    /// Longitude and latitude of a tile's south-western and north-eastern corner.
+    pub(crate) fn corners_deg(self, tile: TerrainTile) -> [[f64; 2]; 2] {
+        [0, 1].map(|beside| {
+            let [x, y] = [tile.x, tile.y].map(|index| i64::from(index) + beside);
+            [self.tiling.lon_deg(self.level, x), self.tiling.lat_deg(self.level, y)]
+        })
+    }
+
+    /// Longitude and latitude at u and v of a tile.
+    pub(crate) fn place_deg(self, tile: TerrainTile, [u, v]: [u16; 2]) -> [f64; 2] {
+        let [[west, south], [east, north]] = self.corners_deg(tile);
+        let share = |step: u16| f64::from(step) / f64::from(LAST_STEP);
+        [west + (east - west) * share(u), south + (north - south) * share(v)]
+    }
+
+    /// The same one level up, with cells twice as wide.
+    pub(crate) fn above(self) -> Option<Self> {
+        (self.level > 0).then(|| Self { level: self.level - 1, ..self })
+    }
+}
+
+#[cfg(test)]
+#[path = "tiling_tests.rs"]
+mod tests;

@@ -1,0 +1,85 @@
+use std::fmt;
+
+use reqwest::Url;
+
+use crate::AddressError;
+
+/// The address of a file on a web server: `http://…` or `https://…`.
+///
+/// It may hold secrets: a user name and a password, or a question that is a signature. Neither `Display` nor `Debug` shows them.
+#[derive(Clone, PartialEq, Eq)]
+pub struct HttpAddress {
+    url: Url,
+    shown: String,
+}
+
+impl HttpAddress {
+    /// The address in a text that begins as one does; `None` for other texts, which are names of files.
+    ///
+    /// # Errors
+    /// [`AddressError`] where it begins as an address and is none, or one that cannot be read.
+    pub fn parse(text: &str) -> Result<Option<Self>, AddressError> {
+        let Some((scheme, _)) = text.split_once("://") else { return Ok(None) };
+        let is_scheme_char = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
+        let begins_right = scheme.chars().next().is_some_and(|c| c.is_ascii_alphabetic());
+        if !begins_right || !scheme.chars().all(is_scheme_char) {
+            return Ok(None);
+        }
+        let scheme = scheme.to_ascii_lowercase();
+        if !matches!(scheme.as_str(), "http" | "https") {
+            return Err(AddressError::Scheme { scheme });
+        }
+        let url = Url::parse(text).map_err(|error| AddressError::NoAddress {
+            shown: format!("{scheme}://…"),
+            reason: error.to_string(),
+        })?;
+        let shown = shown(&url);
+        if url.fragment().is_some() {
+            return Err(AddressError::Fragment { shown });
+        }
+        Ok(Some(Self { url, shown }))
+    }
+
+    /// The last part of its path: the name of a file, most likely.
+    #[must_use]
+    pub fn file_name(&self) -> &str {
+        self.url.path().rsplit('/').find(|part| !part.is_empty()).unwrap_or(&self.shown)
+    }
+
+    /// Where to ask, with user name and password if there are some.
+    pub(crate) fn url(&self) -> &Url {
+        &self.url
+    }
+
+    /// The address without secrets.
+    pub(crate) fn shown(&self) -> &str {
+        &self.shown
+    }
+}
+
+/// An address without user name, password and what follows a question mark, which may be a signature.
+pub(crate) fn shown(url: &Url) -> String {
+    let mut clean = url.clone();
+    clean.set_fragment(None);
+    clean.set_query(None);
+    // These fail only for addresses without a host, which have neither.
+    let _ = clean.set_username("");
+    let _ = clean.set_password(None);
+    if url.query().is_some() { format!("{clean}?…") } else { clean.to_string() }
+}
+
+impl fmt::Display for HttpAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.shown)
+    }
+}
+
+impl fmt::Debug for HttpAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("HttpAddress").field(&self.shown).finish()
+    }
+}
+
+#[cfg(test)]
+#[path = "address_tests.rs"]
+mod tests;

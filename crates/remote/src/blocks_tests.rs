@@ -1,0 +1,125 @@
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::atomic::{AtomicU64, Ordering},
+    thread,
+    time::Duration,
+};
+
+use super::*;
+
+const MANY: u64 = 1 << 20;
+
+/// The content of a run: each block begins with its number.
+fn content(run: &Range<u64>) -> Bytes {
+    let blocks = run.clone().flat_map(|number| {
+        let mut block = vec![0; BLOCK_BYTES as usize];
+        block[..8].copy_from_slice(&number.to_le_bytes());
+        block
+    });
+    blocks.collect::<Vec<u8>>().into()
+}
+
+/// Reads blocks one after the other; gives the runs that were fetched.
+fn fetched(blocks: &Blocks, numbers: impl IntoIterator<Item = u64>) -> Vec<Range<u64>> {
+    let mut runs = Vec::new();
+    for number in numbers {
+        let block = blocks.get(number, 1, MANY, |run| {
+            runs.push(run.clone());
+            Ok::<_, ()>(content(&run))
+        });
+        assert_eq!(block.unwrap()[..8], number.to_le_bytes());
+    }
+    runs
+}
+
+#[test]
+fn reads_that_follow_each_other_become_few_requests() {
+    let blocks = Blocks::default();
+    let runs = fetched(&blocks, 0..200);
+    assert_eq!(runs, [0..1, 1..3, 3..7, 7..15, 15..31, 31..63, 63..127, 127..191, 191..255]);
+    assert!(fetched(&blocks, 0..255).is_empty(), "they are kept");
+}
+
+#[test]
+fn reads_here_and_there_take_what_they_ask_for() {
+    let runs = fetched(&Blocks::default(), [0, 900, 30, 800, 60, 700]);
+    assert_eq!(runs, [0..1, 900..901, 30..31, 800..801, 60..61, 700..701]);
+}
+
+/// Threads that read side by side, each in its own part.
+#[test]
+fn several_sequences_do_not_disturb_each_other() {
+    let blocks = Blocks::default();
+    let both = (0..60).flat_map(|k| [k, 10_000 + k]);
+    assert_eq!(fetched(&blocks, both).len(), 12, "six each");
+}
+
+#[test]
+fn a_run_ends_before_what_is_there_and_at_the_end_of_the_file() {
+    let blocks = Blocks::default();
+    fetched(&blocks, [12]);
+    let run = |number, wanted, count| {
+        let mut got = None;
+        let block = blocks.get(number, wanted, count, |run| {
+            got = Some(run.clone());
+            Ok::<_, ()>(content(&run))
+        });
+        block.unwrap();
+        got.unwrap()
+    };
+    assert_eq!(run(10, 6, MANY), 10..12);
+    assert_eq!(run(50, 10, 55), 50..55);
+    assert_eq!(run(100, 1000, MANY), 100..164);
+}
+
+#[test]
+fn memory_is_bounded_and_the_blocks_used_last_stay() {
+    let blocks = Blocks::default();
+    for number in 0..3 * KEPT_BLOCKS as u64 {
+        fetched(&blocks, [5, 10 * number + 100]);
+        assert!(blocks.state().blocks.len() <= KEPT_BLOCKS);
+    }
+    assert!(fetched(&blocks, [5]).is_empty(), "it is used again and again");
+    assert_eq!(fetched(&blocks, [100]), std::slice::from_ref(&(100..101)), "it was used long ago");
+}
+
+#[test]
+fn many_threads_fetch_a_block_once() {
+    let blocks = Blocks::default();
+    let fetches = AtomicU64::new(0);
+    thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| {
+                for number in 0..50 {
+                    let block = blocks.get(number, 1, MANY, |run| {
+                        fetches.fetch_add(run.end - run.start, Ordering::Relaxed);
+                        thread::sleep(Duration::from_millis(1));
+                        Ok::<_, ()>(content(&run))
+                    });
+                    assert_eq!(block.unwrap()[..8], number.to_le_bytes());
+                }
+            });
+        }
+    });
+    assert_eq!(fetches.into_inner(), 63, "each block once, up to the end of a run");
+}
+
+/// Whoever waits for a fetch that fails tries it itself.
+#[test]
+fn a_fetch_that_fails_or_panics_leaves_nobody_waiting() {
+    let blocks = Blocks::default();
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                let failed = blocks.get(7, 1, MANY, |_| {
+                    thread::sleep(Duration::from_millis(5));
+                    Err::<Bytes, _>("broken")
+                });
+                assert_eq!(failed, Err("broken"));
+            });
+        }
+    });
+    let panics = || blocks.get(7, 1, MANY, |_| -> Result<Bytes, ()> { panic!("on purpose") });
+    assert!(catch_unwind(AssertUnwindSafe(panics)).is_err());
+    assert_eq!(fetched(&blocks, [7]), std::slice::from_ref(&(7..8)));
+}

@@ -1,0 +1,252 @@
+//! One range of a file: asked for, checked, asked for again.
+
+use std::{
+    error::Error,
+    io,
+    ops::Range,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use bytes::{Bytes, BytesMut};
+use reqwest::{Client, Url, header::RANGE};
+use tokio::runtime::Runtime;
+
+use crate::{
+    HttpAddress, HttpError, HttpSettings,
+    answer::{self, Version},
+    requests::Counter,
+};
+
+/// A server may redirect so often.
+pub(crate) const MOST_REDIRECTIONS: usize = 10;
+
+/// Why a redirection is not followed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Redirection {
+    #[error("a circle")]
+    Circle { to: String },
+    #[error("too many")]
+    TooMany,
+    #[error("unprotected")]
+    Unprotected { to: String },
+}
+
+/// The ranges of one file on a web server.
+#[derive(Debug)]
+pub(crate) struct Ranges {
+    client: Client,
+    runtime: Arc<Runtime>,
+    settings: HttpSettings,
+    address: HttpAddress,
+    /// Where redirections led, so that each range takes one request. Such places may be valid for minutes only.
+    redirected: Mutex<Option<Url>>,
+    /// All tries of the last request failed. Until one succeeds, each has one try: waiting was of no use.
+    is_down: AtomicBool,
+    pub(crate) counter: Counter,
+}
+
+/// A request that failed, and how long the server asks to wait.
+struct Failed {
+    error: HttpError,
+    wait: Option<Duration>,
+}
+
+impl From<HttpError> for Failed {
+    fn from(error: HttpError) -> Self {
+        Self { error, wait: None }
+    }
+}
+
+impl Ranges {
+    pub(crate) fn new(
+        client: Client,
+        runtime: Arc<Runtime>,
+        settings: HttpSettings,
+        address: HttpAddress,
+    ) -> Self {
+        let (redirected, is_down) = (Mutex::default(), AtomicBool::new(false));
+        let counter = Counter::default();
+        Self { client, runtime, settings, address, redirected, is_down, counter }
+    }
+
+    pub(crate) fn address(&self) -> &HttpAddress {
+        &self.address
+    }
+
+    /// Bytes of the file, all that there are of `asked`, and of which version they are: of `known`, if it is given.
+    pub(crate) fn get(
+        &self,
+        asked: &Range<u64>,
+        known: Option<&Version>,
+    ) -> Result<(Version, Bytes), HttpError> {
+        let HttpSettings { retries, mut first_pause, longest_pause, .. } = self.settings;
+        let pause = &mut first_pause;
+        let mut tries = 0;
+        loop {
+            let redirected = self.redirected().clone();
+            let url = redirected.as_ref().unwrap_or(self.address.url());
+            let got = self.runtime.block_on(self.once(url, asked, known));
+            let Failed { error, wait } = match got {
+                Ok(got) => {
+                    self.is_down.store(false, Ordering::Relaxed);
+                    return Ok(got);
+                }
+                Err(failed) => failed,
+            };
+            let is_denied = matches!(
+                error,
+                HttpError::Missing { .. } | HttpError::Refused { .. } | HttpError::Status { .. }
+            );
+            if is_denied && redirected.is_some() {
+                *self.redirected() = None;
+                continue;
+            }
+            tries += 1;
+            let is_wrong_address = known.is_none() && error.is_before_connection();
+            if !error.is_momentary() || is_wrong_address {
+                return Err(error);
+            }
+            if tries > retries || self.is_down.load(Ordering::Relaxed) {
+                self.is_down.store(true, Ordering::Relaxed);
+                return Err(error.after(tries));
+            }
+            if let (Some(wait), HttpError::Busy { status, .. }) = (wait, &error)
+                && wait > longest_pause
+            {
+                let status = status.clone();
+                return Err(HttpError::ComeBack { status, seconds: wait.as_secs() });
+            }
+            thread::sleep(wait.unwrap_or_default().max(*pause));
+            *pause *= 2;
+        }
+    }
+
+    fn redirected(&self) -> MutexGuard<'_, Option<Url>> {
+        self.redirected.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    async fn once(
+        &self,
+        url: &Url,
+        asked: &Range<u64>,
+        known: Option<&Version>,
+    ) -> Result<(Version, Bytes), Failed> {
+        let explain = |error: reqwest::Error| self.explain(error);
+        let range = format!("bytes={}-{}", asked.start, asked.end.saturating_sub(1));
+        self.counter.sent();
+        let request = self.client.get(url.clone()).header(RANGE, range);
+        let mut response = request.send().await.map_err(explain)?;
+        let (version, range) = answer::check(response.status(), response.headers(), asked)
+            .map_err(|error| Failed { error, wait: answer::retry_after(response.headers()) })?;
+        // Before the body: then nothing more of another version is read.
+        known.map_or(Ok(()), |known| known.check_same(&version))?;
+        let length = (range.end - range.start) as usize;
+        let mut body = BytesMut::with_capacity(length);
+        while body.len() < length
+            && let Some(chunk) = response.chunk().await.map_err(explain)?
+        {
+            self.counter.received(chunk.len());
+            body.extend_from_slice(&chunk);
+        }
+        // A body that goes on is told, and so is one that its own header says to be longer.
+        let is_more = match response.content_length() {
+            Some(said) => said > length as u64,
+            None => response.chunk().await.map_err(explain)?.is_some_and(|more| !more.is_empty()),
+        };
+        let asked = range.end - range.start;
+        if body.len() > length || is_more {
+            return Err(HttpError::More { asked }.into());
+        }
+        if body.len() < length {
+            return Err(HttpError::Short { asked, got: body.len() as u64, tries: 1 }.into());
+        }
+        if *response.url() != *url {
+            *self.redirected() = Some(self.with_credentials(response.url().clone()));
+        }
+        Ok((version, body.freeze()))
+    }
+
+    /// The address that a redirection led to, with user name and password if it is on the same server.
+    fn with_credentials(&self, mut to: Url) -> Url {
+        let own = self.address.url();
+        if to.origin() == own.origin() {
+            // These fail only for addresses without a host.
+            let _ = to.set_username(own.username());
+            let _ = to.set_password(own.password());
+        }
+        to
+    }
+
+    /// What an error of the library means.
+    fn explain(&self, error: reqwest::Error) -> HttpError {
+        // It would show secrets.
+        let error = error.without_url();
+        let HttpSettings { connect_timeout, idle_timeout, .. } = self.settings;
+        let reason = last_cause(&error);
+        if error.is_redirect() {
+            return match find::<Redirection>(&error) {
+                Some(Redirection::Circle { to }) => HttpError::Circle { to: to.clone() },
+                Some(Redirection::TooMany) => {
+                    HttpError::TooManyRedirections { most: MOST_REDIRECTIONS }
+                }
+                Some(Redirection::Unprotected { to }) => HttpError::Unprotected { to: to.clone() },
+                None => HttpError::BadRedirection { why: reason },
+            };
+        }
+        // A scheme that is not HTTP, say; our own addresses were checked.
+        if error.is_builder() {
+            return HttpError::BadRedirection { why: reason };
+        }
+        if error.is_timeout() {
+            let within = if error.is_connect() { connect_timeout } else { idle_timeout };
+            return HttpError::Timeout { within, tries: 1 };
+        }
+        if let Some(tls) = tls_error(&error) {
+            return HttpError::Tls { reason: tls.to_string() };
+        }
+        if find::<hyper::Error>(&error).is_some_and(hyper::Error::is_parse) {
+            return HttpError::NoHttp { reason };
+        }
+        if !error.is_connect() {
+            return HttpError::BrokenOff { reason, tries: 1 };
+        }
+        let kinds = causes(&error).filter_map(|cause| cause.downcast_ref::<io::Error>());
+        if kinds.map(io::Error::kind).any(|kind| kind == io::ErrorKind::ConnectionRefused) {
+            return HttpError::NobodyListens;
+        }
+        // The library has no kind for it.
+        let is_of_name = causes(&error).any(|cause| cause.to_string().contains("dns error"));
+        if is_of_name {
+            HttpError::UnknownHost { reason }
+        } else {
+            HttpError::NoConnection { reason }
+        }
+    }
+}
+
+fn causes<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+    std::iter::successors(Some(error), |&error: &&'a (dyn Error + 'static)| error.source())
+}
+
+fn find<'a, T: Error + 'static>(error: &'a (dyn Error + 'static)) -> Option<&'a T> {
+    causes(error).find_map(<dyn Error>::downcast_ref)
+}
+
+/// What TLS says, which may be wrapped in errors of input and output, which do not name what they wrap as their source.
+fn tls_error<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a rustls::Error> {
+    let wrapped = |cause: &'a (dyn Error + 'static)| -> Option<&'a (dyn Error + 'static)> {
+        let inner = cause.downcast_ref::<io::Error>()?.get_ref()?;
+        Some(inner)
+    };
+    causes(error).find_map(|cause| cause.downcast_ref().or_else(|| tls_error(wrapped(cause)?)))
+}
+
+/// What lies at the bottom of an error, which says most.
+fn last_cause(error: &(dyn Error + 'static)) -> String {
+    causes(error).last().map(ToString::to_string).unwrap_or_default()
+}

@@ -1,0 +1,131 @@
+use std::{
+    ops::Range,
+    sync::{Mutex, OnceLock, PoisonError},
+};
+
+use bytes::Bytes;
+use corniche_tileset::{BlockingSource, SourceError};
+
+use crate::{
+    HttpAddress, HttpError, Requests,
+    answer::Version,
+    blocks::{BLOCK_BYTES, Blocks},
+    range::Ranges,
+};
+
+/// The bytes of a file on a web server. Threads wait for them, and many may do so at once.
+///
+/// All bytes are of the version of the file that the first answer had. If that changes, all further reads fail.
+#[derive(Debug)]
+pub struct HttpSource {
+    ranges: Ranges,
+    blocks: Blocks,
+    version: OnceLock<Version>,
+    /// Held by the one that asks first.
+    first: Mutex<()>,
+    /// The file is another one now.
+    changed: OnceLock<HttpError>,
+}
+
+impl HttpSource {
+    pub(crate) fn new(ranges: Ranges) -> Self {
+        Self {
+            ranges,
+            blocks: Blocks::default(),
+            version: OnceLock::new(),
+            first: Mutex::default(),
+            changed: OnceLock::new(),
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn address(&self) -> &HttpAddress {
+        self.ranges.address()
+    }
+
+    /// What was asked of the server so far.
+    #[must_use]
+    pub fn requests(&self) -> Requests {
+        self.ranges.counter.so_far()
+    }
+
+    /// How many bytes the file has, if that is known already.
+    #[must_use]
+    pub fn known_length(&self) -> Option<u64> {
+        self.version.get().map(|version| version.length)
+    }
+
+    /// The version of the file: of the first block, which is kept.
+    fn version(&self) -> Result<&Version, HttpError> {
+        if let Some(version) = self.version.get() {
+            return Ok(version);
+        }
+        let _first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(version) = self.version.get() {
+            return Ok(version);
+        }
+        let mut found = None;
+        self.blocks.get(0, 1, 1, |_| {
+            let (version, bytes) = self.ranges.get(&(0..BLOCK_BYTES), None)?;
+            found = Some(version);
+            Ok::<Bytes, HttpError>(bytes)
+        })?;
+        // The first block can only be there if it was fetched here.
+        let version =
+            found.ok_or_else(|| HttpError::Setup { what: "no first block".to_owned() })?;
+        Ok(self.version.get_or_init(|| version))
+    }
+
+    fn block(&self, number: u64, last: u64, version: &Version) -> Result<Bytes, HttpError> {
+        let count = version.length.div_ceil(BLOCK_BYTES);
+        self.blocks.get(number, last + 1 - number, count, |run: Range<u64>| {
+            if let Some(changed) = self.changed.get() {
+                return Err(changed.clone());
+            }
+            let asked = run.start * BLOCK_BYTES..version.length.min(run.end * BLOCK_BYTES);
+            let got = self.ranges.get(&asked, Some(version)).inspect_err(|error| {
+                if matches!(error, HttpError::Changed { .. }) {
+                    // Another thread may have seen it first.
+                    let _ = self.changed.set(error.clone());
+                }
+            });
+            got.map(|(_, bytes)| bytes)
+        })
+    }
+
+    fn bytes(&self, offset: u64, length: usize) -> Result<Vec<u8>, HttpError> {
+        let version = self.version()?;
+        let end = offset.checked_add(length as u64).filter(|&end| end <= version.length);
+        let Some(end) = end else {
+            return Err(HttpError::Beyond { length: version.length });
+        };
+        let mut read = Vec::with_capacity(length);
+        if length == 0 {
+            return Ok(read);
+        }
+        let last = (end - 1) / BLOCK_BYTES;
+        for number in offset / BLOCK_BYTES..=last {
+            let block = self.block(number, last, version)?;
+            let begin = number * BLOCK_BYTES;
+            let inside = offset.saturating_sub(begin) as usize
+                ..(end - begin).min(block.len() as u64) as usize;
+            read.extend_from_slice(&block[inside]);
+        }
+        Ok(read)
+    }
+}
+
+impl BlockingSource for HttpSource {
+    fn length(&self) -> Result<u64, SourceError> {
+        let version = self.version();
+        version
+            .map(|version| version.length)
+            .map_err(|error| error.of_source(self.address().shown(), 0, 0))
+    }
+
+    fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+        self.bytes(offset, length)
+            .map_err(|error| error.of_source(self.address().shown(), offset, length))
+    }
+}
