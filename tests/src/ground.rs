@@ -178,13 +178,33 @@ impl FromEarth {
     /// When PROJ fails.
     #[must_use]
     pub fn carry(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.from_degrees(&Self::step(&self.to_degrees, at))
+    }
+
+    /// The same for those positions that lie in a rectangle of degrees (west, south, east, north): a projection may fail far from its middle.
+    ///
+    /// # Panics
+    /// When PROJ fails.
+    #[must_use]
+    pub fn carry_within(&self, at: &[[f64; 3]], bounds_deg: [f64; 4]) -> Vec<[f64; 3]> {
+        let [west, south, east, north] = bounds_deg;
+        let mut degrees = Self::step(&self.to_degrees, at);
+        degrees
+            .retain(|[lon, lat, _]| (west..=east).contains(lon) && (south..=north).contains(lat));
+        self.from_degrees(&degrees)
+    }
+
+    fn from_degrees(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let [east, north] = self.metres_per_unit;
+        let carried = Self::step(&self.to_crs, at);
+        carried.into_iter().map(|[x, y, z]| [x * east, y * north, z]).collect()
+    }
+
+    fn step(transform: &CoordTransform, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut axes: Vec<Vec<f64>> =
             (0..3).map(|axis| at.iter().map(|p| p[axis]).collect()).collect();
-        for step in [&self.to_degrees, &self.to_crs] {
-            let [x, y, z] = axes.get_disjoint_mut([0, 1, 2]).unwrap();
-            step.transform_coords(x, y, z).unwrap();
-        }
-        let [east, north] = self.metres_per_unit;
-        (0..at.len()).map(|k| [axes[0][k] * east, axes[1][k] * north, axes[2][k]]).collect()
+        let [x, y, z] = axes.get_disjoint_mut([0, 1, 2]).unwrap();
+        transform.transform_coords(x, y, z).unwrap();
+        (0..at.len()).map(|k| [axes[0][k], axes[1][k], axes[2][k]]).collect()
     }
 }

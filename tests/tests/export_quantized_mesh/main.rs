@@ -212,7 +212,7 @@ fn what_cannot_be_exported_is_refused_and_leaves_nothing() {
         serde_json::from_slice(&fs::read(output.join("layer.json")).unwrap()).unwrap();
     assert!(layer["description"].as_str().unwrap().contains("unknown"), "{layer}");
     // An earlier export is replaced on demand, another folder never.
-    assert_eq!(run(&as_is).code, 2);
+    assert_eq!(run(&as_is).code, 3);
     assert_eq!(run(&[&as_is[..], &["-O"]].concat()).code, 0);
     fs::remove_dir_all(&output).unwrap();
     fs::create_dir(&output).unwrap();

@@ -1,1 +1,93 @@
+use super::*;
+use crate::globe::{geocentric_m, up_at};
 
+/// Differences of both signs: 0, −1, 1, −2, 2 and so on become 0, 1, 2, 3, 4.
+#[test]
+fn zigzag_has_the_sign_in_the_lowest_bit() {
+    assert_eq!([0, -1, 1, -2, 2].map(zigzag), [0, 1, 2, 3, 4]);
+    assert_eq!([32_767, -32_767].map(zigzag), [65_534, 65_533]);
+}
+
+/// Decoded as CesiumJS does it, normals are right to a degree.
+#[test]
+fn normals_survive_the_octahedron() {
+    let directions = [-0.9, -0.4, 0.0, 0.3, 1.0];
+    for x in directions {
+        for y in directions {
+            for z in directions {
+                let length = f64::hypot(f64::hypot(x, y), z);
+                if length == 0.0 {
+                    continue;
+                }
+                let normal = [x, y, z].map(|axis| axis / length);
+                let [p, q] = octahedral(normal).map(|byte| f64::from(byte) / 255.0 * 2.0 - 1.0);
+                let third = 1.0 - p.abs() - q.abs();
+                let [p, q] = if third < 0.0 {
+                    [(1.0 - q.abs()) * 1.0_f64.copysign(p), (1.0 - p.abs()) * 1.0_f64.copysign(q)]
+                } else {
+                    [p, q]
+                };
+                let found = f64::hypot(f64::hypot(p, q), third);
+                let cos = (p * normal[0] + q * normal[1] + third * normal[2]) / found;
+                assert!(cos > 1.0_f64.to_radians().cos(), "{normal:?}: {cos}");
+            }
+        }
+    }
+}
+
+fn vertex(u: u16, v: u16, height: u16) -> MeshVertex {
+    let share = |step: u16| f64::from(step) / f64::from(LAST_STEP);
+    let place = [9.0 + share(u), 47.0 + share(v), 1000.0 + f64::from(height)];
+    MeshVertex { u, v, place, height, at_m: geocentric_m(place), normal: up_at([9.0, 47.0]) }
+}
+
+/// A square of two triangles, byte by byte: what is where, in the order in which indices come first.
+#[test]
+fn a_square_is_laid_out_as_the_format_says() {
+    let vertices = vec![
+        vertex(0, 0, 0),
+        vertex(LAST_STEP, 0, 7),
+        vertex(0, LAST_STEP, 3),
+        vertex(LAST_STEP, LAST_STEP, 9),
+    ];
+    let mesh =
+        TileMesh { vertices, triangles: vec![[1, 3, 2], [0, 1, 2]], range_m: [1000.0, 1009.0] };
+    let bytes = encode(&mesh, Some("{}"), true);
+    let half = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
+    let word = |at: usize| u32::from(half(at)) | u32::from(half(at + 2)) << 16;
+    let single = |at: usize| f32::from_bits(word(at));
+    assert_eq!([single(24), single(28)], [1000.0, 1009.0]);
+    assert_eq!(word(88), 4);
+    // The first triangle's corners come first: 1, 3, 2, then 0.
+    let decoded = |from: usize| {
+        let mut value = 0_i32;
+        [0, 1, 2, 3].map(|k| {
+            let code = i32::from(half(from + 2 * k));
+            value += (code >> 1) ^ -(code & 1);
+            value
+        })
+    };
+    let last = i32::from(LAST_STEP);
+    assert_eq!(decoded(92), [last, last, 0, 0]);
+    assert_eq!(decoded(100), [0, last, last, 0]);
+    assert_eq!(decoded(108), [7, 9, 3, 0]);
+    assert_eq!(word(116), 2);
+    // High-water marks: 0, 1, 2, then 3 new, 0 and 2 again.
+    assert_eq!([120, 122, 124, 126, 128, 130].map(half), [0, 0, 0, 0, 4, 2]);
+    // West: 0 and 2 from the south; then south, east, north.
+    let edge = |at: usize| (word(at), [half(at + 4), half(at + 6)]);
+    assert_eq!(
+        [132, 140, 148, 156].map(edge),
+        [(2, [3, 2]), (2, [3, 0]), (2, [0, 1]), (2, [2, 1])]
+    );
+    assert_eq!((bytes[164], word(165)), (NORMALS, 8));
+    assert_eq!((bytes[177], word(178), word(182)), (METADATA, 6, 2));
+    assert_eq!(&bytes[186..], b"{}");
+    // What has no point at the horizon says so with numbers that compare as false.
+    let around_the_globe = encode(&mesh, None, false);
+    assert!(
+        around_the_globe[64..88]
+            .chunks(8)
+            .all(|axis| { f64::from_le_bytes(axis.try_into().unwrap()).is_nan() })
+    );
+}

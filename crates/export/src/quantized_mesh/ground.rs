@@ -8,8 +8,8 @@ use corniche_tin::{Placement, Surface};
 
 use crate::{error::ExportError, places::Places};
 
-/// Surfaces that stay in memory: tiles of the globe lie on few of the package's, and neighbours come one after the other.
-const KEPT: usize = 8;
+/// Surfaces that stay in memory, some hundred kilobytes each: tiles of the globe lie on few of the package's, and neighbours come one after the other.
+const KEPT: usize = 64;
 
 /// The ground, read tile by tile. It belongs to one thread.
 pub(crate) struct Ground<'a> {
@@ -64,6 +64,71 @@ impl<'a> Ground<'a> {
         let Bounds { min_x, max_x, .. } = self.around_deg;
         let turns = ((f64::midpoint(min_x, max_x) - lon) / 360.0).round();
         self.around_deg.contains([lon + 360.0 * turns, lat])
+    }
+
+    /// Longitudes and latitudes of the vertices of one of the package's levels, and of places along its edges, `spacing_m` apart, in a rectangle of
+    /// degrees, given by its south-western and north-eastern corner. A surface of other triangles is farthest from the ground at a vertex of either, or
+    /// where edges of both cross.
+    pub(crate) fn bends_deg(
+        &mut self,
+        corners_deg: [[f64; 2]; 2],
+        level: u8,
+        spacing_m: f64,
+    ) -> Result<Vec<[f64; 2]>, ExportError> {
+        let Some(area_deg) = self.near_part(corners_deg) else { return Ok(Vec::new()) };
+        let manifest = self.package.manifest();
+        let frame = &manifest.frame;
+        let step_m = frame.lattice_step_m();
+        let mut around = perimeter(area_deg);
+        self.places.working_from_wgs84(&mut around)?;
+        let mut bounds_m = Bounds::EMPTY;
+        for position in around.into_iter().filter(|place| place.iter().all(|x| x.is_finite())) {
+            bounds_m.include(position);
+        }
+        // Sides bend a little between the places of the perimeter.
+        let margin_m = 0.02 * bounds_m.width().max(bounds_m.height());
+        let corners = [
+            [bounds_m.min_x - margin_m, bounds_m.max_y + margin_m],
+            [bounds_m.max_x + margin_m, bounds_m.min_y - margin_m],
+        ];
+        let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
+            return Ok(Vec::new());
+        };
+        let inside = 0..=(1_i64 << level) - 1;
+        let [[west, north], [east, south]] = [first, last].map(|corner| {
+            frame.tile_column_row(level, corner).map(|k| k.clamp(*inside.start(), *inside.end()))
+        });
+        let mut found = Vec::new();
+        for (column, row) in (north..=south).flat_map(|row| (west..=east).map(move |c| (c, row))) {
+            let Ok(id) = TileId::new(level, column as u32, row as u32) else { continue };
+            let Some(surface) = self.surface(id)? else { continue };
+            let points = surface.points();
+            let at = |vertex: u32| points[vertex as usize].in_steps();
+            // Each edge once: it runs up in one of its triangles, and down in the other.
+            let edges = surface.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            let on_edges = edges
+                .filter(|[from, to]| from < to)
+                .flat_map(|[from, to]| between(at(from), at(to), spacing_m / step_m));
+            let places = points.iter().map(|point| point.in_steps()).chain(on_edges).map(|steps| {
+                manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
+            });
+            found.extend(places.filter(|place| area_deg.contains(*place)));
+        }
+        Ok(found)
+    }
+
+    /// The part of a rectangle of degrees that may have ground, with the longitudes of the data.
+    fn near_part(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Option<Bounds> {
+        let data = self.around_deg;
+        let middle = f64::midpoint(data.min_x, data.max_x);
+        let turns = ((middle - f64::midpoint(west, east)) / 360.0).round();
+        let part = Bounds {
+            min_x: (west + 360.0 * turns).max(data.min_x),
+            min_y: south.max(data.min_y),
+            max_x: (east + 360.0 * turns).min(data.max_x),
+            max_y: north.min(data.max_y),
+        };
+        (!part.is_empty()).then_some(part)
     }
 
     /// Heights, in the package's datum, of positions that have none yet: from the tile that holds the point one step beside. On a border of tiles these
@@ -127,4 +192,27 @@ impl<'a> Ground<'a> {
         }
         Ok(self.surfaces.last().and_then(|(_, surface)| surface.clone()))
     }
+}
+
+/// Places along the sides of a rectangle.
+fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
+    const PARTS: u32 = 16;
+    let share = |k: u32| f64::from(k) / f64::from(PARTS);
+    let x = |k: u32| bounds.min_x + bounds.width() * share(k);
+    let y = |k: u32| bounds.min_y + bounds.height() * share(k);
+    let sides = (0..=PARTS).map(|k| {
+        [[x(k), bounds.min_y], [x(k), bounds.max_y], [bounds.min_x, y(k)], [bounds.max_x, y(k)]]
+    });
+    sides.flatten().collect()
+}
+
+/// Places between two, so far apart at most as long as there are few of them: one at least.
+fn between(from: [f64; 2], to: [f64; 2], spacing: f64) -> impl Iterator<Item = [f64; 2]> {
+    const MOST_PARTS: f64 = 8.0;
+    let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
+    let parts = (length / spacing).ceil().clamp(2.0, MOST_PARTS);
+    (1..parts as u32).map(move |k| {
+        let share = f64::from(k) / parts;
+        [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share)
+    })
 }

@@ -15,9 +15,12 @@ use super::{
 use crate::globe::{cross, dot, geocentric_m};
 
 /// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
-const SHARE_OF_TIN: f64 = 0.75;
-/// The part from which on a place becomes a vertex. The rest is for the rounding of heights.
-const SHARE_OF_VERTICES: f64 = 0.95;
+const SHARE_OF_TIN: f64 = 0.7;
+/// The part from which on a place becomes a vertex. The rest is for the ground between places that are looked at ([`SHARE_OF_SAMPLES`]), and for the
+/// rounding of heights.
+const SHARE_OF_VERTICES: f64 = 0.8;
+/// The part that the level of the package may be off whose vertices are looked at.
+pub(crate) const SHARE_OF_SAMPLES: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeshVertex {
@@ -123,6 +126,46 @@ impl Mesh {
         Ok(Self { triangles, range_m: [0.0; 2] })
     }
 
+    /// Makes vertices of those places of a border that are too far from the chords between its vertices, the farthest first. What comes out depends on the
+    /// border alone, so that both tiles that share it have the same.
+    pub(crate) fn refine_border(
+        &mut self,
+        raster: &TileRaster,
+        samples: &[Sample],
+        error_m: f64,
+    ) -> Result<(), InsertionError> {
+        let limit_m = error_m * SHARE_OF_VERTICES;
+        let Some((first, last)) = samples.first().zip(samples.last()) else { return Ok(()) };
+        let axis = usize::from(first.steps[0] == last.steps[0]);
+        let other = 1 - axis;
+        let mut on_border: Vec<MeshVertex> = self
+            .triangles
+            .vertices()
+            .map(|vertex| *vertex.data())
+            .filter(|vertex| [vertex.u, vertex.v][other] == first.steps[other])
+            .collect();
+        on_border.sort_unstable_by_key(|vertex| [vertex.u, vertex.v][axis]);
+        let mut chords: Vec<[MeshVertex; 2]> =
+            on_border.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        while let Some([from, to]) = chords.pop() {
+            let [low, high] = [from, to].map(|vertex| [vertex.u, vertex.v][axis]);
+            let begin = samples.partition_point(|sample| sample.steps[axis] <= low);
+            let end = samples.partition_point(|sample| sample.steps[axis] < high);
+            let mut worst: Option<(f64, &Sample)> = None;
+            for sample in samples.get(begin..end).unwrap_or_default() {
+                let off_m = sample.above_chord_m([from.at_m, to.at_m]).abs();
+                if off_m > worst.map_or(limit_m, |(known_m, _)| known_m) {
+                    worst = Some((off_m, sample));
+                }
+            }
+            let Some((_, sample)) = worst else { continue };
+            let vertex = MeshVertex::new(sample.steps, sample.place, raster.normal_at(sample));
+            self.triangles.insert(vertex)?;
+            chords.extend([[from, vertex], [vertex, to]]);
+        }
+        Ok(())
+    }
+
     /// Makes vertices of those samples that are too far from the triangles, the farthest of each triangle first, until none is. Borders stay as they are:
     /// neighbours have the same.
     pub(crate) fn refine(
@@ -171,9 +214,9 @@ impl Mesh {
         }
     }
 
-    pub(crate) fn deviation(&self, samples: &[Sample]) -> Deviation {
+    pub(crate) fn deviation<'s>(&self, samples: impl Iterator<Item = &'s Sample>) -> Deviation {
         let mut found = Deviation::default();
-        self.each(samples.iter(), |_, _, off_m| {
+        self.each(samples, |_, _, off_m| {
             found.places += 1;
             found.largest_m = found.largest_m.max(off_m);
             found.squares_m2 += off_m * off_m;
@@ -250,6 +293,19 @@ impl Mesh {
 }
 
 impl Sample {
+    /// How far the ground is above a chord, along the vertical, at the place of the chord that is nearest in plan.
+    fn above_chord_m(&self, [a, b]: [[f64; 3]; 2]) -> f64 {
+        let from = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|axis| other[axis] - one[axis]);
+        let in_plan = |along: [f64; 3]| {
+            let rise = dot(along, self.up);
+            [0, 1, 2].map(|axis| along[axis] - rise * self.up[axis])
+        };
+        let (along, out) = (from(a, b), from(a, self.at_m));
+        let (flat, flat_out) = (in_plan(along), in_plan(out));
+        let share = dot(flat, flat_out) / dot(flat, flat).max(f64::MIN_POSITIVE);
+        dot(out, self.up) - share * dot(along, self.up)
+    }
+
     /// How far the ground is above a plane, along the vertical.
     fn above_plane_m(&self, [a, b, c]: [[f64; 3]; 3]) -> f64 {
         let from = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|axis| other[axis] - one[axis]);

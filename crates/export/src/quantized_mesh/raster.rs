@@ -2,7 +2,7 @@
 
 use super::{
     ground::Ground,
-    tiling::{Nodes, TerrainTile},
+    tiling::{LAST_STEP, Nodes, TerrainTile},
 };
 use crate::{
     error::ExportError,
@@ -194,45 +194,143 @@ impl TileRaster {
 
     /// Normal of the ground at a sample.
     pub(crate) fn normal_at(&self, sample: &Sample) -> [f64; 3] {
+        let mean = |nodes: &[usize]| {
+            let normals: Vec<[f64; 3]> = nodes.iter().map(|&at| self.normal(at)).collect();
+            unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
+        };
         match sample.around {
             Around::Node(at) => self.normal(at),
+            Around::Side(nodes) => mean(&nodes),
             Around::Cell(at) => {
                 let below = at + self.lon_deg.len();
-                let normals = [at, at + 1, below, below + 1].map(|at| self.normal(at));
-                unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
+                mean(&[at, at + 1, below, below + 1])
             }
         }
     }
 
-    /// The ground of the tile: at nodes, and in the middles of cells, where it is read again.
-    pub(crate) fn samples(&self, ground: &mut Ground<'_>) -> Result<Vec<Sample>, ExportError> {
+    /// The ground of the tile: at nodes, in the middles of cells, where one of the package's levels bends and along its edges, `spacing_m` apart, and along borders. Where the ground ends, that
+    /// level may end earlier, so there it is looked at more closely.
+    pub(crate) fn samples(
+        &self,
+        level: u8,
+        spacing_m: f64,
+        ground: &mut Ground<'_>,
+    ) -> Result<Samples, ExportError> {
         let last = self.side() - 1;
         let nodes_of =
             |side: usize| (0..side).flat_map(move |row| (0..side).map(move |c| [c, row]));
         let step = |node: usize| self.nodes.step(node as i64);
-        let mut samples = Vec::new();
+        let mut inside = Vec::new();
         for [column, row] in nodes_of(last + 1) {
             let at = self.at(column, row);
             if self.is_ground[at] {
                 let steps = [step(column), step(last - row)];
-                samples.push(Sample::new(steps, self.place(at), Around::Node(at)));
+                inside.push(Sample::new(steps, self.place(at), Around::Node(at)));
             }
         }
-        let middles: Vec<_> = nodes_of(last)
-            .map(|[column, row]| {
-                let between = |node: usize| step(node).midpoint(step(node + 1));
-                let steps = [between(column), between(last - row - 1)];
-                (steps, self.nodes.place_deg(self.tile, steps), self.at(column, row))
+        let middles = nodes_of(last).map(|[column, row]| {
+            let between = |node: usize| step(node).midpoint(step(node + 1));
+            [between(column), between(last - row - 1)]
+        });
+        let at_outlines = nodes_of(last)
+            .filter(|[column, row]| self.is_on_outline(*column, *row))
+            .flat_map(|[column, row]| self.nodes.inside_cell([column, last - row - 1]));
+        let corners_deg = self.nodes.corners_deg(self.tile);
+        let mut bends: Vec<[u16; 2]> = ground
+            .bends_deg(corners_deg, level, spacing_m)?
+            .into_iter()
+            .filter_map(|place| self.nodes.steps_at(self.tile, place))
+            .collect();
+        // Tiles of the package share vertices.
+        bends.sort_unstable();
+        bends.dedup();
+        let mut wanted: Vec<([u16; 2], Around)> = middles
+            .chain(at_outlines)
+            .chain(bends)
+            .map(|steps| (steps, Around::Cell(self.cell_at(steps))))
+            .collect();
+        let of_inside = wanted.len();
+        let along = self.nodes.border_steps();
+        for side in Side::ALL {
+            wanted.extend(along.iter().map(|&step| self.on_side(side, step)));
+        }
+        // All at once: tiles of the package are read once.
+        let places: Vec<[f64; 2]> =
+            wanted.iter().map(|(steps, _)| self.nodes.place_deg(self.tile, *steps)).collect();
+        let heights_m = ground.heights_m(&places)?;
+        let found: Vec<Option<Sample>> = wanted
+            .into_iter()
+            .zip(places)
+            .zip(heights_m)
+            .map(|(((steps, around), [lon, lat]), height_m)| {
+                let has_ground = !height_m.is_nan();
+                has_ground.then(|| Sample::new(steps, [lon, lat, height_m], around))
             })
             .collect();
-        let places: Vec<[f64; 2]> = middles.iter().map(|(_, place, _)| *place).collect();
-        let heights_m = ground.heights_m(&places)?;
-        for ((steps, [lon, lat], at), height_m) in middles.into_iter().zip(heights_m) {
-            if !height_m.is_nan() {
-                samples.push(Sample::new(steps, [lon, lat, height_m], Around::Cell(at)));
-            }
-        }
-        Ok(samples)
+        let (more_inside, on_borders) = found.split_at(of_inside);
+        inside.extend(more_inside.iter().copied().flatten());
+        let borders = on_borders
+            .chunks(along.len())
+            .map(|border| border.iter().copied().flatten().collect())
+            .collect();
+        Ok(Samples { inside, borders })
+    }
+
+    /// Whether the ground ends in the cell with this north-western node.
+    fn is_on_outline(&self, column: usize, row: usize) -> bool {
+        let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        let grounds = corners.map(|[c, r]| self.is_ground[self.at(column + c, row + r)]);
+        grounds.iter().any(|is_ground| *is_ground != grounds[0])
+    }
+
+    /// A place on a border. Its normal will come from the border's own nodes, which both tiles have.
+    fn on_side(&self, side: Side, step: u16) -> ([u16; 2], Around) {
+        let last = self.side() - 1;
+        let cell = self.nodes.cell_of(step) as usize;
+        let (steps, node): (_, fn(usize, usize) -> [usize; 2]) = match side {
+            Side::West => ([0, step], |k, last| [0, last - k]),
+            Side::South => ([step, 0], |k, last| [k, last]),
+            Side::East => ([LAST_STEP, step], |k, last| [last, last - k]),
+            Side::North => ([step, LAST_STEP], |k, _| [k, 0]),
+        };
+        let nodes = [cell, cell + 1].map(|k| {
+            let [column, row] = node(k, last);
+            self.at(column, row)
+        });
+        (steps, Around::Side(nodes))
+    }
+
+    /// The north-western node of the cell that holds u and v.
+    fn cell_at(&self, [u, v]: [u16; 2]) -> usize {
+        let [column, from_south] = [u, v].map(|step| self.nodes.cell_of(step) as usize);
+        self.at(column, self.side() - 2 - from_south)
+    }
+}
+
+/// The borders of a tile.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    West,
+    South,
+    East,
+    North,
+}
+
+impl Side {
+    const ALL: [Self; 4] = [Self::West, Self::South, Self::East, Self::North];
+}
+
+/// The ground of a tile, as its triangles must follow it.
+pub(crate) struct Samples {
+    /// Anywhere in the tile.
+    pub(crate) inside: Vec<Sample>,
+    /// Along each border, from the south or the west: the same for both tiles that share it.
+    pub(crate) borders: Vec<Vec<Sample>>,
+}
+
+impl Samples {
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Sample> {
+        self.inside.iter().chain(self.borders.iter().flatten())
     }
 }
 
@@ -241,8 +339,10 @@ impl TileRaster {
 enum Around {
     /// At a node.
     Node(usize),
-    /// In the middle of the cell whose north-western node this is.
+    /// In the cell whose north-western node this is.
     Cell(usize),
+    /// On a border, between these nodes.
+    Side([usize; 2]),
 }
 
 /// A place with ground.

@@ -6,7 +6,7 @@ use std::{
 };
 
 use corniche_geom::{Bounds, wgs84::radii_m};
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::{FilePackage, LevelRecord, Manifest};
 use corniche_tin::TriangulateError;
 use flate2::{Compression, write::GzEncoder};
 
@@ -15,7 +15,7 @@ use super::{
     encode::encode,
     ground::Ground,
     layer::{LAYER, layer, metadata},
-    mesh::{Deviation, Mesh, tin_of},
+    mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, tin_of},
     raster::TileRaster,
     request::QuantizedMeshRequest,
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
@@ -30,10 +30,12 @@ use crate::{
     workers::{Progress, on_all},
 };
 
-/// Cells along a tile's sides: the most, which makes them no longer than the level's error, and the fewest.
-const CELLS: [i64; 2] = [16, 256];
-/// On the finest level, cells of the package are so many of the raster's at least.
-const CELLS_OF_A_CELL: f64 = 2.0;
+/// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices of the package's own triangles.
+const CELLS: [i64; 2] = [16, 128];
+/// Of a level's error: how far apart places along edges are.
+const SPACING: f64 = 0.25;
+/// Parts of a cell on borders and where the ground ends, the fewest and the most.
+const PARTS: [f64; 2] = [4.0, 32.0];
 
 /// Writes a package as terrain tiles into an empty folder. After an error what is in it is of no use.
 ///
@@ -52,7 +54,7 @@ pub fn export_quantized_mesh(
     let all = with_ancestors(request.tiling, &candidates);
     let job = Job { package, request, folder };
     let total = (candidates.len() + all.len()) as u64;
-    // Which tiles have ground is told by the finest level, whose rasters are finer than the package's.
+    // Which tiles have ground is told by the nodes of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
         let progress = Progress { observer, done: 0, total };
@@ -218,10 +220,13 @@ impl<'a> Job<'a> {
         let tin = tin_of(&raster, error_m).map_err(failed)?;
         let inserted = |source| failed(TriangulateError::Insert(source));
         let mut mesh = Mesh::new(&raster, &tin).map_err(inserted)?;
-        let samples = raster.samples(ground)?;
-        mesh.refine(&raster, &samples, error_m).map_err(inserted)?;
+        let samples = raster.samples(self.sampled_level(error_m), error_m * SPACING, ground)?;
+        for border in &samples.borders {
+            mesh.refine_border(&raster, border, error_m).map_err(inserted)?;
+        }
+        mesh.refine(&raster, &samples.inside, error_m).map_err(inserted)?;
         mesh.finish();
-        let deviation = mesh.deviation(&samples);
+        let deviation = mesh.deviation(samples.all());
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available, tile);
         let bytes = encode(&mesh, metadata.as_deref(), !tiling.is_around_the_globe(tile));
@@ -244,7 +249,14 @@ impl<'a> Job<'a> {
         Ok(packed.len() as u64)
     }
 
-    /// The raster of a level: cells of half the package's, as long as tiles have few enough of them.
+    /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.
+    fn sampled_level(&self, error_m: f64) -> u8 {
+        let Manifest { levels, frame, .. } = self.package.manifest();
+        let near = |level: &&LevelRecord| level.geometric_error_m <= error_m * SHARE_OF_SAMPLES;
+        levels.iter().find(near).map_or(frame.max_level(), |level| level.level)
+    }
+
+    /// The raster of a level: cells no longer than the package's, as long as tiles have few enough of them.
     fn nodes(&self, level: u8) -> Nodes {
         let (tiling, manifest) = (self.request.tiling, self.package.manifest());
         let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
@@ -261,10 +273,13 @@ impl<'a> Job<'a> {
         let cell_m = (cell.east_m / scale_x).min(cell.north_m / scale_y);
         let [fewest, most] = CELLS;
         let mut per_tile = fewest;
-        while per_tile < most && side_m / per_tile as f64 * CELLS_OF_A_CELL > cell_m {
+        while per_tile < most && side_m / per_tile as f64 > cell_m {
             per_tile *= 2;
         }
-        Nodes { tiling, level, per_tile }
+        // As finely as the package has the ground.
+        let [least, largest] = PARTS;
+        let cells = (side_m / per_tile as f64 / cell_m).ceil().clamp(least, largest);
+        Nodes { tiling, level, per_tile, parts: cells as i64 }
     }
 
     fn empty_level(&self, level: u8) -> QuantizedMeshLevel {

@@ -125,6 +125,8 @@ pub(crate) struct Nodes {
     pub(crate) level: u8,
     /// Cells along each side of a tile.
     pub(crate) per_tile: i64,
+    /// Parts of a cell, each way, at whose ends the ground is looked at on borders and outlines.
+    pub(crate) parts: i64,
 }
 
 impl Nodes {
@@ -140,7 +142,7 @@ impl Nodes {
 
     /// Longitude of a column of nodes, counted over the globe and around it.
     pub(crate) fn lon_deg(self, i: i64) -> f64 {
-        let Self { tiling, level, per_tile } = self;
+        let Self { tiling, level, per_tile, .. } = self;
         let column = i.div_euclid(per_tile).rem_euclid(tiling.columns(level));
         let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
         west + (east - west) * self.share(i.rem_euclid(per_tile))
@@ -148,7 +150,7 @@ impl Nodes {
 
     /// Latitude of a row of nodes, counted from the south; beyond the grid, that of its edge.
     pub(crate) fn lat_deg(self, j: i64) -> f64 {
-        let Self { tiling, level, per_tile } = self;
+        let Self { tiling, level, per_tile, .. } = self;
         let j = j.clamp(0, Tiling::rows(level) * per_tile);
         let row = j.div_euclid(per_tile);
         let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
@@ -163,11 +165,66 @@ impl Nodes {
         })
     }
 
-    /// Longitude and latitude at u and v of a tile.
+    /// Longitude and latitude at u and v of a tile. On a border they are the same for both tiles, to the last bit.
     pub(crate) fn place_deg(self, tile: TerrainTile, [u, v]: [u16; 2]) -> [f64; 2] {
+        let (lon_deg, lat_deg) = (self.lon_of(tile.x, u), self.lat_of(tile.y, v));
+        [lon_deg, lat_deg]
+    }
+
+    fn lon_of(self, column: u32, u: u16) -> f64 {
+        let Self { tiling, level, per_tile, .. } = self;
+        if u == LAST_STEP {
+            return self.lon_deg((i64::from(column) + 1) * per_tile);
+        }
+        let [west, east] = [0, 1].map(|beside| tiling.lon_deg(level, i64::from(column) + beside));
+        west + (east - west) * f64::from(u) / f64::from(LAST_STEP)
+    }
+
+    fn lat_of(self, row: u32, v: u16) -> f64 {
+        let Self { tiling, level, per_tile, .. } = self;
+        if v == LAST_STEP {
+            return self.lat_deg((i64::from(row) + 1) * per_tile);
+        }
+        let [south, north] = [0, 1].map(|beside| tiling.lat_deg(level, i64::from(row) + beside));
+        south + (north - south) * f64::from(v) / f64::from(LAST_STEP)
+    }
+
+    /// u and v nearest to a longitude and latitude, if it is in the tile.
+    pub(crate) fn steps_at(self, tile: TerrainTile, [lon, lat]: [f64; 2]) -> Option<[u16; 2]> {
         let [[west, south], [east, north]] = self.corners_deg(tile);
-        let share = |step: u16| f64::from(step) / f64::from(LAST_STEP);
-        [west + (east - west) * share(u), south + (north - south) * share(v)]
+        let turns = ((f64::midpoint(west, east) - lon) / 360.0).round();
+        let shares =
+            [(lon + 360.0 * turns - west) / (east - west), (lat - south) / (north - south)];
+        let inside = shares.iter().all(|share| (0.0..=1.0).contains(share));
+        inside.then(|| shares.map(|share| (share * f64::from(LAST_STEP)).round() as u16))
+    }
+
+    /// The cell along a side that holds u or v.
+    pub(crate) fn cell_of(self, step: u16) -> i64 {
+        let guess = i64::from(step) * self.per_tile / i64::from(LAST_STEP);
+        let cell = if self.step(guess) > step { guess - 1 } else { guess };
+        cell.clamp(0, self.per_tile - 1)
+    }
+
+    /// Places inside a cell, given by its column and its row from the south: as many as parts meet.
+    pub(crate) fn inside_cell(self, cell: [usize; 2]) -> impl Iterator<Item = [u16; 2]> {
+        let at = move |axis: usize, part: i64| self.part_of_cell(cell[axis] as i64, part);
+        let inner = 1..self.parts;
+        inner.clone().flat_map(move |row| inner.clone().map(move |c| [at(0, c), at(1, row)]))
+    }
+
+    fn part_of_cell(self, cell: i64, part: i64) -> u16 {
+        let [from, to] = [cell, cell + 1].map(|node| i64::from(self.step(node)));
+        (from + (to - from) * part / self.parts) as u16
+    }
+
+    /// Steps from a border's start to its end, so many parts to a cell.
+    pub(crate) fn border_steps(self) -> Vec<u16> {
+        let inside = 0..self.per_tile * self.parts;
+        let mut steps: Vec<u16> =
+            inside.map(|k| self.part_of_cell(k / self.parts, k % self.parts)).collect();
+        steps.push(LAST_STEP);
+        steps
     }
 
     /// The same one level up, with cells twice as wide.
