@@ -79,7 +79,7 @@ fn tiles_are_the_package_s_ground() {
 fn real_regions_are_the_package_s_ground() {
     for (dem, osm, level) in [
         ("liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf", "10"),
-        ("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", "15"),
+        ("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", "13"),
     ] {
         let [Some(dem), Some(osm)] = [dem, osm].map(real_data) else { return };
         let folder = TempDir::new().unwrap();
