@@ -1,4 +1,4 @@
-//! Binary glTF 2.0: a node for each tile, with its ground and the roads of each class as lines.
+//! Binary glTF 2.0: a node for each tile, with its ground and the roads of each class, as lines or as surfaces.
 //!
 //! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
 //!
@@ -13,7 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::{
     model::TileMesh,
-    request::UpAxis,
+    request::{ModelColors, UpAxis},
     spill::Spill,
     writer::{About, MeshWriter},
 };
@@ -32,7 +32,7 @@ pub(crate) struct GlbWriter {
 }
 
 impl GlbWriter {
-    pub(crate) fn new(path: &Path, colors: &[[f32; 3]]) -> io::Result<Self> {
+    pub(crate) fn new(path: &Path, colors: &ModelColors) -> io::Result<Self> {
         let material = |(number, [red, green, blue]): (usize, &[f32; 3])| {
             let name = match number {
                 0 => "terrain".to_owned(),
@@ -118,11 +118,20 @@ impl MeshWriter for GlbWriter {
             tile.corners.iter().map(|corner| UpAxis::Y.along_axes(corner.normal)).collect();
         let positions = self.add(&Content::Vectors { vectors: &places, has_range: true })?;
         let normals = self.add(&Content::Vectors { vectors: &normals, has_range: false })?;
-        let indices = self.add(&Content::Indices(tile.triangles.as_flattened()))?;
-        let mut primitives = vec![json!({
-            "attributes": { "POSITION": positions, "NORMAL": normals },
-            "indices": indices, "material": 0, "mode": TRIANGLES,
-        })];
+        let mut primitives = Vec::new();
+        // Ground and surfaces of roads have the same vertices.
+        for (class, triangles) in tile.groups() {
+            let indices = self.add(&Content::Indices(triangles.as_flattened()))?;
+            let mut primitive = json!({
+                "attributes": { "POSITION": positions, "NORMAL": normals },
+                "indices": indices, "material": 0, "mode": TRIANGLES,
+            });
+            if let Some(class) = class {
+                primitive["material"] = json!(1 + class.number());
+                primitive["extras"] = json!({ "frc": class.number() });
+            }
+            primitives.push(primitive);
+        }
         let mut classes: Vec<_> = tile.roads.iter().map(|road| road.class).collect();
         classes.sort_unstable();
         classes.dedup();

@@ -73,7 +73,8 @@ pub(crate) fn metadata(
     available: &[Vec<Block>],
     tile: TerrainTile,
 ) -> Option<String> {
-    let tells = request.availability == Availability::Tiles && tile.z.is_multiple_of(METADATA_LEVELS);
+    let tells =
+        request.availability == Availability::Tiles && tile.z.is_multiple_of(METADATA_LEVELS);
     let beneath = || beneath(available, tile, METADATA_LEVELS);
     tells.then(|| json!({ "available": to_json(&beneath()) }).to_string())
 }

@@ -10,16 +10,10 @@
 //! share have the same bits.
 
 mod content;
-mod cut;
 mod glb;
-mod ground;
-mod label_index;
-mod lines;
 mod parts;
 mod placed;
-mod plan_cut;
 mod request;
-mod ribbon;
 mod run;
 mod skirt;
 mod texture;

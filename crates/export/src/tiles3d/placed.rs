@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_tileset::Manifest;
 
-use super::ground::GroundMesh;
 use crate::{
     error::ExportError,
     globe::{RootFrame, cross, dot, unit},
     places::Places,
+    surfaces::GroundMesh,
 };
 
 /// The finest grid of positions: 2⁻¹⁰ m.
