@@ -56,8 +56,9 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
     let size = output.place()?;
     if !summary.has_same_crs {
         messages::warning(&format!(
-            "GeoTIFF has no words for all of {}; what programs read of it may differ",
-            package.manifest().crs
+            "GeoTIFF has no words for all of the package's coordinate system ({}, heights: {}); what programs read of it may differ",
+            package.manifest().crs,
+            summary.heights
         ));
     }
     messages::note(&to_text(args, &summary, package.manifest(), size));
@@ -93,7 +94,7 @@ fn to_text(
         )
     });
     format!(
-        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
+        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
         args.output.display(),
         summary.level,
         count(summary.columns),

@@ -21,7 +21,7 @@ pub(crate) struct Block<T> {
     pub(crate) errors_m: Vec<T>,
     /// Nodes with ground.
     pub(crate) covered: u64,
-    /// Distances of the TINs from samples.
+    /// Distances of the TINs from samples, as a build counts them.
     pub(crate) sums: SampleSums,
 }
 
@@ -59,10 +59,8 @@ impl<'a> Tins<'a> {
         Ok(found)
     }
 
-    /// Heights at the nodes of a window of stride 1, row by row; NaN where there is no ground.
-    ///
-    /// Nodes on a border have the heights of the tile in the east or south, where it has ground there.
-    fn heights_m(&self, window: &NodeWindow) -> Result<Vec<f64>, ExportError> {
+    /// The ground at the nodes of a window of stride 1.
+    fn heights(&self, window: &NodeWindow) -> Result<Heights, ExportError> {
         let frame = &self.package.manifest().frame;
         let (root, stride) = (frame.root_corner(), frame.stride(self.level));
         let (side, last) = (TILE_CELLS * stride, (1_i64 << self.level) - 1);
@@ -73,7 +71,9 @@ impl<'a> Tins<'a> {
             (first..=end).rev()
         };
         let from = [window.corner.i - root.i, root.j - window.corner.j];
-        let mut found = vec![f64::NAN; window.columns * window.rows];
+        let own_tile = |from: i64, node: usize| (from + node as i64).div_euclid(side).min(last);
+        let nodes = window.columns * window.rows;
+        let mut found = Heights { heights_m: vec![f64::NAN; nodes], is_own: vec![false; nodes] };
         for y in tiles(from[1], window.rows) {
             for x in tiles(from[0], window.columns) {
                 let Ok(id) = TileId::new(self.level, x as u32, y as u32) else { continue };
@@ -81,9 +81,12 @@ impl<'a> Tins<'a> {
                 let placement =
                     WindowPlacement { column: from[0] - x * side, row: from[1] - y * side, stride };
                 let own = heights_m(&buckets, [window.columns, window.rows], placement);
-                for (height_m, own) in found.iter_mut().zip(own) {
-                    if height_m.is_nan() {
-                        *height_m = own;
+                for (place, height_m) in own.into_iter().enumerate() {
+                    if found.heights_m[place].is_nan() && !height_m.is_nan() {
+                        let (column, row) = (place % window.columns, place / window.columns);
+                        found.heights_m[place] = height_m;
+                        found.is_own[place] =
+                            [own_tile(from[0], column), own_tile(from[1], row)] == [x, y];
                     }
                 }
             }
@@ -92,13 +95,21 @@ impl<'a> Tins<'a> {
     }
 }
 
+/// Heights at the nodes of a window, row by row.
+struct Heights {
+    /// NaN where there is no ground. Nodes on a border have the heights of the tile in the east or south, where it has ground there.
+    heights_m: Vec<f64>,
+    /// Whether a node has ground of the tile in whose figures it counts: of two, the one in the east or south.
+    is_own: Vec<bool>,
+}
+
 /// Makes the block of a window.
 pub(crate) fn make<T: Number>(
     tins: &Tins<'_>,
     window: &NodeWindow,
     reader: Option<&mut Reader<'_>>,
 ) -> Result<Block<T>, ExportError> {
-    let heights_m = tins.heights_m(window)?;
+    let Heights { heights_m, is_own } = tins.heights(window)?;
     let quantum_m = tins.package.manifest().vertical.quantum_m;
     let covered = heights_m.iter().filter(|height_m| !height_m.is_nan()).count() as u64;
     let mut sums = SampleSums::new(quantum_m);
@@ -113,7 +124,7 @@ pub(crate) fn make<T: Number>(
                 return f64::NAN;
             }
             let error_m = height_m - f64::from(sample_m);
-            sums.add((!error_m.is_nan()).then_some(error_m.abs()));
+            sums.add(is_own[place].then_some(error_m.abs()));
             error_m
         });
         errors_m = whole(&own.collect::<Vec<f64>>(), window);

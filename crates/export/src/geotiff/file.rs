@@ -22,7 +22,7 @@ const SETTINGS: [(&str, &str); 3] = [
 ];
 /// DEFLATE, which every reader of TIFF has; the predictor for floating-point numbers makes it small. Bands lie one after the other, so that a program that
 /// wants heights need not read errors.
-const OPTIONS: [&str; 9] = [
+const OPTIONS: [&str; 10] = [
     "TILED=YES",
     "BLOCKXSIZE=256",
     "BLOCKYSIZE=256",
@@ -30,6 +30,8 @@ const OPTIONS: [&str; 9] = [
     "PREDICTOR=3",
     "INTERLEAVE=BAND",
     "BIGTIFF=IF_SAFER",
+    // Readers of 1.0 pass over what heights are measured from.
+    "GEOTIFF_VERSION=1.1",
     // The same bytes, whatever the environment says.
     "NUM_THREADS=1",
     "SPARSE_OK=FALSE",
@@ -76,7 +78,7 @@ pub(crate) struct RasterFile<T> {
     path: PathBuf,
     dataset: Dataset,
     crs: SpatialRef,
-    blocks: [usize; 2],
+    grid: RasterGrid,
     /// Of each band, the checksum of each block that was written.
     written: Vec<Vec<u32>>,
     numbers: std::marker::PhantomData<T>,
@@ -99,7 +101,7 @@ impl<T: Number> RasterFile<T> {
             path: path.to_path_buf(),
             dataset,
             crs,
-            blocks: grid.blocks(),
+            grid: *grid,
             written: vec![Vec::new(); facts.descriptions.len()],
             numbers: std::marker::PhantomData,
             _settings: settings,
@@ -108,26 +110,25 @@ impl<T: Number> RasterFile<T> {
 
     /// Writes the next block of a band, counted from 0.
     pub(crate) fn push(&mut self, band: usize, block: Vec<T>) -> Result<(), ExportError> {
-        let place = self.written[band].len();
-        self.written[band].push(checksum(&block));
+        let place = self.grid.place(self.written[band].len());
+        self.written[band].push(checksum(&block, &self.grid, place));
         let write = || {
             let mut raster = self.dataset.rasterband(band + 1)?;
-            let at = (place % self.blocks[0], place / self.blocks[0]);
-            raster.write_block(at, &mut Buffer::new((BLOCK, BLOCK), block))
+            raster.write_block(place.into(), &mut Buffer::new((BLOCK, BLOCK), block))
         };
         write().map_err(|error| failed(&self.path, error))
     }
 
     /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
     pub(crate) fn finish(self) -> Result<bool, ExportError> {
-        let Self { path, dataset, crs, blocks, written, .. } = self;
+        let Self { path, dataset, crs, grid, written, .. } = self;
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_dem::forget();
         dataset.close().map_err(|error| failed(&path, error))?;
         if let Some(source) = corniche_dem::failure() {
             return Err(ExportError::Write { path, source });
         }
-        let again = read_again::<T>(&path, blocks, &written, &crs);
+        let again = read_again::<T>(&path, &grid, &written, &crs);
         // A file that is cut off may not even be opened.
         match again {
             Ok(Some(is_same_crs)) => Ok(is_same_crs),
@@ -175,7 +176,7 @@ fn create<T: Number>(
 /// Whether all blocks are there as they were written (`None` if not), and then whether the file names the same CRS.
 fn read_again<T: Number>(
     path: &Path,
-    [columns, _]: [usize; 2],
+    grid: &RasterGrid,
     written: &[Vec<u32>],
     crs: &SpatialRef,
 ) -> Result<Option<bool>, GdalError> {
@@ -190,9 +191,10 @@ fn read_again<T: Number>(
     }
     for (number, written) in (1..).zip(written) {
         let band = dataset.rasterband(number)?;
-        for (place, known) in written.iter().enumerate() {
-            let block: Buffer<T> = band.read_block((place % columns, place / columns))?;
-            if checksum(block.data()) != *known {
+        for (number, known) in written.iter().enumerate() {
+            let place = grid.place(number);
+            let block: Buffer<T> = band.read_block(place.into())?;
+            if checksum(block.data(), grid, place) != *known {
                 return Ok(None);
             }
         }
@@ -202,10 +204,12 @@ fn read_again<T: Number>(
     Ok(Some(found == *crs))
 }
 
-fn checksum<T: Number>(block: &[T]) -> u32 {
-    let mut crc = Crc::new();
-    for row in block.chunks(BLOCK) {
-        let bytes: Vec<u8> = row.iter().flat_map(|number| number.bytes()).collect();
+/// Of what a block has of the raster: what is beyond it, GDAL chooses itself.
+fn checksum<T: Number>(block: &[T], grid: &RasterGrid, place: [usize; 2]) -> u32 {
+    let (mut crc, window) = (Crc::new(), grid.window(place));
+    for row in block.chunks(BLOCK).take(window.rows) {
+        let bytes: Vec<u8> =
+            row[..window.columns].iter().flat_map(|number| number.bytes()).collect();
         crc.update(&bytes);
     }
     crc.sum()

@@ -50,6 +50,12 @@ impl RasterGrid {
         [self.columns, self.rows].map(|nodes| nodes.div_ceil(BLOCK))
     }
 
+    /// Column and row of a block by its number, row by row.
+    pub(crate) fn place(&self, number: usize) -> [usize; 2] {
+        let [columns, _] = self.blocks();
+        [number % columns, number / columns]
+    }
+
     /// The nodes of a block, of which those in the east and in the south may be smaller.
     pub(crate) fn window(&self, [column, row]: [usize; 2]) -> NodeWindow {
         let from = [column * BLOCK, row * BLOCK];

@@ -7,7 +7,7 @@ fn blocks_cover_a_raster() {
         let grid = RasterGrid { corner: NodeIndex { i: -7, j: 1000 }, columns, rows };
         let [across, down] = grid.blocks();
         let windows: Vec<NodeWindow> =
-            (0..across * down).map(|k| grid.window([k % across, k / across])).collect();
+            (0..across * down).map(|k| grid.window(grid.place(k))).collect();
         let nodes: usize = windows.iter().map(|window| window.columns * window.rows).sum();
         assert_eq!(nodes, columns * rows);
         let last = windows.last().unwrap();
