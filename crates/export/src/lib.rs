@@ -55,6 +55,7 @@ mod request;
 mod roads;
 mod scratch;
 mod surfaces;
+mod texture;
 mod tiles3d;
 mod vector;
 mod ways;

@@ -6,7 +6,7 @@ use corniche_tileset::{FilePackage, Sections};
 
 use super::{
     local::LocalMetres,
-    request::{MeshRequest, ModelRoads},
+    request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
 };
 use crate::{
     cut::cut_at_bounds,
@@ -14,7 +14,8 @@ use crate::{
     piece::{Piece, Vertex},
     places::Places,
     read,
-    surfaces::{Divided, TileLines},
+    surfaces::{Divided, TileLines, across},
+    texture::Texture,
 };
 
 /// What a model has of a tile: east, north and up in local metres.
@@ -26,6 +27,15 @@ pub(crate) struct TileMesh {
     /// Of each triangle, the class of the road whose surface it is; `None` is ground.
     pub(crate) classes: Vec<Option<FunctionalRoadClass>>,
     pub(crate) roads: Vec<RoadLine>,
+    /// The photo of the ground, in formats that have pictures inside.
+    pub(crate) picture: Option<Picture>,
+}
+
+/// A picture of the ground.
+pub(crate) struct Picture {
+    pub(crate) jpeg: Vec<u8>,
+    /// Where on it each corner is, from its upper left.
+    pub(crate) places: Vec<[f32; 2]>,
 }
 
 /// A corner of the ground.
@@ -77,6 +87,7 @@ impl TileReading<'_> {
         // Corners of other triangles are left out.
         let mut place = vec![u32::MAX; mesh.vertices.len()];
         let (mut corners, mut triangles, mut classes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut acrosses = Vec::new();
         for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {
             if !is_wanted(triangle) {
                 continue;
@@ -90,6 +101,7 @@ impl TileReading<'_> {
                     let point = LatticePoint::new(at[0] as i64, at[1] as i64);
                     let is_on_border = [tile.min.u, tile.max.u].contains(&point.u)
                         || [tile.min.v, tile.max.v].contains(&point.v);
+                    acrosses.push(across(at, &tile));
                     corners.push(Corner {
                         at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),
                         normal: vertex.normal,
@@ -103,6 +115,14 @@ impl TileReading<'_> {
         if triangles.is_empty() {
             return Ok(None);
         }
+        let texture = match request.format {
+            MeshFormat::Glb => Texture::of_tile(package, id, &request.style, GROUND_COLOR)?,
+            MeshFormat::Ply | MeshFormat::Obj => None,
+        };
+        let picture = texture.map(|texture| Picture {
+            places: acrosses.iter().map(|across| texture.place(*across)).collect(),
+            jpeg: texture.jpeg,
+        });
         let pieces = match request.roads {
             ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes)?,
             ModelRoads::Surfaces | ModelRoads::None => Vec::new(),
@@ -117,7 +137,7 @@ impl TileReading<'_> {
             class: piece.class,
             points_m: piece.vertices.iter().map(point_m).collect(),
         });
-        Ok(Some(TileMesh { id, corners, triangles, classes, roads: roads.collect() }))
+        Ok(Some(TileMesh { id, corners, triangles, classes, roads: roads.collect(), picture }))
     }
 }
 

@@ -84,7 +84,7 @@ pub enum ModelRoads {
 /// Red, green and blue from 0 to 1 (sRGB) of the ground, then of the roads of each class.
 pub(crate) type ModelColors = [[f32; 3]; 1 + FunctionalRoadClass::COUNT];
 
-const GROUND_COLOR: [f32; 3] = [0.85, 0.86, 0.78];
+pub(crate) const GROUND_COLOR: [f32; 3] = [0.85, 0.86, 0.78];
 
 /// The name of what has a colour: the ground, or the roads of a class.
 pub(crate) fn group_name(class: Option<FunctionalRoadClass>) -> String {
@@ -106,7 +106,7 @@ pub struct MeshRequest {
     pub roads: ModelRoads,
     /// The classes of roads that are taken.
     pub classes: Vec<FunctionalRoadClass>,
-    /// Colours of roads, and widths of surfaces.
+    /// Colours of roads, widths of surfaces, and how strong photos are, which GLB has.
     pub style: Style,
     /// With surfaces in OBJ: the name of the file of materials, which [`MeshRequest::materials`] tells.
     pub material_file: Option<String>,

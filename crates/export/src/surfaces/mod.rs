@@ -16,6 +16,6 @@ mod ribbon;
 
 pub(crate) use self::{
     divided::Divided,
-    ground::GroundMesh,
+    ground::{GroundMesh, across},
     lines::{Road, RoadLook, TileLines},
 };

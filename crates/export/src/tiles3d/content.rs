@@ -12,13 +12,13 @@ use super::{
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
     request::{TileRoads, Tiles3dRequest},
     skirt::Skirt,
-    texture::Texture,
 };
 use crate::{
     error::ExportError,
     gltf::linear,
     read,
     surfaces::{Divided, Road, TileLines},
+    texture::Texture,
 };
 
 /// Lines are lifted by this share of their tile's error, and by [`LEAST_LIFT_M`] at least: less than a fifth of a pixel where a tile is shown with
@@ -95,7 +95,8 @@ pub(crate) fn make(
         road_triangles: placed.labels.iter().filter(|label| **label != 0).count() as u64,
         cut_s,
     };
-    let texture = Texture::of_tile(package, id, request, mean_color(manifest, request, &placed))?;
+    let texture =
+        Texture::of_tile(package, id, &request.style, mean_color(manifest, request, &placed))?;
     let mut builder = Builder::new(manifest, request, &placed, texture);
     builder.ground(&roads);
     builder.skirt(&skirt);

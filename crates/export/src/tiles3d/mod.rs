@@ -16,7 +16,6 @@ mod placed;
 mod request;
 mod run;
 mod skirt;
-mod texture;
 mod tree;
 
 pub use request::{TileRoads, Tiles3dRequest};
