@@ -4,8 +4,9 @@ mod geotiff;
 mod mesh;
 mod quantized_mesh;
 mod tiles3d;
+mod unknown_ending;
 
-use std::{io::stderr, path::Path};
+use std::io::stderr;
 
 use corniche_areas::AreaClass;
 use corniche_export::{
@@ -14,6 +15,7 @@ use corniche_export::{
 };
 use corniche_tileset::Manifest;
 
+use self::unknown_ending::unknown_ending;
 use crate::{
     args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, ExportTarget},
     exit::ExitCode,
@@ -142,15 +144,8 @@ fn format(target: &ExportTarget) -> Result<VectorFormat, Failure> {
     let named = format.map(VectorFormat::from);
     named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        no_format(output, &endings)
+        unknown_ending(output, &endings)
     })
-}
-
-fn no_format(output: &Path, endings: &str) -> Failure {
-    Failure::unusable(format!(
-        "the ending of {} says no format; use one of {endings}, or name it with --format",
-        output.display()
-    ))
 }
 
 fn to_text(

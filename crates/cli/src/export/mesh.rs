@@ -9,7 +9,7 @@ use std::{
 use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 use corniche_tileset::Manifest;
 
-use super::no_format;
+use super::unknown_ending::unknown_ending;
 use crate::{
     args::ExportMeshArgs,
     exit::ExitCode,
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let format = args.format.map(MeshFormat::from).or_else(|| MeshFormat::of_path(&args.output));
     let format = format.ok_or_else(|| {
         let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        no_format(&args.output, &endings)
+        unknown_ending(&args.output, &endings)
     })?;
     let style = styles::style(&args.style)?;
     let package = packages::open(&args.package)?;
