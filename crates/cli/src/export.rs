@@ -1,24 +1,23 @@
 //! `corniche export`: what a package holds, for other programs.
 
+mod geotiff;
+mod mesh;
 mod quantized_mesh;
 mod tiles3d;
+mod unknown_ending;
 
-use std::{io::stderr, path::Path};
+use std::io::stderr;
 
 use corniche_areas::AreaClass;
 use corniche_export::{
-    AreasRequest, AreasSummary, Coordinates, ExportSummary, MeshFormat, MeshRequest, MeshSummary,
-    RoadsRequest, UpAxis, VectorFormat, export_areas, export_mesh, export_roads,
+    AreasRequest, AreasSummary, Coordinates, ExportSummary, RoadsRequest, VectorFormat,
+    export_areas, export_roads,
 };
-use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Style;
 use corniche_tileset::Manifest;
 
+use self::unknown_ending::unknown_ending;
 use crate::{
-    args::{
-        Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs, ExportRoadsArgs,
-        ExportTarget, ModelRoads,
-    },
+    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, ExportTarget},
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
@@ -36,7 +35,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {
         Export::Roads(args) => roads(args),
         Export::Areas(args) => areas(args),
-        Export::Mesh(args) => mesh(args),
+        Export::Mesh(args) => mesh::run(args),
+        Export::GeoTiff(args) => geotiff::run(args),
         Export::Tiles3d(args) => tiles3d::run(args),
         Export::QuantizedMesh(args) => quantized_mesh::run(args),
     }
@@ -113,63 +113,6 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-fn mesh(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
-    let named = args.format.map(MeshFormat::from);
-    let format = named.or_else(|| MeshFormat::of_path(&args.output)).ok_or_else(|| {
-        let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        no_format(&args.output, &endings)
-    })?;
-    let package = packages::open(&args.package)?;
-    let style = Style::road_atlas();
-    let mut colors = [[0.85, 0.86, 0.78]; 1 + FunctionalRoadClass::COUNT];
-    for (color, road) in colors[1..].iter_mut().zip(&style.roads) {
-        *color = road.bands.main_color();
-    }
-    let request = MeshRequest {
-        format,
-        up: args.up.map_or(format.usual_up(), UpAxis::from),
-        level: args.level,
-        bounds: args.bounds,
-        classes: match args.roads {
-            ModelRoads::Lines => args.classes.classes(),
-            ModelRoads::None => Vec::new(),
-        },
-        colors,
-    };
-    let name = format!("model.{}", format.ending());
-    let existing = existing_of(args.overwrite);
-    let output = NamedOutput::create(&args.output, existing, name, &[args.package.name()])?;
-    let bars = Bars::default();
-    let exported = export_mesh(&package, &request, &output.path(), &bars);
-    bars.end();
-    let summary = exported.map_err(|error| self::named(error, &args.output))?;
-    let size = output.place()?;
-    messages::note(&mesh_to_text(args, &summary, package.manifest(), size));
-    Ok(ExitCode::Done)
-}
-
-fn mesh_to_text(
-    args: &ExportMeshArgs,
-    summary: &MeshSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
-    let [x, y] = summary.origin;
-    format!(
-        "{}: level {}, {} tiles, {} triangles, {} lines of roads, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})\nto be shown with it: {}",
-        args.output.display(),
-        summary.level,
-        count(summary.tiles),
-        count(summary.triangles),
-        count(summary.lines),
-        bytes(size),
-        manifest.crs,
-        manifest.vertical.datum,
-        manifest.attribution.join("; "),
-    )
-}
-
 fn areas_to_text(
     args: &ExportAreasArgs,
     summary: &AreasSummary,
@@ -201,15 +144,8 @@ fn format(target: &ExportTarget) -> Result<VectorFormat, Failure> {
     let named = format.map(VectorFormat::from);
     named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        no_format(output, &endings)
+        unknown_ending(output, &endings)
     })
-}
-
-fn no_format(output: &Path, endings: &str) -> Failure {
-    Failure::unusable(format!(
-        "the ending of {} says no format; use one of {endings}, or name it with --format",
-        output.display()
-    ))
 }
 
 fn to_text(

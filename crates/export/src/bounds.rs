@@ -23,6 +23,12 @@ impl DegreeBounds {
         })
     }
 
+    /// West, south, east and north; the east is not below the west, and may lie beyond 180.
+    pub(crate) fn degrees(&self) -> [f64; 4] {
+        let Self { center, half_width, south, north } = *self;
+        [center - half_width, south, center + half_width, north]
+    }
+
     /// A position as degrees east of the rectangle's middle, within ±180, and degrees of latitude.
     pub(crate) fn relative(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
         let east = lon - self.center;

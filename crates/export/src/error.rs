@@ -108,6 +108,10 @@ pub enum ExportError {
         "{path:?} is not whole (disk full?): {written} features were written, {found} can be read"
     )]
     NotWhole { path: PathBuf, written: u64, found: u64 },
+    #[error("{path:?} is not whole (disk full?): what was written is not what can be read")]
+    RasterNotWhole { path: PathBuf },
+    #[error("the elevation files cannot be read")]
+    Elevation(#[source] Box<DemError>),
     #[error("cannot read {path:?} again")]
     ReadAgain { path: PathBuf, source: io::Error },
     #[error("cannot sort in {folder:?} (disk full?)")]
@@ -130,6 +134,7 @@ impl ExportError {
                 | Self::Picture { .. }
                 | Self::Triangulate { .. }
                 | Self::NotWhole { .. }
+                | Self::RasterNotWhole { .. }
                 | Self::ReadAgain { .. }
                 | Self::Sort { .. }
                 | Self::Interrupted

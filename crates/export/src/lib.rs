@@ -20,13 +20,15 @@
 //!
 //! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
 //!
+//! [`export_geotiff`] makes a raster of the heights of a level, and of their difference from the elevation files.
+//!
 //! [`export_tiles3d`] writes all levels as 3D Tiles, [`export_quantized_mesh`] the ground as terrain tiles of a globe; only there heights are sampled
 //! on another grid.
 //!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
 //!
-//! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
-//! it is asked for.
+//! This crate never reads an extract, reads elevation files only to compare with them, never decides which road matters, and
+//! writes no file but the one it is asked for.
 
 mod area_piece;
 mod areas;
@@ -34,6 +36,8 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
+mod gdal_settings;
+mod geotiff;
 mod globe;
 mod gltf;
 mod growth;
@@ -50,6 +54,8 @@ mod read;
 mod request;
 mod roads;
 mod scratch;
+mod surfaces;
+mod texture;
 mod tiles3d;
 mod vector;
 mod ways;
@@ -59,8 +65,9 @@ pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
 pub use error::{CutError, ExportError};
 pub use feature::road_fields;
+pub use geotiff::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
-pub use mesh::{MeshFormat, MeshRequest, MeshSummary, UpAxis, export_mesh};
+pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use quantized_mesh::{

@@ -25,7 +25,6 @@ mod plan;
 mod plan_error;
 mod points_step;
 mod roads;
-mod sample_deviation;
 mod settings;
 mod settings_record;
 mod steps;
@@ -66,6 +65,6 @@ pub use terrain::recorded::TerrainRecord;
 pub use terrain::recorded_grid::grid_of;
 pub use unfinished::{folder_of, place_finished, unfinished_file};
 pub use verify::{
-    Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
-    VerifySettings, verify,
+    Check, CheckId, ErrorFigures, GapFigures, Needs, RecordedElevation, VerifyError, VerifyOsm,
+    VerifyReport, VerifySettings, verify,
 };

@@ -37,8 +37,8 @@ pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
     BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, Counts, Distribution,
     GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest, PhotoLevelRecord, PhotoRecord,
-    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord,
-    SettingsRecord, VerticalRecord,
+    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, SampleSums,
+    ScaleRecord, SettingsRecord, VerticalRecord,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};

@@ -4,6 +4,7 @@ mod contents;
 mod counts;
 mod levels;
 mod relief_levels;
+mod sample_sums;
 
 pub(crate) mod check;
 
@@ -15,3 +16,4 @@ pub use contents::{
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
 pub use relief_levels::ReliefLevels;
+pub use sample_sums::SampleSums;

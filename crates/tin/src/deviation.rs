@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use corniche_geom::{HeightGrid, IndexLists};
 
 use crate::Tin;
@@ -177,47 +179,101 @@ fn distances_m(
     window: &HeightGrid,
     placement: WindowPlacement,
 ) -> Vec<f64> {
-    let WindowPlacement { column: west, row: north, stride } = placement;
-    let (columns, rows) = (window.columns() as i64, window.rows() as i64);
-    let reach = buckets.size.map(|count| (count * BUCKET_NODES) as i64);
-    assert!(
-        stride > 0 && reach[0].max(reach[1]).checked_mul(stride).is_some_and(|far| far <= 17 << 26),
-        "a tile of {reach:?} nodes at a stride of {stride}"
-    );
-    if columns == 0 || rows == 0 {
-        return Vec::new();
-    }
     let heights_m = window.raw();
     // Where several triangles meet, the largest distance is taken: their planes differ by rounding.
     let mut distances_m = vec![f64::NAN; heights_m.len()];
-    let low = [west.div_euclid(stride), north.div_euclid(stride)];
-    let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
-    buckets.for_each_near(low, high, |triangle| {
-        let corners = triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
-        // Everything is multiplied by this number, so that it is exact on the finest tiles.
-        let scale = triangle.double_area * stride as f64;
-        let [at_m, east, south] = triangle.plane;
-        let [from_column, from_row] = corners[0];
-        for_each_row(corners, north..=north + rows - 1, |row, first, last| {
-            let (first, last) = (first.max(west), last.min(west + columns - 1));
-            if last < first {
-                return;
-            }
-            let start = ((row - north) * columns + first - west) as usize;
-            let range = start..=start + (last - first) as usize;
-            let in_row = at_m * scale
-                + south * (row - from_row) as f64
-                + east * (first - from_column) as f64;
-            let nodes = heights_m[range.clone()].iter().zip(&mut distances_m[range]);
-            // Division does not change the order, so the largest distance of a finest tile is exact except for this one
-            // rounding.
-            for (step, (&height_m, distance_m)) in nodes.enumerate() {
-                let scaled = f64::from(height_m) * scale - (in_row + east * step as f64);
-                *distance_m = distance_m.max(scaled.abs() / scale.abs());
-            }
-        });
+    buckets.for_each_stretch(placement, [window.columns(), window.rows()], |nodes, plane| {
+        let nodes = heights_m[nodes.clone()].iter().zip(&mut distances_m[nodes]);
+        // Division does not change the order, so the largest distance of a finest tile is exact except for this one
+        // rounding.
+        for (step, (&height_m, distance_m)) in nodes.enumerate() {
+            let scaled = f64::from(height_m) * plane.scale - plane.scaled_m(step);
+            *distance_m = distance_m.max(scaled.abs() / plane.scale.abs());
+        }
     });
     distances_m
+}
+
+/// Heights of a tile's TIN at the nodes of a window of the finest raster, `size` columns and rows, row by row; NaN where no triangle lies.
+///
+/// On finest tiles each is the plane's height, rounded once: the same in all triangles that meet at a node.
+///
+/// # Panics
+/// As [`measure`] does.
+#[must_use]
+pub fn heights_m(
+    buckets: &TriangleBuckets,
+    size: [usize; 2],
+    placement: WindowPlacement,
+) -> Vec<f64> {
+    let mut heights_m = vec![f64::NAN; size[0] * size[1]];
+    buckets.for_each_stretch(placement, size, |nodes, plane| {
+        for (step, height_m) in heights_m[nodes].iter_mut().enumerate() {
+            *height_m = plane.scaled_m(step) / plane.scale;
+        }
+    });
+    heights_m
+}
+
+/// The plane of a triangle along a row of nodes.
+#[derive(Debug, Clone, Copy)]
+struct RowOfPlane {
+    /// All heights are multiplied by this number, so that they are exact on the finest tiles.
+    scale: f64,
+    first_m: f64,
+    step_m: f64,
+}
+
+impl RowOfPlane {
+    /// The height some nodes after the first, times the scale.
+    #[inline]
+    fn scaled_m(&self, step: usize) -> f64 {
+        self.first_m + self.step_m * step as f64
+    }
+}
+
+impl TriangleBuckets {
+    /// Calls `each` for all stretches of nodes of a window that a triangle covers, with their places in the window.
+    #[inline]
+    fn for_each_stretch(
+        &self,
+        placement: WindowPlacement,
+        [columns, rows]: [usize; 2],
+        mut each: impl FnMut(Range<usize>, RowOfPlane),
+    ) {
+        let WindowPlacement { column: west, row: north, stride } = placement;
+        let (columns, rows) = (columns as i64, rows as i64);
+        let reach = self.size.map(|count| (count * BUCKET_NODES) as i64);
+        assert!(
+            stride > 0
+                && reach[0].max(reach[1]).checked_mul(stride).is_some_and(|far| far <= 17 << 26),
+            "a tile of {reach:?} nodes at a stride of {stride}"
+        );
+        if columns == 0 || rows == 0 {
+            return;
+        }
+        let low = [west.div_euclid(stride), north.div_euclid(stride)];
+        let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
+        self.for_each_near(low, high, |triangle| {
+            let corners =
+                triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
+            let scale = triangle.double_area * stride as f64;
+            let [at_m, east, south] = triangle.plane;
+            let [from_column, from_row] = corners[0];
+            for_each_row(corners, north..=north + rows - 1, |row, first, last| {
+                let (first, last) = (first.max(west), last.min(west + columns - 1));
+                if last < first {
+                    return;
+                }
+                let start = ((row - north) * columns + first - west) as usize;
+                let first_m = at_m * scale
+                    + south * (row - from_row) as f64
+                    + east * (first - from_column) as f64;
+                let plane = RowOfPlane { scale, first_m, step_m: east };
+                each(start..start + (last - first) as usize + 1, plane);
+            });
+        });
+    }
 }
 
 #[cfg(test)]

@@ -124,3 +124,35 @@ fn merging_takes_the_worst_and_adds_the_counts() {
     all.merge(Deviation { max_abs_m: 4.0, covered_nodes: 5, uncovered_nodes: 6 });
     assert_eq!(all, Deviation { max_abs_m: 4.0, covered_nodes: 7, uncovered_nodes: 9 });
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Heights of a TIN at any window's nodes are as far from other heights as is measured, and are missing where no triangle lies.
+    #[test]
+    fn heights_are_those_that_are_measured(
+        stride in 1_i64..9,
+        column in -20_i64..150,
+        row in -20_i64..150,
+    ) {
+        let spec = spec(3.0);
+        let raster = HeightGrid::from_fn(35, 35, |column, row| bumpy_m(column as i64, row as i64));
+        let tin = triangulate(&raster, spec).unwrap();
+        let buckets = TriangleBuckets::new(&tin, spec.quantum_m);
+        let placement = WindowPlacement { column, row, stride };
+        let size = [23, 17];
+        let heights_m = heights_m(&buckets, size, placement);
+        let level = HeightGrid::from_fn(size[0], size[1], |_, _| 0.0);
+        let mut seen = 0;
+        measure(&buckets, &level, placement, |column, row, distance_m| {
+            let height_m = heights_m[row * size[0] + column];
+            let is_same = match distance_m {
+                Some(distance_m) => (height_m.abs() - distance_m).abs() < 1e-9,
+                None => height_m.is_nan(),
+            };
+            assert!(is_same, "{height_m} {distance_m:?}");
+            seen += 1;
+        });
+        prop_assert_eq!(seen, size[0] * size[1]);
+    }
+}

@@ -1,7 +1,7 @@
 //! Height grid → TIN within an error bound.
 //!
 //! [`triangulate`] turns the heights of one tile into a [`Tin`]; [`normals`] gives its vertices normals;
-//! [`TriangleBuckets`] and [`measure`] compare it with finer heights; [`Surface`] places it on the lattice.
+//! [`TriangleBuckets`] and [`measure`] compare it with finer heights, [`heights_m`] gives its own; [`Surface`] places it on the lattice.
 //!
 //! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
 //! share they both compute from the same nodes.
@@ -20,7 +20,7 @@ mod invariants;
 mod normals;
 mod surface;
 
-pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, measure};
+pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, heights_m, measure};
 pub use invariants::check_covers_ground;
 pub use normals::{decode_normal, gradient, normals};
 pub use surface::{NO_TWIN, Placement, Surface};

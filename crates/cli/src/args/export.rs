@@ -5,7 +5,7 @@ use std::{num::NonZeroUsize, path::PathBuf};
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use corniche_areas::AreaClass;
 use corniche_export::{
-    Availability, DegreeBounds, MeshFormat, TileRoads, Tiling, UpAxis, VectorFormat,
+    Availability, DegreeBounds, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
 use corniche_presets::{BoundsChoice, Classes};
 use corniche_remote::PackagePlace;
@@ -26,6 +26,9 @@ pub(crate) enum Export {
     Areas(Box<ExportAreasArgs>),
     /// Write the ground of a package and its roads as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),
+    /// Write the heights of a package as a raster (GeoTIFF), with --dem also how far they are from the elevation files
+    #[command(name = "geotiff")]
+    GeoTiff(Box<ExportGeoTiffArgs>),
     /// Write a package as 3D Tiles, with its roads cut into the ground, for CesiumJS, three.js, deck.gl and game engines
     #[command(name = "3dtiles")]
     Tiles3d(Box<ExportTiles3dArgs>),
@@ -111,15 +114,53 @@ pub(crate) struct ExportMeshArgs {
     /// Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
     pub(crate) bounds: Option<DegreeBounds>,
-    /// Roads as lines on the ground, or none
-    #[arg(long, value_enum, default_value = "lines")]
-    pub(crate) roads: ModelRoads,
+    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or
+    /// none
+    #[arg(
+        long,
+        value_enum,
+        default_value = "lines",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
+    pub(crate) roads: ModelRoadsArg,
+    /// Colours and widths of roads: road-atlas, dark, relief, photo or a style file (TOML)
+    #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
+    pub(crate) style: String,
     /// Functional road classes that are taken, such as 0-4,7
     #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
     pub(crate) classes: Classes,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportGeoTiffArgs {
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
+    /// The file to write: .tif or .tiff
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// The level whose triangles are taken [default: the finest]; pixels are the nodes of the finest level in any case
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+    /// Take the nodes in a rectangle of WGS84 degrees, rounded outwards; a west beyond the east crosses 180°
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
+    pub(crate) bounds: Option<DegreeBounds>,
+    /// The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(crate) dem: Vec<PathBuf>,
+    /// With --dem: the polygon that the package was cut with
+    #[arg(long, value_name = "FILE", requires = "dem")]
+    pub(crate) polygon: Option<PathBuf>,
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 #[derive(Debug, Args)]
@@ -277,6 +318,16 @@ pub(crate) enum TileRoadsArg {
     None,
 }
 
+impl From<ModelRoadsArg> for ModelRoads {
+    fn from(roads: ModelRoadsArg) -> Self {
+        match roads {
+            ModelRoadsArg::Lines => Self::Lines,
+            ModelRoadsArg::Surfaces => Self::Surfaces,
+            ModelRoadsArg::None => Self::None,
+        }
+    }
+}
+
 impl From<TileRoadsArg> for TileRoads {
     fn from(roads: TileRoadsArg) -> Self {
         match roads {
@@ -324,9 +375,11 @@ impl From<ModelFormat> for MeshFormat {
 
 /// What a model has of roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModelRoads {
+pub(crate) enum ModelRoadsArg {
     /// Their centre-lines on the ground
     Lines,
+    /// Surfaces in the ground's own triangles
+    Surfaces,
     /// Nothing
     None,
 }

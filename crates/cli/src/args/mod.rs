@@ -27,8 +27,8 @@ use clap::{
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportMeshArgs,
-    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, ModelRoads, Skirts,
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportGeoTiffArgs, ExportMeshArgs,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, Skirts,
     TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;

@@ -84,7 +84,8 @@ impl RecordedHeights {
                 && quoted(&horizontal.wkt).is_some_and(|name| quoted(&vertical.wkt) == Some(name));
             return is_its_own.then(|| vertical.wkt.to_string());
         }
-        let upwards = vertical.metres_upwards_wkt();
+        let registered = registered_in_metres(vertical);
+        let upwards = registered.unwrap_or_else(|| vertical.metres_upwards_wkt());
         let name = |wkt| quoted(wkt).unwrap_or("unnamed");
         let both = format!("{} + {}", name(&horizontal.wkt), name(&upwards));
         Some(format!("COMPOUNDCRS[\"{both}\",{},{upwards}]", horizontal.wkt))
@@ -114,6 +115,18 @@ impl RecordedHeights {
         }
         operation.carry(positions_m.iter().map(place).collect(), heights_m)
     }
+}
+
+/// The registered system of the same datum in metres upwards, for one in feet or downwards: formats that name systems by codes, such as `GeoTIFF`,
+/// have no words for one without. `None` where the system is one of metres upwards itself, or there is no other.
+fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
+    let is_plain =
+        |vertical: &VerticalCrs| (vertical.unit_m - 1.0).abs() < f64::EPSILON && !vertical.is_down;
+    let datum = vertical.datum.as_ref().filter(|_| !is_plain(vertical))?;
+    let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();
+    let is_meant = |found: &VerticalCrs| is_plain(found) && found.datum.as_ref() == Some(datum);
+    let found = VERTICAL.into_iter().flatten().filter_map(of_code).find(is_meant)?;
+    Some(found.wkt.to_string())
 }
 
 #[cfg(test)]

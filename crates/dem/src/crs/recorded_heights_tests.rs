@@ -35,6 +35,7 @@ fn a_compound_crs_has_metres_upwards() {
         assert!(read.is_compound() && read.is_projected(), "{wkt}");
         let vertical = VerticalCrs::of_wkt(&wkt).unwrap().unwrap();
         assert!((vertical.unit_m - 1.0).abs() < 1e-15 && !vertical.is_down, "{wkt}");
+        assert!(wkt.contains("ID[\"EPSG\",5773]") || wkt.contains("ID[\"EPSG\",5703]"), "{wkt}");
     }
 }
 

@@ -27,7 +27,7 @@ const AROUND_SAMPLES: i64 = 2;
 /// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
-fn nodes_of(
+pub(crate) fn nodes_of(
     bounds_deg: [f64; 4],
     working: &Working,
     area_deg: Bounds,

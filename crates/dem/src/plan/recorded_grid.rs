@@ -2,9 +2,10 @@
 
 use corniche_geom::{Bounds, Frame, NodeIndex};
 
-use crate::RecordedCrs;
+use crate::plan::clip;
 use crate::plan::grid_plan::{Clip, GridPlan, PlanScale, Resampling, bounds_of};
 use crate::plan::planning::libraries;
+use crate::{DemError, RecordedCrs};
 
 /// What a package records of its grid, beside its CRS.
 #[derive(Debug, Clone)]
@@ -40,6 +41,20 @@ pub struct RecordedGrid {
 }
 
 impl RecordedCrs {
+    /// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes of a package's grid, its south-western and north-eastern one, rounded
+    /// outwards as those of a build are. They may reach beyond the data. `area_deg` is the rectangle for which PROJ chooses its operation.
+    ///
+    /// # Errors
+    /// When the bounds have no place in the CRS.
+    pub fn nodes_within(
+        &self,
+        bounds_deg: [f64; 4],
+        frame: &Frame,
+        area_deg: Bounds,
+    ) -> Result<[NodeIndex; 2], DemError> {
+        clip::nodes_of(bounds_deg, self.working(), area_deg, frame.origin_m(), frame.cell())
+    }
+
     /// The plan of a package whose elevation files are not there. No height can be read with it: it has no file.
     #[must_use]
     pub fn plan(&self, recorded: RecordedGrid) -> GridPlan {

@@ -1,3 +1,5 @@
+use serde_json::{Value, json};
+
 /// Target of a view of vertices.
 pub(crate) const ARRAY_BUFFER: u32 = 34_962;
 /// Target of a view of indices.
@@ -10,6 +12,19 @@ pub(crate) const F32: u32 = 5126;
 /// Modes of primitives.
 pub(crate) const LINES: u32 = 1;
 pub(crate) const TRIANGLES: u32 = 4;
+
+/// Filters and wrapping of samplers.
+const LINEAR: u32 = 9729;
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+const CLAMP_TO_EDGE: u32 = 33_071;
+
+/// How pictures of the ground are read: smoothly, and never across their edge.
+pub(crate) fn sampler() -> Value {
+    json!({
+        "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR,
+        "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
+    })
+}
 
 /// A channel of sRGB as a linear one (IEC 61966-2-1).
 pub(crate) fn linear(channel: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! Binary glTF 2.0: a node for each tile, with its ground and the roads of each class as lines.
+//! Binary glTF 2.0: a node for each tile, with its ground, under its photo if it has one, and the roads of each class, as lines or as surfaces.
 //!
 //! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
 //!
@@ -13,13 +13,13 @@ use serde_json::{Map, Value, json};
 
 use super::{
     model::TileMesh,
-    request::UpAxis,
+    request::{ModelColors, UpAxis},
     spill::Spill,
     writer::{About, MeshWriter},
 };
 use crate::gltf::{
-    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U32, linear, range_of,
-    write_container,
+    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U32, linear,
+    range_of, sampler, write_container,
 };
 
 pub(crate) struct GlbWriter {
@@ -29,10 +29,12 @@ pub(crate) struct GlbWriter {
     meshes: Vec<Value>,
     nodes: Vec<Value>,
     materials: Vec<Value>,
+    /// Views of pictures; textures have the same numbers.
+    images: Vec<Value>,
 }
 
 impl GlbWriter {
-    pub(crate) fn new(path: &Path, colors: &[[f32; 3]]) -> io::Result<Self> {
+    pub(crate) fn new(path: &Path, colors: &ModelColors) -> io::Result<Self> {
         let material = |(number, [red, green, blue]): (usize, &[f32; 3])| {
             let name = match number {
                 0 => "terrain".to_owned(),
@@ -55,6 +57,7 @@ impl GlbWriter {
             meshes: Vec::new(),
             nodes: Vec::new(),
             materials: colors.iter().enumerate().map(material).collect(),
+            images: Vec::new(),
         })
     }
 
@@ -76,6 +79,13 @@ impl GlbWriter {
                 }
                 (ARRAY_BUFFER, accessor)
             }
+            Content::Places(places) => {
+                let flat = places.as_flattened().iter();
+                self.bytes.push(bytes_of(flat.map(|v| v.to_le_bytes())).as_slice())?;
+                let accessor =
+                    json!({ "componentType": F32, "type": "VEC2", "count": places.len() });
+                (ARRAY_BUFFER, accessor)
+            }
             Content::Indices(indices) => {
                 self.bytes
                     .push(bytes_of(indices.iter().map(|index| index.to_le_bytes())).as_slice())?;
@@ -95,8 +105,38 @@ impl GlbWriter {
     }
 }
 
+impl GlbWriter {
+    /// Adds a picture; returns the number of a material that shows it.
+    fn add_picture(&mut self, jpeg: &[u8], name: &str) -> io::Result<usize> {
+        let offset = self.bytes.length();
+        self.bytes.push(jpeg)?;
+        // What follows begins at a multiple of its numbers' size.
+        self.bytes.push(
+            &[0; CHUNK_ALIGNMENT][..jpeg.len().next_multiple_of(CHUNK_ALIGNMENT) - jpeg.len()],
+        )?;
+        self.views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": jpeg.len() }));
+        self.images.push(json!({
+            "bufferView": self.views.len() - 1, "mimeType": "image/jpeg", "name": name,
+        }));
+        self.materials.push(json!({
+            "name": format!("photo {name}"),
+            "pbrMetallicRoughness": {
+                "baseColorTexture": { "index": self.images.len() - 1 },
+                "metallicFactor": 0.0,
+                "roughnessFactor": 1.0,
+            },
+        }));
+        Ok(self.materials.len() - 1)
+    }
+}
+
 enum Content<'a> {
-    Vectors { vectors: &'a [[f32; 3]], has_range: bool },
+    Vectors {
+        vectors: &'a [[f32; 3]],
+        has_range: bool,
+    },
+    /// On a picture.
+    Places(&'a [[f32; 2]]),
     Indices(&'a [u32]),
 }
 
@@ -118,11 +158,31 @@ impl MeshWriter for GlbWriter {
             tile.corners.iter().map(|corner| UpAxis::Y.along_axes(corner.normal)).collect();
         let positions = self.add(&Content::Vectors { vectors: &places, has_range: true })?;
         let normals = self.add(&Content::Vectors { vectors: &normals, has_range: false })?;
-        let indices = self.add(&Content::Indices(tile.triangles.as_flattened()))?;
-        let mut primitives = vec![json!({
-            "attributes": { "POSITION": positions, "NORMAL": normals },
-            "indices": indices, "material": 0, "mode": TRIANGLES,
-        })];
+        let name = tile.id.to_string();
+        let picture = match &tile.picture {
+            Some(picture) => {
+                let places = self.add(&Content::Places(&picture.places))?;
+                Some((self.add_picture(&picture.jpeg, &name)?, places))
+            }
+            None => None,
+        };
+        let mut primitives = Vec::new();
+        // Ground and surfaces of roads have the same vertices.
+        for (class, triangles) in tile.groups() {
+            let indices = self.add(&Content::Indices(triangles.as_flattened()))?;
+            let mut primitive = json!({
+                "attributes": { "POSITION": positions, "NORMAL": normals },
+                "indices": indices, "material": 0, "mode": TRIANGLES,
+            });
+            if let Some(class) = class {
+                primitive["material"] = json!(1 + class.number());
+                primitive["extras"] = json!({ "frc": class.number() });
+            } else if let Some((material, places)) = picture {
+                primitive["material"] = json!(material);
+                primitive["attributes"]["TEXCOORD_0"] = json!(places);
+            }
+            primitives.push(primitive);
+        }
         let mut classes: Vec<_> = tile.roads.iter().map(|road| road.class).collect();
         classes.sort_unstable();
         classes.dedup();
@@ -141,7 +201,6 @@ impl MeshWriter for GlbWriter {
                 "extras": { "frc": class.number() },
             }));
         }
-        let name = tile.id.to_string();
         self.meshes.push(json!({ "name": name, "primitives": primitives }));
         self.nodes.push(json!({
             "name": name,
@@ -152,13 +211,13 @@ impl MeshWriter for GlbWriter {
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
-        let Self { bytes, views, accessors, meshes, nodes, materials } = *self;
+        let Self { bytes, views, accessors, meshes, nodes, materials, images } = *self;
         let facts: Map<String, Value> = about
             .facts
             .iter()
             .map(|(name, text)| ((*name).to_owned(), Value::from(text.as_str())))
             .collect();
-        let document = json!({
+        let mut document = json!({
             "asset": {
                 "version": "2.0",
                 "generator": about.fact("generator"),
@@ -174,6 +233,12 @@ impl MeshWriter for GlbWriter {
             "bufferViews": views,
             "buffers": [{ "byteLength": bytes.length() }],
         });
+        if !images.is_empty() {
+            document["samplers"] = json!([sampler()]);
+            document["textures"] =
+                (0..images.len()).map(|source| json!({ "source": source, "sampler": 0 })).collect();
+            document["images"] = json!(images);
+        }
         let length = bytes.length();
         write_container(into, &document, length, |mut into| bytes.copy_to(&mut into))
     }

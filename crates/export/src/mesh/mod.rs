@@ -1,7 +1,7 @@
 //! The ground of a level, with its roads as lines, as a model for 3D programs: GLB, PLY, OBJ.
 //!
 //! ```text
-//!   tiles of a level ──► ground in local metres, road lines ──► a writer for each format ──► one file
+//!   tiles of a level ──► ground in local metres, road lines or surfaces ──► a writer for each format ──► one file
 //! ```
 //!
 //! Memory holds one tile, and where tiles meet. Positions are those of the package: nothing is simplified or moved.
@@ -18,6 +18,6 @@ mod weld;
 mod writer;
 
 pub use self::{
-    request::{MeshFormat, MeshRequest, UpAxis},
+    request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
     run::{MeshSummary, export_mesh},
 };

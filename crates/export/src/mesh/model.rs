@@ -1,17 +1,21 @@
 //! One tile of a model.
 
-use corniche_geom::{NodeIndex, TileId};
+use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, Sections};
-use corniche_tin::decode_normal;
 
-use super::{local::LocalMetres, request::MeshRequest};
+use super::{
+    local::LocalMetres,
+    request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
+};
 use crate::{
     cut::cut_at_bounds,
     error::ExportError,
     piece::{Piece, Vertex},
     places::Places,
     read,
+    surfaces::{Divided, TileLines, across},
+    texture::Texture,
 };
 
 /// What a model has of a tile: east, north and up in local metres.
@@ -20,7 +24,18 @@ pub(crate) struct TileMesh {
     pub(crate) corners: Vec<Corner>,
     /// Counter-clockwise from above.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Of each triangle, the class of the road whose surface it is; `None` is ground.
+    pub(crate) classes: Vec<Option<FunctionalRoadClass>>,
     pub(crate) roads: Vec<RoadLine>,
+    /// The photo of the ground, in formats that have pictures inside.
+    pub(crate) picture: Option<Picture>,
+}
+
+/// A picture of the ground.
+pub(crate) struct Picture {
+    pub(crate) jpeg: Vec<u8>,
+    /// Where on it each corner is, from its upper left.
+    pub(crate) places: Vec<[f32; 2]>,
 }
 
 /// A corner of the ground.
@@ -28,8 +43,8 @@ pub(crate) struct TileMesh {
 pub(crate) struct Corner {
     pub(crate) at_m: [f64; 3],
     pub(crate) normal: [f32; 3],
-    /// Its node if other tiles may have it, too: it lies on the tile's border.
-    pub(crate) shared: Option<NodeIndex>,
+    /// Where it is if other tiles may have it, too: it lies on the tile's border.
+    pub(crate) shared: Option<LatticePoint>,
 }
 
 /// A line of a road on the ground.
@@ -38,60 +53,80 @@ pub(crate) struct RoadLine {
     pub(crate) points_m: Vec<[f64; 3]>,
 }
 
-impl TileMesh {
+/// What all tiles of a model are read with.
+pub(crate) struct TileReading<'a> {
+    pub(crate) package: &'a FilePackage,
+    pub(crate) request: &'a MeshRequest,
+    pub(crate) places: &'a Places<'a>,
+    pub(crate) local: LocalMetres,
+    /// The lines that become surfaces, if they do.
+    pub(crate) lines: Option<TileLines<'a>>,
+}
+
+impl TileReading<'_> {
     /// Reads a tile; `None` without ground in the bounds.
-    pub(crate) fn read(
-        package: &FilePackage,
-        id: TileId,
-        request: &MeshRequest,
-        places: &Places<'_>,
-        local: &LocalMetres,
-    ) -> Result<Option<Self>, ExportError> {
-        let wanted = Sections::TERRAIN | read::road_sections();
+    pub(crate) fn read(&self, id: TileId) -> Result<Option<TileMesh>, ExportError> {
+        let Self { package, request, places, local, lines } = self;
+        let wanted = match request.roads {
+            ModelRoads::Lines => Sections::TERRAIN | read::road_sections(),
+            ModelRoads::Surfaces | ModelRoads::None => Sections::TERRAIN,
+        };
         let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
         let Some(terrain) = &payload.terrain else { return Ok(None) };
         let manifest = package.manifest();
         let frame = &manifest.frame;
-        let window = frame.tile_window(id);
-        let (last_column, last_row) = ((window.columns - 1) as u16, (window.rows - 1) as u16);
-        let vertices = terrain.tin.vertices();
-        let node = |index: u32| {
-            let vertex = vertices[index as usize];
-            window.node(usize::from(vertex.column), usize::from(vertex.row))
+        let divided = Divided::of_tile(manifest, id, terrain, lines.as_ref())?;
+        let Some(divided) = divided else { return Ok(None) };
+        let mesh = &divided.mesh;
+        let on_lattice = |corner: u32| mesh.on_lattice(&mesh.vertices[corner as usize]);
+        let is_wanted = |corners: &[u32; 3]| {
+            let places = || corners.map(|corner| places.wgs84(on_lattice(corner)));
+            request.bounds.is_none_or(|bounds| bounds.may_meet(&places()))
         };
-        let wgs84_of = |index: u32| {
-            let point = frame.lattice_of_node(node(index));
-            places.wgs84([point.u as f64, point.v as f64])
-        };
-        let is_wanted = |corners: &&[u32; 3]| {
-            request.bounds.is_none_or(|bounds| bounds.may_meet(&corners.map(wgs84_of)))
-        };
-        let wanted: Vec<[u32; 3]> =
-            terrain.tin.triangles().iter().filter(is_wanted).copied().collect();
-        if wanted.is_empty() {
-            return Ok(None);
-        }
+        let tile = frame.tile_lattice_bounds(id);
         // Corners of other triangles are left out.
-        let mut place = vec![u32::MAX; vertices.len()];
-        let mut corners = Vec::new();
-        for &index in wanted.as_flattened() {
-            let place = &mut place[index as usize];
-            if *place != u32::MAX {
+        let mut place = vec![u32::MAX; mesh.vertices.len()];
+        let (mut corners, mut triangles, mut classes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut acrosses = Vec::new();
+        for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {
+            if !is_wanted(triangle) {
                 continue;
             }
-            *place = corners.len() as u32;
-            let (vertex, node) = (vertices[index as usize], node(index));
-            let height_m = f64::from(vertex.height_q) * manifest.vertical.quantum_m;
-            let is_on_border =
-                [0, last_column].contains(&vertex.column) || [0, last_row].contains(&vertex.row);
-            corners.push(Corner {
-                at_m: local.of([frame.x_m(node.i), frame.y_m(node.j)], height_m),
-                normal: decode_normal(terrain.normals[index as usize]),
-                shared: is_on_border.then_some(node),
-            });
+            triangles.push(triangle.map(|corner| {
+                let place = &mut place[corner as usize];
+                if *place == u32::MAX {
+                    *place = corners.len() as u32;
+                    let (vertex, at) = (&mesh.vertices[corner as usize], on_lattice(corner));
+                    // All vertices lie on the lattice.
+                    let point = LatticePoint::new(at[0] as i64, at[1] as i64);
+                    let is_on_border = [tile.min.u, tile.max.u].contains(&point.u)
+                        || [tile.min.v, tile.max.v].contains(&point.v);
+                    acrosses.push(across(at, &tile));
+                    corners.push(Corner {
+                        at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),
+                        normal: vertex.normal,
+                        shared: is_on_border.then_some(point),
+                    });
+                }
+                *place
+            }));
+            classes.push(divided.class_of(*label));
         }
-        let triangles = wanted.iter().map(|own| own.map(|index| place[index as usize])).collect();
-        let pieces = read::pieces_of(&payload, manifest, &request.classes)?;
+        if triangles.is_empty() {
+            return Ok(None);
+        }
+        let texture = match request.format {
+            MeshFormat::Glb => Texture::of_tile(package, id, &request.style, GROUND_COLOR)?,
+            MeshFormat::Ply | MeshFormat::Obj => None,
+        };
+        let picture = texture.map(|texture| Picture {
+            places: acrosses.iter().map(|across| texture.place(*across)).collect(),
+            jpeg: texture.jpeg,
+        });
+        let pieces = match request.roads {
+            ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes)?,
+            ModelRoads::Surfaces | ModelRoads::None => Vec::new(),
+        };
         let cut = |piece: Piece| match &request.bounds {
             Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
             None => vec![piece],
@@ -102,6 +137,17 @@ impl TileMesh {
             class: piece.class,
             points_m: piece.vertices.iter().map(point_m).collect(),
         });
-        Ok(Some(Self { id, corners, triangles, roads: roads.collect() }))
+        Ok(Some(TileMesh { id, corners, triangles, classes, roads: roads.collect(), picture }))
+    }
+}
+
+impl TileMesh {
+    /// The triangles of the ground, then those of each class of roads; none that is empty.
+    pub(crate) fn groups(&self) -> Vec<(Option<FunctionalRoadClass>, Vec<[u32; 3]>)> {
+        let mut groups = std::collections::BTreeMap::new();
+        for (triangle, class) in self.triangles.iter().zip(&self.classes) {
+            groups.entry(*class).or_insert_with(Vec::new).push(*triangle);
+        }
+        groups.into_iter().collect()
     }
 }

@@ -1,4 +1,5 @@
-//! Wavefront OBJ: the ground as one group of triangles, roads of each class as a group of lines.
+//! Wavefront OBJ: the ground as one group of triangles, roads of each class as a group of lines, or of triangles
+//! with a material.
 
 use std::{
     fmt::Write as _,
@@ -8,7 +9,7 @@ use std::{
 
 use super::{
     model::TileMesh,
-    request::UpAxis,
+    request::{UpAxis, group_name},
     spill::Spill,
     weld::Welding,
     writer::{About, MeshWriter},
@@ -16,6 +17,8 @@ use super::{
 
 pub(crate) struct ObjWriter {
     up: UpAxis,
+    /// The file of materials, where groups have some.
+    material_file: Option<String>,
     welding: Welding,
     /// Everything but the head.
     lines: Spill,
@@ -26,15 +29,21 @@ pub(crate) struct ObjWriter {
 }
 
 impl ObjWriter {
-    pub(crate) fn new(path: &Path, up: UpAxis) -> io::Result<Self> {
-        let lines = Spill::beside(path)?;
-        Ok(Self { up, welding: Welding::default(), lines, positions: 0, position_of: Vec::new() })
+    pub(crate) fn new(path: &Path, up: UpAxis, material_file: Option<String>) -> io::Result<Self> {
+        Ok(Self {
+            up,
+            material_file,
+            welding: Welding::default(),
+            lines: Spill::beside(path)?,
+            positions: 0,
+            position_of: Vec::new(),
+        })
     }
 }
 
 impl MeshWriter for ObjWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
-        let Self { up, welding, lines, positions, position_of } = self;
+        let Self { up, material_file, welding, lines, positions, position_of } = self;
         // Writing to a text cannot fail. To a tenth of a millimetre.
         let position = |text: &mut String, at_m: [f64; 3]| {
             let [x, y, z] = up.along_axes(at_m);
@@ -49,13 +58,19 @@ impl MeshWriter for ObjWriter {
             position_of.push(*positions);
             u32::try_from(position_of.len()).map_err(io::Error::other)
         })?;
-        text.push_str("g terrain\n");
-        for triangle in &tile.triangles {
-            let [a, b, c] = triangle.map(|corner| {
-                let number = numbers[corner as usize];
-                format!("{}//{number}", position_of[number as usize - 1])
-            });
-            let _ = writeln!(text, "f {a} {b} {c}");
+        for (class, triangles) in tile.groups() {
+            let name = group_name(class);
+            let _ = writeln!(text, "g {name}");
+            if material_file.is_some() {
+                let _ = writeln!(text, "usemtl {name}");
+            }
+            for triangle in triangles {
+                let [a, b, c] = triangle.map(|corner| {
+                    let number = numbers[corner as usize];
+                    format!("{}//{number}", position_of[number as usize - 1])
+                });
+                let _ = writeln!(text, "f {a} {b} {c}");
+            }
         }
         for road in &tile.roads {
             let first = *positions + 1;
@@ -63,7 +78,7 @@ impl MeshWriter for ObjWriter {
                 position(&mut text, *point);
                 *positions += 1;
             }
-            let _ = write!(text, "g roads_frc_{}\nl", road.class.number());
+            let _ = write!(text, "g {}\nl", group_name(Some(road.class)));
             for number in first..=*positions {
                 let _ = write!(text, " {number}");
             }
@@ -76,6 +91,9 @@ impl MeshWriter for ObjWriter {
         let mut into = into;
         for (name, text) in &about.facts {
             writeln!(into, "# {name}: {}", text.replace(['\n', '\r'], " "))?;
+        }
+        if let Some(file) = &self.material_file {
+            writeln!(into, "mtllib {file}")?;
         }
         self.lines.copy_to(&mut into)
     }

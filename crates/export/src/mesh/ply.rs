@@ -1,4 +1,4 @@
-//! PLY: vertices of the ground and of roads, triangles, and roads as edges. The class of a road is told by its vertices: not all programs
+//! PLY: vertices of the ground and of roads, triangles, and roads as edges or as triangles with a class and a colour. The class of a road is told by its vertices: not all programs
 //! read more of an edge than its ends.
 //!
 //! Source: Greg Turk 1994, *The PLY Polygon File Format*.
@@ -8,9 +8,11 @@ use std::{
     path::Path,
 };
 
+use corniche_roads::FunctionalRoadClass;
+
 use super::{
     model::TileMesh,
-    request::UpAxis,
+    request::{ModelColors, UpAxis},
     spill::Spill,
     weld::Welding,
     writer::{About, MeshWriter},
@@ -22,6 +24,8 @@ const UPWARDS: [f32; 3] = [0.0, 0.0, 1.0];
 
 pub(crate) struct PlyWriter {
     up: UpAxis,
+    /// Where faces have a class and a colour.
+    colors: Option<ModelColors>,
     welding: Welding,
     vertices: Vertices,
     faces: Spill,
@@ -55,9 +59,10 @@ impl Vertices {
 }
 
 impl PlyWriter {
-    pub(crate) fn new(path: &Path, up: UpAxis) -> io::Result<Self> {
+    pub(crate) fn new(path: &Path, up: UpAxis, colors: Option<ModelColors>) -> io::Result<Self> {
         Ok(Self {
             up,
+            colors,
             welding: Welding::default(),
             vertices: Vertices { spill: Spill::beside(path)?, count: 0 },
             faces: Spill::beside(path)?,
@@ -74,10 +79,16 @@ impl MeshWriter for PlyWriter {
         let numbers = self
             .welding
             .numbers(tile, |corner| vertices.add(up, corner.at_m, corner.normal, NO_ROAD))?;
-        for triangle in &tile.triangles {
+        for (triangle, class) in tile.triangles.iter().zip(&tile.classes) {
             self.faces.push(&[3])?;
             for corner in triangle {
                 self.faces.push(&numbers[*corner as usize].to_le_bytes())?;
+            }
+            if let Some(colors) = &self.colors {
+                let number = class.map_or(NO_ROAD, FunctionalRoadClass::number);
+                let color = colors[class.map_or(0, |class| 1 + usize::from(class.number()))];
+                self.faces.push(&[number])?;
+                self.faces.push(&color.map(|channel| (channel * 255.0).round() as u8))?;
             }
         }
         self.face_count += tile.triangles.len() as u64;
@@ -96,7 +107,7 @@ impl MeshWriter for PlyWriter {
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
-        let Self { vertices, faces, edges, face_count, edge_count, .. } = *self;
+        let Self { colors, vertices, faces, edges, face_count, edge_count, .. } = *self;
         let mut into = into;
         writeln!(into, "ply\nformat binary_little_endian 1.0")?;
         for (name, text) in &about.facts {
@@ -112,6 +123,11 @@ impl MeshWriter for PlyWriter {
         }
         writeln!(into, "property uchar frc")?;
         writeln!(into, "element face {face_count}\nproperty list uchar int vertex_indices")?;
+        if colors.is_some() {
+            for name in ["frc", "red", "green", "blue"] {
+                writeln!(into, "property uchar {name}")?;
+            }
+        }
         if edge_count > 0 {
             writeln!(
                 into,

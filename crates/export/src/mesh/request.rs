@@ -1,6 +1,7 @@
-use std::path::Path;
+use std::{fmt::Write as _, path::Path};
 
 use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Style;
 
 use crate::bounds::DegreeBounds;
 
@@ -69,6 +70,27 @@ impl UpAxis {
     }
 }
 
+/// What a model has of roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelRoads {
+    /// Their centre-lines on the ground.
+    Lines,
+    /// Surfaces of their true width, cut into the ground's own triangles; tunnels are left out.
+    Surfaces,
+    /// Nothing.
+    None,
+}
+
+/// Red, green and blue from 0 to 1 (sRGB) of the ground, then of the roads of each class.
+pub(crate) type ModelColors = [[f32; 3]; 1 + FunctionalRoadClass::COUNT];
+
+pub(crate) const GROUND_COLOR: [f32; 3] = [0.85, 0.86, 0.78];
+
+/// The name of what has a colour: the ground, or the roads of a class.
+pub(crate) fn group_name(class: Option<FunctionalRoadClass>) -> String {
+    class.map_or_else(|| "terrain".to_owned(), |class| format!("roads_frc_{}", class.number()))
+}
+
 /// What of a package becomes a model, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshRequest {
@@ -80,8 +102,36 @@ pub struct MeshRequest {
     pub level: Option<u8>,
     /// Ground that may lie in this rectangle is taken, in whole triangles; roads are cut at it.
     pub bounds: Option<DegreeBounds>,
+    /// How roads are there.
+    pub roads: ModelRoads,
     /// The classes of roads that are taken.
     pub classes: Vec<FunctionalRoadClass>,
-    /// Colours of the ground and of the roads of each class, red, green and blue from 0 to 1, where the format has colours.
-    pub colors: [[f32; 3]; 1 + FunctionalRoadClass::COUNT],
+    /// Colours of roads, widths of surfaces, and how strong photos are, which GLB has.
+    pub style: Style,
+    /// With surfaces in OBJ: the name of the file of materials, which [`MeshRequest::materials`] tells.
+    pub material_file: Option<String>,
+}
+
+impl MeshRequest {
+    pub(crate) fn colors(&self) -> ModelColors {
+        let mut colors = [GROUND_COLOR; 1 + FunctionalRoadClass::COUNT];
+        for (color, road) in colors[1..].iter_mut().zip(&self.style.roads) {
+            *color = road.bands.main_color();
+        }
+        colors
+    }
+
+    /// The materials of an OBJ, as a file of their own: colours are sRGB.
+    #[must_use]
+    pub fn materials(&self) -> String {
+        let classes = FunctionalRoadClass::all().map(Some);
+        let groups = std::iter::once(None).chain(classes);
+        let mut text = String::new();
+        for (group, [red, green, blue]) in groups.zip(self.colors()) {
+            let name = group_name(group);
+            // Writing to a text cannot fail.
+            let _ = write!(text, "newmtl {name}\nKd {red:.4} {green:.4} {blue:.4}\nillum 1\n");
+        }
+        text
+    }
 }

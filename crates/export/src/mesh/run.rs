@@ -6,10 +6,10 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     glb::GlbWriter,
     local::LocalMetres,
-    model::TileMesh,
+    model::TileReading,
     obj::ObjWriter,
     ply::PlyWriter,
-    request::{MeshFormat, MeshRequest, UpAxis},
+    request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
     writer::{About, MeshWriter},
 };
 use crate::{
@@ -18,6 +18,7 @@ use crate::{
     places::Places,
     read,
     request::Coordinates,
+    surfaces::{RoadLook, TileLines},
 };
 
 /// What was exported.
@@ -27,15 +28,17 @@ pub struct MeshSummary {
     pub level: u8,
     /// Tiles with ground.
     pub tiles: u64,
-    /// Triangles of the ground.
+    /// Triangles of the ground, roads as surfaces included.
     pub triangles: u64,
+    /// Triangles of roads.
+    pub road_triangles: u64,
     /// Lines of roads.
     pub lines: u64,
     /// The model's origin in the package's CRS.
     pub origin: [f64; 2],
 }
 
-/// Writes the ground of a level, with its roads as lines, to a new file at `path`. After an error that file is of no use.
+/// Writes the ground of a level, with its roads as lines or as surfaces, to a new file at `path`. After an error that file is of no use.
 ///
 /// Positions are local: true metres east and north of an origin in the middle, and heights of the package.
 ///
@@ -60,18 +63,30 @@ pub fn export_mesh(
     let local = LocalMetres::about(ground, manifest);
     let failed = |source| ExportError::WriteModel { path: path.to_path_buf(), source };
     let mut writer: Box<dyn MeshWriter> = match request.format {
-        MeshFormat::Glb => Box::new(GlbWriter::new(path, &request.colors).map_err(failed)?),
-        MeshFormat::Ply => Box::new(PlyWriter::new(path, request.up).map_err(failed)?),
-        MeshFormat::Obj => Box::new(ObjWriter::new(path, request.up).map_err(failed)?),
+        MeshFormat::Glb => Box::new(GlbWriter::new(path, &request.colors()).map_err(failed)?),
+        MeshFormat::Ply => {
+            let colors = (request.roads == ModelRoads::Surfaces).then(|| request.colors());
+            Box::new(PlyWriter::new(path, request.up, colors).map_err(failed)?)
+        }
+        MeshFormat::Obj => {
+            let file = request.material_file.clone();
+            Box::new(ObjWriter::new(path, request.up, file).map_err(failed)?)
+        }
     };
     let origin = local.origin(manifest);
-    let mut summary = MeshSummary { level, tiles: 0, triangles: 0, lines: 0, origin };
+    let mut summary =
+        MeshSummary { level, tiles: 0, triangles: 0, road_triangles: 0, lines: 0, origin };
+    let look = RoadLook { classes: &request.classes, style: &request.style };
+    let lines =
+        (request.roads == ModelRoads::Surfaces).then(|| TileLines::new(package, look, level));
+    let reading = TileReading { package, request, places: &places, local, lines };
     for (done, &id) in ids.iter().enumerate() {
         stop_if_asked(observer)?;
         observer.done(Stage::Tiles, done as u64, ids.len() as u64);
-        if let Some(tile) = TileMesh::read(package, id, request, &places, &local)? {
+        if let Some(tile) = reading.read(id)? {
             summary.tiles += 1;
             summary.triangles += tile.triangles.len() as u64;
+            summary.road_triangles += tile.classes.iter().flatten().count() as u64;
             summary.lines += tile.roads.len() as u64;
             writer.tile(&tile).map_err(failed)?;
         }

@@ -1,13 +1,13 @@
 use std::collections::HashMap;
 
-use corniche_geom::NodeIndex;
+use corniche_geom::LatticePoint;
 
 use super::model::{Corner, TileMesh};
 
 /// Gives the corners of all tiles numbers, one to those that tiles share: positions there are the same to the bit.
 #[derive(Default)]
 pub(crate) struct Welding {
-    on_borders: HashMap<NodeIndex, u32>,
+    on_borders: HashMap<LatticePoint, u32>,
 }
 
 impl Welding {
@@ -19,13 +19,13 @@ impl Welding {
     ) -> Result<Vec<u32>, E> {
         let mut numbers = Vec::with_capacity(tile.corners.len());
         for corner in &tile.corners {
-            let known = corner.shared.and_then(|node| self.on_borders.get(&node));
+            let known = corner.shared.and_then(|point| self.on_borders.get(&point));
             let number = match known {
                 Some(number) => *number,
                 None => add(corner)?,
             };
-            if let Some(node) = corner.shared {
-                self.on_borders.insert(node, number);
+            if let Some(point) = corner.shared {
+                self.on_borders.insert(point, number);
             }
             numbers.push(number);
         }

@@ -6,19 +6,20 @@ use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_styles::Rgb;
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
-use corniche_tin::{Placement, Surface};
 
 use super::{
-    cut::{self, Ground},
-    lines::{Road, TileLines},
     parts::{Part, PartKind, RoadRow, TileContent, y_up},
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
     request::{TileRoads, Tiles3dRequest},
-    ribbon::Ribbon,
     skirt::Skirt,
+};
+use crate::{
+    error::ExportError,
+    gltf::linear,
+    read,
+    surfaces::{Divided, Road, TileLines},
     texture::Texture,
 };
-use crate::{error::ExportError, gltf::linear, read};
 
 /// Lines are lifted by this share of their tile's error, and by [`LEAST_LIFT_M`] at least: less than a fifth of a pixel where a tile is shown with
 /// two pixels of error.
@@ -77,26 +78,9 @@ pub(crate) fn make(
     let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
     let Some(terrain) = &payload.terrain else { return Ok(None) };
     let manifest = package.manifest();
-    let frame = &manifest.frame;
-    let surface =
-        Surface::new(&terrain.tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
-    if surface.triangles().is_empty() {
-        return Ok(None);
-    }
-    let ground = Ground {
-        surface: &surface,
-        normals: &terrain.normals,
-        tile: frame.tile_lattice_bounds(id),
-    };
-    let roads = match request.roads {
-        TileRoads::Cut => lines.around(id)?,
-        TileRoads::Line | TileRoads::None => Vec::new(),
-    };
-    let ribbons: Vec<Ribbon> = roads.iter().map(|road| Ribbon::around(&road.center)).collect();
-    let begun = std::time::Instant::now();
-    let mut mesh =
-        cut::cut(&ground, &ribbons).map_err(|source| ExportError::Cut { tile: id, source })?;
-    let cut_s = begun.elapsed().as_secs_f64();
+    let lines = (request.roads == TileRoads::Cut).then_some(lines);
+    let Some(divided) = Divided::of_tile(manifest, id, terrain, lines)? else { return Ok(None) };
+    let Divided { mut mesh, roads, package_triangles, cut_s } = divided;
     let longest = level.longest_edge_m * level.steps_per_metre;
     mesh.split_long_edges(|[east, north]| east.hypot(north) > longest);
     let placed = placing.place(id, &mesh)?;
@@ -106,12 +90,13 @@ pub(crate) fn make(
     let facts = TileFacts {
         bound_m,
         error_m: bound_m + level.sag_m,
-        package_triangles: surface.triangles().len() as u64,
+        package_triangles,
         triangles: placed.triangles.len() as u64,
         road_triangles: placed.labels.iter().filter(|label| **label != 0).count() as u64,
         cut_s,
     };
-    let texture = Texture::of_tile(package, id, request, mean_color(manifest, request, &placed))?;
+    let texture =
+        Texture::of_tile(package, id, &request.style, mean_color(manifest, request, &placed))?;
     let mut builder = Builder::new(manifest, request, &placed, texture);
     builder.ground(&roads);
     builder.skirt(&skirt);

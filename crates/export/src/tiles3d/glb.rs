@@ -11,16 +11,12 @@ use serde_json::{Map, Value, json};
 use super::parts::{Part, PartKind, RoadRow, TileContent};
 use crate::gltf::{
     ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U8, U16, U32,
-    linear, range_of, write_container,
+    linear, range_of, sampler, write_container,
 };
 
 /// A text of a row.
 type TextOf = fn(&RoadRow) -> &str;
 
-/// Filters and wrapping of samplers.
-const LINEAR: u32 = 9729;
-const LINEAR_MIPMAP_LINEAR: u32 = 9987;
-const CLAMP_TO_EDGE: u32 = 33_071;
 /// Views of tables begin at multiples of this.
 const TABLE_ALIGNMENT: usize = 8;
 /// Speed against size in the codec of vertices; version 0 of which is the one that the extension knows.
@@ -52,10 +48,7 @@ pub(crate) fn write(
     let mut document = file.document(tile, &primitives, &materials, table);
     if let Some(view) = picture {
         document["images"] = json!([{ "bufferView": view, "mimeType": "image/jpeg" }]);
-        document["samplers"] = json!([{
-            "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR,
-            "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
-        }]);
+        document["samplers"] = json!([sampler()]);
         document["textures"] = json!([{ "source": 0, "sampler": 0 }]);
     }
     write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))

@@ -10,19 +10,12 @@
 //! share have the same bits.
 
 mod content;
-mod cut;
 mod glb;
-mod ground;
-mod label_index;
-mod lines;
 mod parts;
 mod placed;
-mod plan_cut;
 mod request;
-mod ribbon;
 mod run;
 mod skirt;
-mod texture;
 mod tree;
 
 pub use request::{TileRoads, Tiles3dRequest};

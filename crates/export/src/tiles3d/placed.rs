@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_tileset::Manifest;
 
-use super::ground::GroundMesh;
 use crate::{
     error::ExportError,
     globe::{RootFrame, cross, dot, unit},
     places::Places,
+    surfaces::{GroundMesh, across},
 };
 
 /// The finest grid of positions: 2⁻¹⁰ m.
@@ -180,11 +180,6 @@ fn middle_of(at: &[[f64; 3]]) -> [f64; 3] {
 fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
     let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
     [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
-}
-
-fn across([u, v]: [f64; 2], bounds: &LatticeBounds) -> [f32; 2] {
-    let share = |here: f64, from: i64, to: i64| ((here - from as f64) / (to - from) as f64) as f32;
-    [share(u, bounds.min.u, bounds.max.u), 1.0 - share(v, bounds.min.v, bounds.max.v)]
 }
 
 /// A box along some axes.

@@ -11,7 +11,6 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     content::{self, LevelOfTiles, TileFacts},
     glb,
-    lines::TileLines,
     placed::{Placing, TileBox, step_m},
     request::Tiles3dRequest,
     tree::{Tree, content_name},
@@ -21,6 +20,7 @@ use crate::{
     globe::{RootFrame, dot, geocentric_m},
     observer::Observer,
     places::Places,
+    surfaces::{RoadLook, TileLines},
     workers::{Progress, on_all},
 };
 
@@ -90,11 +90,12 @@ pub fn export_tiles3d(
     make_folders(folder, &ids).map_err(failed)?;
     let root =
         RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
+    let look = RoadLook { classes: &request.classes, style: &request.style };
     let job = Job {
         package,
         request,
         folder,
-        lines: TileLines::new(package, request, finest),
+        lines: TileLines::new(package, look, finest),
         levels: (0..=finest)
             .map(|level| level_of(manifest, level, reach_m(manifest, &root, level, &ids)))
             .collect(),

@@ -2,7 +2,6 @@ use std::path::{Path, PathBuf};
 
 use gdal::{
     Dataset, Driver, DriverManager, Metadata as _,
-    config::{clear_thread_local_config_option, set_thread_local_config_option},
     errors::GdalError,
     spatial_ref::{AxisMappingStrategy, SpatialRef},
     vector::{
@@ -13,6 +12,7 @@ use gdal::{
 
 use crate::{
     error::ExportError,
+    gdal_settings::GdalSettings,
     vector::{
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
         format::VectorFormat,
@@ -52,7 +52,7 @@ pub(crate) struct VectorFile {
     waiting: Vec<Record>,
     waiting_vertices: usize,
     written: Contents,
-    _settings: Settings,
+    _settings: GdalSettings,
 }
 
 impl VectorFile {
@@ -64,7 +64,7 @@ impl VectorFile {
     ) -> Result<Self, ExportError> {
         corniche_dem::quiet();
         corniche_dem::forget();
-        let settings = Settings::set();
+        let settings = GdalSettings::set(&SETTINGS);
         let no_driver = |_| ExportError::NoDriver { driver: format.driver() };
         let driver = DriverManager::get_driver_by_name(format.driver()).map_err(no_driver)?;
         let dataset = create(path, format, &layer, &driver).map_err(|error| failed(path, error))?;
@@ -241,25 +241,4 @@ fn multi_line(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
         all.add_geometry(part)?;
     }
     Ok(all)
-}
-
-/// Sets [`SETTINGS`], until it is dropped.
-struct Settings;
-
-impl Settings {
-    fn set() -> Self {
-        for (key, value) in SETTINGS {
-            // Both are plain texts: this fails for texts with a zero byte alone.
-            let _ = set_thread_local_config_option(key, value);
-        }
-        Self
-    }
-}
-
-impl Drop for Settings {
-    fn drop(&mut self) {
-        for (key, _) in SETTINGS {
-            let _ = clear_thread_local_config_option(key);
-        }
-    }
 }

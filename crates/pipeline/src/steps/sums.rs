@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use corniche_tileset::VerticalRecord;
+use corniche_tileset::{SampleSums, VerticalRecord};
 
 use crate::{
     context::Context,
     roads::lay::ClassSums,
-    sample_deviation::SampleSums,
     tile::record::{AreasOfTile, BoundariesOfTile, LevelShare, TileRecord},
 };
 

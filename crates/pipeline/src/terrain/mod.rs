@@ -9,7 +9,6 @@
 //! Nothing of a package that is made with it tells so: it has the same bytes as one made from the elevation files.
 
 pub(crate) mod border_cells;
-pub(crate) mod data_nodes;
 pub(crate) mod ground;
 pub(crate) mod recorded;
 pub(crate) mod recorded_grid;

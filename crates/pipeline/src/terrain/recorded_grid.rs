@@ -4,11 +4,9 @@ use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGri
 use corniche_geom::{Frame, TILE_CELLS};
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
-use super::data_nodes::data_nodes;
-
 /// The grid; no height can be read with it.
 pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
-    let [south_west, north_east] = data_nodes(manifest);
+    let [south_west, north_east] = manifest.data_nodes();
     let scale = &manifest.scale;
     crs.plan(RecordedGrid {
         frame: manifest.frame,
@@ -35,7 +33,7 @@ pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
 /// Fails with a reason unless the grid is one that a build makes. It decides how much work there is.
 pub(crate) fn check(manifest: &Manifest) -> Result<(), &'static str> {
     let frame = &manifest.frame;
-    let [south_west, north_east] = data_nodes(manifest);
+    let [south_west, north_east] = manifest.data_nodes();
     let corners = [
         frame.x_m(south_west.i),
         frame.y_m(south_west.j),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use corniche_dem::{Dem, Reader};
 use corniche_geom::{HeightGrid, TileId};
+use corniche_tileset::SampleSums;
 use corniche_tin::{Tin, WindowPlacement};
 
 use super::{
@@ -14,7 +15,6 @@ use crate::{
     BuildError,
     context::Context,
     heights::finest::{FinestHeights, own_size},
-    sample_deviation::SampleSums,
 };
 
 /// The grounds above and on a finest tile, root first; `None` where a level has none there.

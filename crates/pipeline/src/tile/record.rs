@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_store::Artifacts;
+use corniche_tileset::SampleSums;
 use corniche_tin::Deviation;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,6 @@ use crate::{
     artifacts::{self, Kind},
     heights::area::union,
     roads::lay::{ClassSums, RoadFate},
-    sample_deviation::SampleSums,
 };
 
 /// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima: they do not depend on

@@ -1,6 +1,6 @@
 //! Compares the package with the elevation files: inputs, grid, deviations, vertices and normals.
 
-use corniche_tileset::FilePackage;
+use corniche_tileset::{FilePackage, SampleSums};
 
 use super::{
     checks::Findings, dem_inputs, deviation_checks, deviations, error::VerifyError,
@@ -9,7 +9,6 @@ use super::{
 use crate::{
     Observer,
     inputs::{Inputs, OtherInputs},
-    sample_deviation::SampleSums,
 };
 
 pub(crate) fn verify(
@@ -31,7 +30,9 @@ fn compare_all(
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let Some((dem, plan)) = dem_inputs::open(settings, inputs, manifest, report, observer)? else {
+    let Some((dem, plan)) =
+        dem_inputs::open(settings, inputs, manifest, &mut report.checks, observer)?
+    else {
         return Ok(());
     };
     let measured = deviations::measure(package, &dem, &plan, settings.threads, observer)?;

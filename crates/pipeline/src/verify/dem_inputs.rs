@@ -6,7 +6,6 @@ use corniche_tileset::{InputRecord, Manifest};
 use super::{
     checks::{Check, CheckId},
     error::VerifyError,
-    report::VerifyReport,
     request::VerifySettings,
 };
 use crate::{
@@ -21,7 +20,7 @@ pub(crate) fn open(
     settings: &VerifySettings,
     inputs: &Inputs,
     manifest: &Manifest,
-    report: &mut VerifyReport,
+    checks: &mut Vec<Check>,
     observer: &dyn Observer,
 ) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
     let is_dem =
@@ -57,9 +56,9 @@ pub(crate) fn open(
             });
         }
     }
-    report.checks.push(sizes);
+    checks.push(sizes);
     let plan = dem.plan(&terrain.plan)?;
-    report.checks.push(check_plan(&plan, manifest));
+    checks.push(check_plan(&plan, manifest));
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
 }
 

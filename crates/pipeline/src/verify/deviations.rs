@@ -4,12 +4,10 @@ use std::{collections::BTreeMap, rc::Rc};
 
 use corniche_dem::{Dem, DemWindow, GridPlan, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
-use corniche_tileset::{FilePackage, Manifest, Sections};
+use corniche_tileset::{FilePackage, Manifest, SampleSums, Sections};
 
 use super::{error::VerifyError, samples, triangle_soup::TriangleSoup};
-use crate::{
-    Observer, Stage, heights::data_tiles::DataTiles, sample_deviation::SampleSums, workers,
-};
+use crate::{Observer, Stage, heights::data_tiles::DataTiles, workers};
 
 /// How far a tile's TIN is from the nodes looked at so far.
 #[derive(Debug, Clone, Copy, Default)]

@@ -27,6 +27,10 @@ pub enum VerifyError {
     )]
     OtherDem { expected: Vec<String> },
     #[error(
+        "the elevation files do not give the package's grid or heights; corniche verify PACKAGE --dem FILE... says what differs"
+    )]
+    OtherGrid,
+    #[error(
         "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
     )]
     Stream { path: PathBuf },

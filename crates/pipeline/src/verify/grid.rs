@@ -4,11 +4,10 @@ use corniche_geom::{Frame, LatticeBounds, TILE_CELLS, TileId};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
-use crate::terrain::data_nodes::data_nodes;
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let frame = &manifest.frame;
-    let [south_west, north_east] = data_nodes(manifest);
+    let [south_west, north_east] = manifest.data_nodes();
     let bounds = manifest.data_bounds.to_array();
     let corners = [
         frame.x_m(south_west.i),
@@ -41,7 +40,7 @@ pub(crate) fn clip_of(manifest: &Manifest) -> Option<LatticeBounds> {
 /// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.
 pub(crate) fn data_tiles(manifest: &Manifest) -> Option<[TileId; 2]> {
     let frame = &manifest.frame;
-    let [south_west, north_east] = data_nodes(manifest);
+    let [south_west, north_east] = manifest.data_nodes();
     let corner = frame.root_corner();
     let tile = |i: i64, j: i64| {
         let column = u32::try_from((i - corner.i).div_euclid(TILE_CELLS)).ok()?;

@@ -10,6 +10,7 @@ mod derived_records;
 mod deviation_checks;
 mod deviations;
 mod each_tile;
+mod elevation;
 mod error;
 mod geo_against_sv;
 mod georeference;
@@ -46,6 +47,7 @@ use crate::Observer;
 
 pub use self::{
     checks::{Check, CheckId, Needs},
+    elevation::RecordedElevation,
     error::VerifyError,
     report::{ErrorFigures, GapFigures, VerifyReport},
     request::{VerifyOsm, VerifySettings},

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Frame, TileId};
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, Sections};
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums, Sections};
 
 use super::{
     checks::{Check, CheckId},
@@ -12,7 +12,7 @@ use super::{
     request::VerifySettings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
-use crate::{Observer, Stage, sample_deviation::SampleSums, workers};
+use crate::{Observer, Stage, workers};
 
 /// How many tiles' ground a worker keeps. Blocks of samples are compact, so a tile is not loaded twice in a row.
 const GROUNDS: usize = 24;

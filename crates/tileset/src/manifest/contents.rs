@@ -88,6 +88,19 @@ impl Manifest {
         self.clip.as_ref().map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
     }
 
+    /// South-western and north-eastern node of the data's rectangle.
+    #[must_use]
+    pub fn data_nodes(&self) -> [NodeIndex; 2] {
+        let ([west, south], [east_m, north_m]) =
+            (self.frame.origin_m(), self.frame.cell().to_array());
+        let node = |x: f64, y: f64| NodeIndex {
+            i: ((x - west) / east_m).round() as i64,
+            j: ((y - south) / north_m).round() as i64,
+        };
+        let bounds = &self.data_bounds;
+        [node(bounds.min_x, bounds.min_y), node(bounds.max_x, bounds.max_y)]
+    }
+
     /// Rectangle of the nodes of all elevation files, working metres.
     #[must_use]
     pub fn whole_data_bounds(&self) -> Bounds {

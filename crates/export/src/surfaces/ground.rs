@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{LatticeBounds, LatticePoint};
 
 /// A vertex of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,6 +111,12 @@ impl GroundVertex {
             normal: unit(normal),
         }
     }
+}
+
+/// A place on the lattice as shares of the way across a tile, from the west and from the north.
+pub(crate) fn across([u, v]: [f64; 2], tile: &LatticeBounds) -> [f32; 2] {
+    let share = |here: f64, from: i64, to: i64| ((here - from as f64) / (to - from) as f64) as f32;
+    [share(u, tile.min.u, tile.max.u), 1.0 - share(v, tile.min.v, tile.max.v)]
 }
 
 /// A vector of length one.

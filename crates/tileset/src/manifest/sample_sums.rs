@@ -1,7 +1,8 @@
 //! How far TINs are from the DEM's own samples: sums that can be merged in any order.
 
-use corniche_tileset::SampleErrorRecord;
 use serde::{Deserialize, Serialize};
+
+use super::levels::SampleErrorRecord;
 
 /// Distances are summed in whole parts of the height quantum; this is the number of parts in a quantum.
 const PARTS_TO_A_QUANTUM: f64 = 256.0;
@@ -14,7 +15,7 @@ const MOST_PARTS: f64 = (1_u64 << 33) as f64;
 ///
 /// Integers and a maximum: what comes out does not depend on the order in which samples come or sums are merged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SampleSums {
+pub struct SampleSums {
     quantum_m: f64,
     on_tin: u64,
     off_tin: u64,
@@ -27,13 +28,15 @@ pub(crate) struct SampleSums {
 }
 
 impl SampleSums {
-    pub(crate) fn new(quantum_m: f64) -> Self {
+    /// Of no samples, for a package with this height quantum.
+    #[must_use]
+    pub fn new(quantum_m: f64) -> Self {
         Self { quantum_m, on_tin: 0, off_tin: 0, max_m: 0.0, squares: 0, bins: Vec::new() }
     }
 
     /// Adds a sample by its distance to the TIN; `None` where there is no triangle.
     #[inline]
-    pub(crate) fn add(&mut self, distance_m: Option<f64>) {
+    pub fn add(&mut self, distance_m: Option<f64>) {
         let Some(distance_m) = distance_m else {
             self.off_tin += 1;
             return;
@@ -50,7 +53,8 @@ impl SampleSums {
         self.bins[bin] += 1;
     }
 
-    pub(crate) fn merge(&mut self, other: &Self) {
+    /// Adds the samples of the other.
+    pub fn merge(&mut self, other: &Self) {
         self.on_tin += other.on_tin;
         self.off_tin += other.off_tin;
         self.max_m = self.max_m.max(other.max_m);
@@ -64,7 +68,8 @@ impl SampleSums {
     }
 
     /// The figures that the package stores.
-    pub(crate) fn record(&self) -> SampleErrorRecord {
+    #[must_use]
+    pub fn record(&self) -> SampleErrorRecord {
         let part_m = self.quantum_m / PARTS_TO_A_QUANTUM;
         let mean = self.squares as f64 / self.on_tin.max(1) as f64;
         SampleErrorRecord {
@@ -137,5 +142,5 @@ fn end_of(bin: usize) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "sample_deviation_tests.rs"]
+#[path = "sample_sums_tests.rs"]
 mod tests;

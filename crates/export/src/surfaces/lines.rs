@@ -7,16 +7,23 @@ use std::{
 
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_styles::RoadStyle;
+use corniche_styles::{RoadStyle, Style};
 use corniche_tileset::{FilePackage, Manifest};
 
-use super::{request::Tiles3dRequest, ribbon::CenterLine};
+use super::ribbon::CenterLine;
 use crate::{error::ExportError, piece::Piece, read};
 
 /// The error that clients allow: Cesium's for ground, which the example asks for.
 const ALLOWED_ERROR_PX: f64 = 2.0;
 /// Tiles whose lines are kept: some rows of neighbours along a Hilbert curve.
 const KEPT_TILES: usize = 256;
+
+/// Which roads become surfaces, and how wide.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RoadLook<'a> {
+    pub(crate) classes: &'a [FunctionalRoadClass],
+    pub(crate) style: &'a Style,
+}
 
 /// A road in a tile.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +47,7 @@ struct TileLine {
 /// The lines of tiles, read once for a tile and its neighbours.
 pub(crate) struct TileLines<'a> {
     package: &'a FilePackage,
-    request: &'a Tiles3dRequest,
+    look: RoadLook<'a>,
     /// By level.
     details: Vec<Detail>,
     kept: Mutex<VecDeque<(TileId, Arc<Vec<TileLine>>)>>,
@@ -58,20 +65,20 @@ struct Detail {
 }
 
 impl Detail {
-    fn of_level(request: &Tiles3dRequest, manifest: &Manifest, level: u8, finest: u8) -> Self {
+    fn of_level(look: RoadLook<'_>, manifest: &Manifest, level: u8, finest: u8) -> Self {
         let errors_m = manifest.levels[usize::from(level)].errors_m;
         // The finest tiles are drawn however near the eye is; others as near as the smallest error allows.
         let error_m =
             if level == finest { 0.0 } else { errors_m.map_or(0.0, |errors_m| errors_m.min) };
         let pixel_m = error_m / ALLOWED_ERROR_PX;
         let is_seen = |class: &FunctionalRoadClass| {
-            let road = request.style.road(*class);
+            let road = look.style.road(*class);
             // The style says how many pixels of the road it insists on: the more, the longer it stays.
             let stays_m = f64::from(road.width_m * road.min_width_px.max(1.0));
             stays_m >= pixel_m && road.last_pixel_m() > pixel_m
         };
         Self {
-            classes: request.classes.iter().copied().filter(is_seen).collect(),
+            classes: look.classes.iter().copied().filter(is_seen).collect(),
             tolerance_steps: pixel_m / 4.0 * manifest.point_scale / manifest.frame.lattice_step_m(),
         }
     }
@@ -79,14 +86,9 @@ impl Detail {
 
 impl<'a> TileLines<'a> {
     /// Lines of the levels down to `finest`.
-    pub(crate) fn new(package: &'a FilePackage, request: &'a Tiles3dRequest, finest: u8) -> Self {
-        let detail = |level| Detail::of_level(request, package.manifest(), level, finest);
-        Self {
-            package,
-            request,
-            details: (0..=finest).map(detail).collect(),
-            kept: Mutex::default(),
-        }
+    pub(crate) fn new(package: &'a FilePackage, look: RoadLook<'a>, finest: u8) -> Self {
+        let detail = |level| Detail::of_level(look, package.manifest(), level, finest);
+        Self { package, look, details: (0..=finest).map(detail).collect(), kept: Mutex::default() }
     }
 
     fn of_tile(&self, id: TileId) -> Result<Arc<Vec<TileLine>>, ExportError> {
@@ -180,7 +182,7 @@ impl<'a> TileLines<'a> {
         // As the viewer draws them.
         let is_narrow = *form == Form::Link || highway == "service";
         let share = if is_narrow { RoadStyle::NARROW_WIDTH_SHARE } else { 1.0 };
-        let width_m = self.request.style.width_m(line.class, line.attributes.own_width());
+        let width_m = self.look.style.width_m(line.class, line.attributes.own_width());
         f64::from(width_m * share) / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
     }
 }

@@ -1,11 +1,10 @@
 //! The photo of a tile as a picture of the ground.
 
 use corniche_geom::TileId;
-use corniche_styles::Rgb;
+use corniche_styles::{Rgb, Style};
 use corniche_tileset::{FilePackage, PHOTO_BORDER, Photo, ReadError, decode_photo};
 use jpeg_encoder::{ColorType, Encoder};
 
-use super::request::Tiles3dRequest;
 use crate::error::ExportError;
 
 /// A picture that covers a tile and a little beyond.
@@ -21,10 +20,10 @@ impl Texture {
     pub(crate) fn of_tile(
         package: &FilePackage,
         id: TileId,
-        request: &Tiles3dRequest,
+        style: &Style,
         ground: Rgb,
     ) -> Result<Option<Self>, ExportError> {
-        let strength = request.style.photo;
+        let strength = style.photo;
         let Some(record) = package.manifest().settings.photo.filter(|_| strength > 0.0) else {
             return Ok(None);
         };

@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+mod photos;
+mod readers;
+mod surfaces;
+
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
@@ -11,19 +15,11 @@ use std::{
 use e2e::{Ran, corniche, manifest, text};
 use serde_json::Value;
 
+use self::readers::{Model, read_glb, read_obj, read_ply};
+
 fn succeed(ran: Ran) -> Ran {
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     ran
-}
-
-/// A model as a reader sees it, z upwards.
-#[derive(Default)]
-struct Model {
-    /// Of the ground.
-    corners: Vec<[f64; 3]>,
-    triangles: Vec<[usize; 3]>,
-    /// Ends of each piece of a road, with its class.
-    edges: Vec<([[f64; 3]; 2], u8)>,
 }
 
 fn export(package: &Path, name: &str, more: &[&str]) -> PathBuf {
@@ -33,138 +29,15 @@ fn export(package: &Path, name: &str, more: &[&str]) -> PathBuf {
     path
 }
 
-/// A reader of our own for the PLY that is written: header by header line.
-fn read_ply(path: &Path) -> Model {
-    let bytes = fs::read(path).unwrap();
-    let end = b"end_header\n";
-    let head_length =
-        bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
-    let head = std::str::from_utf8(&bytes[..head_length]).unwrap();
-    assert!(head.starts_with("ply\nformat binary_little_endian 1.0\n"), "{head}");
-    let count = |name: &str| -> usize {
-        let line = head.lines().find_map(|line| line.strip_prefix(&format!("element {name} ")));
-        line.map_or(0, |number| number.parse().unwrap())
-    };
-    let properties: Vec<&str> = head.lines().filter(|line| line.starts_with("property")).collect();
-    assert_eq!(properties[0], "property double x");
-    assert_eq!(properties[6], "property uchar frc");
-    let mut rest = &bytes[head_length..];
-    let mut take = |length: usize| {
-        let (own, after) = rest.split_at(length);
-        rest = after;
-        own
-    };
-    let mut vertices = Vec::new();
-    for _ in 0..count("vertex") {
-        let own = take(3 * 8 + 3 * 4 + 1);
-        let axis = |at: usize| f64::from_le_bytes(own[8 * at..8 * at + 8].try_into().unwrap());
-        vertices.push(([axis(0), axis(1), axis(2)], own[36]));
-    }
-    let number = |own: &[u8], at: usize| {
-        u32::from_le_bytes(own[4 * at..4 * at + 4].try_into().unwrap()) as usize
-    };
-    let mut model = Model::default();
-    // Vertices of roads come between those of the ground.
-    let mut ground = BTreeMap::new();
-    for (index, (at, class)) in vertices.iter().enumerate() {
-        if *class == 255 {
-            ground.insert(index, model.corners.len());
-            model.corners.push(*at);
-        }
-    }
-    for _ in 0..count("face") {
-        let own = take(13);
-        assert_eq!(own[0], 3);
-        model.triangles.push([0, 1, 2].map(|at| ground[&number(&own[1..], at)]));
-    }
-    for _ in 0..count("edge") {
-        let own = take(8);
-        let [from, to] = [0, 1].map(|at| vertices[number(own, at)]);
-        assert_eq!(from.1, to.1);
-        model.edges.push(([from.0, to.0], from.1));
-    }
-    assert!(rest.is_empty());
-    model
-}
-
-fn read_obj(path: &Path) -> Model {
-    let content = fs::read_to_string(path).unwrap();
-    let (mut places, mut model) = (Vec::new(), Model::default());
-    let (mut faces, mut class) = (Vec::new(), 255);
-    for line in content.lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        let index = |word: &str| word.split('/').next().unwrap().parse::<usize>().unwrap() - 1;
-        match words[0] {
-            "v" => {
-                let [x, y, z] = [1, 2, 3].map(|at: usize| words[at].parse::<f64>().unwrap());
-                places.push([x, -z, y]);
-            }
-            "f" => faces.push([1, 2, 3].map(|at: usize| index(words[at]))),
-            "g" => {
-                class = words[1].strip_prefix("roads_frc_").map_or(255, |frc| frc.parse().unwrap());
-            }
-            "l" => model.edges.extend(
-                words[1..]
-                    .windows(2)
-                    .map(|pair| ([places[index(pair[0])], places[index(pair[1])]], class)),
-            ),
-            _ => {}
-        }
-    }
-    model.corners = places;
-    model.triangles = faces;
-    model
-}
-
-fn read_glb(path: &Path) -> Model {
-    let bytes = fs::read(path).unwrap();
-    let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-    assert_eq!((&bytes[..4], u32_at(4), u32_at(8)), (&b"glTF"[..], 2, bytes.len()));
-    let json_length = u32_at(12);
-    let document: Value = serde_json::from_slice(&bytes[20..20 + json_length]).unwrap();
-    let start = 20 + json_length + 8;
-    assert_eq!(bytes.len() - start, u32_at(start - 8));
-    let numbers = |accessor: &Value| -> Vec<[u8; 4]> {
-        let accessor = &document["accessors"][accessor.as_u64().unwrap() as usize];
-        let view = &document["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
-        let [offset, length] =
-            ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap() as usize);
-        bytes[start + offset..start + offset + length].as_chunks::<4>().0.to_vec()
-    };
-    let mut model = Model::default();
-    for node in document["nodes"].as_array().unwrap() {
-        let shift: Vec<f64> = serde_json::from_value(node["translation"].clone()).unwrap();
-        let mesh = &document["meshes"][node["mesh"].as_u64().unwrap() as usize];
-        for primitive in mesh["primitives"].as_array().unwrap() {
-            let flat = numbers(&primitive["attributes"]["POSITION"]);
-            let places: Vec<[f64; 3]> = flat
-                .as_chunks::<3>()
-                .0
-                .iter()
-                .map(|at| {
-                    let [x, y, z] =
-                        [0, 1, 2].map(|axis| f64::from(f32::from_le_bytes(at[axis])) + shift[axis]);
-                    [x, -z, y]
-                })
-                .collect();
-            let indices: Vec<usize> = numbers(&primitive["indices"])
-                .into_iter()
-                .map(|index| u32::from_le_bytes(index) as usize)
-                .collect();
-            if primitive["mode"] == 4 {
-                let first = model.corners.len();
-                model
-                    .triangles
-                    .extend(indices.as_chunks::<3>().0.iter().map(|own| own.map(|at| first + at)));
-                model.corners.extend(places);
-            } else {
-                let class = primitive["extras"]["frc"].as_u64().unwrap() as u8;
-                let ends = indices.as_chunks::<2>().0.iter();
-                model.edges.extend(ends.map(|ends| (ends.map(|at| places[at]), class)));
-            }
-        }
-    }
-    model
+/// The model's origin, as the command tells it.
+fn origin(package: &Path, more: &[&str]) -> [f64; 2] {
+    let path = package.with_file_name("origin.ply");
+    let words = ["export", "mesh", text(package), "-O", "-o", text(&path)];
+    let told = succeed(corniche([&words[..], more].concat())).err;
+    let line = told.lines().find_map(|line| line.strip_prefix("origin: ")).unwrap();
+    let parts: Vec<f64> =
+        line.split(" in ").next().unwrap().split(", ").map(|part| part.parse().unwrap()).collect();
+    [parts[0], parts[1]]
 }
 
 /// A level as `tile --json` tells it, in local metres.
@@ -189,6 +62,7 @@ fn expected(package: &Path, level: u8, origin: [f64; 2]) -> Model {
         let first = model.corners.len();
         model.corners.extend(vertices.iter().map(local));
         for triangle in tile["tin"]["triangles"].as_array().unwrap() {
+            model.classes.push(255);
             model
                 .triangles
                 .push([0, 1, 2].map(|at| first + triangle[at].as_u64().unwrap() as usize));
@@ -234,20 +108,7 @@ fn models_are_the_packages_ground_and_roads() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     e2e::build_pass(&package, &["--max-error", "20"]);
-    let origin = {
-        let ran =
-            corniche(["export", "mesh", text(&package), "-o", text(&folder.path().join("o.ply"))]);
-        let told = succeed(ran).err;
-        let line = told.lines().find_map(|line| line.strip_prefix("origin: ")).unwrap();
-        let parts: Vec<f64> = line
-            .split(" in ")
-            .next()
-            .unwrap()
-            .split(", ")
-            .map(|part| part.parse().unwrap())
-            .collect();
-        [parts[0], parts[1]]
-    };
+    let origin = origin(&package, &[]);
     let finest = manifest(&package)["frame"]["max_level"].as_u64().unwrap() as u8;
     let expected = expected(&package, finest, origin);
     assert!(expected.triangles.len() > 1000 && expected.edges.len() > 500);

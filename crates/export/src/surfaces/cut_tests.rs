@@ -8,7 +8,7 @@ use super::{
     super::ribbon::{CenterLine, Ribbon},
     Ground, cut,
 };
-use crate::tiles3d::ground::GroundMesh;
+use crate::surfaces::ground::GroundMesh;
 
 /// Cells along each side of the ground.
 const CELLS: u16 = 4;

@@ -1,0 +1,110 @@
+//! `corniche export geotiff`.
+
+use std::{io::stderr, path::Path};
+
+use corniche_export::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
+use corniche_pipeline::RecordedElevation;
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
+
+use crate::{
+    args::ExportGeoTiffArgs,
+    exit::ExitCode,
+    export_bars::{Bars, named},
+    failure::Failure,
+    messages,
+    named_output::NamedOutput,
+    output::existing_of,
+    packages,
+    progress::Progress,
+    settings::{polygon, threads},
+    table::{Digits, bytes},
+};
+
+/// Endings of names that programs take for a `GeoTIFF`.
+const ENDINGS: [&str; 2] = ["tif", "tiff"];
+
+pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
+    let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    if !ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) {
+        return Err(Failure::unusable(format!(
+            "{} is a raster; give it the ending .tif",
+            args.output.display()
+        )));
+    }
+    let package = packages::open(&args.package)?;
+    let existing = existing_of(args.overwrite);
+    let inputs: Vec<&Path> =
+        [args.package.name()].into_iter().chain(args.dem.iter().map(AsRef::as_ref)).collect();
+    let output = NamedOutput::create(&args.output, existing, "heights.tif".to_owned(), &inputs)?;
+    let elevation = elevation(args, &package)?;
+    let request = GeoTiffRequest {
+        level: args.level,
+        bounds: args.bounds,
+        elevation: elevation
+            .as_ref()
+            .map(|RecordedElevation { dem, plan, .. }| Elevation { dem, plan }),
+        threads: threads(args.threads),
+    };
+    let bars = Bars::default();
+    let exported = export_geotiff(&package, &request, &output.path(), &bars);
+    bars.end();
+    if let Some(elevation) = &elevation {
+        // A file that changed may be the cause of any other error.
+        elevation.check_unchanged()?;
+    }
+    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let size = output.place()?;
+    if !summary.has_same_crs {
+        messages::warning(&format!(
+            "GeoTIFF has no words for all of the package's coordinate system ({}, heights: {}); what programs read of it may differ",
+            package.manifest().crs,
+            summary.heights
+        ));
+    }
+    messages::note(&to_text(args, &summary, package.manifest(), size));
+    Ok(ExitCode::Done)
+}
+
+fn elevation(
+    args: &ExportGeoTiffArgs,
+    package: &FilePackage,
+) -> Result<Option<RecordedElevation>, Failure> {
+    if args.dem.is_empty() {
+        return Ok(None);
+    }
+    let files = corniche_pipeline::elevation_names(&args.dem)?;
+    let polygon = args.polygon.clone().map(polygon).transpose()?;
+    Ok(Some(RecordedElevation::open(package, &files, polygon, &Progress::new())?))
+}
+
+fn to_text(
+    args: &ExportGeoTiffArgs,
+    summary: &GeoTiffSummary,
+    manifest: &Manifest,
+    size: u64,
+) -> String {
+    let count = |number| Digits::on(&stderr()).count(number);
+    let error = summary.sample_error.map_or_else(String::new, |error| {
+        let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
+        let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
+        format!(
+            "\nTIN minus DEM: max {max_m:.3} m, RMS {rms_m:.3} m, p99 {p99_m:.3} m at {} {points}; {} have no ground",
+            count(on_tin),
+            count(off_tin)
+        )
+    });
+    format!(
+        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
+        args.output.display(),
+        summary.level,
+        count(summary.columns),
+        count(summary.rows),
+        count(summary.covered),
+        summary.pixels,
+        bytes(size),
+        summary.error_bound_m,
+        manifest.crs,
+        summary.heights,
+        manifest.attribution.join("; "),
+    )
+}

@@ -1,0 +1,116 @@
+//! `corniche export mesh`.
+
+use std::{
+    fs,
+    io::stderr,
+    path::{Path, PathBuf},
+};
+
+use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
+use corniche_tileset::Manifest;
+
+use super::unknown_ending::unknown_ending;
+use crate::{
+    args::ExportMeshArgs,
+    exit::ExitCode,
+    export_bars::{Bars, named},
+    failure::Failure,
+    messages,
+    named_output::NamedOutput,
+    output::{Existing, Output, existing_of},
+    packages, styles,
+    table::{Digits, bytes},
+};
+
+pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
+    let format = args.format.map(MeshFormat::from).or_else(|| MeshFormat::of_path(&args.output));
+    let format = format.ok_or_else(|| {
+        let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
+        unknown_ending(&args.output, &endings)
+    })?;
+    let style = styles::style(&args.style)?;
+    let package = packages::open(&args.package)?;
+    let roads = ModelRoads::from(args.roads);
+    let has_materials = format == MeshFormat::Obj && roads == ModelRoads::Surfaces;
+    let materials = has_materials.then(|| args.output.with_extension("mtl"));
+    let request = MeshRequest {
+        format,
+        up: args.up.map_or(format.usual_up(), UpAxis::from),
+        level: args.level,
+        bounds: args.bounds,
+        roads,
+        classes: args.classes.classes(),
+        style,
+        material_file: materials.as_deref().map(file_name),
+    };
+    let name = format!("model.{}", format.ending());
+    let existing = existing_of(args.overwrite);
+    let output = NamedOutput::create(&args.output, existing, name, &[args.package.name()])?;
+    let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
+    let bars = Bars::default();
+    let exported = export_mesh(&package, &request, &output.path(), &bars);
+    bars.end();
+    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let placed = materials.map(|materials| materials.place(&request)).transpose()?;
+    let size = output.place().inspect_err(|_| {
+        // Materials without a model are of no use, but those that were there before belong to another one.
+        if let Some(Placed { path, is_new: true }) = &placed {
+            let _ = fs::remove_file(path);
+        }
+    })?;
+    messages::note(&to_text(args, &summary, package.manifest(), size));
+    Ok(ExitCode::Done)
+}
+
+/// The file of materials beside an OBJ.
+struct Materials {
+    path: PathBuf,
+    output: Output,
+}
+
+/// A file of materials in its place.
+struct Placed {
+    path: PathBuf,
+    /// Nothing was there before.
+    is_new: bool,
+}
+
+impl Materials {
+    /// An unusable place is reported here, before any work is done.
+    fn begin(path: PathBuf, existing: Existing, args: &ExportMeshArgs) -> Result<Self, Failure> {
+        let output = Output::create(&path, existing, &[args.package.name(), &args.output])?;
+        Ok(Self { path, output })
+    }
+
+    /// Writes it and puts it in its place: before the model, which names it.
+    fn place(self, request: &MeshRequest) -> Result<Placed, Failure> {
+        let Self { path, output } = self;
+        let is_new = path.symlink_metadata().is_err();
+        output.write_whole(request.materials().as_bytes())?;
+        Ok(Placed { path, is_new })
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {
+    let count = |number| Digits::on(&stderr()).count(number);
+    let [x, y] = summary.origin;
+    let roads = match ModelRoads::from(args.roads) {
+        ModelRoads::Surfaces => format!("{} of them of roads", count(summary.road_triangles)),
+        ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", count(summary.lines)),
+    };
+    format!(
+        "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})\nto be shown with it: {}",
+        args.output.display(),
+        summary.level,
+        count(summary.tiles),
+        count(summary.triangles),
+        bytes(size),
+        manifest.crs,
+        manifest.vertical.datum,
+        manifest.attribution.join("; "),
+    )
+}

@@ -1,0 +1,144 @@
+//! A block of a raster: heights of TINs at its nodes, and how far they are from the elevation files.
+
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use corniche_dem::Reader;
+use corniche_geom::{NodeWindow, TILE_CELLS, TileId};
+use corniche_tileset::{FilePackage, SampleSums, Sections};
+use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
+
+use super::{file::Number, grid::BLOCK};
+use crate::error::ExportError;
+
+/// A block as it is written: 256 × 256 nodes, those beyond the raster included.
+pub(crate) struct Block<T> {
+    /// Heights of TINs; NaN where there is no ground.
+    pub(crate) heights_m: Vec<T>,
+    /// TIN minus DEM; NaN where one of both is missing. Empty without elevation files.
+    pub(crate) errors_m: Vec<T>,
+    /// Nodes with ground.
+    pub(crate) covered: u64,
+    /// Distances of the TINs from samples, as a build counts them.
+    pub(crate) sums: SampleSums,
+}
+
+/// The TINs of a level, kept for neighbouring blocks.
+pub(crate) struct Tins<'a> {
+    package: &'a FilePackage,
+    level: u8,
+    kept: Mutex<HashMap<TileId, Option<Arc<TriangleBuckets>>>>,
+}
+
+impl<'a> Tins<'a> {
+    pub(crate) fn new(package: &'a FilePackage, level: u8) -> Self {
+        Self { package, level, kept: Mutex::default() }
+    }
+
+    /// Forgets tiles that end north of a row of nodes.
+    pub(crate) fn forget_north_of(&self, j: i64) {
+        let frame = &self.package.manifest().frame;
+        let side = TILE_CELLS * frame.stride(self.level);
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.retain(|id, _| frame.tile_corner(*id).j - side <= j);
+    }
+
+    /// The triangles of a tile; `None` where the package has none.
+    fn of_tile(&self, id: TileId) -> Result<Option<Arc<TriangleBuckets>>, ExportError> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(&id) {
+            return Ok(known.clone());
+        }
+        let quantum_m = self.package.manifest().vertical.quantum_m;
+        let payload = self.package.payload(id, Sections::TERRAIN)?;
+        let terrain = payload.and_then(|payload| payload.terrain);
+        let found = terrain.map(|terrain| Arc::new(TriangleBuckets::new(&terrain.tin, quantum_m)));
+        lock().insert(id, found.clone());
+        Ok(found)
+    }
+
+    /// The ground at the nodes of a window of stride 1.
+    fn heights(&self, window: &NodeWindow) -> Result<Heights, ExportError> {
+        let frame = &self.package.manifest().frame;
+        let (root, stride) = (frame.root_corner(), frame.stride(self.level));
+        let (side, last) = (TILE_CELLS * stride, (1_i64 << self.level) - 1);
+        // On a border there are two tiles.
+        let tiles = |from: i64, nodes: usize| {
+            let first = (from - 1).div_euclid(side).clamp(0, last);
+            let end = (from + nodes as i64 - 1).div_euclid(side).clamp(0, last);
+            (first..=end).rev()
+        };
+        let from = [window.corner.i - root.i, root.j - window.corner.j];
+        let own_tile = |from: i64, node: usize| (from + node as i64).div_euclid(side).min(last);
+        let nodes = window.columns * window.rows;
+        let mut found = Heights { heights_m: vec![f64::NAN; nodes], is_own: vec![false; nodes] };
+        for y in tiles(from[1], window.rows) {
+            for x in tiles(from[0], window.columns) {
+                let Ok(id) = TileId::new(self.level, x as u32, y as u32) else { continue };
+                let Some(buckets) = self.of_tile(id)? else { continue };
+                let placement =
+                    WindowPlacement { column: from[0] - x * side, row: from[1] - y * side, stride };
+                let own = heights_m(&buckets, [window.columns, window.rows], placement);
+                for (place, height_m) in own.into_iter().enumerate() {
+                    if found.heights_m[place].is_nan() && !height_m.is_nan() {
+                        let (column, row) = (place % window.columns, place / window.columns);
+                        found.heights_m[place] = height_m;
+                        found.is_own[place] =
+                            [own_tile(from[0], column), own_tile(from[1], row)] == [x, y];
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Heights at the nodes of a window, row by row.
+struct Heights {
+    /// NaN where there is no ground. Nodes on a border have the heights of the tile in the east or south, where it has ground there.
+    heights_m: Vec<f64>,
+    /// Whether a node has ground of the tile in whose figures it counts: of two, the one in the east or south.
+    is_own: Vec<bool>,
+}
+
+/// Makes the block of a window.
+pub(crate) fn make<T: Number>(
+    tins: &Tins<'_>,
+    window: &NodeWindow,
+    reader: Option<&mut Reader<'_>>,
+) -> Result<Block<T>, ExportError> {
+    let Heights { heights_m, is_own } = tins.heights(window)?;
+    let quantum_m = tins.package.manifest().vertical.quantum_m;
+    let covered = heights_m.iter().filter(|height_m| !height_m.is_nan()).count() as u64;
+    let mut sums = SampleSums::new(quantum_m);
+    let mut errors_m = Vec::new();
+    if let Some(reader) = reader {
+        let failed = |source| ExportError::Elevation(Box::new(source));
+        let read = reader.window(*window).map_err(failed)?;
+        let samples = read.heights.raw().iter().enumerate();
+        let own = samples.zip(&heights_m).map(|((place, &sample_m), &height_m)| {
+            // A void that was filled is no sample.
+            if sample_m.is_nan() || read.is_filled.get(place) == Some(&true) {
+                return f64::NAN;
+            }
+            let error_m = height_m - f64::from(sample_m);
+            sums.add(is_own[place].then_some(error_m.abs()));
+            error_m
+        });
+        errors_m = whole(&own.collect::<Vec<f64>>(), window);
+    }
+    Ok(Block { heights_m: whole(&heights_m, window), errors_m, covered, sums })
+}
+
+/// The numbers of a window as those of a whole block.
+fn whole<T: Number>(numbers: &[f64], window: &NodeWindow) -> Vec<T> {
+    let mut block = vec![T::of(f64::NAN); BLOCK * BLOCK];
+    for (from, to) in numbers.chunks(window.columns).zip(block.chunks_mut(BLOCK)) {
+        for (from, to) in from.iter().zip(to) {
+            *to = T::of(*from);
+        }
+    }
+    block
+}

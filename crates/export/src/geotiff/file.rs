@@ -1,0 +1,216 @@
+//! A raster that is being written.
+
+use std::path::{Path, PathBuf};
+
+use flate2::Crc;
+use gdal::{
+    Dataset, DatasetOptions, DriverManager, GdalOpenFlags, Metadata as _,
+    errors::GdalError,
+    raster::{Buffer, GdalType, RasterCreationOptions},
+    spatial_ref::{AxisMappingStrategy, SpatialRef},
+};
+
+use super::grid::{BLOCK, RasterGrid};
+use crate::{error::ExportError, gdal_settings::GdalSettings};
+
+const DRIVER: &str = "GTiff";
+/// GDAL's settings while a file is written and read again: all that it says is in the file itself, and pixels that are points are taken for points.
+const SETTINGS: [(&str, &str); 3] = [
+    ("GDAL_PAM_ENABLED", "NO"),
+    ("GTIFF_POINT_GEO_IGNORE", "NO"),
+    ("GTIFF_REPORT_COMPD_CS", "YES"),
+];
+/// DEFLATE, which every reader of TIFF has; the predictor for floating-point numbers makes it small. Bands lie one after the other, so that a program that
+/// wants heights need not read errors.
+const OPTIONS: [&str; 10] = [
+    "TILED=YES",
+    "BLOCKXSIZE=256",
+    "BLOCKYSIZE=256",
+    "COMPRESS=DEFLATE",
+    "PREDICTOR=3",
+    "INTERLEAVE=BAND",
+    "BIGTIFF=IF_SAFER",
+    // Readers of 1.0 pass over what heights are measured from.
+    "GEOTIFF_VERSION=1.1",
+    // The same bytes, whatever the environment says.
+    "NUM_THREADS=1",
+    "SPARSE_OK=FALSE",
+];
+
+/// A type of the pixels of a raster of heights.
+pub(crate) trait Number: GdalType + Copy + Send {
+    fn of(value: f64) -> Self;
+    fn bytes(self) -> [u8; 8];
+}
+
+impl Number for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn bytes(self) -> [u8; 8] {
+        u64::from(self.to_bits()).to_le_bytes()
+    }
+}
+
+impl Number for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn bytes(self) -> [u8; 8] {
+        self.to_le_bytes()
+    }
+}
+
+/// What a raster says of itself.
+pub(crate) struct RasterFacts {
+    /// WKT2.
+    pub(crate) crs: String,
+    pub(crate) crs_from_pixel: [f64; 6],
+    /// Of each band.
+    pub(crate) descriptions: Vec<String>,
+    pub(crate) metadata: Vec<(&'static str, String)>,
+}
+
+/// A raster that is being written, block by block, row by row from the north.
+pub(crate) struct RasterFile<T> {
+    path: PathBuf,
+    dataset: Dataset,
+    crs: SpatialRef,
+    grid: RasterGrid,
+    /// Of each band, the checksum of each block that was written.
+    written: Vec<Vec<u32>>,
+    numbers: std::marker::PhantomData<T>,
+    _settings: GdalSettings,
+}
+
+impl<T: Number> RasterFile<T> {
+    /// Begins a file. Nothing may be at `path`.
+    pub(crate) fn create(
+        path: &Path,
+        grid: &RasterGrid,
+        facts: &RasterFacts,
+    ) -> Result<Self, ExportError> {
+        corniche_dem::quiet();
+        corniche_dem::forget();
+        let settings = GdalSettings::set(&SETTINGS);
+        let created = create::<T>(path, grid, facts).map_err(|error| failed(path, error))?;
+        let (dataset, crs) = created.ok_or(ExportError::NoDriver { driver: DRIVER })?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            dataset,
+            crs,
+            grid: *grid,
+            written: vec![Vec::new(); facts.descriptions.len()],
+            numbers: std::marker::PhantomData,
+            _settings: settings,
+        })
+    }
+
+    /// Writes the next block of a band, counted from 0.
+    pub(crate) fn push(&mut self, band: usize, block: Vec<T>) -> Result<(), ExportError> {
+        let place = self.grid.place(self.written[band].len());
+        self.written[band].push(checksum(&block, &self.grid, place));
+        let write = || {
+            let mut raster = self.dataset.rasterband(band + 1)?;
+            raster.write_block(place.into(), &mut Buffer::new((BLOCK, BLOCK), block))
+        };
+        write().map_err(|error| failed(&self.path, error))
+    }
+
+    /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
+    pub(crate) fn finish(self) -> Result<bool, ExportError> {
+        let Self { path, dataset, crs, grid, written, .. } = self;
+        // What fails while a file is closed comes back from no call before GDAL 3.7.
+        corniche_dem::forget();
+        dataset.close().map_err(|error| failed(&path, error))?;
+        if let Some(source) = corniche_dem::failure() {
+            return Err(ExportError::Write { path, source });
+        }
+        let again = read_again::<T>(&path, &grid, &written, &crs);
+        // A file that is cut off may not even be opened.
+        match again {
+            Ok(Some(is_same_crs)) => Ok(is_same_crs),
+            Ok(None) | Err(_) => Err(ExportError::RasterNotWhole { path }),
+        }
+    }
+}
+
+fn failed(path: &Path, error: GdalError) -> ExportError {
+    ExportError::Write { path: path.to_path_buf(), source: error.into() }
+}
+
+/// The file, and its CRS; `None` without the driver.
+fn create<T: Number>(
+    path: &Path,
+    grid: &RasterGrid,
+    facts: &RasterFacts,
+) -> Result<Option<(Dataset, SpatialRef)>, GdalError> {
+    let Ok(driver) = DriverManager::get_driver_by_name(DRIVER) else { return Ok(None) };
+    let mut dataset = driver.create_with_band_type_with_options::<T, _>(
+        path,
+        grid.columns,
+        grid.rows,
+        facts.descriptions.len(),
+        &RasterCreationOptions::from_iter(OPTIONS),
+    )?;
+    // Before the georeference, whose keys depend on it.
+    dataset.set_metadata_item("AREA_OR_POINT", "Point", "")?;
+    let mut crs = SpatialRef::from_definition(&facts.crs)?;
+    crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    dataset.set_spatial_ref(&crs)?;
+    dataset.set_geo_transform(&facts.crs_from_pixel)?;
+    for (key, value) in &facts.metadata {
+        dataset.set_metadata_item(key, value, "")?;
+    }
+    for (number, description) in (1..).zip(&facts.descriptions) {
+        let mut band = dataset.rasterband(number)?;
+        // No height can be mistaken for it.
+        band.set_no_data_value(Some(f64::NAN))?;
+        band.set_description(description)?;
+    }
+    Ok(Some((dataset, crs)))
+}
+
+/// Whether all blocks are there as they were written (`None` if not), and then whether the file names the same CRS.
+fn read_again<T: Number>(
+    path: &Path,
+    grid: &RasterGrid,
+    written: &[Vec<u32>],
+    crs: &SpatialRef,
+) -> Result<Option<bool>, GdalError> {
+    let options = DatasetOptions {
+        open_flags: GdalOpenFlags::GDAL_OF_RASTER,
+        allowed_drivers: Some(&[DRIVER]),
+        ..DatasetOptions::default()
+    };
+    let dataset = Dataset::open_ex(path, options)?;
+    if dataset.raster_count() != written.len() {
+        return Ok(None);
+    }
+    for (number, written) in (1..).zip(written) {
+        let band = dataset.rasterband(number)?;
+        for (number, known) in written.iter().enumerate() {
+            let place = grid.place(number);
+            let block: Buffer<T> = band.read_block(place.into())?;
+            if checksum(block.data(), grid, place) != *known {
+                return Ok(None);
+            }
+        }
+    }
+    let mut found = dataset.spatial_ref()?;
+    found.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    Ok(Some(found == *crs))
+}
+
+/// Of what a block has of the raster: what is beyond it, GDAL chooses itself.
+fn checksum<T: Number>(block: &[T], grid: &RasterGrid, place: [usize; 2]) -> u32 {
+    let (mut crc, window) = (Crc::new(), grid.window(place));
+    for row in block.chunks(BLOCK).take(window.rows) {
+        let bytes: Vec<u8> =
+            row[..window.columns].iter().flat_map(|number| number.bytes()).collect();
+        crc.update(&bytes);
+    }
+    crc.sum()
+}

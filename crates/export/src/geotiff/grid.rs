@@ -1,0 +1,85 @@
+//! The nodes that are the pixels of a raster.
+
+use corniche_dem::RecordedCrs;
+use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_tileset::{FilePackage, Manifest};
+
+use crate::{bounds::DegreeBounds, error::ExportError};
+
+/// Nodes along each side of a block.
+pub(crate) const BLOCK: usize = 256;
+
+/// A rectangle of finest nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct RasterGrid {
+    /// North-western node.
+    pub(crate) corner: NodeIndex,
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl RasterGrid {
+    /// The nodes of the data, or those of them in the bounds.
+    pub(crate) fn of(
+        package: &FilePackage,
+        bounds: Option<&DegreeBounds>,
+    ) -> Result<Self, ExportError> {
+        let manifest = package.manifest();
+        let [mut low, mut high] = manifest.data_nodes();
+        if let Some(bounds) = bounds {
+            let failed = |source| ExportError::Crs(Box::new(source));
+            let Manifest { crs_wkt, metres_per_unit, frame, .. } = manifest;
+            let whole = manifest.whole_data_bounds();
+            let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(failed)?;
+            let asked = crs.nodes_within(bounds.degrees(), frame, manifest.area_deg());
+            let [from, to] = asked.map_err(failed)?;
+            low = NodeIndex { i: low.i.max(from.i), j: low.j.max(from.j) };
+            high = NodeIndex { i: high.i.min(to.i), j: high.j.min(to.j) };
+        }
+        let side = |low: i64, high: i64| usize::try_from(high - low + 1).ok().filter(|n| *n > 0);
+        match (side(low.i, high.i), side(low.j, high.j)) {
+            (Some(columns), Some(rows)) => {
+                Ok(Self { corner: NodeIndex { i: low.i, j: high.j }, columns, rows })
+            }
+            _ => Err(ExportError::NoGround { package: package.path().to_path_buf() }),
+        }
+    }
+
+    /// Blocks from west to east and from north to south.
+    pub(crate) fn blocks(&self) -> [usize; 2] {
+        [self.columns, self.rows].map(|nodes| nodes.div_ceil(BLOCK))
+    }
+
+    /// Column and row of a block by its number, row by row.
+    pub(crate) fn place(&self, number: usize) -> [usize; 2] {
+        let [columns, _] = self.blocks();
+        [number % columns, number / columns]
+    }
+
+    /// The nodes of a block, of which those in the east and in the south may be smaller.
+    pub(crate) fn window(&self, [column, row]: [usize; 2]) -> NodeWindow {
+        let from = [column * BLOCK, row * BLOCK];
+        NodeWindow {
+            corner: NodeIndex {
+                i: self.corner.i + from[0] as i64,
+                j: self.corner.j - from[1] as i64,
+            },
+            stride: 1,
+            columns: BLOCK.min(self.columns - from[0]),
+            rows: BLOCK.min(self.rows - from[1]),
+        }
+    }
+
+    /// From pixels to the package's CRS, as GDAL has it: about the corners of pixels, whose middles are nodes.
+    pub(crate) fn crs_from_pixel(&self, manifest: &Manifest) -> [f64; 6] {
+        let Manifest { frame, metres_per_unit: [unit_x, unit_y], .. } = manifest;
+        let (east, north) = (frame.cell().east_m / unit_x, frame.cell().north_m / unit_y);
+        let x = frame.x_m(self.corner.i) / unit_x;
+        let y = frame.y_m(self.corner.j) / unit_y;
+        [x - east / 2.0, east, 0.0, y + north / 2.0, 0.0, -north]
+    }
+}
+
+#[cfg(test)]
+#[path = "grid_tests.rs"]
+mod tests;
