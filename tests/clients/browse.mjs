@@ -3,85 +3,21 @@
 // FOLDER has the exports NAME-none and NAME-meshopt and NAME.json, what `corniche info` says.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
-import http from "node:http";
 import path from "node:path";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
 import { PNG } from "pngjs";
-import { fail } from "./files.mjs";
+import { extentOf, hideTexts, holes, picture, startBrowser } from "./browser.mjs";
+import { fail, filesOf } from "./files.mjs";
 
 const [folder, name, packagePath, site, pictures] = process.argv.slice(2);
-const here = path.dirname(fileURLToPath(import.meta.url));
 /** Others take longer, and show the same. */
 const ALL_VIEWS = process.env.CORNICHE_ALL_VIEWS === "1";
 /** Of which places and heights are known, and that nothing is missing. */
 const isSample = name === "pass";
 const SIZE = { width: 1000, height: 700 };
-/** Behind everything: where it is seen below the horizon, there is a hole. */
-const MAGENTA = [255, 0, 255];
 
-// A plain server of files, as any static host is.
-const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json", ".css": "text/css" };
-const places = [["/node_modules/", path.join(here, "node_modules")], ["/data/", folder], ["/", site]];
-const server = http.createServer((request, answer) => {
-  const asked = decodeURIComponent(new URL(request.url, "http://local").pathname);
-  const [prefix, root] = places.find(([prefix]) => asked.startsWith(prefix));
-  const file = path.join(root, asked.slice(prefix.length));
-  if (!fs.existsSync(file) || !fs.statSync(file).isFile()) return answer.writeHead(404).end();
-  answer.writeHead(200, { "Content-Type": types[path.extname(file)] ?? "application/octet-stream" });
-  fs.createReadStream(file).pipe(answer);
-});
-await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
-const origin = `http://127.0.0.1:${server.address().port}`;
-
-const browser = await chromium.launch({
-  executablePath: "/usr/bin/chromium",
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
-}).catch((error) => {
-  console.error(`skipped: Chromium does not start here, so no page is opened: ${error.message.split("\n")[0]}`);
-  process.exit(0);
-});
-
-/** Opens a page; failed and foreign requests and errors of scripts are faults. */
-async function open(address) {
-  const page = await browser.newPage({ viewport: SIZE });
-  page.on("request", (request) => {
-    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(origin)) fail(`asks ${request.url()}`);
-  });
-  page.on("response", (answer) => { if (answer.status() >= 400) fail(`${answer.status()} for ${answer.url()}`); });
-  page.on("pageerror", (error) => fail(`${address}: ${error}`));
-  await page.goto(`${origin}/${address}`);
-  await page.waitForFunction(() => window.corniche, null, { timeout: 60_000 });
-  return page;
-}
-
-async function picture(page, file) {
-  const bytes = await page.screenshot({ path: path.join(pictures, file) });
-  return PNG.sync.read(bytes);
-}
-
-const isNear = (data, at, color, within = 2) => color.every((channel, k) => Math.abs(data[at + k] - channel) <= within);
-
-/** Pixels of magenta with ground above them: where there is some below the first row of ground of a column. */
-function holes(png) {
-  let count = 0;
-  for (let x = 0; x < png.width; x += 1) {
-    let seen = false;
-    for (let y = 0; y < png.height; y += 1) {
-      const isMagenta = isNear(png.data, 4 * (y * png.width + x), MAGENTA, 20);
-      if (!isMagenta) seen = true;
-      else if (seen && y < png.height - 30) count += 1;
-    }
-  }
-  return count;
-}
-
-const info = JSON.parse(fs.readFileSync(path.join(folder, `${name}.json`))).manifest;
-const [west, south, east, north] = ["min_x", "min_y", "max_x", "max_y"].map((side) => info.wgs84_bounds[side]);
-const high = info.vertical.range_m[1];
-const at = (u, v) => [west + (east - west) * u, south + (north - south) * v];
-const across = (north - south) * 111_000;
-const hideTexts = (page) => page.addStyleTag({ content: "#said, #credit, .cesium-viewer-bottom, .cesium-viewer-toolbar { display: none !important; }" });
+const { at, high, across } = extentOf(folder, name);
+const { open, close } = await startBrowser(folder, site, SIZE);
+const kept = (file) => path.join(pictures, file);
 
 // CesiumJS.
 const tileset = `/data/${name}-meshopt/tileset.json`;
@@ -104,7 +40,7 @@ for (const view of views) {
       if (idle === 6) done();
     });
   }));
-  const png = await picture(page, `${name}-cesium-${view}.png`);
+  const png = await picture(page, kept(`${name}-cesium-${view}.png`));
   const statistics = await page.evaluate(() => {
     const { selected, numberOfTrianglesSelected, numberOfTilesWithContentReady } = window.corniche.tileset.statistics;
     return { selected, triangles: numberOfTrianglesSelected, ready: numberOfTilesWithContentReady };
@@ -141,7 +77,7 @@ function mask(one, other) {
 const LEAST_IOU = 0.85;
 const looks = isSample ? [[9.47, 46.938, 1000, 2500, 10], [9.47, 46.938, 1000, 2500, 35]] : [[9.5215, 47.139, 460, 1500, 30], [9.5215, 47.139, 460, 2500, 60]];
 for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks : looks.slice(1)).entries()) {
-  const file = (kind) => path.join(pictures, `${name}-same-${number}-${kind}.png`);
+  const file = (kind) => kept(`${name}-same-${number}-${kind}.png`);
   for (const roads of ["sv", "none"]) {
     execFileSync(process.env.CORNICHE, ["render", packagePath, "-q", "-O", "-o", file(roads), "--roads", roads,
       "--look-at", `${lon},${lat}`, "--height", height, "--distance", distance, "--pitch", pitch,
@@ -166,7 +102,7 @@ for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks :
         if (idle === 6) done();
       });
     }), [lon, lat, height, heading, distance, pitch, SIZE.width / SIZE.height]);
-    shots.push(await picture(page, `${name}-same-${number}-${kind}.png`));
+    shots.push(await picture(page, kept(`${name}-same-${number}-${kind}.png`)));
     await page.close();
   }
   const read = (kind) => PNG.sync.read(fs.readFileSync(file(kind)));
@@ -184,45 +120,71 @@ for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks :
 
 // three.js, with a plugin that checks that boxes hold what they should.
 {
-  const page = await open(`three.html?tileset=${tileset}&background=magenta`);
+  const page = await open(`three.html?tileset=${tileset}&background=magenta`, async (page) => {
+    // No tile comes before the plugin is there.
+    let release;
+    const isReleased = new Promise((done) => { release = done; });
+    await page.exposeFunction("releaseTiles", release);
+    await page.route("**/*.glb", async (route) => { await isReleased; await route.continue(); });
+  });
   const warnings = [];
   page.on("console", (message) => { if (message.type() === "warning") warnings.push(message.text()); });
   await page.evaluate(async () => {
     const { TilesetValidationPlugin } = await import("/node_modules/3d-tiles-renderer/src/three/plugins/TilesetValidationPlugin.js");
-    const { tiles } = window.corniche;
-    tiles.registerPlugin(new TilesetValidationPlugin());
-    // Every tile is loaded, down to the finest, and nothing is drawn meanwhile, which takes long without a GPU.
-    tiles.errorTarget = 0.0001;
-    window.corniche.renderer.setAnimationLoop(() => tiles.update());
-    window.loaded = 0;
-    tiles.addEventListener("load-model", () => { window.loaded += 1; });
+    const { tiles, renderer, camera, controls } = window.corniche;
+    window.seen = new Set();
+    class Counting extends TilesetValidationPlugin {
+      _validateTile(scene, tile) {
+        window.seen.add(tile);
+        super._validateTile(scene, tile);
+      }
+    }
+    tiles.registerPlugin(new Counting());
+    // Every tile is loaded, down to the finest, and nothing is drawn meanwhile, which takes long without a GPU. From afar all are in view.
+    tiles.errorTarget = 0;
+    tiles.lruCache.maxBytesSize = Infinity;
+    let isMoved = false;
+    renderer.setAnimationLoop(() => {
+      if (tiles.root && !isMoved && controls.target.lengthSq() > 0) {
+        window.eye = camera.position.clone();
+        camera.position.sub(controls.target).multiplyScalar(4).add(controls.target);
+        camera.far *= 10;
+        camera.updateProjectionMatrix();
+        camera.updateMatrixWorld();
+        isMoved = true;
+      }
+      tiles.update();
+    });
+    await window.releaseTiles();
   });
   await hideTexts(page);
-  const idle = () => page.waitForFunction(() => {
+  await page.waitForFunction(() => {
     const { tiles } = window.corniche;
     const isIdle = tiles.root && tiles.stats.downloading === 0 && tiles.stats.parsing === 0 && tiles.stats.queued === 0;
     window.idle = isIdle ? (window.idle ?? 0) + 1 : 0;
     return window.idle > 20;
   }, null, { timeout: 240_000, polling: 100 });
-  await idle();
-  const { loaded, road } = await page.evaluate(() => {
+  const { seen, road } = await page.evaluate(() => {
     const { renderer, scene, camera, roadAt } = window.corniche;
+    camera.position.copy(window.eye);
     renderer.setAnimationLoop(() => renderer.render(scene, camera));
+    renderer.render(scene, camera);
     for (let y = -0.9; y < 0.5; y += 0.01) {
       for (let x = -0.9; x < 0.9; x += 0.02) {
         const road = roadAt(x, y);
-        if (road) return { loaded: window.loaded, road: { ...road, way_id: String(road.way_id) } };
+        if (road) return { seen: window.seen.size, road: { ...road, way_id: String(road.way_id) } };
       }
     }
-    return { loaded: window.loaded, road: null };
+    return { seen: window.seen.size, road: null };
   });
-  await picture(page, `${name}-three.png`);
+  await picture(page, kept(`${name}-three.png`));
+  const tiles = filesOf(path.join(folder, `${name}-meshopt`), ".glb").length;
   const complaints = warnings.filter((text) => /Validation|bounding|outside/i.test(text));
-  console.log("three.js", name, { loaded, complaints: complaints.length, picked: road });
+  console.log("three.js", name, { seen, tiles, complaints: complaints.length, picked: road });
+  if (seen !== tiles) fail(`the validation plugin saw ${seen} of ${tiles} tiles`);
   if (complaints.length) fail(complaints[0]);
   if (!road?.way_id) fail("no road could be picked in three.js");
   await page.close();
 }
 
-await browser.close();
-server.close();
+await close();
