@@ -123,7 +123,7 @@ pub(crate) fn make(
             builder.lines(&payload, placing, facts.error_m, PartKind::RoadLines)?;
         }
         TileRoads::Vector => {
-            vector.lines(&payload, placing, facts.error_m, PartKind::RoadStrips)?
+            vector.lines(&payload, placing, facts.error_m, PartKind::RoadStrips)?;
         }
         TileRoads::Cut | TileRoads::None => {}
     }

@@ -34,7 +34,7 @@ pub(crate) struct Branch {
 
 /// The extension of tilesets whose contents are points, lines and areas, to be drawn as a client's style says.
 ///
-/// Source: CesiumGS 2026, *`3DTILES_content_gltf_vector`*, draft, pull request 838 of CesiumGS/3d-tiles, as CesiumJS 1.145 reads it.
+/// Source: Cesium 2026, *`3DTILES_content_gltf_vector`*, draft, pull request 838 of its repository 3d-tiles, as `CesiumJS` 1.145 reads it.
 const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
 
 /// What tiles of a tileset hold.
