@@ -111,6 +111,7 @@ function mask(one, other) {
 {
   const page = await open(`cesium.html?tileset=/data/${name}-vector/tileset.json&roads=/data/${name}-vector/roads/tileset.json&view=${all.near}&background=magenta`);
   await hideTexts(page);
+  const begin = Date.now();
   const shot = (areShown, file) => page.evaluate((areShown) => new Promise((done) => {
     const { viewer, tileset, roads } = window.corniche;
     roads.show = areShown;
@@ -137,7 +138,7 @@ function mask(one, other) {
     return road && { ...road, way_id: String(road.way_id) };
   }), asked);
   const found = picked.filter((road) => road?.way_id && road.highway);
-  console.log("CesiumJS vectors", name, { roadPixels, asked: asked.length, picked: found.length, such_as: found[0] });
+  console.log("CesiumJS vectors", name, { ms: Date.now() - begin, roadPixels, asked: asked.length, picked: found.length, such_as: found[0] });
   if (roadPixels < 1000) fail(`only ${roadPixels} pixels of roads as vectors`);
   if (found.length < asked.length) fail(`of ${asked.length} pixels of roads as vectors only ${found.length} could be picked in CesiumJS`);
   await page.close();
