@@ -1,13 +1,14 @@
 // What the pages have in common.
 
 /**
- * What the address asks for: ?tileset=URL or ?terrain=URL, and for pictures ?view=lon,lat,height,heading,pitch, ?background=COLOUR and
- * ?sun=azimuth,elevation.
+ * What the address asks for: ?tileset=URL, with ?roads=URL for roads as a second tileset, or ?terrain=URL, and for pictures
+ * ?view=lon,lat,height,heading,pitch, ?background=COLOUR and ?sun=azimuth,elevation.
  */
 export function options() {
   const asked = new URLSearchParams(location.search);
   return {
     tilesetUrl: asked.get("tileset") ?? "tiles/tileset.json",
+    roadsUrl: asked.get("roads"),
     terrainUrl: asked.get("terrain") ?? "terrain",
     sun: asked.get("sun")?.split(",").map(Number),
     view: asked.get("view")?.split(",").map(Number),

@@ -1,20 +1,31 @@
 // Khronos' validator on every GLB: node validate.mjs FOLDER…
+//
+// Those in folders named `roads` are vector content: indices that restart a strip are not glTF 2.0, and nothing else may be wrong with them.
 import fs from "node:fs";
+import path from "node:path";
 import validator from "gltf-validator";
 import { fail, filesOf } from "./files.mjs";
 
+/** The largest index, which is that of no vertex. */
+const RESTART = /value (65535|4294967295) that is greater/;
 const checked = async (bytes) => (await validator.validateBytes(new Uint8Array(bytes))).issues;
 
 for (const folder of process.argv.slice(2)) {
-  const counts = { files: 0, errors: 0, warnings: 0 };
+  const isVector = path.basename(folder) === "roads";
+  const counts = { files: 0, errors: 0, warnings: 0, restarts: 0 };
   for (const file of filesOf(folder, ".glb")) {
     const issues = await checked(fs.readFileSync(file));
     counts.files += 1;
-    counts.errors += issues.numErrors;
+    const isAllowed = ({ code, message }) => isVector &&
+      (code === "ACCESSOR_INDEX_PRIMITIVE_RESTART" || (code === "ACCESSOR_INDEX_OOB" && RESTART.test(message)));
+    const errors = issues.messages.filter((message) => message.severity === 0 && !isAllowed(message));
+    counts.errors += errors.length;
+    counts.restarts += issues.messages.filter(isAllowed).length;
     counts.warnings += issues.numWarnings;
-    if (issues.numErrors) fail(`${file}: ${JSON.stringify(issues.messages[0])}`);
+    if (errors.length) fail(`${file}: ${JSON.stringify(errors[0])}`);
   }
   console.log("glTF validator", folder, counts);
+  if (isVector !== counts.restarts > 0) fail(`${folder}: ${counts.restarts} indices restart strips`);
   if (counts.files === 0) fail(`no tiles in ${folder}`);
 }
 

@@ -29,6 +29,12 @@ impl DegreeBounds {
         [center - half_width, south, center + half_width, north]
     }
 
+    /// The longitude, within ±180, and the latitude of its middle.
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        let lon = self.center - 360.0 * (self.center / 360.0).round();
+        [lon, f64::midpoint(self.south, self.north)]
+    }
+
     /// A position as degrees east of the rectangle's middle, within ±180, and degrees of latitude.
     pub(crate) fn relative(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
         let east = lon - self.center;

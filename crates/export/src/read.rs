@@ -45,6 +45,29 @@ pub(crate) fn tiles(
     Ok(ids)
 }
 
+/// Whether the square of a tile and the bounds have a place in common: a side of the tile goes through the bounds, or they lie within the tile.
+pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> bool {
+    let tile = manifest.frame.tile_bounds(id);
+    let last = SIDE - 1;
+    let around = (0..=4 * last).map(|k| {
+        let share = (k % last) as f64 / last as f64;
+        let [across, along] = match k / last % 4 {
+            0 => [share, 0.0],
+            1 => [1.0, share],
+            2 => [1.0 - share, 1.0],
+            _ => [0.0, 1.0 - share],
+        };
+        let at = [tile.min_x + tile.width() * across, tile.min_y + tile.height() * along];
+        manifest.coordinates.wgs84_from_working(at)
+    });
+    let around: Vec<[f64; 2]> = around.collect();
+    around.windows(2).any(|ends| !bounds.inside(ends[0], ends[1]).is_empty())
+        || manifest
+            .coordinates
+            .working_from_wgs84(bounds.middle())
+            .is_some_and(|middle| tile.contains(middle))
+}
+
 /// Longitudes and latitudes over a tile.
 pub(crate) fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
     let tile = manifest.frame.tile_bounds(id);

@@ -6,11 +6,14 @@ mod checks;
 mod glb;
 mod photos;
 mod tiles;
+mod vectors;
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use checks::{Findings, check_borders, check_heights, check_roads, check_watertight};
+use corniche_testing::Raster;
 use e2e::{build_pass, corniche, ground::Region, text};
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use tempfile::TempDir;
 use tiles::Tiles;
 
@@ -118,7 +121,34 @@ fn wrong_drawings_are_seen() {
     );
 }
 
-/// A flat tile of two triangles would hang 3 m below the earth's surface without dividing its edges.
+/// On flat ground of 32 km a tile is two triangles. Without dividing their edges it would hang some 40 m below the earth's surface, which heights tell.
+#[test]
+fn flat_ground_follows_the_earth() {
+    let folder = TempDir::new().unwrap();
+    let cell_m = 500.0;
+    let raster = Raster::new(32632, [65, 65], [560_000.0, cell_m, 0.0, 5_230_000.0, 0.0, -cell_m]);
+    let dem = raster.write(folder.path(), "flat.tif", |_| 400.0_f32);
+    let package = folder.path().join("flat.pmtiles");
+    let words = ["build", "--dem", text(&dem), "-o", text(&package), "--relief", "off"];
+    let ran = corniche(words.iter().chain(&["--dem-vertical-crs", "EPSG:5773"]));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let region = Region { dem, ..pass() };
+    let right = Tiles::read(&export(&package, "flat", &[]), &package);
+    assert!(right.tiles.iter().all(|tile| tile.ground.triangles.len() < 10), "not flat");
+    let found = check_heights(&right, &region, 20_000);
+    assert!(found.largest_m <= 0.01 && found.off_ground == 0, "{found:?}");
+    let mut undivided = right.clone();
+    undivided.undivide(&region);
+    // The corners are still right; only what lies between them tells.
+    let corners = check_heights(&undivided, &region, 0);
+    assert!(corners.largest_m <= 0.01, "{corners:?}");
+    let found = check_heights(&undivided, &region, 20_000);
+    let side_m = 64.0 * cell_m;
+    let sag_m = 2.0 * side_m * side_m / (8.0 * 6_370_000.0);
+    assert!((0.7 * sag_m..=1.1 * sag_m).contains(&found.largest_m), "{found:?}, not {sag_m}");
+}
+
+/// No edge is longer than dividing leaves it.
 #[test]
 fn long_edges_are_divided() {
     let folder = TempDir::new().unwrap();
@@ -161,6 +191,73 @@ fn options_do_what_they_say() {
         |contents: &BTreeMap<String, Vec<u8>>| contents.values().map(Vec::len).sum::<usize>();
     let sizes = [bytes(&contents(&compressed)), bytes(&one)];
     assert!(sizes[0] * 4 < sizes[1] * 3, "{sizes:?}");
+}
+
+/// `--bounds` takes the tiles that meet them, to the byte those of the whole, and as much as is needed to hold the bounds.
+#[test]
+fn bounds_take_whole_tiles() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let whole = export(&package, "whole", &[]);
+    let glbs = |folder: &PathBuf| -> BTreeMap<String, PathBuf> {
+        let files = tiles::files_of(folder).into_iter();
+        files.filter(|(name, _)| tiles::has_ending(name, "glb")).collect()
+    };
+    let all = glbs(&whole);
+    let [west, south, east, north] = ["min_x", "min_y", "max_x", "max_y"]
+        .map(|side| e2e::manifest(&package)["wgs84_bounds"][side].as_f64().unwrap());
+    let at = |share: f64| [west + (east - west) * share, south + (north - south) * share];
+    // A place, a part, and all with some around.
+    for (name, shares, largest) in
+        [("place", [0.3, 0.300_01], 4), ("part", [0.1, 0.4], 20), ("all", [-0.1, 1.1], 1000)]
+    {
+        let [[w, s], [e, n]] = shares.map(at);
+        let bounds = format!("--bounds={w},{s},{e},{n}");
+        let part = export(&package, name, &[&bounds]);
+        let found = glbs(&part);
+        assert!(!found.is_empty() && found.len() <= largest, "{name}: {}", found.len());
+        assert_eq!(found.len() == all.len(), name == "all");
+        for (file, path) in &found {
+            assert_eq!(fs::read(path).unwrap(), fs::read(&all[file]).unwrap(), "{name}: {file}");
+        }
+        let read = Tiles::read(&part, &package);
+        read.check_tree().unwrap();
+        // Everywhere in the bounds there is ground, of each level.
+        let finest = read.levels().max().unwrap();
+        assert_eq!(finest + 1, e2e::manifest(&package)["levels"].as_array().unwrap().len() as u64);
+        for level in 0..=finest {
+            let is_held = |at: [f64; 2]| {
+                let tiles =
+                    read.tiles.iter().filter(|tile| tile.name.starts_with(&format!("{level}/")));
+                tiles.into_iter().any(|tile| tile.ground.height(at).is_some())
+            };
+            for share in [0.01, 0.5, 0.99] {
+                let share = (shares[0] + (shares[1] - shares[0]) * share).clamp(0.02, 0.98);
+                let [lon, lat] = at(share);
+                assert!(is_held(in_crs([lon, lat])), "{name}: nothing at {share} on level {level}");
+            }
+        }
+    }
+    let target = folder.path().join("none");
+    let ran =
+        corniche(["export", "3dtiles", text(&package), "-o", text(&target), "--bounds=0,0,1,1"]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("has no ground there"), "{}", ran.err);
+}
+
+/// The sample's CRS.
+fn in_crs([lon, lat]: [f64; 2]) -> [f64; 2] {
+    let of = |code: u32| {
+        let mut crs = SpatialRef::from_epsg(code).unwrap();
+        crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+        crs
+    };
+    let (mut x, mut y) = ([lon], [lat]);
+    CoordTransform::new(&of(4326), &of(32632))
+        .unwrap()
+        .transform_coords(&mut x, &mut y, &mut [])
+        .unwrap();
+    [x[0], y[0]]
 }
 
 /// What cannot be exported is said, and nothing is left.

@@ -185,6 +185,37 @@ impl Tiles {
         }
     }
 
+    /// Draws the package's own triangles, as if their edges were straight on the earth.
+    pub(crate) fn undivide(&mut self, region: &Region) {
+        let from_earth = FromEarth::to(region);
+        let tiles = std::mem::take(&mut self.tiles);
+        for mut tile in tiles {
+            let at_m: Vec<[f64; 3]> = tile
+                .parts
+                .iter()
+                .filter(|part| part.name != "skirt")
+                .flat_map(|part| part.at_m.clone())
+                .collect();
+            let on_earth: Vec<[f64; 3]> = at_m.iter().map(|at| self.on_earth(*at)).collect();
+            let in_crs = from_earth.carry(&on_earth);
+            let vertex_at = |corner: &[f64; 3]| {
+                let far = |at: &[f64; 3]| (at[0] - corner[0]).hypot(at[1] - corner[1]);
+                let nearest = (0..in_crs.len())
+                    .min_by(|one, other| far(&in_crs[*one]).total_cmp(&far(&in_crs[*other])));
+                let nearest = nearest.unwrap();
+                assert!(far(&in_crs[nearest]) < 0.01, "a corner of the package is no vertex");
+                at_m[nearest]
+            };
+            tile.parts = vec![Part {
+                name: "terrain".to_owned(),
+                at_m: tile.ground.corners.iter().map(vertex_at).collect(),
+                triangles: tile.ground.triangles.clone(),
+                ways: Vec::new(),
+            }];
+            self.tiles.push(tile);
+        }
+    }
+
     /// The longest edge of the ground.
     pub(crate) fn longest_edge_m(&self) -> f64 {
         let mut longest: f64 = 0.0;

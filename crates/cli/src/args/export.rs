@@ -175,7 +175,8 @@ pub(crate) struct ExportTiles3dArgs {
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// How roads are there: cut (surfaces of their true width in the ground's own triangles), line (centre-lines just above
-    /// the ground) or none
+    /// the ground), vector (centre-lines as vector content for CesiumJS, in a second tileset, roads/tileset.json; a draft, and
+    /// not valid glTF 2.0 for others) or none
     #[arg(
         long,
         value_enum,
@@ -193,6 +194,10 @@ pub(crate) struct ExportTiles3dArgs {
     /// The finest level that is written [default: the package's finest]
     #[arg(long, value_name = "Z")]
     pub(crate) finest_level: Option<u8>,
+    /// Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east
+    /// crosses 180°
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
+    pub(crate) bounds: Option<DegreeBounds>,
     /// Walls below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
@@ -314,6 +319,8 @@ pub(crate) enum TileRoadsArg {
     Cut,
     /// Centre-lines above the ground
     Line,
+    /// Centre-lines as vector content
+    Vector,
     /// Nothing
     None,
 }
@@ -333,6 +340,7 @@ impl From<TileRoadsArg> for TileRoads {
         match roads {
             TileRoadsArg::Cut => Self::Cut,
             TileRoadsArg::Line => Self::Line,
+            TileRoadsArg::Vector => Self::Vector,
             TileRoadsArg::None => Self::None,
         }
     }

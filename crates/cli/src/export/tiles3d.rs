@@ -24,6 +24,7 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.package)?;
     let request = Tiles3dRequest {
         finest_level: args.finest_level,
+        bounds: args.bounds,
         roads: TileRoads::from(args.roads),
         classes: args.classes.classes(),
         style,

@@ -7,6 +7,6 @@ mod numbers;
 
 pub(crate) use container::{CHUNK_ALIGNMENT, write_container};
 pub(crate) use numbers::{
-    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U8, U16, U32, linear, range_of,
-    sampler,
+    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, TRIANGLES, U8, U16, U32, linear,
+    range_of, sampler,
 };

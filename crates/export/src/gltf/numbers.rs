@@ -11,6 +11,7 @@ pub(crate) const U32: u32 = 5125;
 pub(crate) const F32: u32 = 5126;
 /// Modes of primitives.
 pub(crate) const LINES: u32 = 1;
+pub(crate) const LINE_STRIP: u32 = 3;
 pub(crate) const TRIANGLES: u32 = 4;
 
 /// Filters and wrapping of samplers.

@@ -1,3 +1,5 @@
+#![expect(clippy::float_cmp, reason = "the same to the last bit is what is tested")]
+
 use proptest::prelude::*;
 
 use super::*;

@@ -8,7 +8,7 @@ use corniche_styles::Rgb;
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 
 use super::{
-    parts::{Part, PartKind, RoadRow, TileContent, y_up},
+    parts::{Part, PartKind, RESTART, RoadRow, TileContent, y_up},
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
     request::{TileRoads, Tiles3dRequest},
     skirt::Skirt,
@@ -42,6 +42,8 @@ pub(crate) struct LevelOfTiles {
 /// A tile's content, and what the tileset says of it.
 pub(crate) struct MadeTile {
     pub(crate) content: TileContent,
+    /// Roads as vector content, where they are asked for and there are some.
+    pub(crate) vector: Option<TileContent>,
     pub(crate) tile_box: TileBox,
     pub(crate) facts: TileFacts,
 }
@@ -72,7 +74,7 @@ pub(crate) fn make(
     level: &LevelOfTiles,
 ) -> Result<Option<MadeTile>, ExportError> {
     let wanted = match request.roads {
-        TileRoads::Line => Sections::TERRAIN | read::road_sections(),
+        TileRoads::Line | TileRoads::Vector => Sections::TERRAIN | read::road_sections(),
         TileRoads::Cut | TileRoads::None => Sections::TERRAIN,
     };
     let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
@@ -100,8 +102,15 @@ pub(crate) fn make(
     let mut builder = Builder::new(manifest, request, &placed, texture);
     builder.ground(&roads);
     builder.skirt(&skirt);
-    if request.roads == TileRoads::Line {
-        builder.lines(&payload, placing, facts.error_m)?;
+    let mut vector = Builder::new(manifest, request, &placed, None);
+    match request.roads {
+        TileRoads::Line => {
+            builder.lines(&payload, placing, facts.error_m, PartKind::RoadLines)?;
+        }
+        TileRoads::Vector => {
+            vector.lines(&payload, placing, facts.error_m, PartKind::RoadStrips)?;
+        }
+        TileRoads::Cut | TileRoads::None => {}
     }
     let mut tile_box = TileBox::along(placed.axes);
     let around_middle = |at: [f32; 3]| [0, 1, 2].map(|k| placed.middle_m[k] + f64::from(at[k]));
@@ -111,10 +120,12 @@ pub(crate) fn make(
     for (at, _) in &skirt.vertices {
         tile_box.include(around_middle(*at));
     }
-    for at in &builder.line_positions {
+    // Tiles of both tilesets have one box, so that a client shows the same level of both.
+    for at in builder.line_positions.iter().chain(&vector.line_positions) {
         tile_box.include(around_middle(*at));
     }
-    Ok(Some(MadeTile { content: builder.finish(id), tile_box, facts }))
+    let vector = (!vector.parts.is_empty()).then(|| vector.finish(id));
+    Ok(Some(MadeTile { content: builder.finish(id), vector, tile_box, facts }))
 }
 
 /// Sorts triangles and lines into parts.
@@ -220,12 +231,13 @@ impl<'a> Builder<'a> {
         self.ways.push(Vec::new());
     }
 
-    /// Centre-lines, lifted.
+    /// Centre-lines, lifted, as parts of a kind.
     fn lines(
         &mut self,
         payload: &TilePayload,
         placing: &Placing<'_>,
         error_m: f64,
+        kind: fn(FunctionalRoadClass) -> PartKind,
     ) -> Result<(), ExportError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
         let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
@@ -244,13 +256,20 @@ impl<'a> Builder<'a> {
                 ways.push(piece.key.way_id);
             }
             let end = part.positions.len() as u32;
-            part.indices.extend((first + 1..end).flat_map(|next| [next - 1, next]));
+            if let PartKind::RoadStrips(_) = kind(piece.class) {
+                if !part.indices.is_empty() {
+                    part.indices.push(RESTART);
+                }
+                part.indices.extend(first..end);
+            } else {
+                part.indices.extend((first + 1..end).flat_map(|next| [next - 1, next]));
+            }
             self.rows
                 .entry(piece.key.way_id)
                 .or_insert_with(|| row(piece.key.way_id, piece.class, &piece.attributes));
         }
         for (class, (part, ways)) in by_class {
-            self.parts.push((PartKind::RoadLines(class), part));
+            self.parts.push((kind(class), part));
             self.ways.push(ways);
         }
         Ok(())

@@ -1,17 +1,17 @@
 //! One tile as binary glTF: ground, walls and roads, with a table of the roads.
 //!
 //! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`, `EXT_structural_metadata`, `EXT_meshopt_compression`,
-//! `KHR_materials_unlit`.
+//! `KHR_materials_unlit`; for strips of lines the draft `KHR_mesh_primitive_restart`.
 
 use std::io::{self, Write};
 
 use corniche_styles::Rgb;
 use serde_json::{Map, Value, json};
 
-use super::parts::{Part, PartKind, RoadRow, TileContent};
+use super::parts::{Part, PartKind, RESTART, RoadRow, TileContent};
 use crate::gltf::{
-    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U8, U16, U32,
-    linear, range_of, sampler, write_container,
+    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, TRIANGLES, U8,
+    U16, U32, linear, range_of, sampler, write_container,
 };
 
 /// A text of a row.
@@ -62,12 +62,10 @@ fn material(kind: PartKind, colors: &[Rgb]) -> Value {
         })
     };
     let name = kind.name();
-    match kind {
-        PartKind::Terrain | PartKind::Skirt => {
-            json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) })
-        }
+    match kind.class() {
+        None => json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) }),
         // Colours of roads are those of the legend, whatever the light.
-        PartKind::RoadSurfaces(class) | PartKind::RoadLines(class) => json!({
+        Some(class) => json!({
             "name": name,
             "pbrMetallicRoughness": base(colors[usize::from(class.number())].map(linear)),
             "extensions": { "KHR_materials_unlit": {} },
@@ -121,7 +119,7 @@ impl File {
             attributes.insert("TEXCOORD_0".to_owned(), self.accessor(accessor));
         }
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
-        if let PartKind::RoadSurfaces(class) | PartKind::RoadLines(class) = kind {
+        if let Some(class) = kind.class() {
             // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
             let features: Vec<f32> = part.features.iter().map(|row| *row as f32).collect();
             let view = self.vertices(&features)?;
@@ -137,8 +135,10 @@ impl File {
             }] } });
             primitive["extras"]["frc"] = json!(class.number());
         }
-        if matches!(kind, PartKind::RoadLines(_)) {
-            primitive["mode"] = json!(LINES);
+        match kind {
+            PartKind::RoadLines(_) => primitive["mode"] = json!(LINES),
+            PartKind::RoadStrips(_) => primitive["mode"] = json!(LINE_STRIP),
+            PartKind::Terrain | PartKind::Skirt | PartKind::RoadSurfaces(_) => {}
         }
         primitive["attributes"] = Value::Object(attributes);
         primitive["indices"] = self.indices(&part.indices, count, kind)?;
@@ -166,12 +166,16 @@ impl File {
 
     fn indices(&mut self, indices: &[u32], vertices: usize, kind: PartKind) -> io::Result<Value> {
         let is_short = vertices < SHORT_INDICES;
+        // The largest number restarts strips, of either length.
+        const { assert!(RESTART as u16 == u16::MAX) };
         let short: Vec<u16> =
             if is_short { indices.iter().map(|index| *index as u16).collect() } else { Vec::new() };
         let plain: &[u8] =
             if is_short { bytemuck::cast_slice(&short) } else { bytemuck::cast_slice(indices) };
         let stride = if is_short { 2 } else { 4 };
-        let view = if self.is_compressed {
+        // The codec takes no index that is not that of a vertex.
+        let is_compressed = self.is_compressed && !matches!(kind, PartKind::RoadStrips(_));
+        let view = if is_compressed {
             let (encoded, mode) = match kind {
                 PartKind::RoadLines(_) => {
                     (meshopt::encode_index_sequence(indices, vertices), "INDICES")
@@ -310,6 +314,9 @@ impl File {
         }
         if table.is_some() {
             used.extend(["EXT_mesh_features", "EXT_structural_metadata", "KHR_materials_unlit"]);
+        }
+        if tile.parts.iter().any(|(kind, _)| matches!(kind, PartKind::RoadStrips(_))) {
+            used.push("KHR_mesh_primitive_restart");
         }
         let mut document = json!({
             "asset": {

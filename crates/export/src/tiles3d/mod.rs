@@ -6,6 +6,8 @@
 //!   tileset.json ◄── boxes and errors from the finest level upwards ◄── GLB ◄── placed on the globe ◄────┘
 //! ```
 //!
+//! Roads as vector content are a tileset of their own, in a folder beneath, with the same tree: CesiumJS (1.145) takes all of a tileset for vectors or none.
+//!
 //! All tiles are in one frame (east, north and up in the middle of the data), so one matrix leads to the earth's, and vertices that two tiles of a level
 //! share have the same bits.
 
@@ -17,6 +19,7 @@ mod request;
 mod run;
 mod skirt;
 mod tree;
+mod vector_style;
 
 pub use request::{TileRoads, Tiles3dRequest};
 pub use run::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};

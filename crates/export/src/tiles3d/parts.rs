@@ -14,9 +14,12 @@ pub(crate) struct Part {
     pub(crate) picture_places: Vec<[f32; 2]>,
     /// Rows of the table of roads.
     pub(crate) features: Vec<u32>,
-    /// Three to a triangle, two to a line.
+    /// Three to a triangle, two to a line; strips with [`RESTART`] between them.
     pub(crate) indices: Vec<u32>,
 }
+
+/// Ends a strip of lines, among indices.
+pub(crate) const RESTART: u32 = u32::MAX;
 
 /// What a part is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,14 +28,25 @@ pub(crate) enum PartKind {
     Skirt,
     RoadSurfaces(FunctionalRoadClass),
     RoadLines(FunctionalRoadClass),
+    RoadStrips(FunctionalRoadClass),
 }
 
 impl PartKind {
+    /// The class of roads.
+    pub(crate) fn class(self) -> Option<FunctionalRoadClass> {
+        match self {
+            Self::Terrain | Self::Skirt => None,
+            Self::RoadSurfaces(class) | Self::RoadLines(class) | Self::RoadStrips(class) => {
+                Some(class)
+            }
+        }
+    }
+
     pub(crate) fn name(self) -> String {
         match self {
             Self::Terrain => "terrain".to_owned(),
             Self::Skirt => "skirt".to_owned(),
-            Self::RoadSurfaces(class) | Self::RoadLines(class) => {
+            Self::RoadSurfaces(class) | Self::RoadLines(class) | Self::RoadStrips(class) => {
                 format!("roads FRC {}", class.number())
             }
         }

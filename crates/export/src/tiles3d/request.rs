@@ -1,7 +1,7 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 
-use crate::request::Coordinates;
+use crate::{bounds::DegreeBounds, request::Coordinates};
 
 /// What tiles have of roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,6 +10,8 @@ pub enum TileRoads {
     Cut,
     /// Their centre-lines, lifted a little above the ground.
     Line,
+    /// The same as vector content, in a second tileset (`3DTILES_content_gltf_vector`, a draft).
+    Vector,
     /// Nothing.
     None,
 }
@@ -19,6 +21,8 @@ pub enum TileRoads {
 pub struct Tiles3dRequest {
     /// The finest level that is taken; `None` is the package's finest.
     pub finest_level: Option<u8>,
+    /// Tiles that meet it are taken, whole; `None` takes all.
+    pub bounds: Option<DegreeBounds>,
     /// How roads are there.
     pub roads: TileRoads,
     /// The classes of roads that are taken.

@@ -1,5 +1,5 @@
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
     io::{self, BufWriter, Write as _},
     path::Path,
@@ -11,9 +11,11 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     content::{self, LevelOfTiles, TileFacts},
     glb,
+    parts::TileContent,
     placed::{Placing, TileBox, step_m},
-    request::Tiles3dRequest,
-    tree::{Tree, content_name},
+    request::{TileRoads, Tiles3dRequest},
+    tree::{Contents, Tree, content_name},
+    vector_style,
 };
 use crate::{
     error::ExportError,
@@ -32,6 +34,8 @@ const BOW_CHORD_M: f64 = 5_000.0;
 const LARGEST_SAG_M: f64 = 0.004;
 /// What the ground may be from the package's, but on tiles that are very wide.
 const LARGEST_ERROR_M: f64 = 0.009;
+/// The folder of roads as vector content: a tileset of its own.
+const VECTOR_FOLDER: &str = "roads";
 /// No edge is longer, whatever the sag.
 const LONGEST_EDGE_M: f64 = 550.0;
 /// On tiles of many kilometres the sag may be larger, so that the earth's curvature alone never divides a side into more parts.
@@ -87,18 +91,27 @@ pub fn export_tiles3d(
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
     let failed = ExportError::WriteTiles;
-    make_folders(folder, &ids).map_err(failed)?;
     let root =
         RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
+    // Of all tiles, so that a part has the same bytes as the whole.
+    let levels = (0..=finest)
+        .map(|level| level_of(manifest, level, reach_m(manifest, &root, level, &ids)))
+        .collect();
+    if let Some(bounds) = &request.bounds {
+        ids.retain(|id| crate::read::meets(manifest, *id, bounds));
+    }
+    let vector_folder = folder.join(VECTOR_FOLDER);
+    make_folders(folder, &ids).map_err(failed)?;
+    if request.roads == TileRoads::Vector {
+        make_folders(&vector_folder, &ids).map_err(failed)?;
+    }
     let look = RoadLook { classes: &request.classes, style: &request.style };
     let job = Job {
         package,
         request,
         folder,
         lines: TileLines::new(package, look, finest),
-        levels: (0..=finest)
-            .map(|level| level_of(manifest, level, reach_m(manifest, &root, level, &ids)))
-            .collect(),
+        levels,
         root,
     };
     let made = job.run(&ids, observer)?;
@@ -109,9 +122,8 @@ pub fn export_tiles3d(
             ..Tiles3dLevel::default()
         })
         .collect();
-    let tree =
-        Tree::new(manifest, made.iter().map(|(id, (tile_box, facts, _))| (*id, *tile_box, *facts)));
-    for (id, (_, facts, bytes)) in &made {
+    let tree = Tree::new(manifest, made.iter().map(|(id, tile)| (*id, tile.tile_box, tile.facts)));
+    for (id, Written { facts, bytes, .. }) in &made {
         let level = &mut levels[usize::from(id.z())];
         level.tiles += 1;
         level.package_triangles += facts.package_triangles;
@@ -124,7 +136,14 @@ pub fn export_tiles3d(
     if made.is_empty() {
         return Err(ExportError::NoGround { package: package.path().to_path_buf() });
     }
-    let documents = tree.write(folder, &job.root).map_err(failed)?;
+    let mut documents = tree.write(folder, &job.root, &Contents::All).map_err(failed)?;
+    if request.roads == TileRoads::Vector {
+        let with_roads: BTreeSet<TileId> =
+            made.iter().filter(|(_, tile)| tile.has_vector).map(|(id, _)| *id).collect();
+        let contents = Contents::Vector(with_roads);
+        documents += tree.write(&vector_folder, &job.root, &contents).map_err(failed)?;
+        vector_style::write(&vector_folder, &request.style).map_err(failed)?;
+    }
     Ok(Tiles3dSummary { levels, documents, heights })
 }
 
@@ -213,8 +232,15 @@ fn level_of(manifest: &Manifest, level: u8, reach_m: f64) -> LevelOfTiles {
     }
 }
 
-/// A tile that was written: its box, what is known of it, and its bytes.
-type Written = (TileBox, TileFacts, u64);
+/// A tile that was written.
+struct Written {
+    tile_box: TileBox,
+    facts: TileFacts,
+    /// Of its files.
+    bytes: u64,
+    /// Whether its roads are a file of their own.
+    has_vector: bool,
+}
 
 /// What all tiles are made with.
 struct Job<'a> {
@@ -254,18 +280,24 @@ impl Job<'_> {
         };
         let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
-        let path = self.folder.join(content_name(id));
-        let bytes = write_content(&path, &made.content, self.request.compress)
-            .map_err(ExportError::WriteTiles)?;
-        Ok(Some((made.tile_box, made.facts, bytes)))
+        let write = |folder: &Path, content: &TileContent| {
+            write_content(&folder.join(content_name(id)), content, self.request.compress)
+                .map_err(ExportError::WriteTiles)
+        };
+        let mut bytes = write(self.folder, &made.content)?;
+        if let Some(vector) = &made.vector {
+            bytes += write(&self.folder.join(VECTOR_FOLDER), vector)?;
+        }
+        Ok(Some(Written {
+            tile_box: made.tile_box,
+            facts: made.facts,
+            bytes,
+            has_vector: made.vector.is_some(),
+        }))
     }
 }
 
-fn write_content(
-    path: &Path,
-    content: &super::parts::TileContent,
-    is_compressed: bool,
-) -> io::Result<u64> {
+fn write_content(path: &Path, content: &TileContent, is_compressed: bool) -> io::Result<u64> {
     let mut file = BufWriter::new(fs::File::create(path)?);
     glb::write(content, is_compressed, &mut file)?;
     file.flush()?;

@@ -3,7 +3,7 @@
 //! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), sections 7 and 9.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
     io::{self, Write as _},
     path::Path,
@@ -30,6 +30,20 @@ pub(crate) struct Branch {
     /// Never less than that of a child.
     pub(crate) error_m: f64,
     pub(crate) facts: TileFacts,
+}
+
+/// The extension of tilesets whose contents are points, lines and areas, to be drawn as a client's style says.
+///
+/// Source: Cesium 2026, *`3DTILES_content_gltf_vector`*, draft, pull request 838 of its repository 3d-tiles, as `CesiumJS` 1.145 reads it.
+const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
+
+/// What tiles of a tileset hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Contents {
+    /// All have a model.
+    All,
+    /// These have vectors; others are there for the sake of those below.
+    Vector(BTreeSet<TileId>),
 }
 
 /// All tiles, by their place.
@@ -70,27 +84,32 @@ impl<'a> Tree<'a> {
     }
 
     /// Writes all documents into a folder; returns how many there are.
-    pub(crate) fn write(&self, folder: &Path, root: &RootFrame) -> io::Result<u64> {
+    pub(crate) fn write(
+        &self,
+        folder: &Path,
+        root: &RootFrame,
+        contents: &Contents,
+    ) -> io::Result<u64> {
         let mut count = 1;
         if self.documents {
             for id in self.branches.keys().filter(|id| self.begins_document(**id)) {
                 // Documents lie beside tiles, two folders deep.
-                let tile = self.tile(*id, *id, "../../");
-                let document = self.document(&tile, self.branches[id].error_m);
+                let tile = self.tile(*id, *id, "../../", contents);
+                let document = self.document(&tile, self.branches[id].error_m, contents);
                 write_json(&folder.join(document_name(*id)), &document)?;
                 count += 1;
             }
         }
         let roots = self.roots();
         let mut whole = match roots.as_slice() {
-            [only] => self.tile(*only, *only, ""),
-            several => self.several(several),
+            [only] => self.tile(*only, *only, "", contents),
+            several => self.several(several, contents),
         };
         whole["transform"] = json!(root.to_earth());
         let diagonal_m = roots.iter().map(|id| self.branches[id].tile_box.diagonal_m());
         // Before anything is drawn, all of it is missing.
         let error_m = diagonal_m.fold(0.0, f64::max);
-        let mut document = self.document(&whole, error_m);
+        let mut document = self.document(&whole, error_m, contents);
         document["asset"]["extras"] = json!({ "corniche": {
             "crs": self.manifest.crs,
             "vertical_datum": self.manifest.vertical.datum,
@@ -100,7 +119,7 @@ impl<'a> Tree<'a> {
         Ok(count)
     }
 
-    fn several(&self, roots: &[TileId]) -> Value {
+    fn several(&self, roots: &[TileId], contents: &Contents) -> Value {
         let boxes = roots.iter().map(|id| self.branches[id].tile_box);
         let around = boxes.reduce(|mut around, next| {
             around.include_box(&next);
@@ -111,7 +130,8 @@ impl<'a> Tree<'a> {
             "boundingVolume": { "box": around.map(|around| around.numbers()) },
             "geometricError": errors.fold(0.0, f64::max),
             "refine": "REPLACE",
-            "children": roots.iter().map(|id| self.tile(*id, *id, "")).collect::<Vec<_>>(),
+            "children":
+                roots.iter().map(|id| self.tile(*id, *id, "", contents)).collect::<Vec<_>>(),
         })
     }
 
@@ -120,7 +140,7 @@ impl<'a> Tree<'a> {
     }
 
     /// A tile with its children; those of other documents are only named. `from` is the document's own root, `up` leads to the folder.
-    fn tile(&self, id: TileId, from: TileId, up: &str) -> Value {
+    fn tile(&self, id: TileId, from: TileId, up: &str, contents: &Contents) -> Value {
         let Branch { tile_box, error_m, facts } = self.branches[&id];
         let is_elsewhere = self.begins_document(id) && id != from;
         let is_named = is_elsewhere || (self.begins_document(id) && up.is_empty());
@@ -130,6 +150,13 @@ impl<'a> Tree<'a> {
             "geometricError": error_m,
             "content": { "uri": format!("{up}{name}") },
         });
+        if let (Contents::Vector(tiles), false) = (contents, is_named) {
+            if tiles.contains(&id) {
+                tile["content"]["extensions"] = json!({ VECTOR_EXTENSION: { "vector": true } });
+            } else if let Some(tile) = tile.as_object_mut() {
+                tile.remove("content");
+            }
+        }
         if is_named {
             return tile;
         }
@@ -142,7 +169,7 @@ impl<'a> Tree<'a> {
         let children: Vec<Value> = id
             .children()
             .filter(|child| self.branches.contains_key(child))
-            .map(|child| self.tile(child, from, up))
+            .map(|child| self.tile(child, from, up, contents))
             .collect();
         if !children.is_empty() {
             tile["children"] = json!(children);
@@ -150,8 +177,8 @@ impl<'a> Tree<'a> {
         tile
     }
 
-    fn document(&self, root: &Value, error_m: f64) -> Value {
-        json!({
+    fn document(&self, root: &Value, error_m: f64, contents: &Contents) -> Value {
+        let mut document = json!({
             "asset": {
                 "version": "1.1",
                 "generator": self.manifest.generator,
@@ -173,7 +200,11 @@ impl<'a> Tree<'a> {
             },
             "geometricError": error_m,
             "root": root,
-        })
+        });
+        if let Contents::Vector(_) = contents {
+            document["extensionsUsed"] = json!([VECTOR_EXTENSION]);
+        }
+        document
     }
 }
 

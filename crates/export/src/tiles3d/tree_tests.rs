@@ -5,7 +5,7 @@ use corniche_testing::package::manifest;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{Tree, content_name};
+use super::{Contents, Tree, content_name};
 use crate::{
     globe::RootFrame,
     tiles3d::{content::TileFacts, placed::TileBox},
@@ -79,7 +79,8 @@ fn every_tile_is_found_once() {
             fs::create_dir_all(place).unwrap();
         }
         let tree = Tree::new(&manifest, tiles);
-        documents.push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0])).unwrap());
+        documents
+            .push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0]), &Contents::All).unwrap());
         let first = fs::read(folder.path().join("tileset.json")).unwrap();
         let first: Value = serde_json::from_slice(&first).unwrap();
         assert_eq!(first["root"]["transform"].as_array().unwrap().len(), 16);
@@ -92,4 +93,50 @@ fn every_tile_is_found_once() {
     }
     assert_eq!(seen, [1, 16, 1024]);
     assert_eq!(documents, [1, 1, 1 + 192]);
+}
+
+/// A tileset of vectors says so, in each document; tiles without roads have no content, but all children.
+#[test]
+fn vectors_are_named_where_there_are_some() {
+    let manifest = manifest();
+    for (levels, documents) in [(3, 1), (6, 1 + 192)] {
+        let tiles = tiles(levels);
+        let all = tiles.len();
+        let with_roads: BTreeSet<TileId> =
+            tiles.iter().map(|(id, ..)| *id).filter(|id| id.x() % 2 == 1).collect();
+        let folder = TempDir::new().unwrap();
+        for (id, ..) in &tiles {
+            let place = folder.path().join(id.z().to_string()).join(id.x().to_string());
+            fs::create_dir_all(place).unwrap();
+        }
+        let tree = Tree::new(&manifest, tiles);
+        let contents = Contents::Vector(with_roads.clone());
+        let root = RootFrame::at([9.5, 47.0]);
+        assert_eq!(tree.write(folder.path(), &root, &contents).unwrap(), documents);
+        let (mut named, mut seen) = (BTreeSet::new(), 0);
+        let mut open = vec![folder.path().join("tileset.json")];
+        while let Some(path) = open.pop() {
+            let document: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+            assert_eq!(document["extensionsUsed"][0], "3DTILES_content_gltf_vector");
+            assert!(document.get("extensionsRequired").is_none());
+            let mut tiles = vec![&document["root"]];
+            while let Some(tile) = tiles.pop() {
+                tiles.extend(tile["children"].as_array().into_iter().flatten());
+                let Some(content) = tile.get("content") else {
+                    seen += 1;
+                    continue;
+                };
+                let uri = content["uri"].as_str().unwrap();
+                if Path::new(uri).extension().is_some_and(|ending| ending == "json") {
+                    open.push(path.parent().unwrap().join(uri));
+                    continue;
+                }
+                seen += 1;
+                assert_eq!(content["extensions"]["3DTILES_content_gltf_vector"]["vector"], true);
+                named.insert(uri.trim_start_matches("../").to_owned());
+            }
+        }
+        assert_eq!(seen, all);
+        assert_eq!(named, with_roads.into_iter().map(content_name).collect());
+    }
 }

@@ -1,0 +1,43 @@
+//! How vector content looks, which its tiles do not say.
+//!
+//! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), *Declarative Styling*, with `lineWidth`, as CesiumJS 1.145 reads it.
+
+use std::{fs, io, path::Path};
+
+use corniche_styles::{RoadStyle, Style};
+use serde_json::{Value, json};
+
+/// The file's name.
+const NAME: &str = "style.json";
+
+/// Writes colours and widths by class. Widths are pixels: the most that the style lets roads grow to with distance.
+pub(crate) fn write(folder: &Path, style: &Style) -> io::Result<()> {
+    let by_class = |value: &dyn Fn(&RoadStyle) -> String| {
+        let conditions: Vec<Value> = (0..)
+            .zip(&style.roads)
+            .map(|(class, road): (usize, _)| {
+                json!([format!("${{class}} === {class}"), value(road)])
+            })
+            .collect();
+        json!({ "conditions": conditions })
+    };
+    let document = json!({
+        "color": by_class(&|road| format!("color('{}')", hex(road))),
+        "lineWidth": by_class(&|road| width_px(road).to_string()),
+    });
+    fs::write(folder.join(NAME), serde_json::to_vec_pretty(&document)?)
+}
+
+fn width_px(road: &RoadStyle) -> f32 {
+    road.max_width_px.unwrap_or(road.min_width_px).max(1.0)
+}
+
+fn hex(road: &RoadStyle) -> String {
+    let [red, green, blue] =
+        road.bands.main_color().map(|channel| (channel * 255.0).round().clamp(0.0, 255.0) as u8);
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[cfg(test)]
+#[path = "vector_style_tests.rs"]
+mod tests;
