@@ -178,7 +178,7 @@ impl FromEarth {
     /// When PROJ fails.
     #[must_use]
     pub fn carry(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        self.from_degrees(&Self::step(&self.to_degrees, at))
+        self.to_crs_of(&Self::step(&self.to_degrees, at))
     }
 
     /// The same for those positions that lie in a rectangle of degrees (west, south, east, north): a projection may fail far from its middle.
@@ -191,10 +191,10 @@ impl FromEarth {
         let mut degrees = Self::step(&self.to_degrees, at);
         degrees
             .retain(|[lon, lat, _]| (west..=east).contains(lon) && (south..=north).contains(lat));
-        self.from_degrees(&degrees)
+        self.to_crs_of(&degrees)
     }
 
-    fn from_degrees(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    fn to_crs_of(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let [east, north] = self.metres_per_unit;
         let carried = Self::step(&self.to_crs, at);
         carried.into_iter().map(|[x, y, z]| [x * east, y * north, z]).collect()
