@@ -189,8 +189,11 @@ impl FromEarth {
     pub fn carry_within(&self, at: &[[f64; 3]], bounds_deg: [f64; 4]) -> Vec<[f64; 3]> {
         let [west, south, east, north] = bounds_deg;
         let mut degrees = Self::step(&self.to_degrees, at);
-        degrees
-            .retain(|[lon, lat, _]| (west..=east).contains(lon) && (south..=north).contains(lat));
+        degrees.retain(|[lon, lat, _]| {
+            // Bounds across 180° go on beyond it.
+            let is_between = |lon: f64| (west..=east).contains(&lon);
+            (is_between(*lon) || is_between(lon + 360.0)) && (south..=north).contains(lat)
+        });
         self.to_crs_of(&degrees)
     }
 

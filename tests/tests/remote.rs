@@ -84,8 +84,11 @@ fn what_is_printed_is_that_of_the_file() {
 #[test]
 fn what_is_written_is_that_of_the_file() {
     let Some((folder, server)) = served() else { return };
-    let (url, file) = (server.url("pass.pmtiles"), folder.path().join("served/pass.pmtiles"));
-    let commands: [(&[&str], &str); 7] = [
+    // What follows the question mark is no part of the package's name.
+    let url = format!("{}?signature=none", server.url("pass.pmtiles"));
+    let file = folder.path().join("served/pass.pmtiles");
+    let commands: [(&[&str], &str); 8] = [
+        (&["export", "geotiff", "--level", "1"], "ground.tif"),
         (&["render"], "picture.png"),
         (&["fly", "--frames", "3", "--size", "64x64"], "flight.csv"),
         (&["export", "roads", "--crs", "EPSG:4979"], "roads.geojson"),
@@ -193,6 +196,18 @@ fn secrets_of_addresses_are_shown_and_written_nowhere() {
             assert!(has_run || lacks_adapter(&ran), "{command:?}: {}", ran.err);
             assert!(!ran.out.contains(secret), "{command:?}: {}", ran.out);
             assert!(!ran.err.contains(secret), "{command:?}: {}", ran.err);
+        }
+    }
+    // Addresses that cannot be read are told without what is in them.
+    for wrong in [
+        "https://me:SECRET@host/x.pmtiles?sig=SECRET#part",
+        "https://me:SECRET@host:port/x",
+        "ftp://me:SECRET@host/x",
+    ] {
+        for command in ["info", "verify", "growth"] {
+            let ran = run(&[command, &wrong.replace("SECRET", secret)]);
+            assert_eq!(ran.code, 2, "{command} {wrong}: {}", ran.err);
+            assert!(!ran.err.contains(secret), "{command} {wrong}: {}", ran.err);
         }
     }
     for (name, bytes) in content(folder.path()) {

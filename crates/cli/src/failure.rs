@@ -52,6 +52,8 @@ impl Failure {
     fn may_pass(&self) -> bool {
         self.error.chain().any(|cause| {
             cause.downcast_ref::<OpenError>().is_some_and(OpenError::may_pass)
+                // Behind the name of a file it is boxed.
+                || cause.downcast_ref::<Box<OpenError>>().is_some_and(|error| error.may_pass())
                 || cause.downcast_ref::<ReadError>().is_some_and(ReadError::may_pass)
                 || cause.downcast_ref::<SourceError>().is_some_and(|error| error.may_pass)
         })

@@ -35,7 +35,7 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
         source
     };
     drop(sources);
-    Ok(FilePackage::of_source(place.name(), source)?)
+    Ok(FilePackage::of_source(place.name(), place.file_name(), source)?)
 }
 
 /// Opens a package to draw it.

@@ -211,7 +211,7 @@ fn area_of(points: &[LatticePoint], places: &Places<'_>) -> f64 {
 fn layer(package: &FilePackage, level: u8, places: &Places<'_>) -> Layer {
     let manifest = package.manifest();
     let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
-    let name = package.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = package.file_name().to_owned();
     Layer {
         name: "areas",
         fields: FIELDS.to_vec(),

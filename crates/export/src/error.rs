@@ -52,6 +52,12 @@ pub enum ExportError {
     NoLineOnGround { package: PathBuf },
     #[error("{package:?} has no ground there; corniche info tells its extent")]
     NoGround { package: PathBuf },
+    #[error(
+        "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
+    )]
+    BeyondGrid { lat: f64, north: f64 },
+    #[error("level {level} would have more than {most} tiles; give a coarser one with --max-level")]
+    TooManyTiles { level: u8, most: i64 },
     #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
     GlbAxis,
     #[error("cannot write {path:?} (disk full?)")]

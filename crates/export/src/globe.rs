@@ -51,7 +51,7 @@ impl RootFrame {
     /// A place, longitude and latitude in degrees and metres above the ellipsoid, in this frame.
     pub(crate) fn of(&self, place: [f64; 3]) -> [f64; 3] {
         let at = geocentric_m(place);
-        let from = [0, 1, 2].map(|axis| at[axis] - self.origin_m[axis]);
+        let from = between(self.origin_m, at);
         self.axes.map(|axis| dot(axis, from))
     }
 
@@ -75,6 +75,11 @@ pub(crate) fn dot(one: [f64; 3], other: [f64; 3]) -> f64 {
 
 pub(crate) fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+/// The way from one place to another.
+pub(crate) fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| to[axis] - from[axis])
 }
 
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {

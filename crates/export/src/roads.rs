@@ -95,7 +95,7 @@ pub fn export_roads(
 fn layer(package: &FilePackage, level: u8, request: &RoadsRequest, places: &Places<'_>) -> Layer {
     let manifest = package.manifest();
     let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
-    let name = package.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = package.file_name().to_owned();
     let what = if request.pieces { "Pieces of roads" } else { "Roads" };
     Layer {
         name: "roads",

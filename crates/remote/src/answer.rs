@@ -48,7 +48,7 @@ impl Version {
 
 /// Checks the head of an answer to a request for a range. Gives the version of the file, and which of its bytes the body holds.
 ///
-/// `asked` may end beyond the file. `longest_pause` is how long a server may ask to wait.
+/// `asked` may end beyond the file.
 pub(crate) fn check(
     status: StatusCode,
     headers: &HeaderMap,

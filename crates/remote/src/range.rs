@@ -102,11 +102,14 @@ impl Ranges {
                 error,
                 HttpError::Missing { .. } | HttpError::Refused { .. } | HttpError::Status { .. }
             );
-            if is_denied && redirected.is_some() {
-                *self.redirected() = None;
-                continue;
-            }
             tries += 1;
+            // Where a redirection led may be over, or down, while the address itself leads elsewhere by now.
+            if redirected.is_some() {
+                *self.redirected() = None;
+                if is_denied && tries <= retries.max(1) {
+                    continue;
+                }
+            }
             let is_wrong_address = known.is_none() && error.is_before_connection();
             if !error.is_momentary() || is_wrong_address {
                 return Err(error);
@@ -146,6 +149,11 @@ impl Ranges {
         // Before the body: then nothing more of another version is read.
         known.map_or(Ok(()), |known| known.check_same(&version))?;
         let length = (range.end - range.start) as usize;
+        if length == 0 {
+            // Nothing lies there. A server may send words with that.
+            return Ok((version, Bytes::new()));
+        }
+        let said = response.content_length();
         let mut body = BytesMut::with_capacity(length);
         while body.len() < length
             && let Some(chunk) = response.chunk().await.map_err(explain)?
@@ -154,7 +162,7 @@ impl Ranges {
             body.extend_from_slice(&chunk);
         }
         // A body that goes on is told, and so is one that its own header says to be longer.
-        let is_more = match response.content_length() {
+        let is_more = match said {
             Some(said) => said > length as u64,
             None => response.chunk().await.map_err(explain)?.is_some_and(|more| !more.is_empty()),
         };
@@ -165,8 +173,10 @@ impl Ranges {
         if body.len() < length {
             return Err(HttpError::Short { asked, got: body.len() as u64, tries: 1 }.into());
         }
-        if *response.url() != *url {
-            *self.redirected() = Some(self.with_credentials(response.url().clone()));
+        // The library takes user name and password out of the address that it tells.
+        let came_from = self.with_credentials(response.url().clone());
+        if came_from != *url {
+            *self.redirected() = Some(came_from);
         }
         Ok((version, body.freeze()))
     }

@@ -71,9 +71,11 @@ impl Web {
     pub fn open(&self, place: &PackagePlace) -> Result<FilePackage, OpenError> {
         match place {
             PackagePlace::File(path) => FilePackage::open(path),
-            PackagePlace::Address(address) => {
-                FilePackage::of_source(place.name(), Arc::new(self.source(address)))
-            }
+            PackagePlace::Address(address) => FilePackage::of_source(
+                place.name(),
+                place.file_name(),
+                Arc::new(self.source(address)),
+            ),
         }
     }
 }

@@ -45,8 +45,7 @@ pub(crate) fn check_tree(terrain: &Terrain) -> Check {
     ensure(distinct.len() == named.len(), || "a tile is named twice".to_owned())?;
     let there: BTreeSet<Name> = terrain.tiles.keys().copied().collect();
     ensure(distinct == there, || "layer.json names other tiles".to_owned())?;
-    let roots = if terrain.layer["projection"] == "EPSG:4326" { 2 } else { 1 };
-    for x in 0..roots {
+    for x in 0..roots(terrain) {
         ensure(there.contains(&[0, x, 0]), || format!("no root {x}"))?;
     }
     for [level, x, y] in there.iter().filter(|name| name[0] > 0) {
@@ -54,6 +53,10 @@ pub(crate) fn check_tree(terrain: &Terrain) -> Check {
         ensure(there.contains(&parent), || format!("{parent:?} is missing"))?;
     }
     ensure(terrain.layer["maxzoom"] == terrain.levels() - 1, || "maxzoom".to_owned())
+}
+
+fn roots(terrain: &Terrain) -> u32 {
+    if terrain.layer["projection"] == "EPSG:4326" { 2 } else { 1 }
 }
 
 /// Triangles cover the square once, counter-clockwise; each edge is there twice or on the border; corners are there; the lists of border vertices are
@@ -142,40 +145,66 @@ pub(crate) fn check_header(tile: &Tile) -> Check {
     ensure(!is_small || hidden > 0, || "nothing ever hides it".to_owned())
 }
 
-/// Normals are those of the ground: upwards, and near those of the triangles around, weighted by area.
+/// Normals of vertices point upwards. Whether they are those of the ground is told by [`normals_against_the_vertical`].
 pub(crate) fn check_normals(tile: &Tile) -> Check {
     ensure(tile.normals.len() == tile.uv.len(), || "normals are missing".to_owned())?;
     for (vertex, normal) in tile.normals.iter().enumerate() {
-        let [lon, lat, height] = tile.place(vertex);
-        let [low, high] = [height, height + 1.0].map(|height| geocentric([lon, lat, height]));
-        let up: f64 = (0..3).map(|k| (high[k] - low[k]) * normal[k]).sum();
+        let vertical = tile.up(vertex);
+        let up: f64 = (0..3).map(|k| vertical[k] * normal[k]).sum();
         ensure(up > 0.05, || format!("normal of vertex {vertex} points {up} upwards"))?;
     }
     Ok(())
+}
+
+/// How much less normals differ from those of the triangles around, weighted by area, than the vertical does, over the finest level: 0 where they are the
+/// same, 1 where they tell no more than the vertical.
+pub(crate) fn normals_against_the_vertical(terrain: &Terrain) -> f64 {
+    let dot = |one: [f64; 3], other: [f64; 3]| (0..3).map(|k| one[k] * other[k]).sum::<f64>();
+    let [mut of_normals, mut of_vertical] = [0.0; 2];
+    for (_, tile) in terrain.tiles.iter().filter(|(name, _)| name[0] + 1 == terrain.levels()) {
+        let mut around = vec![[0.0; 3]; tile.uv.len()];
+        for corners in &tile.triangles {
+            let [a, b, c] = corners.map(|k| tile.at_m(k));
+            let [p, q]: [[f64; 3]; 2] = [b, c].map(|to| std::array::from_fn(|k| to[k] - a[k]));
+            let area =
+                [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+            for k in *corners {
+                around[k] = std::array::from_fn(|axis| around[k][axis] + area[axis]);
+            }
+        }
+        for (vertex, around) in around.iter().enumerate() {
+            let length = dot(*around, *around).sqrt();
+            of_normals += 1.0 - dot(*around, tile.normals[vertex]) / length;
+            of_vertical += 1.0 - dot(*around, tile.up(vertex)) / length;
+        }
+    }
+    of_normals / of_vertical
 }
 
 /// On both sides of a border there are the same vertices, and their heights differ by no more than rounding.
 pub(crate) fn check_borders(terrain: &Terrain) -> Check {
     let mut borders = 0;
     for ([level, x, y], tile) in &terrain.tiles {
-        // East and north neighbours, their facing side, and the axis along the border.
+        // East and north neighbours, their facing side, and the axis along the border. In the east of the last column is the first.
+        let columns = roots(terrain) << level;
         for (beside, own, facing, axis) in
-            [([*level, x + 1, *y], 2, 0, 1), ([*level, *x, y + 1], 3, 1, 0)]
+            [([*level, (x + 1) % columns, *y], 2, 0, 1), ([*level, *x, y + 1], 3, 1, 0)]
         {
             let Some(other) = terrain.tiles.get(&beside) else { continue };
             let along = |tile: &Tile, side: usize| {
-                let mut found: Vec<(u16, f64)> = tile.edges[side]
+                let mut found: Vec<(u16, f64, [f64; 3])> = tile.edges[side]
                     .iter()
-                    .map(|k| (tile.uv[*k][axis], tile.place(*k)[2]))
+                    .map(|k| (tile.uv[*k][axis], tile.place(*k)[2], tile.normals[*k]))
                     .collect();
-                found.sort_by_key(|(at, _)| *at);
+                found.sort_by_key(|(at, ..)| *at);
                 found
             };
             let (one, two) = (along(tile, own), along(other, facing));
             let rounding_m = 0.51 * (tile.step_m() + other.step_m()) + 1e-6;
             let name = || format!("{level}/{x}/{y} and {beside:?}");
             ensure(one.len() == two.len(), || format!("{}: other vertices", name()))?;
-            for ((at, height), (other_at, other_height)) in one.iter().zip(&two) {
+            for ((at, height, normal), (other_at, other_height, other)) in one.iter().zip(&two) {
+                ensure(normal == other, || format!("{}: other normals at {at}", name()))?;
                 let off_m = (height - other_height).abs();
                 ensure(at == other_at && off_m <= rounding_m, || {
                     format!("{}: {at} and {other_at}, {off_m} m apart", name())

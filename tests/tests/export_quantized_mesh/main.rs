@@ -11,8 +11,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use checks::{check_borders, check_header, check_heights, check_mesh, check_normals, check_tree};
-use corniche_testing::real_data;
+use checks::{
+    check_borders, check_header, check_heights, check_mesh, check_normals, check_tree,
+    normals_against_the_vertical,
+};
+use corniche_testing::{Raster, real_data};
 use e2e::{build_from, build_pass, corniche, ground::Region, manifest, names, sample, text};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -51,6 +54,8 @@ fn check_all(terrain: &Terrain, package: &Path, region: &Region) {
         check_normals(tile).unwrap_or_else(|error| panic!("{name:?}: {error}"));
     }
     check_borders(terrain).unwrap();
+    let turns = normals_against_the_vertical(terrain);
+    assert!(turns < 0.5, "normals explain the triangles no better than the vertical: {turns}");
     let levels = check_heights(terrain, package, region);
     for (level, found) in levels.iter().enumerate().filter(|(_, found)| found.places > 0) {
         let told = &terrain.layer["corniche"]["levels"][level];
@@ -126,6 +131,11 @@ fn wrong_terrain_is_seen() {
         }
     }
     assert!(is_wrong(&halved, &pass()), "deviations halved");
+    let mut upright = Terrain::read(&right);
+    for tile in upright.tiles.values_mut() {
+        tile.normals = (0..tile.uv.len()).map(|vertex| tile.up(vertex)).collect();
+    }
+    assert!(normals_against_the_vertical(&upright) > 0.99, "normals that stand upright");
     let mut moved = Terrain::read(&right);
     let tile = moved.tiles.values_mut().next_back().unwrap();
     let border = tile.edges[0][tile.edges[0].len() / 2];
@@ -139,6 +149,99 @@ fn wrong_terrain_is_seen() {
     let mut gone = Terrain::read(&right);
     gone.tiles.remove(&[0, 0, 0]);
     assert!(check_tree(&gone).is_err(), "a root left out");
+}
+
+/// Builds a package of a raster alone.
+fn built_of(folder: &TempDir, dem: &Path) -> PathBuf {
+    let package = folder.path().join("raster.pmtiles");
+    let ran = corniche(["build", "--dem", text(dem), "-o", text(&package), "--relief", "off"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    package
+}
+
+/// Flat ground has no error that a level could reach; there are no more levels than its cells need.
+#[test]
+fn flat_ground_has_few_levels() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(32632, [65, 65], [560_000.0, 500.0, 0.0, 5_230_000.0, 0.0, -500.0]);
+    let dem = raster.write(folder.path(), "flat.tif", |_| 400.0_f32);
+    let package = built_of(&folder, &dem);
+    let terrain = Terrain::read(&export(&package, "terrain", &["--heights", "as-is"]));
+    assert_eq!(terrain.levels(), 13, "tiles of 16 cells of some 300 m");
+    check_tree(&terrain).unwrap();
+    // Too many tiles are refused, before anything is made.
+    let output = folder.path().join("fine");
+    let words = ["export", "quantized-mesh", text(&package), "-o", text(&output)];
+    let ran = corniche(words.iter().chain(&["--heights", "as-is", "--max-level", "24"]));
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--max-level"), "{}", ran.err);
+    assert!(!output.exists());
+}
+
+/// Ground that is smaller than the places of a coarse level are apart is not lost.
+#[test]
+fn small_ground_is_on_coarse_levels() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let terrain = Terrain::read(&export(&package, "terrain", &["--max-level", "3"]));
+    assert_eq!(terrain.levels(), 4);
+    let told = &terrain.layer["corniche"]["levels"][3];
+    assert!(told["deviation_m"].as_f64().unwrap() > 0.0, "{told}");
+}
+
+/// On both sides of 180° as anywhere, in both grids.
+#[test]
+fn terrain_goes_on_across_the_antimeridian() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(32660, [81, 61], [824_800.0, 100.0, 0.0, 1_110_000.0, 0.0, -100.0]);
+    let hills =
+        |[x, y]: [f64; 2]| (300.0 + 80.0 * (x / 900.0).sin() + 60.0 * (y / 700.0).cos()) as f32;
+    let dem = raster.write(folder.path(), "across.tif", hills);
+    let package = built_of(&folder, &dem);
+    let region =
+        Region { crs: "EPSG:32660".to_owned(), metres_per_unit: [1.0; 2], dem: dem.clone() };
+    for tiling in ["geographic", "web-mercator"] {
+        let options = ["--tiling", tiling, "--max-level", "12", "--heights", "as-is"];
+        let terrain = Terrain::read(&export(&package, tiling, &options));
+        let last = terrain.tiles.keys().map(|name| name[1]).max().unwrap();
+        assert!(terrain.tiles.contains_key(&[0, 0, 0]) && last > 2000, "nothing in the west");
+        check_tree(&terrain).unwrap();
+        check_borders(&terrain).unwrap();
+        let levels = check_heights(&terrain, &package, &region);
+        for (level, found) in levels.iter().enumerate().filter(|(_, found)| found.places > 0) {
+            found.check(&terrain.layer["corniche"]["levels"][level]).unwrap();
+        }
+        assert!(levels[12].places > 1000, "{:?}", levels[12]);
+        let both =
+            [0, last].map(|x| terrain.tiles.keys().any(|name| name[0] == 12 && name[1] == x));
+        assert_eq!(both, [true; 2], "tiles on both sides");
+    }
+}
+
+/// Web Mercator ends before the poles.
+#[test]
+fn data_beyond_the_grid_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(4326, [41, 21], [10.0, 0.01, 0.0, 85.15, 0.0, -0.01]);
+    let dem = raster.write(folder.path(), "north.tif", |[lon, _]| (100.0 * lon) as f32);
+    let package = built_of(&folder, &dem);
+    let output = folder.path().join("terrain");
+    let run = |tiling: &str| {
+        let words = ["export", "quantized-mesh", text(&package), "-o", text(&output)];
+        corniche(words.iter().chain(&[
+            "--heights",
+            "as-is",
+            "--max-level",
+            "8",
+            "--tiling",
+            tiling,
+        ]))
+    };
+    let ran = run("web-mercator");
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--tiling geographic"), "{}", ran.err);
+    assert!(!output.exists());
+    assert_eq!(run("geographic").code, 0);
 }
 
 /// Where tiles tell of tiles, they tell of all, and layer.json says so.

@@ -152,6 +152,13 @@ impl Tile {
         geocentric(self.place(vertex))
     }
 
+    /// The vertical at a vertex.
+    pub(crate) fn up(&self, vertex: usize) -> [f64; 3] {
+        let [lon, lat, _] = self.place(vertex);
+        let [low, high] = [0.0, 1.0].map(|height| geocentric([lon, lat, height]));
+        std::array::from_fn(|k| high[k] - low[k])
+    }
+
     /// What a step of heights is.
     pub(crate) fn step_m(&self) -> f64 {
         (self.range_m[1] - self.range_m[0]) / f64::from(LAST)

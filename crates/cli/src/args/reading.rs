@@ -1,6 +1,10 @@
 //! Commands that tell what a package holds.
 
-use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
+use std::{
+    fmt::Write as _,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+};
 
 use clap::{Args, ValueEnum, ValueHint};
 use corniche_geom::TileId;
@@ -82,7 +86,7 @@ impl VerifyArgs {
             return Ok(VerifyFiles { package: package.clone(), dem, photo, osm });
         }
         let split = |files: &[PathBuf]| -> (Vec<PathBuf>, Vec<PathBuf>) {
-            files.iter().cloned().partition(|file| is_package_name(file))
+            files.iter().cloned().partition(|file| is_package_name(file) || is_address(file))
         };
         let [(mut packages, dem), (of_photo, photo), (of_osm, osm)] =
             [split(&self.dem), split(&self.photo), split(&self.osm)];
@@ -99,6 +103,11 @@ impl VerifyArgs {
             )),
         }
     }
+}
+
+/// Whether a word is an address, which nothing but a package has; also one that cannot be read.
+fn is_address(file: &Path) -> bool {
+    !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
 /// The files of a verification.

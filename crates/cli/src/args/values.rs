@@ -1,15 +1,34 @@
 //! Texts of single values.
 
-use std::path::PathBuf;
+use std::{ffi::OsStr, path::PathBuf};
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::{builder::TypedValueParser, error::ErrorKind};
 use corniche_remote::PackagePlace;
 
 use crate::failure::Failure;
 
 /// The package that a command reads: a file, or an address on a web server.
 pub(crate) fn package_place() -> impl TypedValueParser<Value = PackagePlace> {
-    OsStringValueParser::new().try_map(PackagePlace::parse)
+    PlaceParser
+}
+
+/// Reads where a package is. What cannot be read is not repeated in the message, as parsers of clap's own do: an address may hold a password.
+#[derive(Debug, Clone)]
+struct PlaceParser;
+
+impl TypedValueParser for PlaceParser {
+    type Value = PackagePlace;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        _argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<PackagePlace, clap::Error> {
+        PackagePlace::parse(value.to_os_string()).map_err(|error| {
+            clap::Error::raw(ErrorKind::ValueValidation, format!("{error}\n")).with_cmd(command)
+        })
+    }
 }
 
 /// The package that one of several files is.

@@ -7,7 +7,7 @@ use std::{
 
 use corniche_dem::Reader;
 use corniche_geom::{NodeWindow, TILE_CELLS, TileId};
-use corniche_tileset::{FilePackage, SampleSums, Sections};
+use corniche_tileset::{FilePackage, SampleSums, Sections, Terrain};
 use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
 
 use super::{file::Number, grid::BLOCK};
@@ -29,8 +29,11 @@ pub(crate) struct Block<T> {
 pub(crate) struct Tins<'a> {
     package: &'a FilePackage,
     level: u8,
-    kept: Mutex<HashMap<TileId, Option<Arc<TriangleBuckets>>>>,
+    kept: Mutex<HashMap<TileId, Slot>>,
 }
+
+/// A tile's place among those that are kept, empty until it is read: who needs it meanwhile waits, so that each is read once.
+type Slot = Arc<Mutex<Option<Arc<Option<TriangleBuckets>>>>>;
 
 impl<'a> Tins<'a> {
     pub(crate) fn new(package: &'a FilePackage, level: u8) -> Self {
@@ -45,17 +48,22 @@ impl<'a> Tins<'a> {
         kept.retain(|id, _| frame.tile_corner(*id).j - side <= j);
     }
 
-    /// The triangles of a tile; `None` where the package has none.
-    fn of_tile(&self, id: TileId) -> Result<Option<Arc<TriangleBuckets>>, ExportError> {
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = lock().get(&id) {
-            return Ok(known.clone());
+    /// The triangles of a tile; none where the package has no ground there.
+    fn of_tile(&self, id: TileId) -> Result<Arc<Option<TriangleBuckets>>, ExportError> {
+        let slot = {
+            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(kept.entry(id).or_default())
+        };
+        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = &*slot {
+            return Ok(Arc::clone(known));
         }
         let quantum_m = self.package.manifest().vertical.quantum_m;
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let terrain = payload.and_then(|payload| payload.terrain);
-        let found = terrain.map(|terrain| Arc::new(TriangleBuckets::new(&terrain.tin, quantum_m)));
-        lock().insert(id, found.clone());
+        let buckets = |terrain: Terrain| TriangleBuckets::new(&terrain.tin, quantum_m);
+        let found = Arc::new(terrain.map(buckets));
+        *slot = Some(Arc::clone(&found));
         Ok(found)
     }
 
@@ -77,10 +85,11 @@ impl<'a> Tins<'a> {
         for y in tiles(from[1], window.rows) {
             for x in tiles(from[0], window.columns) {
                 let Ok(id) = TileId::new(self.level, x as u32, y as u32) else { continue };
-                let Some(buckets) = self.of_tile(id)? else { continue };
+                let tile = self.of_tile(id)?;
+                let Some(buckets) = tile.as_ref() else { continue };
                 let placement =
                     WindowPlacement { column: from[0] - x * side, row: from[1] - y * side, stride };
-                let own = heights_m(&buckets, [window.columns, window.rows], placement);
+                let own = heights_m(buckets, [window.columns, window.rows], placement);
                 for (place, height_m) in own.into_iter().enumerate() {
                     if found.heights_m[place].is_nan() && !height_m.is_nan() {
                         let (column, row) = (place % window.columns, place / window.columns);

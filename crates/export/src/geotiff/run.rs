@@ -103,7 +103,7 @@ fn facts(
     grid: &RasterGrid,
 ) -> RasterFacts {
     let manifest = package.manifest();
-    let name = package.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = package.file_name().to_owned();
     let bound_m = bound_m(manifest, level);
     let attribution = manifest.attribution.join("; ");
     let mut descriptions = vec!["height of the TIN, metres".to_owned()];

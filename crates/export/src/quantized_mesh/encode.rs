@@ -10,7 +10,7 @@
 //! ```
 
 use super::{
-    horizon::{occlusion_point, sphere},
+    horizon::{Horizon, occlusion_point, sphere},
     mesh::{MeshVertex, TileMesh},
     tiling::LAST_STEP,
 };
@@ -25,14 +25,17 @@ pub(crate) const NORMALS_NAME: &str = "octvertexnormals";
 /// The extension of metadata, which some tiles may have.
 pub(crate) const METADATA_NAME: &str = "metadata";
 
-/// A tile as bytes, not compressed. `metadata` is JSON. Without a point that stands for the tile at the horizon (`has_horizon`) its numbers are NaN, which
+/// A tile as bytes, not compressed. `metadata` is JSON. Without a point that stands for the tile at the horizon its numbers are NaN, which
 /// viewers never take for hidden.
-pub(crate) fn encode(mesh: &TileMesh, metadata: Option<&str>, has_horizon: bool) -> Vec<u8> {
+pub(crate) fn encode(mesh: &TileMesh, metadata: Option<&str>, horizon: Horizon) -> Vec<u8> {
     let (triangles, order) = by_first_use(mesh);
     let vertices: Vec<&MeshVertex> = order.iter().map(|&k| &mesh.vertices[k as usize]).collect();
     let mut bytes = Vec::with_capacity(200 + 8 * vertices.len() + 12 * triangles.len());
     let (middle_m, radius_m) = sphere(mesh);
-    let horizon = if has_horizon { occlusion_point(mesh, middle_m) } else { [f64::NAN; 3] };
+    let horizon = match horizon {
+        Horizon::Point => occlusion_point(mesh, middle_m),
+        Horizon::None => [f64::NAN; 3],
+    };
     doubles(&mut bytes, &middle_m);
     for height_m in mesh.range_m {
         bytes.extend(height_m.to_le_bytes());

@@ -54,7 +54,7 @@ fn a_square_is_laid_out_as_the_format_says() {
     ];
     let mesh =
         TileMesh { vertices, triangles: vec![[1, 3, 2], [0, 1, 2]], range_m: [1000.0, 1009.0] };
-    let bytes = encode(&mesh, Some("{}"), true);
+    let bytes = encode(&mesh, Some("{}"), Horizon::Point);
     let half = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
     let word = |at: usize| u32::from(half(at)) | u32::from(half(at + 2)) << 16;
     let single = |at: usize| f32::from_bits(word(at));
@@ -86,10 +86,63 @@ fn a_square_is_laid_out_as_the_format_says() {
     assert_eq!((bytes[177], word(178), word(182)), (METADATA, 6, 2));
     assert_eq!(&bytes[186..], b"{}");
     // What has no point at the horizon says so with numbers that compare as false.
-    let around_the_globe = encode(&mesh, None, false);
+    let around_the_globe = encode(&mesh, None, Horizon::None);
     assert!(
         around_the_globe[64..88]
             .chunks(8)
             .all(|axis| { f64::from_le_bytes(axis.try_into().unwrap()).is_nan() })
     );
+}
+
+/// With more vertices than two bytes can number, indices have four, behind padding.
+#[test]
+fn many_vertices_have_wide_indices() {
+    const SIDE: u16 = 257;
+    let at = |k: u16| k * (LAST_STEP / (SIDE - 1));
+    let nodes = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| [column, row]));
+    let vertices: Vec<MeshVertex> =
+        nodes.map(|[column, row]| vertex(at(column), at(row), 0)).collect();
+    let node = |column: u32, row: u32| row * u32::from(SIDE) + column;
+    let cells =
+        (0..u32::from(SIDE) - 1).flat_map(|j| (0..u32::from(SIDE) - 1).map(move |i| [i, j]));
+    let triangles: Vec<[u32; 3]> = cells
+        .flat_map(|[i, j]| {
+            let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    let (count, mesh) =
+        (vertices.len(), TileMesh { vertices, triangles, range_m: [1000.0, 1000.0] });
+    assert!(count > MOST_OF_U16);
+    let bytes = encode(&mesh, None, Horizon::Point);
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    assert_eq!(word(88) as usize, count);
+    let uv = |from: usize| {
+        let mut value = 0_i32;
+        (0..count)
+            .map(|k| {
+                let code =
+                    i32::from(u16::from_le_bytes([bytes[from + 2 * k], bytes[from + 2 * k + 1]]));
+                value += (code >> 1) ^ -(code & 1);
+                value as u16
+            })
+            .collect::<Vec<_>>()
+    };
+    let (u, v) = (uv(92), uv(92 + 2 * count));
+    let after = (92 + 6 * count).next_multiple_of(4);
+    assert_eq!(word(after) as usize, mesh.triangles.len());
+    let mut highest = 0;
+    let corners: Vec<u32> = (0..3 * mesh.triangles.len())
+        .map(|k| {
+            let code = word(after + 4 + 4 * k);
+            let corner = highest - code;
+            highest += u32::from(code == 0);
+            corner
+        })
+        .collect();
+    for (decoded, known) in corners.iter().zip(mesh.triangles.as_flattened()) {
+        let known = &mesh.vertices[*known as usize];
+        assert_eq!([u[*decoded as usize], v[*decoded as usize]], [known.u, known.v]);
+    }
+    assert_eq!(word(after + 4 + 4 * corners.len()), u32::from(SIDE));
 }

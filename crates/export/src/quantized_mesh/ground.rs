@@ -75,7 +75,21 @@ impl<'a> Ground<'a> {
         level: u8,
         spacing_m: f64,
     ) -> Result<Vec<[f64; 2]>, ExportError> {
-        let Some(area_deg) = self.near_part(corners_deg) else { return Ok(Vec::new()) };
+        let mut found = Vec::new();
+        for part in self.near_parts(corners_deg) {
+            self.add_bends(part, level, spacing_m, &mut found)?;
+        }
+        Ok(found)
+    }
+
+    /// The same in a rectangle with the longitudes of the data.
+    fn add_bends(
+        &mut self,
+        area_deg: Bounds,
+        level: u8,
+        spacing_m: f64,
+        found: &mut Vec<[f64; 2]>,
+    ) -> Result<(), ExportError> {
         let manifest = self.package.manifest();
         let frame = &manifest.frame;
         let step_m = frame.lattice_step_m();
@@ -92,13 +106,12 @@ impl<'a> Ground<'a> {
             [bounds_m.max_x + margin_m, bounds_m.min_y - margin_m],
         ];
         let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
-            return Ok(Vec::new());
+            return Ok(());
         };
         let inside = 0..=(1_i64 << level) - 1;
         let [[west, north], [east, south]] = [first, last].map(|corner| {
             frame.tile_column_row(level, corner).map(|k| k.clamp(*inside.start(), *inside.end()))
         });
-        let mut found = Vec::new();
         for (column, row) in (north..=south).flat_map(|row| (west..=east).map(move |c| (c, row))) {
             let Ok(id) = TileId::new(level, column as u32, row as u32) else { continue };
             let Some(surface) = self.surface(id)? else { continue };
@@ -114,21 +127,24 @@ impl<'a> Ground<'a> {
             });
             found.extend(places.filter(|place| area_deg.contains(*place)));
         }
-        Ok(found)
+        Ok(())
     }
 
-    /// The part of a rectangle of degrees that may have ground, with the longitudes of the data.
-    fn near_part(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Option<Bounds> {
+    /// The parts of a rectangle of degrees that may have ground, with the longitudes of the data: more than one where the data cross 180° and the
+    /// rectangle goes around the globe.
+    fn near_parts(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Vec<Bounds> {
         let data = self.around_deg;
-        let middle = f64::midpoint(data.min_x, data.max_x);
-        let turns = ((middle - f64::midpoint(west, east)) / 360.0).round();
-        let part = Bounds {
+        let part = |turns: f64| Bounds {
             min_x: (west + 360.0 * turns).max(data.min_x),
             min_y: south.max(data.min_y),
             max_x: (east + 360.0 * turns).min(data.max_x),
             max_y: north.min(data.max_y),
         };
-        (!part.is_empty()).then_some(part)
+        let parts = [-1.0, 0.0, 1.0].map(part);
+        parts
+            .into_iter()
+            .filter(|part| part.min_x < part.max_x && part.min_y < part.max_y)
+            .collect()
     }
 
     /// Heights, in the package's datum, of positions that have none yet: from the tile that holds the point one step beside. On a border of tiles these

@@ -3,10 +3,19 @@
 use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 
 use super::mesh::TileMesh;
-use crate::globe::{cross, dot, unit};
+use crate::globe::{between, cross, dot, unit};
 
 /// Stands for a point that is infinitely far away, in the earth's radii.
 const FAR_AWAY: f64 = 1e9;
+
+/// Whether a point stands for a tile at the horizon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Horizon {
+    /// One that is hidden only when the whole tile is.
+    Point,
+    /// None can: the tile is never hidden.
+    None,
+}
 
 /// Middle and radius of a sphere that holds all vertices, and so all triangles, from the earth's centre.
 pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
@@ -18,7 +27,7 @@ pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
         f64::midpoint(low, high)
     });
     let distance_m = |at: [f64; 3]| {
-        let from = [0, 1, 2].map(|axis| at[axis] - middle[axis]);
+        let from = between(middle, at);
         dot(from, from).sqrt()
     };
     let radius_m = mesh.vertices.iter().map(|vertex| distance_m(vertex.at_m)).fold(0.0, f64::max);

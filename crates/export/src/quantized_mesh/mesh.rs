@@ -12,7 +12,7 @@ use super::{
     raster::{Sample, TileRaster},
     tiling::LAST_STEP,
 };
-use crate::globe::{cross, dot, geocentric_m};
+use crate::globe::{between, cross, dot, geocentric_m};
 
 /// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
 const SHARE_OF_TIN: f64 = 0.7;
@@ -295,12 +295,11 @@ impl Mesh {
 impl Sample {
     /// How far the ground is above a chord, along the vertical, at the place of the chord that is nearest in plan.
     fn above_chord_m(&self, [a, b]: [[f64; 3]; 2]) -> f64 {
-        let from = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|axis| other[axis] - one[axis]);
         let in_plan = |along: [f64; 3]| {
             let rise = dot(along, self.up);
             [0, 1, 2].map(|axis| along[axis] - rise * self.up[axis])
         };
-        let (along, out) = (from(a, b), from(a, self.at_m));
+        let (along, out) = (between(a, b), between(a, self.at_m));
         let (flat, flat_out) = (in_plan(along), in_plan(out));
         let share = dot(flat, flat_out) / dot(flat, flat).max(f64::MIN_POSITIVE);
         dot(out, self.up) - share * dot(along, self.up)
@@ -308,9 +307,8 @@ impl Sample {
 
     /// How far the ground is above a plane, along the vertical.
     fn above_plane_m(&self, [a, b, c]: [[f64; 3]; 3]) -> f64 {
-        let from = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|axis| other[axis] - one[axis]);
-        let across = cross(from(a, b), from(a, c));
-        dot(from(a, self.at_m), across) / dot(self.up, across)
+        let across = cross(between(a, b), between(a, c));
+        dot(between(a, self.at_m), across) / dot(self.up, across)
     }
 }
 

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::ExportError,
-    globe::{cross, dot, geocentric_m, unit, up_at},
+    globe::{between, cross, dot, geocentric_m, unit, up_at},
 };
 
 /// What is far from all ground lies on the ellipsoid, as the globe of a viewer without terrain does.
@@ -150,12 +150,6 @@ impl TileRaster {
         })
     }
 
-    /// Whether there is ground in the tile.
-    pub(crate) fn has_ground(&self) -> bool {
-        let mut nodes = (0..self.side()).flat_map(|row| (0..self.side()).map(move |c| [c, row]));
-        nodes.any(|[column, row]| self.is_ground[self.at(column, row)])
-    }
-
     /// Nodes along each side of the tile, those around it not counted.
     pub(crate) fn side(&self) -> usize {
         self.nodes.per_tile as usize + 1
@@ -182,11 +176,8 @@ impl TileRaster {
     pub(crate) fn normal(&self, at: usize) -> [f64; 3] {
         let columns = self.lon_deg.len();
         let of = |at: usize| geocentric_m(self.place(at));
-        let between = |from: usize, to: usize| {
-            let (from, to) = (of(from), of(to));
-            [0, 1, 2].map(|axis| to[axis] - from[axis])
-        };
-        let across = cross(between(at - 1, at + 1), between(at + columns, at - columns));
+        let way = |from: usize, to: usize| between(of(from), of(to));
+        let across = cross(way(at - 1, at + 1), way(at + columns, at - columns));
         let [lon, lat, _] = self.place(at);
         // At a pole all longitudes are one place.
         if dot(across, across) > 0.0 { unit(across) } else { up_at([lon, lat]) }
@@ -329,6 +320,7 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
+    /// Each of them.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Sample> {
         self.inside.iter().chain(self.borders.iter().flatten())
     }

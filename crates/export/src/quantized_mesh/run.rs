@@ -32,6 +32,8 @@ use crate::{
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices of the package's own triangles.
 const CELLS: [i64; 2] = [16, 128];
+/// The most tiles of the finest level. Some hundred bytes are kept for each.
+const MOST_TILES: i64 = 4_000_000;
 /// Of a level's error: how far apart places along edges are.
 const SPACING: f64 = 0.25;
 /// Parts of a cell on borders and where the ground ends, the fewest and the most.
@@ -48,13 +50,13 @@ pub fn export_quantized_mesh(
     observer: &dyn Observer,
 ) -> Result<QuantizedMeshSummary, ExportError> {
     let manifest = package.manifest();
+    within_grid(manifest, request.tiling)?;
     let finest = finest_level(manifest, request);
     let heights = heights_in_words(manifest, request.coordinates)?;
     let candidates = candidates(package, request.tiling, finest)?;
-    let all = with_ancestors(request.tiling, &candidates);
     let job = Job { package, request, folder };
-    let total = (candidates.len() + all.len()) as u64;
-    // Which tiles have ground is told by the nodes of the finest level.
+    let total = with_ancestors(request.tiling, &candidates).len() as u64;
+    // Which tiles have ground is told by those of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
         let progress = Progress { observer, done: 0, total };
@@ -92,10 +94,25 @@ pub fn export_quantized_mesh(
     Ok(summary)
 }
 
-/// The level that is asked for, or the first one whose error is at most the package's.
+/// Fails where the data reach beyond the grid's latitudes: a part would be left out.
+fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), ExportError> {
+    let [south, north] = [0, 1].map(|row| tiling.lat_deg(0, row));
+    let data = manifest.wgs84_bounds;
+    let beyond = [data.min_y, data.max_y].into_iter().find(|lat| !(south..=north).contains(lat));
+    match beyond {
+        Some(lat) => Err(ExportError::BeyondGrid { lat, north }),
+        None => Ok(()),
+    }
+}
+
+/// The level that is asked for. Otherwise the first one whose error is at most the package's, or whose coarsest raster is finer than the package: where the
+/// ground is flat, no level has an error as small.
 fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
     let of_package = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
-    let is_fine_enough = |level: &u8| request.tiling.level_error_m(*level) <= of_package;
+    let is_fine_enough = |level: &u8| {
+        let nodes = nodes(manifest, request.tiling, *level);
+        request.tiling.level_error_m(*level) <= of_package || nodes.per_tile == CELLS[0]
+    };
     let by_error = || (0..=FINEST).find(is_fine_enough).unwrap_or(FINEST);
     request.max_level.unwrap_or_else(by_error).min(FINEST)
 }
@@ -117,6 +134,7 @@ fn candidates(
 ) -> Result<BTreeSet<TerrainTile>, ExportError> {
     let manifest = package.manifest();
     let mut found = BTreeSet::new();
+    let mut count = 0;
     let package_level = manifest.frame.max_level();
     for id in package.tile_ids()?.into_iter().filter(|id| id.z() == package_level) {
         let mut around = Bounds::EMPTY;
@@ -130,6 +148,10 @@ fn candidates(
         let rows =
             [around.min_y - margin, around.max_y + margin].map(|lat| tiling.row_of(level, lat));
         let last = columns[1].min(columns[0] + tiling.columns(level) - 1);
+        count += (last - columns[0] + 1) * (rows[1] - rows[0] + 1);
+        if count > MOST_TILES {
+            return Err(ExportError::TooManyTiles { level, most: MOST_TILES });
+        }
         for x in columns[0]..=last {
             let x = x.rem_euclid(tiling.columns(level)) as u32;
             found.extend((rows[0]..=rows[1]).map(|y| TerrainTile { z: level, x, y: y as u32 }));
@@ -212,15 +234,16 @@ impl<'a> Job<'a> {
     ) -> Result<Option<Made>, ExportError> {
         let tiling = self.request.tiling;
         let error_m = tiling.level_error_m(tile.z);
-        let raster = TileRaster::sample(self.nodes(tile.z), tile, ground)?;
-        if emptiness == Emptiness::IsLeftOut && !raster.has_ground() {
+        let nodes = nodes(self.package.manifest(), tiling, tile.z);
+        let raster = TileRaster::sample(nodes, tile, ground)?;
+        let samples = raster.samples(self.sampled_level(error_m), error_m * SPACING, ground)?;
+        if emptiness == Emptiness::IsLeftOut && samples.all().next().is_none() {
             return Ok(None);
         }
         let failed = |source| ExportError::Triangulate { tile: tile.to_string(), source };
         let tin = tin_of(&raster, error_m).map_err(failed)?;
         let inserted = |source| failed(TriangulateError::Insert(source));
         let mut mesh = Mesh::new(&raster, &tin).map_err(inserted)?;
-        let samples = raster.samples(self.sampled_level(error_m), error_m * SPACING, ground)?;
         for border in &samples.borders {
             mesh.refine_border(&raster, border, error_m).map_err(inserted)?;
         }
@@ -229,7 +252,7 @@ impl<'a> Job<'a> {
         let deviation = mesh.deviation(samples.all());
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available, tile);
-        let bytes = encode(&mesh, metadata.as_deref(), !tiling.is_around_the_globe(tile));
+        let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
         let bytes = self.write(tile, &bytes).map_err(ExportError::WriteTiles)?;
         Ok(Some(Made { triangles: mesh.triangles.len() as u64, bytes, deviation }))
     }
@@ -256,38 +279,37 @@ impl<'a> Job<'a> {
         levels.iter().find(near).map_or(frame.max_level(), |level| level.level)
     }
 
-    /// The raster of a level: cells no longer than the package's, as long as tiles have few enough of them.
-    fn nodes(&self, level: u8) -> Nodes {
-        let (tiling, manifest) = (self.request.tiling, self.package.manifest());
-        let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
-        let [_, meridian_m] = radii_m(lat);
-        let row = tiling.row_of(level, lat);
-        let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
-        let [parallel_m, _] = radii_m(lat);
-        let column = tiling.column_of(level, lon);
-        let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
-        let side_m = ((north - south).to_radians() * meridian_m)
-            .max((east - west).to_radians() * parallel_m);
-        let cell = manifest.frame.cell();
-        let [scale_x, scale_y] = manifest.scale.center;
-        let cell_m = (cell.east_m / scale_x).min(cell.north_m / scale_y);
-        let [fewest, most] = CELLS;
-        let mut per_tile = fewest;
-        while per_tile < most && side_m / per_tile as f64 > cell_m {
-            per_tile *= 2;
-        }
-        // As finely as the package has the ground.
-        let [least, largest] = PARTS;
-        let cells = (side_m / per_tile as f64 / cell_m).ceil().clamp(least, largest);
-        Nodes { tiling, level, per_tile, parts: cells as i64 }
-    }
-
     fn empty_level(&self, level: u8) -> QuantizedMeshLevel {
         QuantizedMeshLevel {
             level,
-            cells: self.nodes(level).per_tile as u64,
+            cells: nodes(self.package.manifest(), self.request.tiling, level).per_tile as u64,
             assumed_error_m: self.request.tiling.level_error_m(level),
             ..QuantizedMeshLevel::default()
         }
     }
+}
+
+/// The raster of a level: cells no longer than the package's, as long as tiles have few enough of them.
+fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> Nodes {
+    let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
+    let [_, meridian_m] = radii_m(lat);
+    let row = tiling.row_of(level, lat);
+    let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
+    let [parallel_m, _] = radii_m(lat);
+    let column = tiling.column_of(level, lon);
+    let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
+    let side_m =
+        ((north - south).to_radians() * meridian_m).max((east - west).to_radians() * parallel_m);
+    let cell = manifest.frame.cell();
+    let [scale_x, scale_y] = manifest.scale.center;
+    let cell_m = (cell.east_m / scale_x).min(cell.north_m / scale_y);
+    let [fewest, most] = CELLS;
+    let mut per_tile = fewest;
+    while per_tile < most && side_m / per_tile as f64 > cell_m {
+        per_tile *= 2;
+    }
+    // As finely as the package has the ground.
+    let [least, largest] = PARTS;
+    let cells = (side_m / per_tile as f64 / cell_m).ceil().clamp(least, largest);
+    Nodes { tiling, level, per_tile, parts: cells as i64 }
 }

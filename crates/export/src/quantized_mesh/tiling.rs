@@ -2,10 +2,12 @@ use std::{f64::consts::PI, fmt};
 
 use corniche_geom::wgs84::SEMI_MAJOR_M;
 
+use super::horizon::Horizon;
+
 /// The largest value of u and v: they are 0 in the west and south of a tile and this in its east and north.
 pub(crate) const LAST_STEP: u16 = 32_767;
 
-/// The finest level that can be asked for: tiles of some metres.
+/// The finest level that can be asked for: tiles of about a metre.
 pub(crate) const FINEST: u8 = 24;
 
 /// How the globe is divided into terrain tiles.
@@ -106,9 +108,9 @@ impl Tiling {
         ((share * Self::rows(level) as f64).floor() as i64).clamp(0, Self::rows(level) - 1)
     }
 
-    /// Whether a tile is wider than half the globe, so that no point stands for it at the horizon.
-    pub(crate) fn is_around_the_globe(self, tile: TerrainTile) -> bool {
-        self == Self::WebMercator && tile.z == 0
+    /// What stands for a tile at the horizon: nothing for one that is wider than half the globe.
+    pub(crate) fn horizon_of(self, tile: TerrainTile) -> Horizon {
+        if self == Self::WebMercator && tile.z == 0 { Horizon::None } else { Horizon::Point }
     }
 }
 

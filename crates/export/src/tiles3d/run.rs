@@ -102,9 +102,6 @@ pub fn export_tiles3d(
     }
     let vector_folder = folder.join(VECTOR_FOLDER);
     make_folders(folder, &ids).map_err(failed)?;
-    if request.roads == TileRoads::Vector {
-        make_folders(&vector_folder, &ids).map_err(failed)?;
-    }
     let look = RoadLook { classes: &request.classes, style: &request.style };
     let job = Job {
         package,
@@ -141,6 +138,7 @@ pub fn export_tiles3d(
         let with_roads: BTreeSet<TileId> =
             made.iter().filter(|(_, tile)| tile.has_vector).map(|(id, _)| *id).collect();
         let contents = Contents::Vector(with_roads);
+        fs::create_dir_all(&vector_folder).map_err(failed)?;
         documents += tree.write(&vector_folder, &job.root, &contents).map_err(failed)?;
         vector_style::write(&vector_folder, &request.style).map_err(failed)?;
     }
@@ -286,7 +284,9 @@ impl Job<'_> {
         };
         let mut bytes = write(self.folder, &made.content)?;
         if let Some(vector) = &made.vector {
-            bytes += write(&self.folder.join(VECTOR_FOLDER), vector)?;
+            let folder = self.folder.join(VECTOR_FOLDER);
+            make_folders(&folder, &[id]).map_err(ExportError::WriteTiles)?;
+            bytes += write(&folder, vector)?;
         }
         Ok(Some(Written {
             tile_box: made.tile_box,

@@ -16,6 +16,7 @@ use crate::{Manifest, Sections, TilePayload};
 pub struct FilePackage {
     package: Package<AnySource>,
     path: PathBuf,
+    file_name: String,
 }
 
 impl FilePackage {
@@ -25,17 +26,22 @@ impl FilePackage {
     /// As [`Package::open`], with the name of the file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let source = FileSource::open(path).map_err(|error| named(path, error.into()))?;
-        Self::of_source(path, Arc::new(source))
+        let file_name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Self::of_source(path, file_name, Arc::new(source))
     }
 
-    /// Opens what `source` gives. `name` stands for the path of a file: an address, say.
+    /// Opens what `source` gives. `name` stands for the path of a file: an address, say; `file_name` is what the file would be called.
     ///
     /// # Errors
     /// As [`Package::open`], with this name.
-    pub fn of_source(name: &Path, source: Arc<dyn BlockingSource>) -> Result<Self, OpenError> {
+    pub fn of_source(
+        name: &Path,
+        file_name: String,
+        source: Arc<dyn BlockingSource>,
+    ) -> Result<Self, OpenError> {
         let opened = pollster::block_on(Package::open(AnySource::new(source)));
         let package = opened.map_err(|error| named(name, error))?;
-        Ok(Self { package, path: name.to_path_buf() })
+        Ok(Self { package, path: name.to_path_buf(), file_name })
     }
 
     /// The package itself, whose methods are `async`.
@@ -48,6 +54,13 @@ impl FilePackage {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The name of the file, without its folder. At an address it is the last part of the path, so what is written of a package does not depend on where
+    /// it is.
+    #[must_use]
+    pub fn file_name(&self) -> &str {
+        &self.file_name
     }
 
     /// How many bytes the package has.
