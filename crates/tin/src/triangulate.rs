@@ -4,7 +4,8 @@ use spade::{
 };
 
 use crate::boundary::{Stretch, stretches};
-use crate::refine::{Node, refine};
+use crate::node::Node;
+use crate::refine::refine;
 use crate::tile_raster::TileRaster;
 use crate::{Tin, TinError, TinVertex};
 
@@ -94,10 +95,8 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     if !(4..=MAX_SIDE).contains(&columns) || !(4..=MAX_SIDE).contains(&rows) {
         return Err(TriangulateError::Size { columns, rows });
     }
-    for height_m in heights.range_m().into_iter().flatten() {
-        if (f64::from(height_m) / quantum_m).abs() > f64::from(i32::MAX - 1) {
-            return Err(TriangulateError::Height { height_m, quantum_m });
-        }
+    if let Some(height_m) = beyond(heights.raw(), f64::from(i32::MAX - 1) * quantum_m) {
+        return Err(TriangulateError::Height { height_m, quantum_m });
     }
 
     let tile = TileRaster::new(heights, quantum_m);
@@ -110,13 +109,23 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
         // The convex hull is the border of the tile: no constraint is needed.
         let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
-        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &tile)
+        let faces = refine(&mut mesh, &tile, max_error_m, quantum_m)?;
+        to_tin(&mesh, &faces, &tile)
     } else {
         let mut mesh = ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?;
-        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &tile)
+        let faces = refine(&mut mesh, &tile, max_error_m, quantum_m)?;
+        to_tin(&mesh, &faces, &tile)
     }
+}
+
+/// A height farther from 0 than `most_m`, if there is one.
+fn beyond(heights_m: &[f32], most_m: f64) -> Option<f32> {
+    let is_beyond = |height_m: f32| f64::from(height_m).abs() > most_m;
+    // Blocks are looked at as a whole, without a branch for each height.
+    let block = heights_m
+        .chunks(1 << 10)
+        .find(|block| block.iter().fold(false, |any, &height_m| any | is_beyond(height_m)))?;
+    block.iter().copied().find(|&height_m| is_beyond(height_m))
 }
 
 /// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
@@ -136,25 +145,25 @@ fn fixed_graph(tile: &TileRaster<'_>, fixed: &[Stretch]) -> (Vec<Node>, Vec<[usi
     (keys.iter().map(|&[row, column]| Node::new(tile, [column, row])).collect(), edges)
 }
 
-/// The faces on the ground, as a TIN.
-fn to_tin<T>(mesh: &T, tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
+/// The faces on the ground, as a TIN. `faces` holds the corners of each face, by its index.
+fn to_tin<T>(mesh: &T, faces: &[[u32; 3]], tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
 where
     T: Triangulation<Vertex = Node>,
 {
     let vertices: Vec<TinVertex> =
         mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
     let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
-    for face in mesh.inner_faces() {
-        let corners = face.vertices();
+    for face in mesh.fixed_inner_faces() {
+        let corners = faces[face.index()];
         // Boundaries are edges, so a face is all ground or all void, and so is every cell that its inside
         // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
-        let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
-            (column + usize::from(corner.data().column), row + usize::from(corner.data().row))
+        let (column, row) = corners.iter().fold((0, 0), |(column, row), &corner| {
+            let vertex = vertices[corner as usize];
+            (column + usize::from(vertex.column), row + usize::from(vertex.row))
         });
         if tile.cell([column / 3, row / 3]) {
             // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
-            triangles
-                .push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
+            triangles.push([corners[0], corners[2], corners[1]]);
         }
     }
     Ok(Tin::new(vertices, &triangles)?)

@@ -1,0 +1,38 @@
+use spade::{HasPosition, Point2};
+
+use crate::TinVertex;
+use crate::tile_raster::TileRaster;
+
+/// A vertex of the mesh. To it, x is the column and y the row, which grows to the south.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    pub(crate) column: u16,
+    pub(crate) row: u16,
+    pub(crate) height_q: i32,
+}
+
+impl Node {
+    pub(crate) fn new(tile: &TileRaster<'_>, [column, row]: [usize; 2]) -> Self {
+        Self { column: column as u16, row: row as u16, height_q: tile.height_q([column, row]) }
+    }
+
+    pub(crate) fn to_vertex(self) -> TinVertex {
+        TinVertex { row: self.row, column: self.column, height_q: self.height_q }
+    }
+
+    /// The square of its distance in the plane, in cells.
+    pub(crate) fn squared_distance(self, [column, row]: [usize; 2]) -> u64 {
+        let across = (usize::from(self.column).abs_diff(column)) as u64;
+        let along = (usize::from(self.row).abs_diff(row)) as u64;
+        across * across + along * along
+    }
+}
+
+impl HasPosition for Node {
+    type Scalar = f64;
+
+    #[inline]
+    fn position(&self) -> Point2<f64> {
+        Point2::new(f64::from(self.column), f64::from(self.row))
+    }
+}
