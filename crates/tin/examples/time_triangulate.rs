@@ -4,8 +4,6 @@
 //! little-endian, row by row from the north, NaN in gaps. For every tolerance that comes on a line of standard input it triangulates
 //! all of them and answers with a line: CPU time in seconds, vertices, triangles.
 
-#![expect(clippy::print_stdout, reason = "the answers are read by a script")]
-
 use std::io::{BufRead, Write};
 
 use corniche_geom::HeightGrid;

@@ -22,7 +22,7 @@ proptest! {
             let all_m = band.iter().map(|candidate| errors_m[candidate.node as usize]);
             let [low_m, high_m] =
                 all_m.fold([f64::INFINITY, 0.0], |[low, high], m| [low.min(m), high.max(m)]);
-            prop_assert!(high_m <= lowest_m && high_m <= 1.25 * low_m, "{low_m} {high_m} after {lowest_m}");
+            prop_assert!(high_m <= lowest_m && high_m <= 1.125 * low_m, "{low_m} {high_m} after {lowest_m}");
             lowest_m = low_m;
             seen.extend(band.iter().map(|candidate| candidate.node));
         }

@@ -54,7 +54,7 @@ impl Tin {
     ///
     /// # Errors
     /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
-    pub fn new(vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
+    pub fn new(mut vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
         // Rows, and triangles around a vertex, are many and short: so both are sorted in two steps.
         let rows = vertices.iter().map(|vertex| usize::from(vertex.row) + 1).max().unwrap_or(0);
         let by_row = IndexLists::new(rows, vertices.len(), |vertex| {
@@ -96,7 +96,8 @@ impl Tin {
             sorted.extend(by_first.of(vertex).iter().map(|&triangle| renamed[triangle as usize]));
             sorted[from..].sort_unstable();
         }
-        let vertices = order.iter().map(|&vertex| vertices[vertex as usize]).collect();
+        let in_order: Vec<_> = order.iter().map(|&vertex| vertices[vertex as usize]).collect();
+        vertices.copy_from_slice(&in_order);
         Self::from_canonical(vertices, sorted)
     }
 
