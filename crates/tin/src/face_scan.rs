@@ -59,10 +59,10 @@ impl FaceScan {
     }
 
     /// The node farthest from the plane through `corners` and its error in metres, if that is more than allowed. Of equals the
-    /// first.
+    /// first. Corners are counter-clockwise in columns and rows.
     ///
-    /// Corners are counter-clockwise in columns and rows. A node on the edge of two faces is as far from both, so small faces look
-    /// only at the nodes of the edges on their east and south.
+    /// Nodes on edges count for the faces on both sides. If one face left them to the other, the same nodes would be inserted, but not
+    /// always in the same order: the queue compares errors as `f32`, and of two in one face that are equal so, only one is a candidate.
     pub(crate) fn worst_node(&self, corners: [Node; 3]) -> Option<(f64, u32)> {
         let at = corners.map(|node| [i32::from(node.column), i32::from(node.row)]);
         let [a, b, c] = at.map(|corner| corner.map(i64::from));
@@ -79,8 +79,7 @@ impl FaceScan {
         let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
         let per_column = ab_m * ac[1] as f64 - ac_m * ab[1] as f64;
         let per_row = ac_m * ab[0] as f64 - ab_m * ac[0] as f64;
-        let along = [0.0, 1.0, 2.0, 3.0].map(|lane| per_column * lane);
-        let plane = Plane { scale, per_column, along };
+        let plane = Plane { scale, per_column };
         let from_m = a_m * scale;
 
         let (mut worst_scaled, mut worst_row) = (self.max_error_m * scale, None);
@@ -99,7 +98,7 @@ impl FaceScan {
                 worst_row = Some((from, nodes, in_row));
             }
         };
-        let sorted = from_north(at);
+        let sorted = from_north(corners);
         let [west, east] =
             [at[0][0].min(at[1][0]).min(at[2][0]), at[0][0].max(at[1][0]).max(at[2][0])];
         if east - west < SMALL as i32 && sorted[2][1] - sorted[0][1] < SMALL as i32 {
@@ -110,30 +109,25 @@ impl FaceScan {
             });
         }
 
-        let (from, nodes, mut in_row) = worst_row?;
-        for (block, heights_m) in (0..).zip(self.heights_m[from..from + nodes].chunks(LANES)) {
-            // The same numbers as when the row was looked at, so one of them is equal.
-            for (lane, (&height_m, along)) in heights_m.iter().zip(plane.along).enumerate() {
-                if (f64::from(height_m) * scale - (in_row + along)).abs() >= worst_scaled {
-                    return Some((worst_scaled / scale, (from + block * LANES + lane) as u32));
-                }
-            }
-            in_row += plane.lanes();
-        }
-        None
+        let (from, nodes, in_row) = worst_row?;
+        // The same numbers as when the row was looked at, so one of them is equal.
+        let is_worst = |&(step, &height_m): &(u32, &f32)| {
+            plane.distance(height_m, in_row, f64::from(step)) >= worst_scaled
+        };
+        let (step, _) = (0..).zip(&self.heights_m[from..from + nodes]).find(is_worst)?;
+        Some((worst_scaled / scale, from as u32 + step))
     }
 
     /// The largest distance of `nodes` nodes of a row, times the plane's scale. `in_row` is the plane at the first, `from`.
     #[inline]
-    fn most_in_row(&self, mut from: usize, nodes: usize, mut in_row: f64, plane: &Plane) -> f64 {
+    fn most_in_row(&self, mut from: usize, nodes: usize, in_row: f64, plane: &Plane) -> f64 {
         let mut left = nodes;
+        let mut steps = [0.0, 1.0, 2.0, 3.0];
         let mut most = [0.0_f64; LANES];
         while let Some(heights_m) = self.heights_m[from..].first_chunk::<LANES>() {
             let after_row = &AFTER_ROW[LANES.saturating_sub(left)..][..LANES];
             for lane in 0..LANES {
-                let distance =
-                    f64::from(heights_m[lane]) * plane.scale - (in_row + plane.along[lane]);
-                let scaled = distance.abs() + after_row[lane];
+                let scaled = plane.distance(heights_m[lane], in_row, steps[lane]) + after_row[lane];
                 // Written so, and not with `max`, it is one instruction for all lanes; NaN is never larger.
                 most[lane] = if scaled > most[lane] { scaled } else { most[lane] };
             }
@@ -142,7 +136,7 @@ impl FaceScan {
             }
             left -= LANES;
             from += LANES;
-            in_row += plane.lanes();
+            steps = steps.map(|step| step + LANES as f64);
         }
         most.into_iter().fold(0.0, |most, scaled| if scaled > most { scaled } else { most })
     }
@@ -152,26 +146,27 @@ impl FaceScan {
 struct Plane {
     scale: f64,
     per_column: f64,
-    /// From the first lane to each.
-    along: [f64; LANES],
 }
 
 impl Plane {
-    fn lanes(&self) -> f64 {
-        self.per_column * LANES as f64
+    /// How far a height is from the plane, times `scale`, `steps` columns east of a node where the plane is at `in_row`.
+    #[inline]
+    fn distance(&self, height_m: f32, in_row: f64, steps: f64) -> f64 {
+        (f64::from(height_m) * self.scale - (in_row + self.per_column * steps)).abs()
     }
 }
 
 /// Corners from north to south, of the same row from west to east; without a branch, as no order is more likely.
 #[inline]
-fn from_north(corners: [[i32; 2]; 3]) -> [[i32; 2]; 3] {
-    let [p, q, r] = corners.map(|[column, row]| row << 16 | column);
+fn from_north(corners: [Node; 3]) -> [[i32; 2]; 3] {
+    let [p, q, r] = corners.map(|node| u32::from(node.row) << 16 | u32::from(node.column));
     let (first, last) = (p.min(q).min(r), p.max(q).max(r));
-    [first, p ^ q ^ r ^ first ^ last, last].map(|key| [key & 0xffff, key >> 16])
+    [first, p ^ q ^ r ^ first ^ last, last]
+        .map(|key| [key as u16, (key >> 16) as u16].map(i32::from))
 }
 
-/// Calls `each(row, first_column, last_column)` for the rows of a small face, from north to south: with the nodes inside it and those on its
-/// edges in the east and south, without its northernmost and southernmost corner. Corners come as from [`from_north`].
+/// Calls `each(row, first_column, last_column)` for the rows of a small face, from north to south: with all nodes that it holds, those on
+/// its edges too, but without its northernmost and southernmost corner where one is alone in its row. Corners come as from [`from_north`].
 ///
 /// ```text
 ///        a            In every row the face lies between the long edge a–c and one of the two
@@ -183,20 +178,24 @@ fn from_north(corners: [[i32; 2]; 3]) -> [[i32; 2]; 3] {
 #[inline]
 fn for_each_row_of_small([a, b, c]: [[i32; 2]; 3], mut each: impl FnMut(i32, i32, i32)) {
     let b_is_east = (b[0] - a[0]) * (c[1] - a[1]) > (c[0] - a[0]) * (b[1] - a[1]);
-    let (long, upper, lower) = (floors(a, c), floors(a, b), floors(b, c));
-    let last_row = if b[1] == c[1] { c[1] } else { c[1] - 1 };
-    for row in a[1] + 1..=last_row {
-        let (from, edge) = if row <= b[1] { (a, upper) } else { (b, lower) };
-        let long = a[0] + i32::from(long[(row - a[1]) as usize % SMALL]);
-        let short = from[0] + i32::from(edge[(row - from[1]) as usize % SMALL]);
-        if b_is_east { each(row, long + 1, short) } else { each(row, short + 1, long) }
+    // Columns are rounded into the face: up in the west, which is the negative of rounding the negative down.
+    let long_sign = if b_is_east { -1 } else { 1 };
+    let long = floors(a, c, long_sign);
+    let (upper, lower) = (floors(a, b, -long_sign), floors(b, c, -long_sign));
+    let first_row = a[1] + i32::from(a[1] != b[1]);
+    let last_row = c[1] - i32::from(b[1] != c[1]);
+    for row in first_row..=last_row {
+        let (from, edge) = if row < b[1] { (a, upper) } else { (b, lower) };
+        let long = a[0] + long_sign * i32::from(long[(row - a[1]) as usize % SMALL]);
+        let short = from[0] - long_sign * i32::from(edge[(row - from[1]) as usize % SMALL]);
+        if b_is_east { each(row, long, short) } else { each(row, short, long) }
     }
 }
 
-/// How far an edge of a small face has gone east, by row.
+/// How far an edge of a small face has gone east, by row; west if `sign` is −1.
 #[inline]
-fn floors(from: [i32; 2], to: [i32; 2]) -> &'static [i8; SMALL] {
-    let (columns, rows) = (to[0] - from[0] + SMALL as i32, to[1] - from[1]);
+fn floors(from: [i32; 2], to: [i32; 2], sign: i32) -> &'static [i8; SMALL] {
+    let (columns, rows) = (sign * (to[0] - from[0]) + SMALL as i32, to[1] - from[1]);
     &FLOORS[columns as usize % (2 * SMALL)][rows as usize % SMALL]
 }
 

@@ -9,8 +9,8 @@
 mod tin;
 mod triangulate;
 
-mod bands;
 mod boundary;
+mod candidate_queue;
 mod face_scan;
 mod node;
 mod refine;

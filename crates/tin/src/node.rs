@@ -19,13 +19,6 @@ impl Node {
     pub(crate) fn to_vertex(self) -> TinVertex {
         TinVertex { row: self.row, column: self.column, height_q: self.height_q }
     }
-
-    /// The square of its distance in the plane, in cells.
-    pub(crate) fn squared_distance(self, [column, row]: [usize; 2]) -> u64 {
-        let across = (usize::from(self.column).abs_diff(column)) as u64;
-        let along = (usize::from(self.row).abs_diff(row)) as u64;
-        across * across + along * along
-    }
 }
 
 impl HasPosition for Node {

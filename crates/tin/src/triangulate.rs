@@ -109,12 +109,12 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
         // The convex hull is the border of the tile: no constraint is needed.
         let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
-        let faces = refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &faces, &tile)
+        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
+        to_tin(&mesh, &tile)
     } else {
         let mut mesh = ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?;
-        let faces = refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &faces, &tile)
+        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
+        to_tin(&mesh, &tile)
     }
 }
 
@@ -145,25 +145,25 @@ fn fixed_graph(tile: &TileRaster<'_>, fixed: &[Stretch]) -> (Vec<Node>, Vec<[usi
     (keys.iter().map(|&[row, column]| Node::new(tile, [column, row])).collect(), edges)
 }
 
-/// The faces on the ground, as a TIN. `faces` holds the corners of each face, by its index.
-fn to_tin<T>(mesh: &T, faces: &[[u32; 3]], tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
+/// The faces on the ground, as a TIN.
+fn to_tin<T>(mesh: &T, tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
 where
     T: Triangulation<Vertex = Node>,
 {
     let vertices: Vec<TinVertex> =
         mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
     let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
-    for face in mesh.fixed_inner_faces() {
-        let corners = faces[face.index()];
+    for face in mesh.inner_faces() {
+        let corners = face.vertices();
         // Boundaries are edges, so a face is all ground or all void, and so is every cell that its inside
         // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
-        let (column, row) = corners.iter().fold((0, 0), |(column, row), &corner| {
-            let vertex = vertices[corner as usize];
-            (column + usize::from(vertex.column), row + usize::from(vertex.row))
+        let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
+            (column + usize::from(corner.data().column), row + usize::from(corner.data().row))
         });
         if tile.cell([column / 3, row / 3]) {
             // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
-            triangles.push([corners[0], corners[2], corners[1]]);
+            triangles
+                .push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
         }
     }
     Ok(Tin::new(vertices, &triangles)?)
