@@ -5,6 +5,7 @@
 use std::hint::black_box;
 
 use corniche_geom::HeightGrid;
+use corniche_testing::srtm_heights;
 use corniche_tin::{
     TinSpec, TriangleBuckets, WindowPlacement, height_quantum_m, measure, normals, triangulate,
 };
@@ -38,6 +39,15 @@ fn triangulating(c: &mut Criterion) {
         for max_error_m in [2.0, 5.0, 20.0] {
             let id = BenchmarkId::new(nodes.to_string(), max_error_m);
             group.bench_function(id, |b| {
+                b.iter(|| triangulate(black_box(&heights), spec(max_error_m)));
+            });
+        }
+    }
+    // A tile of the Alps with gaps; `scripts/bench-tin` compares more of them with another triangulator.
+    if let Some(heights) = srtm_heights("liechtenstein/N47E010.hgt", 600, 400) {
+        group.throughput(Throughput::Elements(257 * 257));
+        for max_error_m in [2.0, 5.0, 20.0] {
+            group.bench_function(BenchmarkId::new("srtm", max_error_m), |b| {
                 b.iter(|| triangulate(black_box(&heights), spec(max_error_m)));
             });
         }

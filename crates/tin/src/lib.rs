@@ -11,6 +11,8 @@ mod triangulate;
 
 mod boundary;
 mod candidate_queue;
+mod face_scan;
+mod node;
 mod refine;
 mod tile_raster;
 mod triangle_rows;

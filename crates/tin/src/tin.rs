@@ -1,3 +1,5 @@
+use corniche_geom::IndexLists;
+
 /// A vertex of a [`Tin`]: a node of the tile's grid and its quantized height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TinVertex {
@@ -53,8 +55,17 @@ impl Tin {
     /// # Errors
     /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
     pub fn new(mut vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
-        let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
-        order.sort_unstable_by_key(|&index| vertices[index as usize]);
+        // Rows, and triangles around a vertex, are many and short: so both are sorted in two steps.
+        let rows = vertices.iter().map(|vertex| usize::from(vertex.row) + 1).max().unwrap_or(0);
+        let by_row = IndexLists::new(rows, vertices.len(), |vertex| {
+            std::iter::once(usize::from(vertices[vertex].row))
+        });
+        let mut order: Vec<u32> = Vec::with_capacity(vertices.len());
+        for row in 0..rows {
+            let from = order.len();
+            order.extend_from_slice(by_row.of(row));
+            order[from..].sort_unstable_by_key(|&vertex| vertices[vertex as usize]);
+        }
         let mut new_index = vec![0_u32; vertices.len()];
         for (new, &old) in order.iter().enumerate() {
             new_index[old as usize] = new as u32;
@@ -69,13 +80,25 @@ impl Tin {
                     vertices: vertices.len(),
                 })?;
             }
-            let smallest = (0..3).min_by_key(|&k| named[k]).unwrap_or(0);
-            named.rotate_left(smallest);
-            renamed.push(named);
+            let [a, b, c] = named;
+            renamed.push(match a.min(b).min(c) {
+                smallest if smallest == a => [a, b, c],
+                smallest if smallest == b => [b, c, a],
+                _ => [c, a, b],
+            });
         }
-        renamed.sort_unstable();
-        vertices.sort_unstable();
-        Self::from_canonical(vertices, renamed)
+        let by_first = IndexLists::new(vertices.len(), renamed.len(), |triangle| {
+            std::iter::once(renamed[triangle][0] as usize)
+        });
+        let mut sorted: Vec<[u32; 3]> = Vec::with_capacity(renamed.len());
+        for vertex in 0..vertices.len() {
+            let from = sorted.len();
+            sorted.extend(by_first.of(vertex).iter().map(|&triangle| renamed[triangle as usize]));
+            sorted[from..].sort_unstable();
+        }
+        let in_order: Vec<_> = order.iter().map(|&vertex| vertices[vertex as usize]).collect();
+        vertices.copy_from_slice(&in_order);
+        Self::from_canonical(vertices, sorted)
     }
 
     /// Takes vertices and triangles that are in canonical order already, as a package stores them.

@@ -4,7 +4,8 @@ use spade::{
 };
 
 use crate::boundary::{Stretch, stretches};
-use crate::refine::{Node, refine};
+use crate::node::Node;
+use crate::refine::refine;
 use crate::tile_raster::TileRaster;
 use crate::{Tin, TinError, TinVertex};
 
@@ -94,10 +95,8 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     if !(4..=MAX_SIDE).contains(&columns) || !(4..=MAX_SIDE).contains(&rows) {
         return Err(TriangulateError::Size { columns, rows });
     }
-    for height_m in heights.range_m().into_iter().flatten() {
-        if (f64::from(height_m) / quantum_m).abs() > f64::from(i32::MAX - 1) {
-            return Err(TriangulateError::Height { height_m, quantum_m });
-        }
+    if let Some(height_m) = beyond(heights.raw(), f64::from(i32::MAX - 1) * quantum_m) {
+        return Err(TriangulateError::Height { height_m, quantum_m });
     }
 
     let tile = TileRaster::new(heights, quantum_m);
@@ -117,6 +116,16 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
         refine(&mut mesh, &tile, max_error_m, quantum_m)?;
         to_tin(&mesh, &tile)
     }
+}
+
+/// A height farther from 0 than `most_m`, if there is one.
+fn beyond(heights_m: &[f32], most_m: f64) -> Option<f32> {
+    let is_beyond = |height_m: f32| f64::from(height_m).abs() > most_m;
+    // Blocks are looked at as a whole, without a branch for each height.
+    let block = heights_m
+        .chunks(1 << 10)
+        .find(|block| block.iter().fold(false, |any, &height_m| any | is_beyond(height_m)))?;
+    block.iter().copied().find(|&height_m| is_beyond(height_m))
 }
 
 /// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
