@@ -204,7 +204,9 @@ pub(crate) fn check_borders(terrain: &Terrain) -> Check {
             let name = || format!("{level}/{x}/{y} and {beside:?}");
             ensure(one.len() == two.len(), || format!("{}: other vertices", name()))?;
             for ((at, height, normal), (other_at, other_height, other)) in one.iter().zip(&two) {
-                ensure(normal == other, || format!("{}: other normals at {at}", name()))?;
+                ensure(normal.map(f64::to_bits) == other.map(f64::to_bits), || {
+                    format!("{}: other normals at {at}", name())
+                })?;
                 let off_m = (height - other_height).abs();
                 ensure(at == other_at && off_m <= rounding_m, || {
                     format!("{}: {at} and {other_at}, {off_m} m apart", name())

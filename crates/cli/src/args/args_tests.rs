@@ -145,6 +145,13 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Export(args) => match &args.what {
+            Export::GeoTiff(args) => {
+                let (package, dem) = args.files().unwrap();
+                (path_of(package), dem)
+            }
+            what => panic!("{what:?} has no files to tell apart"),
+        },
         Command::Match(args) => {
             let (package, photos) = args.files().unwrap();
             (path_of(package), photos)
@@ -157,6 +164,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     // What follows the option, what is meant by the positional argument, and what else the command needs.
     let known = [
+        ("export geotiff --dem", "p.pmtiles", "-o h.tif"),
         ("jobs --store", "p.json", "--slots 2"),
         ("match --photo", "p.pmtiles", "--radius 20"),
         ("merge --store", "p.json", "-o c.pmtiles"),
@@ -168,7 +176,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     let names: Vec<&str> = known.iter().map(|(name, _, _)| *name).collect();
     assert_eq!(found, names, "a new option with several values needs a line here");
     for (name, positional, rest) in known {
-        let (command, option) = name.split_once(' ').unwrap();
+        let (command, option) = name.rsplit_once(' ').unwrap();
         for line in [
             format!("corniche {command} {option} a b {positional} {rest}"),
             format!("corniche {command} {rest} {option} a {positional} {option} b"),

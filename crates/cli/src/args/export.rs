@@ -10,7 +10,8 @@ use corniche_export::{
 use corniche_presets::{BoundsChoice, Classes};
 use corniche_remote::PackagePlace;
 
-use super::values::package_place;
+use super::values::{package_among, package_place};
+use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -136,10 +137,11 @@ pub(crate) struct ExportMeshArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>")]
 pub(crate) struct ExportGeoTiffArgs {
     /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[arg(required_unless_present = "dem", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    package: Option<PackagePlace>,
     /// The file to write: .tif or .tiff
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
@@ -154,13 +156,27 @@ pub(crate) struct ExportGeoTiffArgs {
     pub(crate) bounds: Option<DegreeBounds>,
     /// The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) dem: Vec<PathBuf>,
+    dem: Vec<PathBuf>,
     /// With --dem: the polygon that the package was cut with
     #[arg(long, value_name = "FILE", requires = "dem")]
     pub(crate) polygon: Option<PathBuf>,
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
+}
+
+impl ExportGeoTiffArgs {
+    /// The package and its elevation rasters. `--dem` takes all that follows it, also a package, which is told from other files by its name.
+    ///
+    /// # Errors
+    /// When no package is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
+        package_among(
+            self.package.as_ref(),
+            &self.dem,
+            "corniche export geotiff PACKAGE --dem FILE...",
+        )
+    }
 }
 
 #[derive(Debug, Args)]

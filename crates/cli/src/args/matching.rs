@@ -4,8 +4,8 @@ use clap::{ArgGroup, Args, ValueHint};
 use corniche_presets::Classes;
 use corniche_remote::PackagePlace;
 
-use super::values::{package_place, place_of};
-use crate::{failure::Failure, names::is_package_name};
+use super::values::{package_among, package_place};
+use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 #[command(
@@ -49,17 +49,7 @@ impl MatchArgs {
     /// # Errors
     /// When no package is named, or several may be meant.
     pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        if let Some(package) = &self.package {
-            return Ok((package.clone(), self.photo.clone()));
-        }
-        let (mut packages, photos): (Vec<PathBuf>, Vec<PathBuf>) =
-            self.photo.iter().cloned().partition(|file| is_package_name(file));
-        match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) if !photos.is_empty() => Ok((place_of(package)?, photos)),
-            _ => Err(Failure::unusable(
-                "which file is the package is not clear; write it first: corniche match PACKAGE --photo FILE...",
-            )),
-        }
+        package_among(self.package.as_ref(), &self.photo, "corniche match PACKAGE --photo FILE...")
     }
 }
 

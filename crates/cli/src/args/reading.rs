@@ -1,10 +1,6 @@
 //! Commands that tell what a package holds.
 
-use std::{
-    fmt::Write as _,
-    num::NonZeroUsize,
-    path::{Path, PathBuf},
-};
+use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
 use corniche_geom::TileId;
@@ -13,9 +9,9 @@ use corniche_remote::PackagePlace;
 
 use super::{
     ReportArgs,
-    values::{package_place, parse_position, place_of},
+    values::{may_be_package, package_place, parse_position, place_of},
 };
-use crate::{failure::Failure, names::is_package_name};
+use crate::failure::Failure;
 
 /// What `verify --help` ends with: the checks, by their ids.
 fn checks() -> String {
@@ -86,7 +82,7 @@ impl VerifyArgs {
             return Ok(VerifyFiles { package: package.clone(), dem, photo, osm });
         }
         let split = |files: &[PathBuf]| -> (Vec<PathBuf>, Vec<PathBuf>) {
-            files.iter().cloned().partition(|file| is_package_name(file) || is_address(file))
+            files.iter().cloned().partition(|file| may_be_package(file))
         };
         let [(mut packages, dem), (of_photo, photo), (of_osm, osm)] =
             [split(&self.dem), split(&self.photo), split(&self.osm)];
@@ -103,11 +99,6 @@ impl VerifyArgs {
             )),
         }
     }
-}
-
-/// Whether a word is an address, which nothing but a package has; also one that cannot be read.
-fn is_address(file: &Path) -> bool {
-    !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
 /// The files of a verification.

@@ -1,11 +1,14 @@
 //! Texts of single values.
 
-use std::{ffi::OsStr, path::PathBuf};
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+};
 
 use clap::{builder::TypedValueParser, error::ErrorKind};
 use corniche_remote::PackagePlace;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, names::is_package_name};
 
 /// The package that a command reads: a file, or an address on a web server.
 pub(crate) fn package_place() -> impl TypedValueParser<Value = PackagePlace> {
@@ -37,6 +40,33 @@ impl TypedValueParser for PlaceParser {
 /// When it is an address that cannot be read.
 pub(crate) fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
     PackagePlace::parse(file.into()).map_err(Failure::unusable)
+}
+
+/// Whether one of several files may be the package: by its name, or as an address, which nothing else has. It may be one that cannot be read.
+pub(crate) fn may_be_package(file: &Path) -> bool {
+    is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
+}
+
+/// The package, and the files of an option that takes all that follows it, among which it may be if it is not named by itself. `usage` shows how to name it.
+///
+/// # Errors
+/// When no package is named, several may be meant, or nothing is left for the option.
+pub(crate) fn package_among(
+    named: Option<&PackagePlace>,
+    files: &[PathBuf],
+    usage: &str,
+) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
+    if let Some(package) = named {
+        return Ok((package.clone(), files.to_vec()));
+    }
+    let (mut packages, others): (Vec<PathBuf>, Vec<PathBuf>) =
+        files.iter().cloned().partition(|file| may_be_package(file));
+    match (packages.pop(), packages.is_empty()) {
+        (Some(package), true) if !others.is_empty() => Ok((place_of(package)?, others)),
+        _ => Err(Failure::unusable(format!(
+            "which file is the package is not clear; write it first: {usage}"
+        ))),
+    }
 }
 
 /// More than most graphics cards can draw; each says itself what it can.

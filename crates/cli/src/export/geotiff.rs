@@ -1,6 +1,9 @@
 //! `corniche export geotiff`.
 
-use std::{io::stderr, path::Path};
+use std::{
+    io::stderr,
+    path::{Path, PathBuf},
+};
 
 use corniche_export::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 use corniche_pipeline::RecordedElevation;
@@ -31,12 +34,13 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             args.output.display()
         )));
     }
-    let package = packages::open(&args.package)?;
+    let (place, dem) = args.files()?;
+    let package = packages::open(&place)?;
     let existing = existing_of(args.overwrite);
     let inputs: Vec<&Path> =
-        [args.package.name()].into_iter().chain(args.dem.iter().map(AsRef::as_ref)).collect();
+        [place.name()].into_iter().chain(dem.iter().map(AsRef::as_ref)).collect();
     let output = NamedOutput::create(&args.output, existing, "heights.tif".to_owned(), &inputs)?;
-    let elevation = elevation(args, &package)?;
+    let elevation = elevation(args, &dem, &package)?;
     let request = GeoTiffRequest {
         level: args.level,
         bounds: args.bounds,
@@ -67,12 +71,13 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
 
 fn elevation(
     args: &ExportGeoTiffArgs,
+    dem: &[PathBuf],
     package: &FilePackage,
 ) -> Result<Option<RecordedElevation>, Failure> {
-    if args.dem.is_empty() {
+    if dem.is_empty() {
         return Ok(None);
     }
-    let files = corniche_pipeline::elevation_names(&args.dem)?;
+    let files = corniche_pipeline::elevation_names(dem)?;
     let polygon = args.polygon.clone().map(polygon).transpose()?;
     Ok(Some(RecordedElevation::open(package, &files, polygon, &Progress::new())?))
 }
