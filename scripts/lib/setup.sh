@@ -25,6 +25,8 @@ missing_for_build() {
 missing_for_check() {
     python_with numpy >/dev/null || echo python3-numpy
     python_with shapely >/dev/null || echo python3-shapely
+    # Tests convert files with ogr2ogr.
+    command -v ogr2ogr >/dev/null || echo gdal-bin
     # The oracle for areas.
     command -v osmium >/dev/null || echo osmium-tool
     # A web server for packages by address.
