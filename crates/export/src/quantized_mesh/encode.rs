@@ -10,9 +10,9 @@
 //! ```
 
 use super::{
-    horizon::{Horizon, occlusion_point, sphere},
+    horizon::{occlusion_point, sphere},
     mesh::{MeshVertex, TileMesh},
-    tiling::LAST_STEP,
+    tiling::{Horizon, LAST_STEP},
 };
 
 /// Vertices that indices of two bytes can name.

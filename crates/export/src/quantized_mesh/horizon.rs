@@ -8,15 +8,6 @@ use crate::globe::{between, cross, dot, unit};
 /// Stands for a point that is infinitely far away, in the earth's radii.
 const FAR_AWAY: f64 = 1e9;
 
-/// Whether a point stands for a tile at the horizon.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Horizon {
-    /// One that is hidden only when the whole tile is.
-    Point,
-    /// None can: the tile is never hidden.
-    None,
-}
-
 /// Middle and radius of a sphere that holds all vertices, and so all triangles, from the earth's centre.
 pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
     let middle = [0, 1, 2].map(|axis| {

@@ -2,8 +2,6 @@ use std::{f64::consts::PI, fmt};
 
 use corniche_geom::wgs84::SEMI_MAJOR_M;
 
-use super::horizon::Horizon;
-
 /// The largest value of u and v: they are 0 in the west and south of a tile and this in its east and north.
 pub(crate) const LAST_STEP: u16 = 32_767;
 
@@ -17,6 +15,15 @@ pub enum Tiling {
     Geographic,
     /// Squares of the Mercator projection, from one to 85.05° (EPSG:3857).
     WebMercator,
+}
+
+/// Whether a point stands for a tile at the horizon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Horizon {
+    /// One that is hidden only when the whole tile is.
+    Point,
+    /// None can: the tile is never hidden.
+    None,
 }
 
 /// A tile of the globe's grid, named as in the tile map service: rows count from the south.
