@@ -72,6 +72,8 @@ pub enum ExportError {
         "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
     )]
     Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
+    #[error("the relief of tile {tile} cannot be written as a picture; --relief none does without")]
+    Relief { tile: TileId, source: Box<image::ImageError> },
     #[error("terrain tile {tile} cannot be triangulated")]
     Triangulate { tile: String, source: corniche_tin::TriangulateError },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
@@ -138,6 +140,7 @@ impl ExportError {
                 | Self::WriteTiles(_)
                 | Self::Cut { .. }
                 | Self::Picture { .. }
+                | Self::Relief { .. }
                 | Self::Triangulate { .. }
                 | Self::NotWhole { .. }
                 | Self::RasterNotWhole { .. }

@@ -51,6 +51,7 @@ mod places;
 mod profile;
 mod quantized_mesh;
 mod read;
+mod relief_map;
 mod request;
 mod roads;
 mod scratch;

@@ -15,6 +15,9 @@ pub(crate) struct Primitive {
     pub(crate) normals: Vec<[f32; 3]>,
     /// Where on the picture; empty without one.
     pub(crate) picture_places: Vec<[f32; 2]>,
+    /// Where on the normal map, and the tangents with their sides; empty without one.
+    pub(crate) relief_places: Vec<[f32; 2]>,
+    pub(crate) tangents: Vec<[f32; 4]>,
 }
 
 pub(crate) struct Glb {
@@ -63,11 +66,23 @@ impl Glb {
                     glb.floats(accessor, 1).into_iter().map(|row| row as u32).collect()
                 });
                 let normals = attributes.get("NORMAL").map_or(Vec::new(), |at| glb.vectors(at));
-                let picture_places = attributes
-                    .get("TEXCOORD_0")
-                    .map_or(Vec::new(), |at| glb.floats(at, 2).as_chunks().0.to_vec());
+                let material = primitive.get("material").map_or(Value::Null, |material| {
+                    glb.document["materials"][number(material)].clone()
+                });
+                let places = |texture: &Value| {
+                    if texture.is_null() {
+                        return Vec::new();
+                    }
+                    let channel = texture["texCoord"].as_u64().unwrap_or(0);
+                    let accessor = &attributes[format!("TEXCOORD_{channel}")];
+                    glb.floats(accessor, 2).as_chunks().0.to_vec()
+                };
+                let tangents = attributes.get("TANGENT");
                 Primitive {
-                    picture_places,
+                    picture_places: places(&material["pbrMetallicRoughness"]["baseColorTexture"]),
+                    relief_places: places(&material["normalTexture"]),
+                    tangents: tangents
+                        .map_or(Vec::new(), |at| glb.floats(at, 4).as_chunks().0.to_vec()),
                     name: primitive["extras"]["part"].as_str().unwrap().to_owned(),
                     at_m,
                     indices: glb.indices(&primitive["indices"]),
@@ -116,8 +131,17 @@ impl Glb {
 
     /// The picture of the ground, a JPEG.
     pub(crate) fn picture(&self) -> Option<&[u8]> {
-        let image = &self.document.get("images")?[0];
-        assert_eq!(image["mimeType"], "image/jpeg");
+        self.image_of("image/jpeg")
+    }
+
+    /// The normal map of the ground, a PNG.
+    pub(crate) fn relief(&self) -> Option<&[u8]> {
+        self.image_of("image/png")
+    }
+
+    fn image_of(&self, kind: &str) -> Option<&[u8]> {
+        let images = self.document.get("images")?.as_array().unwrap();
+        let image = images.iter().find(|image| image["mimeType"] == kind)?;
         Some(self.view(&image["bufferView"]))
     }
 

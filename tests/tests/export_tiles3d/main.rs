@@ -5,6 +5,7 @@
 mod checks;
 mod glb;
 mod photos;
+mod relief;
 mod tiles;
 mod vectors;
 

@@ -131,6 +131,15 @@ pub(crate) struct ExportMeshArgs {
     /// Functional road classes that are taken, such as 0-4,7
     #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
     pub(crate) classes: Classes,
+    /// With .glb: normal maps of the ground from the package's relief
+    #[arg(
+        long,
+        value_enum,
+        default_value = "on",
+        value_name = "on|none",
+        hide_possible_values = true
+    )]
+    pub(crate) relief: ReliefMaps,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,
@@ -214,6 +223,15 @@ pub(crate) struct ExportTiles3dArgs {
     /// crosses 180°
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
     pub(crate) bounds: Option<DegreeBounds>,
+    /// Normal maps of the ground from the package's relief
+    #[arg(
+        long,
+        value_enum,
+        default_value = "on",
+        value_name = "on|none",
+        hide_possible_values = true
+    )]
+    pub(crate) relief: ReliefMaps,
     /// Walls below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
@@ -360,6 +378,13 @@ impl From<TileRoadsArg> for TileRoads {
             TileRoadsArg::None => Self::None,
         }
     }
+}
+
+/// Normal maps of the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReliefMaps {
+    On,
+    None,
 }
 
 /// Walls below the borders of tiles.

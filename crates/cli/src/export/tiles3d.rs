@@ -8,7 +8,7 @@ use corniche_export::{
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{Compress, ExportTiles3dArgs, Skirts},
+    args::{Compress, ExportTiles3dArgs, ReliefMaps, Skirts},
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
@@ -28,6 +28,7 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         roads: TileRoads::from(args.roads),
         classes: args.classes.classes(),
         style,
+        relief: args.relief == ReliefMaps::On,
         skirts: args.skirts == Skirts::On,
         compress: args.compress == Compress::Meshopt,
         coordinates: match args.heights {

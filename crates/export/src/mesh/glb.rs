@@ -1,4 +1,4 @@
-//! Binary glTF 2.0: a node for each tile, with its ground, under its photo if it has one, and the roads of each class, as lines or as surfaces.
+//! Binary glTF 2.0: a node for each tile, with its ground, under its photo and with its relief if it has them, and the roads of each class, as lines or as surfaces.
 //!
 //! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
 //!
@@ -86,6 +86,13 @@ impl GlbWriter {
                     json!({ "componentType": F32, "type": "VEC2", "count": places.len() });
                 (ARRAY_BUFFER, accessor)
             }
+            Content::Tangents(tangents) => {
+                let flat = tangents.as_flattened().iter();
+                self.bytes.push(bytes_of(flat.map(|v| v.to_le_bytes())).as_slice())?;
+                let accessor =
+                    json!({ "componentType": F32, "type": "VEC4", "count": tangents.len() });
+                (ARRAY_BUFFER, accessor)
+            }
             Content::Indices(indices) => {
                 self.bytes
                     .push(bytes_of(indices.iter().map(|index| index.to_le_bytes())).as_slice())?;
@@ -106,27 +113,56 @@ impl GlbWriter {
 }
 
 impl GlbWriter {
-    /// Adds a picture; returns the number of a material that shows it.
-    fn add_picture(&mut self, jpeg: &[u8], name: &str) -> io::Result<usize> {
+    /// Adds a picture; returns the number of its texture.
+    fn add_picture(&mut self, picture: &[u8], mime: &str, name: &str) -> io::Result<usize> {
         let offset = self.bytes.length();
-        self.bytes.push(jpeg)?;
+        self.bytes.push(picture)?;
         // What follows begins at a multiple of its numbers' size.
         self.bytes.push(
-            &[0; CHUNK_ALIGNMENT][..jpeg.len().next_multiple_of(CHUNK_ALIGNMENT) - jpeg.len()],
+            &[0; CHUNK_ALIGNMENT]
+                [..picture.len().next_multiple_of(CHUNK_ALIGNMENT) - picture.len()],
         )?;
-        self.views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": jpeg.len() }));
+        self.views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": picture.len() }));
         self.images.push(json!({
-            "bufferView": self.views.len() - 1, "mimeType": "image/jpeg", "name": name,
+            "bufferView": self.views.len() - 1, "mimeType": mime, "name": name,
         }));
-        self.materials.push(json!({
-            "name": format!("photo {name}"),
-            "pbrMetallicRoughness": {
-                "baseColorTexture": { "index": self.images.len() - 1 },
-                "metallicFactor": 0.0,
-                "roughnessFactor": 1.0,
-            },
-        }));
-        Ok(self.materials.len() - 1)
+        Ok(self.images.len() - 1)
+    }
+
+    /// Adds the photo and the relief of a tile's ground, if it has one of them; returns the number of their material, and what is to be known of vertices.
+    fn add_pictures(&mut self, tile: &TileMesh, name: &str) -> io::Result<(usize, Value)> {
+        let (mut material, mut attributes) = (self.materials[0].clone(), json!({}));
+        if tile.picture.is_none() && tile.relief.is_none() {
+            return Ok((0, attributes));
+        }
+        material["name"] = json!(format!("terrain {name}"));
+        // Places on textures have the same order: the photo, then the relief.
+        if let Some(picture) = &tile.picture {
+            let texture =
+                self.add_picture(&picture.jpeg, "image/jpeg", &format!("photo {name}"))?;
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 1.0]);
+            attributes["TEXCOORD_0"] = json!(self.add(&Content::Places(&picture.places))?);
+        }
+        if let Some(relief) = &tile.relief {
+            let texture =
+                self.add_picture(&relief.map.png, "image/png", &format!("relief {name}"))?;
+            let number = usize::from(tile.picture.is_some());
+            material["normalTexture"] = json!({ "index": texture, "texCoord": number });
+            attributes[format!("TEXCOORD_{number}")] =
+                json!(self.add(&Content::Places(&relief.places))?);
+            let tangents: Vec<[f32; 4]> = relief
+                .tangents
+                .iter()
+                .map(|tangent| {
+                    let [x, y, z] = UpAxis::Y.along_axes(*tangent);
+                    [x, y, z, 1.0]
+                })
+                .collect();
+            attributes["TANGENT"] = json!(self.add(&Content::Tangents(&tangents))?);
+        }
+        self.materials.push(material);
+        Ok((self.materials.len() - 1, attributes))
     }
 }
 
@@ -137,6 +173,8 @@ enum Content<'a> {
     },
     /// On a picture.
     Places(&'a [[f32; 2]]),
+    /// Of a normal map.
+    Tangents(&'a [[f32; 4]]),
     Indices(&'a [u32]),
 }
 
@@ -159,13 +197,7 @@ impl MeshWriter for GlbWriter {
         let positions = self.add(&Content::Vectors { vectors: &places, has_range: true })?;
         let normals = self.add(&Content::Vectors { vectors: &normals, has_range: false })?;
         let name = tile.id.to_string();
-        let picture = match &tile.picture {
-            Some(picture) => {
-                let places = self.add(&Content::Places(&picture.places))?;
-                Some((self.add_picture(&picture.jpeg, &name)?, places))
-            }
-            None => None,
-        };
+        let (material, pictured) = self.add_pictures(tile, &name)?;
         let mut primitives = Vec::new();
         // Ground and surfaces of roads have the same vertices.
         for (class, triangles) in tile.groups() {
@@ -177,9 +209,11 @@ impl MeshWriter for GlbWriter {
             if let Some(class) = class {
                 primitive["material"] = json!(1 + class.number());
                 primitive["extras"] = json!({ "frc": class.number() });
-            } else if let Some((material, places)) = picture {
+            } else {
                 primitive["material"] = json!(material);
-                primitive["attributes"]["TEXCOORD_0"] = json!(places);
+                for (name, accessor) in pictured.as_object().into_iter().flatten() {
+                    primitive["attributes"][name] = accessor.clone();
+                }
             }
             primitives.push(primitive);
         }

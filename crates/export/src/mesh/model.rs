@@ -14,6 +14,7 @@ use crate::{
     piece::{Piece, Vertex},
     places::Places,
     read,
+    relief_map::{ReliefMap, tangent},
     surfaces::{Divided, TileLines, across},
     texture::Texture,
 };
@@ -29,6 +30,8 @@ pub(crate) struct TileMesh {
     pub(crate) roads: Vec<RoadLine>,
     /// The photo of the ground, in formats that have pictures inside.
     pub(crate) picture: Option<Picture>,
+    /// Its relief, likewise.
+    pub(crate) relief: Option<ReliefPicture>,
 }
 
 /// A picture of the ground.
@@ -36,6 +39,14 @@ pub(crate) struct Picture {
     pub(crate) jpeg: Vec<u8>,
     /// Where on it each corner is, from its upper left.
     pub(crate) places: Vec<[f32; 2]>,
+}
+
+/// The relief of the ground.
+pub(crate) struct ReliefPicture {
+    pub(crate) map: ReliefMap,
+    /// Where on it each corner is, from its upper left, and the tangents that it is read with.
+    pub(crate) places: Vec<[f32; 2]>,
+    pub(crate) tangents: Vec<[f32; 3]>,
 }
 
 /// A corner of the ground.
@@ -67,10 +78,13 @@ impl TileReading<'_> {
     /// Reads a tile; `None` without ground in the bounds.
     pub(crate) fn read(&self, id: TileId) -> Result<Option<TileMesh>, ExportError> {
         let Self { package, request, places, local, lines } = self;
-        let wanted = match request.roads {
+        let mut wanted = match request.roads {
             ModelRoads::Lines => Sections::TERRAIN | read::road_sections(),
             ModelRoads::Surfaces | ModelRoads::None => Sections::TERRAIN,
         };
+        if request.relief && request.format == MeshFormat::Glb {
+            wanted = wanted | Sections::RELIEF;
+        }
         let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
         let Some(terrain) = &payload.terrain else { return Ok(None) };
         let manifest = package.manifest();
@@ -123,6 +137,12 @@ impl TileReading<'_> {
             places: acrosses.iter().map(|across| texture.place(*across)).collect(),
             jpeg: texture.jpeg,
         });
+        let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), mesh)?;
+        let relief = relief.map(|map| ReliefPicture {
+            map,
+            places: acrosses.iter().map(|across| ReliefMap::place(*across)).collect(),
+            tangents: corners.iter().map(|corner| tangent(corner.normal)).collect(),
+        });
         let pieces = match request.roads {
             ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes)?,
             ModelRoads::Surfaces | ModelRoads::None => Vec::new(),
@@ -137,7 +157,15 @@ impl TileReading<'_> {
             class: piece.class,
             points_m: piece.vertices.iter().map(point_m).collect(),
         });
-        Ok(Some(TileMesh { id, corners, triangles, classes, roads: roads.collect(), picture }))
+        Ok(Some(TileMesh {
+            id,
+            corners,
+            triangles,
+            classes,
+            roads: roads.collect(),
+            picture,
+            relief,
+        }))
     }
 }
 

@@ -106,6 +106,8 @@ pub struct MeshRequest {
     pub roads: ModelRoads,
     /// The classes of roads that are taken.
     pub classes: Vec<FunctionalRoadClass>,
+    /// Whether the package's reliefs become normal maps, which GLB has.
+    pub relief: bool,
     /// Colours of roads, widths of surfaces, and how strong photos are, which GLB has.
     pub style: Style,
     /// With surfaces in OBJ: the name of the file of materials, which [`MeshRequest::materials`] tells.

@@ -14,8 +14,10 @@ mod lines;
 mod plan_cut;
 mod ribbon;
 
+#[cfg(test)]
+pub(crate) use self::ground::GroundVertex;
 pub(crate) use self::{
     divided::Divided,
-    ground::{GroundMesh, across},
+    ground::{GroundMesh, across, unit},
     lines::{Road, RoadLook, TileLines},
 };

@@ -17,6 +17,7 @@ use crate::{
     error::ExportError,
     gltf::linear,
     read,
+    relief_map::ReliefMap,
     surfaces::{Divided, Road, TileLines},
     texture::Texture,
 };
@@ -73,10 +74,13 @@ pub(crate) fn make(
     placing: &Placing<'_>,
     level: &LevelOfTiles,
 ) -> Result<Option<MadeTile>, ExportError> {
-    let wanted = match request.roads {
+    let mut wanted = match request.roads {
         TileRoads::Line | TileRoads::Vector => Sections::TERRAIN | read::road_sections(),
         TileRoads::Cut | TileRoads::None => Sections::TERRAIN,
     };
+    if request.relief {
+        wanted = wanted | Sections::RELIEF;
+    }
     let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
     let Some(terrain) = &payload.terrain else { return Ok(None) };
     let manifest = package.manifest();
@@ -86,6 +90,7 @@ pub(crate) fn make(
     let longest = level.longest_edge_m * level.steps_per_metre;
     mesh.split_long_edges(|[east, north]| east.hypot(north) > longest);
     let placed = placing.place(id, &mesh)?;
+    let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), &mesh)?;
     let skirt =
         if request.skirts { Skirt::below(&placed, level.skirt_m) } else { Skirt::default() };
     let bound_m = terrain.geometric_error_m;
@@ -99,10 +104,10 @@ pub(crate) fn make(
     };
     let texture =
         Texture::of_tile(package, id, &request.style, mean_color(manifest, request, &placed))?;
-    let mut builder = Builder::new(manifest, request, &placed, texture);
+    let mut builder = Builder::new(manifest, request, &placed, Look { texture, relief });
     builder.ground(&roads);
     builder.skirt(&skirt);
-    let mut vector = Builder::new(manifest, request, &placed, None);
+    let mut vector = Builder::new(manifest, request, &placed, Look::default());
     match request.roads {
         TileRoads::Line => {
             builder.lines(&payload, placing, facts.error_m, PartKind::RoadLines)?;
@@ -128,12 +133,19 @@ pub(crate) fn make(
     Ok(Some(MadeTile { content: builder.finish(id), vector, tile_box, facts }))
 }
 
+/// Pictures of a tile's ground.
+#[derive(Default)]
+struct Look {
+    texture: Option<Texture>,
+    relief: Option<ReliefMap>,
+}
+
 /// Sorts triangles and lines into parts.
 struct Builder<'a> {
     manifest: &'a Manifest,
     request: &'a Tiles3dRequest,
     placed: &'a PlacedTile,
-    texture: Option<Texture>,
+    look: Look,
     parts: Vec<(PartKind, Part)>,
     rows: BTreeMap<i64, RoadRow>,
     /// Ways of features, until rows have their numbers.
@@ -146,13 +158,13 @@ impl<'a> Builder<'a> {
         manifest: &'a Manifest,
         request: &'a Tiles3dRequest,
         placed: &'a PlacedTile,
-        texture: Option<Texture>,
+        look: Look,
     ) -> Self {
         Self {
             manifest,
             request,
             placed,
-            texture,
+            look,
             parts: Vec::new(),
             rows: BTreeMap::new(),
             ways: Vec::new(),
@@ -162,7 +174,12 @@ impl<'a> Builder<'a> {
 
     /// Adds how the ground looks at a vertex.
     fn add_look(&self, vertex: &PlacedVertex, part: &mut Part) {
-        if let Some(texture) = &self.texture {
+        if self.look.relief.is_some() {
+            let [x, y, z] = y_up(vertex.tangent);
+            part.tangents.push([x, y, z, 1.0]);
+            part.relief_places.push(ReliefMap::place(vertex.across));
+        }
+        if let Some(texture) = &self.look.texture {
             part.picture_places.push(texture.place(vertex.across));
             return;
         }
@@ -276,7 +293,7 @@ impl<'a> Builder<'a> {
     }
 
     fn finish(self, id: TileId) -> TileContent {
-        let Self { mut parts, rows, ways, request, placed, manifest, texture, .. } = self;
+        let Self { mut parts, rows, ways, request, placed, manifest, look, .. } = self;
         let number: BTreeMap<i64, u32> = rows.keys().copied().zip(0..).collect();
         for ((_, part), ways) in parts.iter_mut().zip(ways) {
             part.features = ways.iter().map(|way| number[way]).collect();
@@ -287,7 +304,8 @@ impl<'a> Builder<'a> {
             parts,
             roads: rows.into_values().collect(),
             colors: request.style.roads.map(|road| road.bands.main_color()),
-            picture: texture.map(|texture| texture.jpeg),
+            relief: look.relief,
+            picture: look.texture.map(|texture| texture.jpeg),
             copyright: manifest.attribution.join("; "),
             generator: manifest.generator.clone(),
         }

@@ -37,19 +37,34 @@ pub(crate) fn write(
         let mut primitive = file.primitive(*kind, part)?;
         primitive["material"] = json!(materials.len());
         let mut material = material(*kind, &tile.colors);
+        // Textures and places on them have the same order: the photo, then the relief.
+        let mut texture = 0;
         if !part.picture_places.is_empty() {
-            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            texture += 1;
+        }
+        if !part.relief_places.is_empty() {
+            material["normalTexture"] = json!({ "index": texture, "texCoord": texture });
         }
         materials.push(material);
         primitives.push(primitive);
     }
     let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)) };
-    let picture = tile.picture.as_ref().map(|jpeg| file.plain(jpeg, json!({})));
+    let picture = tile.picture.as_deref().map(|jpeg| (jpeg, "image/jpeg"));
+    let relief = tile.relief.as_ref().map(|relief| (&relief.png[..], "image/png"));
+    let images: Vec<Value> = picture
+        .into_iter()
+        .chain(relief)
+        .map(
+            |(bytes, mime)| json!({ "bufferView": file.plain(bytes, json!({})), "mimeType": mime }),
+        )
+        .collect();
     let mut document = file.document(tile, &primitives, &materials, table);
-    if let Some(view) = picture {
-        document["images"] = json!([{ "bufferView": view, "mimeType": "image/jpeg" }]);
+    if !images.is_empty() {
         document["samplers"] = json!([sampler()]);
-        document["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+        document["textures"] =
+            (0..images.len()).map(|source| json!({ "source": source, "sampler": 0 })).collect();
+        document["images"] = json!(images);
     }
     write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
 }
@@ -111,12 +126,20 @@ impl File {
             });
             attributes.insert("COLOR_0".to_owned(), self.accessor(accessor));
         }
-        if !part.picture_places.is_empty() {
-            let view = self.vertices(&part.picture_places)?;
+        if !part.tangents.is_empty() {
+            let view = self.vertices(&part.tangents)?;
+            let accessor = json!({
+                "bufferView": view, "componentType": F32, "type": "VEC4", "count": count,
+            });
+            attributes.insert("TANGENT".to_owned(), self.accessor(accessor));
+        }
+        let places = [&part.picture_places, &part.relief_places];
+        for (number, places) in places.into_iter().filter(|places| !places.is_empty()).enumerate() {
+            let view = self.vertices(places)?;
             let accessor = json!({
                 "bufferView": view, "componentType": F32, "type": "VEC2", "count": count,
             });
-            attributes.insert("TEXCOORD_0".to_owned(), self.accessor(accessor));
+            attributes.insert(format!("TEXCOORD_{number}"), self.accessor(accessor));
         }
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
         if let Some(class) = kind.class() {

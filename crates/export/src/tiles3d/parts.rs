@@ -3,6 +3,8 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Rgb;
 
+use crate::relief_map::ReliefMap;
+
 /// A list of vertices of one material, as glTF has it: y upwards.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Part {
@@ -12,6 +14,9 @@ pub(crate) struct Part {
     pub(crate) colors: Vec<[u8; 4]>,
     /// Where on the tile's picture; empty without one, and for roads.
     pub(crate) picture_places: Vec<[f32; 2]>,
+    /// Where on the tile's relief, and the tangents that it is read with, sides told by 1; empty without one, and for roads.
+    pub(crate) relief_places: Vec<[f32; 2]>,
+    pub(crate) tangents: Vec<[f32; 4]>,
     /// Rows of the table of roads.
     pub(crate) features: Vec<u32>,
     /// Three to a triangle, two to a line; strips with [`RESTART`] between them.
@@ -76,6 +81,8 @@ pub(crate) struct TileContent {
     pub(crate) colors: [Rgb; FunctionalRoadClass::COUNT],
     /// JPEG of the ground.
     pub(crate) picture: Option<Vec<u8>>,
+    /// Normal map of the ground.
+    pub(crate) relief: Option<ReliefMap>,
     pub(crate) copyright: String,
     pub(crate) generator: String,
 }

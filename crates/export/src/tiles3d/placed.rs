@@ -9,6 +9,7 @@ use crate::{
     error::ExportError,
     globe::{RootFrame, cross, dot, unit},
     places::Places,
+    relief_map::tangent,
     surfaces::{GroundMesh, across},
 };
 
@@ -30,6 +31,8 @@ pub(crate) struct PlacedVertex {
     /// From the tile's middle, along the root frame's axes, metres.
     pub(crate) at_m: [f32; 3],
     pub(crate) normal: [f32; 3],
+    /// Of the relief's normal map.
+    pub(crate) tangent: [f32; 3],
     /// Height in the package's datum, which tells the colour.
     pub(crate) height_m: f64,
     /// Shares of the way across the tile, from the west and from the north.
@@ -98,10 +101,11 @@ impl Placing<'_> {
             number.push(place);
             let sides = sides(mesh.on_lattice(vertex), &bounds);
             if place == next {
-                let normal = turned(vertex.normal, axes, self.root.up_at(plan[index]));
+                let turned = |axis| turned(axis, axes, self.root.up_at(plan[index]));
+                let [normal, tangent] = [vertex.normal, tangent(vertex.normal)].map(turned);
                 let height_m = vertex.height_m;
                 let across = across(mesh.on_lattice(vertex), &bounds);
-                tile.vertices.push(PlacedVertex { at_m, normal, height_m, across, sides });
+                tile.vertices.push(PlacedVertex { at_m, normal, tangent, height_m, across, sides });
             } else {
                 let own = &mut tile.vertices[place as usize].sides;
                 *own = [0, 1, 2, 3].map(|side| own[side] || sides[side]);
@@ -155,7 +159,7 @@ impl Placing<'_> {
     }
 }
 
-/// A normal of the package, east, north and up of the grid, where `up` is upwards.
+/// A direction of the package, east, north and up of the grid, where `up` is upwards.
 fn turned(
     [east, north, upwards]: [f32; 3],
     [_, grid_north, _]: [[f64; 3]; 3],

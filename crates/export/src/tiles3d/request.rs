@@ -29,6 +29,8 @@ pub struct Tiles3dRequest {
     pub classes: Vec<FunctionalRoadClass>,
     /// Widths and colours of roads, and colours of the ground.
     pub style: Style,
+    /// Whether the package's reliefs become normal maps.
+    pub relief: bool,
     /// Whether walls hang from the borders of tiles, which hide gaps between levels.
     pub skirts: bool,
     /// Whether vertices and indices are compressed (`EXT_meshopt_compression`).

@@ -22,9 +22,7 @@ mod steps;
 mod water;
 mod wavelet;
 
-#[cfg(feature = "write")]
-use corniche_geom::Cell;
-use corniche_geom::HeightGrid;
+use corniche_geom::{Cell, HeightGrid};
 
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
@@ -80,6 +78,22 @@ impl Relief {
     pub fn border_slope(&self, column: usize, row: usize) -> Option<[f64; 2]> {
         let steps = self.border[border::index(column, row)?]?;
         Some(steps.map(|steps| f64::from(steps) / border::STEPS_PER_ONE))
+    }
+
+    /// The rise in metres per metre east and per metre north at all nodes, row by row, row 0 in the north; `cell` is the distance of its nodes. On
+    /// the border the slopes that it stores, inside those of its heights, by the rule of vertex normals ([`corniche_tin::gradient`]).
+    /// Nodes without height are level.
+    pub fn slopes(&self, cell: Cell) -> impl Iterator<Item = [f64; 2]> {
+        let last = SIDE - 1;
+        (0..SIDE).flat_map(move |row| {
+            (0..SIDE).map(move |column| {
+                if (1..last).contains(&column) && (1..last).contains(&row) {
+                    corniche_tin::gradient(&self.heights, [column, row], cell)
+                } else {
+                    self.border_slope(column, row).unwrap_or_default()
+                }
+            })
+        })
     }
 
     /// Its bytes in a payload.

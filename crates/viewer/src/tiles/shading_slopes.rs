@@ -21,23 +21,10 @@ impl ShadingSlopes {
     /// Texels on a side.
     pub(crate) const SIDE: usize = TILE_NODES;
 
-    /// From a relief whose nodes are a `cell` apart: on the border the slopes that it stores, inside those of its heights, by the rule
-    /// of vertex normals ([`corniche_tin::gradient`]). Nodes without height are level; no pixel of the ground reads them.
+    /// From a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
     pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
-        let last = Self::SIDE - 1;
-        let mut texels = Vec::with_capacity(Self::SIDE * Self::SIDE);
-        for row in 0..=last {
-            for column in 0..=last {
-                let is_inside = (1..last).contains(&column) && (1..last).contains(&row);
-                let slopes = if is_inside {
-                    corniche_tin::gradient(relief.heights(), [column, row], cell)
-                } else {
-                    relief.border_slope(column, row).unwrap_or_default()
-                };
-                let half = |slope: f64| f16::from_f64(slope.clamp(-STEEPEST, STEEPEST)).to_bits();
-                texels.push(slopes.map(half));
-            }
-        }
+        let half = |slope: f64| f16::from_f64(slope.clamp(-STEEPEST, STEEPEST)).to_bits();
+        let texels = relief.slopes(cell).map(|slopes| slopes.map(half)).collect();
         let water = relief.water().unwrap_or_default();
         Self {
             texels,

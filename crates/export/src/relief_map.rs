@@ -1,0 +1,138 @@
+//! The relief of a tile as a normal map of its ground.
+//!
+//! A normal map is read against the normals of the vertices that a program mixes across triangles, so each texel holds the relief's normal as seen from
+//! there: what is shaded is the relief, and a program that knows no normal maps still has the vertices' own.
+//!
+//! Source: Khronos Group, *glTF 2.0 Specification*, section 3.9.3 (`normalTexture`) and 3.7.2.1 (`TANGENT`).
+
+use corniche_geom::{LatticeBounds, TILE_NODES, TileId};
+use corniche_tileset::{FilePackage, Relief};
+use image::{ExtendedColorType, ImageEncoder, codecs::png};
+
+use crate::{
+    error::ExportError,
+    surfaces::{GroundMesh, unit},
+};
+
+/// A normal map with a texel for each node of a tile.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReliefMap {
+    /// Red, green and blue as glTF has them: along the tangent (east), northwards, and away from the ground.
+    pub(crate) png: Vec<u8>,
+}
+
+/// Texels on a side.
+const SIDE: usize = TILE_NODES;
+/// A node may lie on an edge but for rounding.
+const EDGE: f64 = 1e-9;
+
+impl ReliefMap {
+    /// Of a tile whose ground is `mesh`, normals and all; `None` where the package has no relief there.
+    pub(crate) fn of_tile(
+        package: &FilePackage,
+        id: TileId,
+        relief: Option<&Relief>,
+        mesh: &GroundMesh,
+    ) -> Result<Option<Self>, ExportError> {
+        let Some(relief) = relief else { return Ok(None) };
+        let manifest = package.manifest();
+        let cell = manifest.levels[usize::from(id.z())].cell_m;
+        let vertices = mixed_normals(&manifest.frame.tile_lattice_bounds(id), mesh);
+        let texels: Vec<u8> = relief
+            .slopes(cell)
+            .zip(vertices)
+            .flat_map(|([east, north], vertex)| {
+                let normal = unit([-east as f32, -north as f32, 1.0]);
+                texel(seen_from(vertex, normal))
+            })
+            .collect();
+        let mut png = Vec::new();
+        let encoder = png::PngEncoder::new_with_quality(
+            &mut png,
+            png::CompressionType::Best,
+            png::FilterType::Adaptive,
+        );
+        encoder
+            .write_image(&texels, SIDE as u32, SIDE as u32, ExtendedColorType::Rgb8)
+            .map_err(|source| ExportError::Relief { tile: id, source: Box::new(source) })?;
+        Ok(Some(Self { png }))
+    }
+
+    /// Where on it a place of the tile is, given as shares of the tile from the west and from the north: nodes lie in the middle of their texels, so
+    /// that both tiles of a border read the same.
+    pub(crate) fn place(across: [f32; 2]) -> [f32; 2] {
+        let side = SIDE as f32;
+        across.map(|share| (share * (side - 1.0) + 0.5) / side)
+    }
+}
+
+/// The tangent that belongs to a vertex: east, along the ground. All are vectors of east, north and up.
+pub(crate) fn tangent([east, north, up]: [f32; 3]) -> [f32; 3] {
+    // The part of (1, 0, 0) at right angles to the normal; nothing is left of it where the ground is a wall that looks east or west.
+    let part = [1.0 - east * east, -east * north, -east * up];
+    if part[0] > f32::EPSILON { unit(part) } else { [0.0, 0.0, -east.signum()] }
+}
+
+/// A direction along the tangent of a vertex, at right angles to it, and along the vertex' normal.
+fn seen_from(vertex: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
+    let along = tangent(vertex);
+    let aside = cross(vertex, along);
+    [along, aside, vertex].map(|axis| (0..3).map(|k| axis[k] * direction[k]).sum())
+}
+
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn texel(direction: [f32; 3]) -> [u8; 3] {
+    direction.map(|axis| ((axis + 1.0) * 127.5).round() as u8)
+}
+
+/// What a program mixes from the normals of vertices at each node, by row from the north; upwards where there is no ground.
+fn mixed_normals(bounds: &LatticeBounds, mesh: &GroundMesh) -> Vec<[f32; 3]> {
+    let steps = [bounds.max.u - bounds.min.u, bounds.max.v - bounds.min.v]
+        .map(|side| side as f64 / (SIDE - 1) as f64);
+    let among_nodes = |corner: u32| {
+        let [u, v] = mesh.on_lattice(&mesh.vertices[corner as usize]);
+        [(u - bounds.min.u as f64) / steps[0], (bounds.max.v as f64 - v) / steps[1]]
+    };
+    let mut normals = vec![[0.0, 0.0, 1.0]; SIDE * SIDE];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(among_nodes);
+        let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if doubled.abs() < f64::MIN_POSITIVE {
+            continue;
+        }
+        let range = |axis: usize| {
+            let ends = [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])];
+            let last = (SIDE - 1) as f64;
+            let low = (ends[0] - EDGE).ceil().clamp(0.0, last) as usize;
+            low..=(ends[1] + EDGE).floor().clamp(0.0, last) as usize
+        };
+        for row in range(1) {
+            for column in range(0) {
+                let [x, y] = [column as f64 - a[0], row as f64 - a[1]];
+                let of_b = (x * (c[1] - a[1]) - y * (c[0] - a[0])) / doubled;
+                let of_c = (y * (b[0] - a[0]) - x * (b[1] - a[1])) / doubled;
+                let shares = [1.0 - of_b - of_c, of_b, of_c];
+                if shares.iter().any(|share| *share < -EDGE) {
+                    continue;
+                }
+                let mixed = [0, 1, 2].map(|axis: usize| {
+                    let parts = triangle.iter().zip(shares);
+                    parts
+                        .map(|(corner, share)| {
+                            mesh.vertices[*corner as usize].normal[axis] * share as f32
+                        })
+                        .sum()
+                });
+                normals[row * SIDE + column] = unit(mixed);
+            }
+        }
+    }
+    normals
+}
+
+#[cfg(test)]
+#[path = "relief_map_tests.rs"]
+mod tests;
