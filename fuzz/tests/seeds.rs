@@ -1,4 +1,4 @@
-//! The seeds of the fuzz target `package` (`corpus/package`), and one of `payload`, are made here and are what the target reads to its end.
+//! The seeds of the fuzz target `package` (`corpus/package`), and some of `payload`, are made here and are what the target reads to its end.
 //! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -82,6 +82,11 @@ fn relief_seed() -> Vec<u8> {
     [&[1], &encode(&tile, &context).unwrap().bytes[..]].concat()
 }
 
+/// A payload with ground and roads, as the target `payload` takes it.
+fn whole_payload() -> Vec<u8> {
+    [&[1], &encoded(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
+}
+
 #[test]
 fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
     let bytes = relief_seed();
@@ -107,7 +112,7 @@ fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
 fn the_seeds_of_the_fuzz_targets_are_as_they_are_made_here() {
     let all = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
     check(&all.join("package"), seeds());
-    check(&all.join("payload"), BTreeMap::from([("photo", photo())]));
+    check(&all.join("payload"), BTreeMap::from([("photo", photo()), ("whole", whole_payload())]));
 }
 
 fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {

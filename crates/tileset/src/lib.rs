@@ -57,5 +57,5 @@ pub use payload::{
 pub use payload::{
     AreasSection, BoundariesSection, EncodedTile, PayloadContext, PhotoSection, encode,
     encode_areas, encode_boundaries, encode_photo, encode_with_ground_of, photo_section,
-    with_areas, with_boundaries, with_photo,
+    terrain_part_sizes, with_areas, with_boundaries, with_photo,
 };

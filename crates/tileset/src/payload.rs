@@ -24,8 +24,10 @@ mod terrain;
 mod class_table;
 mod connectivity;
 mod corner_guess;
+mod magnitudes;
 mod number_codes;
 mod points;
+mod range_coder;
 mod route_guess;
 mod work_limit;
 
@@ -40,7 +42,7 @@ pub use boundaries::{BoundaryRecord, decode_boundaries};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
+pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of, terrain_part_sizes};
 pub use envelope::SectionSize;
 pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]

@@ -314,8 +314,10 @@ fn bombs_and_foreign_bytes_are_refused() {
     };
     assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));
     assert!(matches!(part(b"PNG, or what", Sections::ALL), Err(("header", Damage::Magic))));
-    let newer = part(&resealed(4, &[1]), Sections::ALL);
-    assert_eq!(newer, Err(("header", Damage::Version { found: 1, supported: 0 })));
+    for found in [0, 2] {
+        let other = part(&resealed(4, &[found as u8]), Sections::ALL);
+        assert_eq!(other, Err(("header", Damage::Version { found, supported: 1 })));
+    }
     let other = TileId::new(1, 0, 0).unwrap();
     let error = decode(&bytes, other, &frame(), QUANTUM_M, Sections::NONE).unwrap_err();
     assert_eq!(error.damage, Damage::OtherTile { found: "1/1/0".to_owned() });
@@ -328,8 +330,12 @@ fn bombs_and_foreign_bytes_are_refused() {
     let small = part(&resealed(28, &(raw - 1).to_le_bytes()), Sections::TERRAIN);
     assert!(small.is_err(), "{small:?}");
     let smaller = part(&resealed(28, &100_u32.to_le_bytes()), Sections::TERRAIN);
-    let what = "the length of a compressed section";
+    let what = "the length of an uncompressed section";
     assert_eq!(smaller, Err(("terrain section", Damage::Invalid { what })));
+    // The second entry is that of the GEO roads, which are compressed.
+    let smaller = part(&resealed(48, &1_u32.to_le_bytes()), Sections::ROADS_GEO);
+    let what = "the length of a compressed section";
+    assert_eq!(smaller, Err(("GEO roads section", Damage::Invalid { what })));
     // A section of a kind that this version does not know is passed over.
     let unknown = part(&resealed(16, &99_u16.to_le_bytes()), Sections::TERRAIN).unwrap();
     assert_eq!(unknown.terrain, None);

@@ -59,7 +59,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         let crossings = roads.iter().flat_map(|road| &road.line.vertices);
         let crossings =
             crossings.filter(|vertex| matches!(vertex, DrapedVertex::Crossing { .. })).count();
-        let normals = normals(&grid, &tin, CELL_M.into());
+        let normals = normals(&grid, &tin, CELL_M.into(), 0);
         let (vertices, triangles) = (tin.vertices().len() as f64, tin.triangles().len() as f64);
         let terrain = Terrain {
             tin,

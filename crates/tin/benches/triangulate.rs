@@ -70,7 +70,9 @@ fn measuring(c: &mut Criterion) {
         });
     }
     group.bench_function("buckets", |b| b.iter(|| TriangleBuckets::new(black_box(&tin), 0.125)));
-    group.bench_function("normals", |b| b.iter(|| normals(black_box(&heights), &tin, 30.0.into())));
+    group.bench_function("normals", |b| {
+        b.iter(|| normals(black_box(&heights), &tin, 30.0.into(), 0));
+    });
     group.finish();
 }
 

@@ -24,7 +24,7 @@ mod surface;
 
 pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, heights_m, measure};
 pub use invariants::check_covers_ground;
-pub use normals::{decode_normal, gradient, normals};
+pub use normals::{decode_normal, gradient, normal_shift, normals};
 pub use surface::{NO_TWIN, Placement, Surface};
 pub use tin::{Tin, TinError, TinVertex};
 pub use triangulate::{TinSpec, TriangulateError, height_quantum_m, triangulate};

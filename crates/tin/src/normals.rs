@@ -6,21 +6,33 @@ use crate::Tin;
 ///
 /// From the gradient of `heights`, the tile's raster with one more node on each side, as
 /// [`triangulate`](crate::triangulate) takes it: central differences, one-sided next to a gap, level where both
-/// neighbours are gaps. `cell` is the distance of neighbouring nodes. The rule is local, so a node has the same
-/// normal in every tile that holds it.
+/// neighbours are gaps. `cell` is the distance of neighbouring nodes. Codes are multiples of 2^`shift`, see [`normal_shift`]. The
+/// rule is local, so a node has the same normal in every tile of a level that holds it.
 ///
 /// # Panics
 /// When a vertex lies outside the grid: `tin` was not made from these heights.
 #[must_use]
-pub fn normals(heights: &HeightGrid, tin: &Tin, cell: Cell) -> Vec<[i8; 2]> {
+pub fn normals(heights: &HeightGrid, tin: &Tin, cell: Cell, shift: u8) -> Vec<[i8; 2]> {
     tin.vertices()
         .iter()
         .map(|vertex| {
             let node = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
             let [east, north] = gradient(heights, node, cell);
-            encode_normal([-east, -north, 1.0])
+            encode_normal([-east, -north, 1.0], shift)
         })
         .collect()
+}
+
+/// How coarse the normals of a level need to be: their codes are multiples of 2^this.
+///
+/// A TIN leaves the slope of the ground open by its tolerance over the length of an edge, which is a few cells. Steps of 4 / 127
+/// are off by up to 1/64, half of what a tolerance of a 32nd of a cell leaves open across one cell: from there on, finer normals
+/// tell more than the TIN does. For smaller tolerances the steps are 2 / 127, from a 64th of a cell on, or 1 / 127. All tiles
+/// of a level have the same steps, so the normals of a border are equal on both sides.
+#[must_use]
+pub fn normal_shift(max_error_m: f64, cell: Cell) -> u8 {
+    let longest_m = cell.east_m.max(cell.north_m);
+    if 32.0 * max_error_m >= longest_m { 2 } else { u8::from(64.0 * max_error_m >= longest_m) }
 }
 
 /// The rise of the ground at a node, metres per metre east and per metre north: central differences, one-sided next to a gap, level
@@ -48,12 +60,17 @@ fn slope(before: Option<f64>, here: Option<f64>, after: Option<f64>, cell_m: f64
     }
 }
 
-/// A direction, of any length, with z at or above 0, as a point of the octahedron's upper half seen from above.
+/// A direction, of any length, with z at or above 0, as a point of the octahedron's upper half seen from above, in multiples of
+/// 2^`shift`.
 ///
 /// Source: Meyer, Süßmuth, Sußner, Stamminger & Greiner 2010, *On Floating-Point Normal Vectors*, section 3.
-fn encode_normal([x, y, z]: [f64; 3]) -> [i8; 2] {
+fn encode_normal([x, y, z]: [f64; 3], shift: u8) -> [i8; 2] {
     let length = x.abs() + y.abs() + z;
-    [x, y].map(|value| (value / length * STEPS).round() as i8)
+    let steps = STEPS / f64::from(1_u32 << shift);
+    [x, y].map(|value| {
+        // A vertical wall: the last whole step is the nearest that fits.
+        ((value / length * steps).round().clamp(-steps.floor(), steps.floor()) as i8) << shift
+    })
 }
 
 /// Steps from the centre of the octahedron's square to its edge.

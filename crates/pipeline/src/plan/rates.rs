@@ -38,9 +38,9 @@ pub(crate) fn triangles_per_node(max_error_ratio: f64) -> f64 {
 }
 
 /// Bytes of encoded ground for each triangle, with normals: the denser the triangles, the fewer. The curve goes through the
-/// measured points (0.16 triangles per node: 1.82), (0.28: 1.62), (0.54: 1.42); sparse ones take 1.9 to 2.0.
+/// measured points (0.16 triangles per node: 1.30), (0.28: 1.16), (0.54: 1.04); sparse ones take 1.4 to 1.5.
 pub(crate) fn payload_bytes_per_triangle(triangles_per_node: f64) -> f64 {
-    (1.25 * triangles_per_node.powf(-0.22)).min(2.0)
+    (0.9 * triangles_per_node.powf(-0.21)).min(1.5)
 }
 
 /// Bytes of a full tile's relief: 7 000 on smooth ground, 13 000 on rough.

@@ -27,7 +27,9 @@ pub(crate) fn mesh_tile(
     let spec = TinSpec { max_error_m: levels.max_error_m(id.z()), quantum_m: levels.quantum_m() };
     let tin = corniche_tin::triangulate(heights_with_halo, spec)
         .map_err(|source| BuildError::Triangulate { id, source })?;
-    let normals = corniche_tin::normals(heights_with_halo, &tin, levels.frame().level_cell(id.z()));
+    let cell = levels.frame().level_cell(id.z());
+    let shift = corniche_tin::normal_shift(spec.max_error_m, cell);
+    let normals = corniche_tin::normals(heights_with_halo, &tin, cell, shift);
     Ok(Meshed { tin, normals })
 }
 

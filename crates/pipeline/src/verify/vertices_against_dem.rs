@@ -3,6 +3,7 @@
 use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tileset::{FilePackage, Sections, Terrain};
+use corniche_tin::normal_shift;
 
 use super::{
     checks::{CheckId, Findings},
@@ -15,8 +16,8 @@ use crate::{BuildError, Observer, Stage, heights::pyramid::Pyramid, workers};
 
 /// Steps from the centre of the octahedron's square to its edge (Meyer et al. 2010, section 3).
 const STEPS: f64 = 127.0;
-/// A code is the nearest whole number; this much more is allowed, because it was computed in two ways.
-const NEAREST: f64 = 0.5 + 1e-6;
+/// A code is the nearest multiple of its level's step; this much more is allowed, because it was computed in two ways.
+const COMPUTED: f64 = 1e-6;
 
 /// Compares vertices and normals with the rasters of their levels, which are kept in a temporary folder.
 pub(crate) fn verify(
@@ -100,7 +101,13 @@ fn look_at(
         });
         return Ok(findings);
     };
-    let cell_m = manifest.frame.level_cell(id.z()).to_array();
+    let cell = manifest.frame.level_cell(id.z());
+    let cell_m = cell.to_array();
+    let step = manifest
+        .levels
+        .get(usize::from(id.z()))
+        .map_or(1.0, |level| f64::from(1_u8 << normal_shift(level.max_error_m, cell)));
+    let farthest = (STEPS / step).floor() * step;
     if let Some(relief) = &relief {
         relief::verify(id, relief, &heights, |at| gradient(&heights, at, cell_m), &mut findings);
     }
@@ -120,7 +127,10 @@ fn look_at(
         // The upward normal of the slope, on the octahedron |x| + |y| + |z| = 1.
         let size = east.abs() + north.abs() + 1.0;
         let exact = [-east, -north].map(|slope| STEPS * slope / size);
-        let holds = (0..2).all(|axis| (f64::from(normal[axis]) - exact[axis]).abs() <= NEAREST);
+        let holds = (0..2).all(|axis| {
+            let (code, exact) = (f64::from(normal[axis]), exact[axis].clamp(-farthest, farthest));
+            code % step == 0.0 && (code - exact).abs() <= 0.5 * step + COMPUTED
+        });
         findings.look(CheckId::Normals, holds, || {
             format!(
                 "tile {id} has the normal {normal:?} at node {}, {} of the tile, the DEM {exact:?}",

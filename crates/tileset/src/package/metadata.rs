@@ -4,7 +4,7 @@ use crate::Manifest;
 
 /// Version of a package's encodings, in [`Manifest::format_version`](crate::Manifest::format_version). Readers
 /// refuse any other.
-pub const FORMAT_VERSION: u32 = 0;
+pub const FORMAT_VERSION: u32 = 1;
 
 /// The JSON metadata of the file: what PMTiles tools show, and the manifest under a key of its own.
 #[derive(Serialize, Deserialize)]

@@ -22,7 +22,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::payload::corner_guess::Nodes;
+use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
 use crate::payload::work_limit::Work;
 
@@ -74,6 +74,11 @@ impl<'w> Edges<'w> {
         }
     }
 
+    /// How many vertices edges may have.
+    pub(crate) fn vertices(&self) -> usize {
+        self.first.len()
+    }
+
     pub(crate) fn corner(&self, a: u32, b: u32) -> Option<u32> {
         let mut at = self.first[a as usize];
         let mut steps = 0;
@@ -92,6 +97,16 @@ impl<'w> Edges<'w> {
         }
         self.work.add(steps);
         found
+    }
+
+    /// Whether neither b ► c nor c ► a has a triangle on its left.
+    fn allow(&self, [a, b, c]: [u32; 3]) -> bool {
+        // A vertex without edges has no triangle.
+        if self.lengths[c as usize] == 0 {
+            self.work.add(1);
+            return true;
+        }
+        self.corner(b, c).is_none() && self.corner(c, a).is_none()
     }
 
     fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
@@ -122,12 +137,13 @@ impl<'w> Edges<'w> {
 pub(crate) trait Guide {
     /// A triangle to start from, not found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
-    /// The vertex to the left of the gate a ► b, if there is a triangle. `guess` takes the vertices
-    /// that are no answer and gives the next best one.
+    /// The vertex to the left of the gate a ► b with the corner d on its right, if there is a triangle. `guess` takes
+    /// the vertices that are no answer and gives the next best one.
     fn corner(
         &mut self,
-        gate: [u32; 2],
-        guess: &dyn Fn(&[u32]) -> Option<u32>,
+        gate: [u32; 3],
+        nodes: &Nodes<'_>,
+        guess: &dyn Fn(&[u32]) -> Option<Corner>,
     ) -> Result<Option<u32>, Damage>;
 }
 
@@ -150,11 +166,9 @@ pub(crate) fn walk(
                 continue;
             }
             let guess = |no: &[u32]| {
-                nodes.best_corner([a, b], |c| {
-                    !no.contains(&c) && edges.corner(b, c).is_none() && edges.corner(c, a).is_none()
-                })
+                nodes.best_corner([a, b], |c| !no.contains(&c) && edges.allow([a, b, c]))
             };
-            let corner = guide.corner([a, b], &guess);
+            let corner = guide.corner([a, b, d], nodes, &guess);
             // This check comes before the answer is used: a search that gave up has no valid result.
             work.check()?;
             let Some(c) = corner? else { continue };

@@ -24,6 +24,11 @@ proptest! {
         let expected = (0..at.len())
             .filter_map(|c| angle(c).map(|cot| (cot, c as u32)))
             .min_by(|p, q| p.partial_cmp(q).unwrap());
-        prop_assert_eq!(nodes.best_corner([a as u32, b as u32], |_| true), expected.map(|(_, c)| c));
+        let tied = expected.is_some_and(|(best, _)| {
+            (0..at.len()).filter(|&c| angle(c).is_some_and(|cot| (cot - best).abs() < 1e-12)).count() > 1
+        });
+        let found = nodes.best_corner([a as u32, b as u32], |_| true);
+        prop_assert_eq!(found.map(|corner| corner.vertex), expected.map(|(_, c)| c));
+        prop_assert_eq!(found.is_some_and(|corner| corner.is_tied), tied);
     }
 }

@@ -1,5 +1,7 @@
 //! Header, section table and sections of a payload, without the contents of sections.
 
+#[cfg(feature = "write")]
+use std::borrow::Cow;
 use std::io::Read;
 
 use corniche_geom::TileId;
@@ -13,7 +15,7 @@ use crate::payload::section_kind::Kind;
 /// First bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
 /// Version of the payload's layout.
-pub(crate) const VERSION: u16 = 0;
+pub(crate) const VERSION: u16 = 1;
 /// Bytes before the section table.
 #[cfg(feature = "write")]
 const HEADER_BYTES: usize = 16;
@@ -206,7 +208,7 @@ pub(crate) enum Content<'a> {
     /// Bytes before compression.
     Raw(Vec<u8>),
     /// Bytes that do not become smaller by compression.
-    Packed(&'a [u8]),
+    Packed(Cow<'a, [u8]>),
     /// Bytes as another payload of the tile has them.
     Stored(StoredSection<'a>),
 }
@@ -262,7 +264,7 @@ pub(crate) fn seal(
             }
             Content::Packed(raw) => {
                 check_size(id, section, raw)?;
-                (STORED, *raw, raw.len(), crc32fast::hash(raw))
+                (STORED, raw.as_ref(), raw.len(), crc32fast::hash(raw))
             }
             Content::Raw(raw) => {
                 check_size(id, section, raw)?;

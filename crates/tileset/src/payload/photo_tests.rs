@@ -27,7 +27,7 @@ fn photo(levels: u8, is_none: impl Fn(usize, usize) -> bool) -> Photo {
 
 /// A payload of one section.
 fn payload(section: &[u8]) -> Vec<u8> {
-    envelope::seal(id(), &[(Kind::Photo, Content::Packed(section))]).unwrap().0
+    envelope::seal(id(), &[(Kind::Photo, Content::Packed(section.into()))]).unwrap().0
 }
 
 fn section_of(photo: &Photo, quality: u8) -> PhotoSection {

@@ -15,7 +15,6 @@ mod coefficients;
 mod fill;
 mod head;
 mod quantise;
-mod range_coder;
 #[cfg(feature = "write")]
 mod steps;
 #[cfg(feature = "write")]
@@ -26,10 +25,12 @@ use corniche_geom::{Cell, HeightGrid};
 
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
+#[cfg(feature = "write")]
+use crate::payload::range_coder::Writer;
+use crate::payload::range_coder::{Bits, Reader};
 use border::BORDER_NODES;
 use coefficients::{Numbers, code_band, code_mask, code_smooth};
 use head::Head;
-use range_coder::{Bits, Reader};
 use wavelet::{LEVELS, SIDE, SMOOTH, rough_bands};
 
 /// The relief of a tile: heights of all its nodes, exact enough to be shaded, and the slopes of the nodes on its border, which
@@ -142,7 +143,7 @@ impl Relief {
         };
         let border = border::of_raster(with_halo, cell);
         let mut parts = Parts { mask, water, square, border };
-        let mut writer = range_coder::Writer::new(head.to_bytes());
+        let mut writer = Writer::new(head.to_bytes());
         let units = parts.code(&mut writer, &head).map_err(unencodable)?;
         Ok(Self::assemble(writer.finish(), &head, &units, parts))
     }

@@ -6,8 +6,11 @@ mod decode;
 #[cfg(feature = "write")]
 pub(crate) mod encode;
 
-mod guess;
+mod heights;
+mod normals;
+mod positions;
+mod symbols;
 
 pub(crate) use decode::decode;
 #[cfg(feature = "write")]
-pub(crate) use encode::encode;
+pub(crate) use encode::{encode, part_sizes};

@@ -10,6 +10,7 @@ use super::*;
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
 use crate::payload::connectivity::walk;
 use crate::payload::corner_guess::Nodes;
+use crate::payload::range_coder::Writer;
 use crate::payload::route_guess::Route;
 use crate::payload::terrain::encode::Recorder;
 
@@ -20,7 +21,9 @@ fn walk_steps(tin: &Tin) -> [u64; 2] {
     let (vertices, triangles) = (tin.vertices(), tin.triangles());
     let (work, lookups) = (Work::new(u64::MAX), Work::new(u64::MAX));
     let nodes = Nodes::new(vertices.iter().map(|v| [v.column, v.row]), &work);
-    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups).expect("a TIN");
+    let mut bits = Writer::new(Vec::new());
+    let mut recorder =
+        Recorder::new(vertices.len(), triangles, &lookups, &mut bits).expect("a TIN");
     let (found, _) = walk(&nodes, triangles.len(), &mut recorder).expect("a TIN");
     assert_eq!(found.len(), triangles.len());
     [work.done(), max_walk_steps(vertices.len(), triangles.len())]
@@ -79,8 +82,10 @@ fn a_walk_beyond_its_limit_is_refused() {
     for limit in [0, whole / 2, whole - whole / 16] {
         let (work, lookups) = (Work::new(limit), Work::new(u64::MAX));
         let nodes = Nodes::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
+        let mut bits = Writer::new(Vec::new());
         let mut recorder =
-            Recorder::new(tin.vertices().len(), tin.triangles(), &lookups).expect("a TIN");
+            Recorder::new(tin.vertices().len(), tin.triangles(), &lookups, &mut bits)
+                .expect("a TIN");
         let outcome = walk(&nodes, tin.triangles().len(), &mut recorder).map(|_| ());
         assert_eq!(outcome, Err(Damage::TooMuchWork { limit }));
     }

@@ -128,7 +128,7 @@ impl Country {
             }
         }
         let terrain = Terrain {
-            normals: normals(&heights, &tin, frame.level_cell(id.z())),
+            normals: normals(&heights, &tin, frame.level_cell(id.z()), 0),
             tin,
             geometric_error_m: max_error_m
                 + interpolation_error_m(frame.level_cell(id.z()).shorter_m()),

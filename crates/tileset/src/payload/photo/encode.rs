@@ -129,7 +129,7 @@ pub fn with_photo(
     tile: TileId,
     photo: &PhotoSection,
 ) -> Result<Vec<u8>, EncodeError> {
-    let section = (Kind::Photo, Content::Packed(&photo.bytes));
+    let section = (Kind::Photo, Content::Packed((&photo.bytes).into()));
     Ok(envelope::with_section(payload, tile, section, "beside another photo")?.0)
 }
 

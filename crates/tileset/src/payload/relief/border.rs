@@ -4,9 +4,9 @@
 use corniche_geom::{Cell, HeightGrid};
 
 use super::coefficients::Numbers;
-use super::range_coder::Bits;
 use super::wavelet::SIDE;
 use crate::payload::damage::Damage;
+use crate::payload::range_coder::Bits;
 
 /// Nodes on the border of a tile.
 pub(crate) const BORDER_NODES: usize = 4 * (SIDE - 1);

@@ -1,7 +1,7 @@
 //! How whole numbers in a rectangle, and the mask of nodes, become bits.
 
-use super::range_coder::{Bits, Model};
 use super::wavelet::{Band, SIDE};
+use crate::payload::range_coder::{Bits, Model};
 
 /// Numbers up to this have a bit of their own for each step; larger ones an exponent and its bits.
 const STEPS: usize = 14;

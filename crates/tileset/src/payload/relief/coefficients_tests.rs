@@ -1,7 +1,7 @@
 use corniche_testing::Random;
 
 use super::*;
-use crate::payload::relief::range_coder::{Reader, Writer};
+use crate::payload::range_coder::{Reader, Writer};
 use crate::payload::relief::wavelet::{SMOOTH, rough_bands};
 
 #[test]

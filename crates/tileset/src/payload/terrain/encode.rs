@@ -2,17 +2,40 @@ use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GUESSES, Guide, NAMED, NONE, Reached, walk};
-use crate::payload::corner_guess::Nodes;
+use crate::payload::connectivity::{Edges, GUESSES, Guide, NAMED, NONE, walk};
+use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{put_planes, put_varint, zigzag};
-use crate::payload::terrain::guess::{guess_height, guess_normals};
-use crate::payload::terrain::record::{Record, Scale, check_measures};
+use crate::payload::range_coder::Writer;
+use crate::payload::terrain::heights::code_heights;
+use crate::payload::terrain::normals::{code_normals, guess_normals};
+use crate::payload::terrain::positions::code_positions;
+use crate::payload::terrain::record::{
+    MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Record, Scale, check_measures,
+};
+use crate::payload::terrain::symbols::Symbols;
 use crate::payload::tile_payload::Terrain;
 use crate::payload::work_limit::Work;
 
 /// The section's bytes, or what of the ground cannot be encoded.
 pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
+    encode_parts(terrain, scale).map(|(bytes, _)| bytes)
+}
+
+/// How many bytes the section's parts take: record, positions, triangles, heights, normals.
+pub(crate) fn part_sizes(terrain: &Terrain, scale: Scale) -> Result<[usize; 5], &'static str> {
+    let (bytes, ends) = encode_parts(terrain, scale)?;
+    let [record, positions, triangles, heights] = ends;
+    Ok([
+        record,
+        positions - record,
+        triangles - positions,
+        heights - triangles,
+        bytes.len() - heights,
+    ])
+}
+
+/// The section's bytes, and where its parts end but the last.
+fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4]), &'static str> {
     let vertices = terrain.tin.vertices();
     if vertices.len() != terrain.normals.len() {
         return Err("normals that are not one for each vertex");
@@ -30,72 +53,62 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
     if vertices.len() > MAX_VERTICES || triangles.len() > MAX_TRIANGLES {
         return Err("more triangles than a tile has cells for");
     }
-    let at: Vec<[u16; 2]> = vertices.iter().map(|v| [v.column, v.row]).collect();
+    let (height_shift, normal_shift) = common_factors(vertices, &terrain.normals);
+    let record = Record {
+        geometric_error_m: terrain.geometric_error_m,
+        height_range_m: terrain.height_range_m,
+        uncovered_nodes: terrain.uncovered_nodes,
+        triangles: triangles.len(),
+        height_shift,
+        normal_shift,
+    };
+    let mut bits = Writer::new(record.to_bytes());
+    let record_end = bits.written();
+
+    let mut nodes_of_vertices =
+        vertices.iter().map(|v| usize::from(v.row) * TILE_NODES + usize::from(v.column)).peekable();
+    let mut node = 0..;
+    let at = code_positions(&mut bits, || {
+        nodes_of_vertices.next_if_eq(&node.next().unwrap_or(0)).is_some()
+    });
+    if at.len() != vertices.len() {
+        return Err("vertices that are not sorted");
+    }
+    let positions_end = bits.written();
+
     // The same limit as a reader's: the writer takes at least as many steps as a reader.
     let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
     let nodes = Nodes::new(at.iter().copied(), &work);
     let lookups = Work::new(u64::MAX);
-    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups)
+    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups, &mut bits)
         .map_err(|_| "an edge with several triangles on one side")?;
     let (found, order) =
         walk(&nodes, triangles.len(), &mut recorder).map_err(|damage| match damage {
             Damage::TooMuchWork { .. } => "triangles that take readers too many steps to find",
             _ => "an edge with several triangles on one side",
         })?;
-    let factors = vertices.iter().fold(0, |all, vertex| all | vertex.height_q);
-    let height_shift = if factors == 0 { 0 } else { factors.trailing_zeros() as u8 };
-    let record = Record {
-        geometric_error_m: terrain.geometric_error_m,
-        height_range_m: terrain.height_range_m,
-        uncovered_nodes: terrain.uncovered_nodes,
-        vertices: vertices.len() as u32,
-        triangles: triangles.len() as u32,
-        symbols: recorder.symbols.len() as u32,
-        named: recorder.named.len() as u32,
-        height_shift,
-    };
-    let mut out = bincode::serde::encode_to_vec(&record, bincode::config::legacy())
-        .map_err(|_| "the record of the section")?;
-    put_nodes(&mut out, &at);
-    out.extend(&recorder.symbols);
-    out.extend(&recorder.named);
-    put_planes(&mut out, &height_residuals(vertices, &order, height_shift));
-    let guesses = guess_normals(vertices, &found, scale);
-    for axis in 0..2 {
-        let residual =
-            |(normal, guess): (&[i8; 2], &[i8; 2])| normal[axis].wrapping_sub(guess[axis]) as u8;
-        out.extend(terrain.normals.iter().zip(&guesses).map(residual));
-    }
-    Ok(out)
+    let triangles_end = bits.written();
+
+    let mut heights: Vec<i32> = vertices.iter().map(|v| v.height_q >> height_shift).collect();
+    code_heights(&mut bits, &at, &order, &mut heights).map_err(|_| "a height")?;
+    let heights_end = bits.written();
+
+    let guesses = guess_normals(vertices, &found, scale, normal_shift);
+    code_normals(&mut bits, &order, &guesses, normal_shift, &mut terrain.normals.clone());
+    Ok((bits.finish(), [record_end, positions_end, triangles_end, heights_end]))
 }
 
-/// Heights minus their guesses, in the order of the walk.
-fn height_residuals(vertices: &[TinVertex], order: &[Reached], height_shift: u8) -> Vec<u64> {
-    let mut heights = vec![0; vertices.len()];
-    let mut previous = 0;
-    let residual = |reached: &Reached| {
-        let guess = guess_height(reached, &heights, previous);
-        previous = vertices[reached.vertex as usize].height_q >> height_shift;
-        heights[reached.vertex as usize] = previous;
-        zigzag(i64::from(previous.wrapping_sub(guess)))
+/// The powers of two that all heights, and all normals, are multiples of.
+fn common_factors(vertices: &[TinVertex], normals: &[[i8; 2]]) -> (u8, u8) {
+    let heights = vertices.iter().fold(0, |all, vertex| all | vertex.height_q);
+    let steps = normals.iter().flatten().fold(0, |all, &step| all | step);
+    let shift = |zeros: u32, is_zero: bool, most: u8| {
+        if is_zero { 0 } else { (zeros as u8).min(most) }
     };
-    order.iter().map(residual).collect()
-}
-
-fn put_nodes(out: &mut Vec<u8>, at: &[[u16; 2]]) {
-    let mut per_row = [0; TILE_NODES];
-    for node in at {
-        per_row[usize::from(node[1])] += 1;
-    }
-    for count in per_row {
-        put_varint(out, count);
-    }
-    let mut next = [0, 0];
-    for &[column, row] in at {
-        let expected = if next[1] == row { next[0] } else { 0 };
-        put_varint(out, u64::from(column - expected));
-        next = [column + 1, row];
-    }
+    (
+        shift(heights.trailing_zeros(), heights == 0, MAX_HEIGHT_SHIFT),
+        shift(steps.trailing_zeros(), steps == 0, MAX_NORMAL_SHIFT),
+    )
 }
 
 /// Finds triangles by looking them up, and writes the symbols.
@@ -104,8 +117,8 @@ pub(crate) struct Recorder<'a> {
     /// Triangles before this one have been found.
     next: usize,
     edges: Edges<'a>,
-    symbols: Vec<u8>,
-    named: Vec<u8>,
+    symbols: Symbols,
+    bits: &'a mut Writer,
     last: u32,
 }
 
@@ -114,12 +127,13 @@ impl<'a> Recorder<'a> {
         vertices: usize,
         triangles: &'a [[u32; 3]],
         work: &'a Work,
+        bits: &'a mut Writer,
     ) -> Result<Self, Damage> {
         let mut edges = Edges::new(vertices, work);
         for &triangle in triangles {
             edges.add(triangle)?;
         }
-        Ok(Self { triangles, next: 0, edges, symbols: Vec::new(), named: Vec::new(), last: 0 })
+        Ok(Self { triangles, next: 0, edges, symbols: Symbols::new(vertices), bits, last: 0 })
     }
 }
 
@@ -131,7 +145,7 @@ impl Guide for Recorder<'_> {
         let [a, b, c] = self.triangles[self.next];
         // Canonical order: each triangle starts with its smallest vertex, and they are sorted.
         for gap in [a - self.last, b - a - 1, c - a - 1] {
-            put_varint(&mut self.named, u64::from(gap));
+            self.symbols.number(self.bits, gap)?;
         }
         self.last = a;
         Ok([a, b, c])
@@ -139,29 +153,40 @@ impl Guide for Recorder<'_> {
 
     fn corner(
         &mut self,
-        [a, b]: [u32; 2],
-        guess: &dyn Fn(&[u32]) -> Option<u32>,
+        gate: [u32; 3],
+        nodes: &Nodes<'_>,
+        guess: &dyn Fn(&[u32]) -> Option<Corner>,
     ) -> Result<Option<u32>, Damage> {
-        let corner = self.edges.corner(a, b);
-        let mut no = Vec::new();
-        let Some(actual) = corner else {
-            if guess(&no).is_some() {
-                self.symbols.push(NONE);
-            }
-            return Ok(None);
+        let corner = self.edges.corner(gate[0], gate[1]);
+        let Some(first) = guess(&[]) else {
+            // Without a candidate there is no triangle, or it is not counter-clockwise.
+            return if corner.is_none() {
+                Ok(None)
+            } else {
+                Err(Damage::Invalid { what: "a triangle's vertex" })
+            };
         };
-        for rank in 1..=GUESSES {
-            match guess(&no) {
-                Some(vertex) if vertex == actual => {
-                    self.symbols.push(rank);
-                    return Ok(corner);
-                }
-                Some(vertex) => no.push(vertex),
-                None => break,
-            }
+        let symbol = corner.map_or(NONE, |actual| rank(actual, first, guess));
+        self.symbols.code(self.bits, nodes, gate, first, symbol);
+        if let (NAMED, Some(actual)) = (symbol, corner) {
+            self.symbols.number(self.bits, actual)?;
         }
-        self.symbols.push(NAMED);
-        put_varint(&mut self.named, u64::from(actual));
         Ok(corner)
     }
+}
+
+/// Which guess the vertex is; [`NAMED`] if it is none of those with a symbol.
+fn rank(actual: u32, first: Corner, guess: &dyn Fn(&[u32]) -> Option<Corner>) -> u8 {
+    if first.vertex == actual {
+        return 1;
+    }
+    let mut no = vec![first.vertex];
+    for rank in 2..=GUESSES {
+        match guess(&no) {
+            Some(corner) if corner.vertex == actual => return rank,
+            Some(corner) => no.push(corner.vertex),
+            None => break,
+        }
+    }
+    NAMED
 }

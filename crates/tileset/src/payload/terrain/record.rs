@@ -1,27 +1,73 @@
 //! The fixed part of the section, and what its numbers may be.
 
 use corniche_geom::Cell;
-use serde::{Deserialize, Serialize};
 
+use crate::limits::MAX_TRIANGLES;
 use crate::manifest::check::MAX_MEASURE_M;
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+#[cfg(feature = "write")]
+use crate::payload::number_codes::put_varint;
 
-/// Bytes of a [`Record`] in bincode's legacy layout.
-pub(crate) const RECORD_BYTES: usize = 49;
-
-/// The fixed part of the section, in `bincode`'s legacy layout: fields in order, little-endian, fixed width.
-#[derive(Serialize, Deserialize)]
+/// The fixed part of the section.
 pub(crate) struct Record {
     pub(crate) geometric_error_m: f64,
     pub(crate) height_range_m: [f64; 2],
     pub(crate) uncovered_nodes: u64,
-    pub(crate) vertices: u32,
-    pub(crate) triangles: u32,
-    /// Bytes of the walk's symbols.
-    pub(crate) symbols: u32,
-    /// Bytes of the vertices that the walk names.
-    pub(crate) named: u32,
+    pub(crate) triangles: usize,
     /// All heights are multiples of 2^this steps: a DEM in whole metres has no finer ones.
     pub(crate) height_shift: u8,
+    /// All normals are multiples of 2^this steps.
+    pub(crate) normal_shift: u8,
+}
+
+/// No height has a larger common factor than 2^this.
+pub(crate) const MAX_HEIGHT_SHIFT: u8 = 31;
+/// No normal has a larger common factor than 2^this.
+pub(crate) const MAX_NORMAL_SHIFT: u8 = 7;
+
+impl Record {
+    #[cfg(feature = "write")]
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        for measure in [self.geometric_error_m, self.height_range_m[0], self.height_range_m[1]] {
+            out.extend(measure.to_le_bytes());
+        }
+        put_varint(&mut out, self.uncovered_nodes);
+        put_varint(&mut out, self.triangles as u64);
+        out.extend([self.height_shift, self.normal_shift]);
+        out
+    }
+
+    pub(crate) fn read(cursor: &mut Cursor<'_>, scale: Scale) -> Result<Self, Damage> {
+        let [geometric_error_m, lowest_m, highest_m] =
+            [(); 3].map(|()| cursor.array().map(f64::from_le_bytes));
+        let (geometric_error_m, height_range_m) = (geometric_error_m?, [lowest_m?, highest_m?]);
+        let uncovered_nodes = cursor.varint()?;
+        check_measures(geometric_error_m, height_range_m, uncovered_nodes, scale)
+            .map_err(|what| Damage::Invalid { what })?;
+        let (triangles, limit) = (cursor.varint()?, MAX_TRIANGLES as u64);
+        if triangles > limit {
+            let what = "number of triangles";
+            return Err(Damage::TooLarge { what, length: triangles, limit });
+        }
+        let [height_shift, normal_shift] = cursor.array()?;
+        if height_shift > MAX_HEIGHT_SHIFT {
+            return Err(Damage::Invalid { what: "the common factor of the heights" });
+        }
+        if normal_shift > MAX_NORMAL_SHIFT {
+            return Err(Damage::Invalid { what: "the common factor of the normals" });
+        }
+        let triangles = triangles as usize;
+        Ok(Self {
+            geometric_error_m,
+            height_range_m,
+            uncovered_nodes,
+            triangles,
+            height_shift,
+            normal_shift,
+        })
+    }
 }
 
 /// What turns slopes of the TIN, in height steps per node, into metres per metre.

@@ -8,6 +8,8 @@
 pub(crate) trait Bits {
     /// A bit with the probability of `model`, which learns from it.
     fn bit(&mut self, model: &mut Model, bit: u32) -> u32;
+    /// A bit with the mean of the probabilities of two models, both of which learn from it.
+    fn mixed(&mut self, models: [&mut Model; 2], bit: u32) -> u32;
     /// A bit that is as often 0 as 1.
     fn even(&mut self, bit: u32) -> u32;
 }
@@ -36,6 +38,13 @@ impl Model {
         u32::midpoint(u32::from(self.fast), u32::from(self.slow)).clamp(LEAST, (1 << 16) - LEAST)
     }
 
+    /// The mean of two models' estimates.
+    fn of_zero_in_both([one, other]: [&Self; 2]) -> u32 {
+        let sum = [one.fast, one.slow, other.fast, other.slow].map(u32::from).iter().sum::<u32>();
+        (sum >> 2).clamp(LEAST, (1 << 16) - LEAST)
+    }
+
+    #[inline]
     fn learn(&mut self, bit: u32) {
         if bit == 0 {
             self.fast += (u16::MAX - self.fast) >> 4;
@@ -68,6 +77,11 @@ impl Writer {
     /// Writes behind what is in `out`.
     pub(crate) fn new(out: Vec<u8>) -> Self {
         Self { out, low: 0, range: u32::MAX, held: 0, after_held: 0, is_first: true }
+    }
+
+    /// How many bytes are certain by now, those in front of the string included.
+    pub(crate) fn written(&self) -> usize {
+        self.out.len()
     }
 
     /// All bytes.
@@ -114,6 +128,13 @@ impl Bits for Writer {
     fn bit(&mut self, model: &mut Model, bit: u32) -> u32 {
         self.narrow((self.range >> 16) * model.of_zero(), bit);
         model.learn(bit);
+        bit
+    }
+
+    fn mixed(&mut self, [one, other]: [&mut Model; 2], bit: u32) -> u32 {
+        self.narrow((self.range >> 16) * Model::of_zero_in_both([one, other]), bit);
+        one.learn(bit);
+        other.learn(bit);
         bit
     }
 
@@ -174,6 +195,14 @@ impl Bits for Reader<'_> {
     fn bit(&mut self, model: &mut Model, _: u32) -> u32 {
         let bit = self.narrow((self.range >> 16) * model.of_zero());
         model.learn(bit);
+        bit
+    }
+
+    #[inline]
+    fn mixed(&mut self, [one, other]: [&mut Model; 2], _: u32) -> u32 {
+        let bit = self.narrow((self.range >> 16) * Model::of_zero_in_both([one, other]));
+        one.learn(bit);
+        other.learn(bit);
         bit
     }
 

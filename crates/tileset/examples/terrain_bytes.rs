@@ -1,0 +1,65 @@
+//! Where the bytes of the ground are, and how fast they are written and read: a line for each package.
+//!
+//! ```sh
+//! cargo run --release -p corniche-tileset --features write --example terrain_bytes -- A.pmtiles B.pmtiles
+//! ```
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
+use std::{env, error::Error, path::Path, time::Instant};
+
+use corniche_tileset::{
+    FilePackage, PayloadContext, Sections, decode, encode, payload_sizes, terrain_part_sizes,
+};
+
+/// Each tile is written and read so many times; the fastest counts.
+const TIMES: usize = 5;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!(
+        "| package | tiles | vertices | triangles | bytes | bytes a triangle | bits a vertex: record | positions | triangles | heights | normals | encode, µs a vertex | decode, µs a vertex |"
+    );
+    for file in env::args().skip(1) {
+        let package = FilePackage::open(Path::new(&file))?;
+        let (frame, quantum_m) = (package.manifest().frame, package.manifest().vertical.quantum_m);
+        let context = PayloadContext { frame, quantum_m };
+        let (mut tiles, mut vertices, mut triangles, mut bytes) = (0, 0, 0, 0);
+        let mut parts = [0; 5];
+        let mut seconds = [0.0; 2];
+        for id in package.tile_ids()? {
+            let Some(payload) = package.tile(id)? else { continue };
+            let tile = decode(&payload, id, &frame, quantum_m, Sections::TERRAIN)?;
+            let Some(ground) = &tile.terrain else { continue };
+            tiles += 1;
+            vertices += ground.tin.vertices().len();
+            triangles += ground.tin.triangles().len();
+            bytes += payload_sizes(&payload, id)?.terrain.stored;
+            for (sum, part) in parts.iter_mut().zip(terrain_part_sizes(&tile, &context)?) {
+                *sum += part;
+            }
+            let mut fastest = [f64::INFINITY; 2];
+            for _ in 0..TIMES {
+                let begin = Instant::now();
+                let encoded = encode(&tile, &context)?;
+                let middle = Instant::now();
+                decode(&encoded.bytes, id, &frame, quantum_m, Sections::TERRAIN)?;
+                let end = Instant::now();
+                for (least, took) in fastest.iter_mut().zip([middle - begin, end - middle]) {
+                    *least = least.min(took.as_secs_f64());
+                }
+            }
+            seconds = [seconds[0] + fastest[0], seconds[1] + fastest[1]];
+        }
+        let vertices = f64::from(u32::try_from(vertices)?);
+        let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
+        print!("| {name} | {tiles} | {vertices} | {triangles} | {bytes} |");
+        print!(" {:.3} |", bytes as f64 / f64::from(u32::try_from(triangles)?));
+        for part in parts {
+            print!(" {:.2} |", 8.0 * f64::from(u32::try_from(part)?) / vertices);
+        }
+        for sum in seconds {
+            print!(" {:.3} |", 1e6 * sum / vertices);
+        }
+        println!();
+    }
+    Ok(())
+}

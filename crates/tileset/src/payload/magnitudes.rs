@@ -1,0 +1,77 @@
+//! How the terrain section's numbers become bits: by their length in binary, which two contexts foretell.
+
+use crate::payload::range_coder::{Bits, Model};
+
+/// Binary digits of a magnitude, at most.
+const LENGTHS: usize = 33;
+/// Digits behind the leading 1 that have models: the first two.
+const MODELLED_DIGITS: usize = 2;
+
+/// What a coder knows of the numbers of one kind. Each number comes with two contexts, `FIRST` and `SECOND` of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Magnitudes<const FIRST: usize, const SECOND: usize> {
+    by_first: Vec<[Model; LENGTHS]>,
+    by_second: Vec<[Model; LENGTHS]>,
+    digits: [[Model; 1 << MODELLED_DIGITS]; LENGTHS],
+}
+
+impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
+    pub(crate) fn new() -> Self {
+        Self {
+            by_first: vec![[Model::NEW; LENGTHS]; FIRST],
+            by_second: vec![[Model::NEW; LENGTHS]; SECOND],
+            digits: [[Model::NEW; 1 << MODELLED_DIGITS]; LENGTHS],
+        }
+    }
+
+    /// Codes a number with a magnitude below 2^32; a context beyond the last counts as the last.
+    pub(crate) fn code<B: Bits>(
+        &mut self,
+        bits: &mut B,
+        [first, second]: [usize; 2],
+        number: i64,
+    ) -> i64 {
+        let asked = number.unsigned_abs();
+        let wanted = (u64::BITS - asked.leading_zeros()) as usize;
+        let lengths = self.by_first[first.min(FIRST - 1)]
+            .iter_mut()
+            .zip(&mut self.by_second[second.min(SECOND - 1)]);
+        let mut length = 0;
+        for (one, other) in lengths.take(LENGTHS - 1) {
+            if bits.mixed([one, other], u32::from(wanted > length)) == 0 {
+                break;
+            }
+            length += 1;
+        }
+        if length == 0 {
+            return 0;
+        }
+        let models = &mut self.digits[length];
+        let mut magnitude = 1_u64;
+        for place in (0..length - 1).rev() {
+            let digit = ((asked >> place) & 1) as u32;
+            let digit = if magnitude < 1 << MODELLED_DIGITS {
+                bits.bit(&mut models[magnitude as usize], digit)
+            } else {
+                bits.even(digit)
+            };
+            magnitude = magnitude << 1 | u64::from(digit);
+        }
+        if bits.even(u32::from(number < 0)) == 1 { -(magnitude as i64) } else { magnitude as i64 }
+    }
+}
+
+/// Half-octaves: 0 for 0, then 1, 2, 4 for 1, 2, 4, with one class between powers of two.
+pub(crate) fn half_octave(sum: u64) -> usize {
+    match sum {
+        0 | 1 => sum as usize,
+        _ => {
+            let exponent = sum.ilog2();
+            2 * exponent as usize + ((sum >> (exponent - 1)) & 1) as usize
+        }
+    }
+}
+
+#[cfg(all(test, feature = "write"))]
+#[path = "magnitudes_tests.rs"]
+mod tests;

@@ -1,0 +1,136 @@
+//! A package that was written when version 1 of the format began is read as it was then: its ground, roads and attributes, bit for bit.
+//!
+//! `data/version-1.pmtiles` stays as it is; `data-samples/SOURCES.md` says how it was made. When this test fails, packages that
+//! people have are no longer read.
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::path::Path;
+
+use corniche_drape::DrapedVertex;
+use corniche_geom::LatticePoint;
+use corniche_tileset::{FilePackage, GeoRoad, Sections, SvRoad, Terrain};
+
+/// Checksums of what was decoded, in little-endian bytes.
+#[derive(Default)]
+struct Sums {
+    vertices: crc32fast::Hasher,
+    triangles: crc32fast::Hasher,
+    normals: crc32fast::Hasher,
+    measures: crc32fast::Hasher,
+    roads_geo: crc32fast::Hasher,
+    roads_sv: crc32fast::Hasher,
+    attributes: crc32fast::Hasher,
+}
+
+impl Sums {
+    fn add_ground(&mut self, ground: &Terrain) {
+        for vertex in ground.tin.vertices() {
+            self.vertices.update(&vertex.row.to_le_bytes());
+            self.vertices.update(&vertex.column.to_le_bytes());
+            self.vertices.update(&vertex.height_q.to_le_bytes());
+        }
+        for vertex in ground.tin.triangles().iter().flatten() {
+            self.triangles.update(&vertex.to_le_bytes());
+        }
+        for steps in ground.normals.iter().flatten() {
+            self.normals.update(&steps.to_le_bytes());
+        }
+        let [low_m, high_m] = ground.height_range_m;
+        for measure in [ground.geometric_error_m, low_m, high_m] {
+            self.measures.update(&measure.to_le_bytes());
+        }
+        self.measures.update(&ground.uncovered_nodes.to_le_bytes());
+    }
+
+    fn add_geo(&mut self, road: &GeoRoad) {
+        let sum = &mut self.roads_geo;
+        add_name(sum, road.way_id, road.part, road.class.number());
+        for point in [road.line.lead_in, road.line.lead_out].into_iter().flatten() {
+            add_point(sum, point);
+        }
+        for vertex in &road.line.vertices {
+            match *vertex {
+                DrapedVertex::Source { point, triangle } => {
+                    add_point(sum, point);
+                    sum.update(&triangle.to_le_bytes());
+                }
+                DrapedVertex::Vertex { vertex } => sum.update(&vertex.to_le_bytes()),
+                DrapedVertex::Crossing { a, b } => {
+                    sum.update(&a.to_le_bytes());
+                    sum.update(&b.to_le_bytes());
+                }
+            }
+        }
+    }
+
+    fn add_sv(&mut self, road: &SvRoad) {
+        let sum = &mut self.roads_sv;
+        add_name(sum, road.way_id, road.part, road.class.number());
+        for &point in &road.line.points {
+            add_point(sum, point);
+        }
+        for bound_m in road.line.ground_range_m.iter().flatten() {
+            sum.update(&bound_m.to_le_bytes());
+        }
+    }
+}
+
+fn add_name(sum: &mut crc32fast::Hasher, way_id: i64, part: u32, class: u8) {
+    sum.update(&way_id.to_le_bytes());
+    sum.update(&part.to_le_bytes());
+    sum.update(&[class]);
+}
+
+fn add_point(sum: &mut crc32fast::Hasher, point: LatticePoint) {
+    sum.update(&point.u.to_le_bytes());
+    sum.update(&point.v.to_le_bytes());
+}
+
+#[test]
+fn a_package_of_version_1_is_read_bit_for_bit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/version-1.pmtiles");
+    let package = FilePackage::open(&path).unwrap();
+    assert_eq!(package.manifest().format_version, 1);
+    let mut sums = Sums::default();
+    let ids = package.tile_ids().unwrap();
+    let mut counts = [ids.len(), 0, 0, 0, 0];
+    for id in ids {
+        let tile = package.payload(id, Sections::ALL).unwrap().unwrap();
+        if let Some(ground) = &tile.terrain {
+            counts[1] += ground.tin.vertices().len();
+            counts[2] += ground.tin.triangles().len();
+            sums.add_ground(ground);
+        }
+        counts[3] += tile.roads_geo.len();
+        counts[4] += tile.roads_sv.len();
+        tile.roads_geo.iter().for_each(|road| sums.add_geo(road));
+        tile.roads_sv.iter().for_each(|road| sums.add_sv(road));
+        for record in &tile.attributes {
+            sums.attributes.update(&record.way_id.to_le_bytes());
+            for text in [&record.attributes.name, &record.attributes.reference] {
+                sums.attributes.update(text.as_bytes());
+            }
+        }
+    }
+    let Sums { vertices, triangles, normals, measures, roads_geo, roads_sv, attributes } = sums;
+    let sums = [vertices, triangles, normals, measures, roads_geo, roads_sv, attributes]
+        .map(crc32fast::Hasher::finalize);
+    assert_eq!(
+        counts,
+        [9, 8_486, 16_236, 186, 196],
+        "tiles, vertices, triangles, GEO roads, SV roads"
+    );
+    assert_eq!(
+        sums,
+        [
+            75_500_687,
+            3_076_870_935,
+            793_559_924,
+            3_396_582_731,
+            3_293_787_183,
+            543_977_351,
+            3_089_146_731
+        ],
+        "vertices, triangles, normals, measures, GEO roads, SV roads, attributes"
+    );
+}
