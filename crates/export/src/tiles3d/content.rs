@@ -27,6 +27,9 @@ use crate::{
 const LIFT_OF_ERROR: f64 = 0.1;
 const LEAST_LIFT_M: f64 = 0.02;
 
+/// Tangents are rounded to so many steps of one: some hundredths of a degree, which compress to half.
+const TANGENT_STEPS: f32 = 4096.0;
+
 /// What a level's tiles have in common.
 pub(crate) struct LevelOfTiles {
     /// Edges that go further are divided: lattice steps for a true metre, and true metres.
@@ -175,7 +178,8 @@ impl<'a> Builder<'a> {
     /// Adds how the ground looks at a vertex.
     fn add_look(&self, vertex: &PlacedVertex, part: &mut Part) {
         if self.look.relief.is_some() {
-            let [x, y, z] = y_up(vertex.tangent);
+            let [x, y, z] = y_up(vertex.tangent)
+                .map(|axis| (axis * TANGENT_STEPS).round() / TANGENT_STEPS);
             part.tangents.push([x, y, z, 1.0]);
             part.relief_places.push(ReliefMap::place(vertex.across));
         }
