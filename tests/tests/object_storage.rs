@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 const STORE: &str = "s3://maps/alps/build";
 /// So that tiles take some seconds.
-const FINE: [&str; 2] = ["--max-error", "0.25"];
+const FINE: [&str; 2] = ["--max-error", "0.02"];
 const COARSE: [&str; 2] = ["--max-error", "10"];
 
 /// A plan from inputs on object storage, and what an ordinary build makes from the same files.

@@ -4,6 +4,7 @@
 
 mod photos;
 mod readers;
+mod relief;
 mod surfaces;
 
 use std::{

@@ -205,23 +205,62 @@ pub(crate) struct Pictured {
     pub(crate) jpeg: Vec<u8>,
 }
 
+/// Ground with a normal map; directions along glTF's axes.
+pub(crate) struct Relief {
+    pub(crate) places: Vec<[f32; 2]>,
+    pub(crate) normals: Vec<[f32; 3]>,
+    pub(crate) tangents: Vec<[f32; 4]>,
+    pub(crate) png: Vec<u8>,
+}
+
+impl Glb {
+    fn floats<const N: usize>(&self, accessor: &Value) -> Vec<[f32; N]> {
+        let flat = self.numbers(accessor);
+        flat.as_chunks::<N>().0.iter().map(|item| item.map(f32::from_le_bytes)).collect()
+    }
+
+    /// The bytes of a texture's image of a kind, and where on it the corners of a primitive are.
+    fn texture(&self, texture: &Value, primitive: &Value, kind: &str) -> (Vec<u8>, Vec<[f32; 2]>) {
+        let number = |value: &Value| value.as_u64().unwrap() as usize;
+        let source = number(&self.list("textures")[number(&texture["index"])]["source"]);
+        let image = &self.list("images")[source];
+        assert_eq!(image["mimeType"], kind);
+        let channel = texture["texCoord"].as_u64().unwrap_or(0);
+        let places = self.floats(&primitive["attributes"][format!("TEXCOORD_{channel}")]);
+        (self.view(&image["bufferView"]).to_vec(), places)
+    }
+}
+
 pub(crate) fn read_pictures(path: &Path) -> Vec<Pictured> {
     let glb = Glb::open(path);
-    let number = |value: &Value| value.as_u64().unwrap() as usize;
     let mut found = Vec::new();
     for (node, primitive) in glb.primitives() {
-        let material = &glb.list("materials")[number(&primitive["material"])];
-        let texture = &material["pbrMetallicRoughness"]["baseColorTexture"]["index"];
-        assert_eq!(texture.is_null(), primitive["attributes"]["TEXCOORD_0"].is_null());
+        let material = &glb.list("materials")[primitive["material"].as_u64().unwrap() as usize];
+        let texture = &material["pbrMetallicRoughness"]["baseColorTexture"];
         if texture.is_null() {
             continue;
         }
-        let source = number(&glb.list("textures")[number(texture)]["source"]);
-        let jpeg = glb.view(&glb.list("images")[source]["bufferView"]).to_vec();
-        let flat = glb.numbers(&primitive["attributes"]["TEXCOORD_0"]);
-        let places = flat.as_chunks::<2>().0.iter().map(|place| place.map(f32::from_le_bytes));
-        let places = places.collect();
+        let (jpeg, places) = glb.texture(texture, primitive, "image/jpeg");
         found.push(Pictured { corners: glb.places(node, primitive), places, jpeg });
+    }
+    found
+}
+
+pub(crate) fn read_reliefs(path: &Path) -> Vec<Relief> {
+    let glb = Glb::open(path);
+    let mut found = Vec::new();
+    for (_, primitive) in glb.primitives() {
+        let material = &glb.list("materials")[primitive["material"].as_u64().unwrap() as usize];
+        let (texture, attributes) = (&material["normalTexture"], &primitive["attributes"]);
+        assert_eq!(texture.is_null(), attributes["TANGENT"].is_null());
+        if texture.is_null() {
+            continue;
+        }
+        let (png, places) = glb.texture(texture, primitive, "image/png");
+        let normals = glb.floats(&attributes["NORMAL"]);
+        let tangents = glb.floats(&attributes["TANGENT"]);
+        assert!([normals.len(), tangents.len()].iter().all(|count| *count == places.len()));
+        found.push(Relief { places, normals, tangents, png });
     }
     found
 }

@@ -178,8 +178,8 @@ impl<'a> Builder<'a> {
     /// Adds how the ground looks at a vertex.
     fn add_look(&self, vertex: &PlacedVertex, part: &mut Part) {
         if self.look.relief.is_some() {
-            let [x, y, z] = y_up(vertex.tangent)
-                .map(|axis| (axis * TANGENT_STEPS).round() / TANGENT_STEPS);
+            let [x, y, z] =
+                y_up(vertex.tangent).map(|axis| (axis * TANGENT_STEPS).round() / TANGENT_STEPS);
             part.tangents.push([x, y, z, 1.0]);
             part.relief_places.push(ReliefMap::place(vertex.across));
         }

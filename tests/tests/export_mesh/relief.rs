@@ -1,0 +1,59 @@
+//! Reliefs as normal maps of the ground.
+
+use std::fs;
+
+use e2e::photo::{build, inputs, photo};
+use gdal::{Dataset, raster::Buffer};
+
+use super::{
+    export,
+    readers::{Relief, read_pictures, read_reliefs},
+};
+
+/// Nodes of a tile, and texels, on a side.
+const SIDE: usize = 257;
+
+/// Vertices have the normals of the elevation model, so there the map says next to nothing; between them it says what triangles leave out. Tangents are
+/// as they should be, with photos beside the map and without.
+#[test]
+fn reliefs_are_seen_from_the_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    let photo = photo(folder.path(), 0.2, "photo.tif");
+    let package = folder.path().join("photo.pmtiles");
+    let _ = build(&inputs(&[&photo]), &package, &["--relief", "finest"]);
+    for (name, style) in [("with.glb", "photo"), ("without.glb", "relief")] {
+        let model = export(&package, name, &["--style", style, "--roads", "none"]);
+        let reliefs = read_reliefs(&model);
+        assert!(reliefs.len() > 4, "{}", reliefs.len());
+        assert_eq!(read_pictures(&model).is_empty(), style == "relief");
+        let (mut at_vertices, mut everywhere) = (Vec::new(), Vec::new());
+        for Relief { places, normals, tangents, png } in reliefs {
+            let file = folder.path().join("relief.png");
+            fs::write(&file, png).unwrap();
+            let picture = Dataset::open(&file).unwrap();
+            assert_eq!(picture.raster_size(), (SIDE, SIDE));
+            let blue: Buffer<u8> = picture.rasterband(3).unwrap().read_band_as().unwrap();
+            let tilt = |k: usize| {
+                (f64::from(blue.data()[k]) / 255.0 * 2.0 - 1.0).clamp(-1.0, 1.0).acos().to_degrees()
+            };
+            everywhere.extend((0..SIDE * SIDE).map(tilt));
+            for ((place, normal), tangent) in places.iter().zip(&normals).zip(&tangents) {
+                let [column, row] = place.map(|share| share * SIDE as f32 - 0.5);
+                // Vertices are nodes, and nodes lie in the middle of texels.
+                assert!([column, row].iter().all(|k| (k - k.round()).abs() < 1e-3), "{place:?}");
+                at_vertices.push(tilt(row.round() as usize * SIDE + column.round() as usize));
+                let [x, y, z, side] = *tangent;
+                let dot = x * normal[0] + y * normal[1] + z * normal[2];
+                let length = x * x + y * y + z * z;
+                assert!(dot.abs() < 1e-5 && (length - 1.0).abs() < 1e-5 && x > 0.0, "{tangent:?}");
+                assert!((side - 1.0).abs() < f32::EPSILON);
+            }
+        }
+        let mean = |angles: &[f64]| angles.iter().sum::<f64>() / angles.len() as f64;
+        let (at_vertices, everywhere) = (mean(&at_vertices), mean(&everywhere));
+        println!("{name}: {at_vertices:.2}° at vertices, {everywhere:.2}° everywhere");
+        assert!(at_vertices < 6.0 && everywhere > 1.7 * at_vertices, "{at_vertices} {everywhere}");
+    }
+    let plain = export(&package, "plain.glb", &["--relief", "none"]);
+    assert!(read_reliefs(&plain).is_empty());
+}
