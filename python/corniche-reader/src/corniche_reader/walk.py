@@ -24,11 +24,11 @@ def positions(bits: Bits) -> NDArray[np.int64]:
     of = [bisect_right(CLASSES, n) for n in range(61)]
     ones = [n.bit_count() for n in range(32)]
     pad = 5
-    nodes = np.zeros((SIDE + 4, SIDE + 2 * pad), np.int64)
+    nodes = np.zeros((SIDE + 5, SIDE + 2 * pad), np.int64)
     for row in range(SIDE):
-        above = nodes[row : row + 4, :]
-        wide_rows, near_rows = _before(nodes, row, 4, 5), _before(nodes, row, 2, 3)
-        a, d = above[3].tolist(), above[2].tolist()
+        above = nodes[row : row + 5, :]
+        wide_rows, near_rows = _before(nodes, row, 5, 5), _before(nodes, row, 2, 3)
+        a, d = above[4].tolist(), above[3].tolist()
         history, out = 0, []
         edge = 1 if row in (0, SIDE - 1) else 0
         for column in range(SIDE):
@@ -39,14 +39,14 @@ def positions(bits: Bits) -> NDArray[np.int64]:
             bit = bits.mixed(u[border][neighbours], w[border][of[wide]][of[near]])
             history = (history << 1 | bit) & 31
             out.append(bit)
-        nodes[row + 4, pad : pad + SIDE] = out
-    rows, columns = np.nonzero(nodes[4:, pad : pad + SIDE])
+        nodes[row + 5, pad : pad + SIDE] = out
+    rows, columns = np.nonzero(nodes[5:, pad : pad + SIDE])
     return np.stack([columns, rows], axis=1).astype(np.int64)
 
 
 def _before(nodes: NDArray[np.int64], row: int, rows: int, reach: int) -> list[int]:
     """For each column, the vertices in so many rows above and so many columns to both sides."""
-    sums = np.concatenate([[0], np.cumsum(nodes[row + 4 - rows : row + 4].sum(axis=0))])
+    sums = np.concatenate([[0], np.cumsum(nodes[row + 5 - rows : row + 5].sum(axis=0))])
     first = np.arange(SIDE) + 5 - reach
     return list((sums[first + 2 * reach + 1] - sums[first]).tolist())
 
