@@ -14,6 +14,8 @@ from corniche_reader.container import tile_number, tile_of
 
 GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-1.pmtiles"
 ROOT = (0, 0, 0)
+#: CRC-32 of what is read, as `corniche tile --json` told it, too.
+SUMS = {"positions": 0x51A80049, "triangles": 0x2E36449E, "normals": 0x2F4CC374, "roads": 0x63973D00}
 
 
 def test_ids_of_tiles_go_there_and_back():
@@ -36,9 +38,6 @@ def test_the_golden_package_reads_as_it_did():
     assert sums == SUMS
 
 
-SUMS = {}
-
-
 def test_a_tile_that_is_not_there_is_named():
     with Package.open(GOLDEN) as package, pytest.raises(UnknownTile, match="no tile 1/1/1"):
         package.tile(1, 1, 1)
@@ -59,13 +58,24 @@ def places_of(part: str) -> range:
 
 
 @pytest.mark.parametrize("part", ["header", "directory", "metadata", "payload"])
-def test_flipped_bytes_are_refused(part):
+def test_flipped_bytes_are_refused_or_change_nothing(part):
+    """What may change without harm: the offset of leaf directories where there are none, and names and times in gzip headers."""
     data = bytearray(GOLDEN.read_bytes())
-    for at in places_of(part):
+    with Package.open(GOLDEN) as package:
+        metadata, places = package.metadata, package._places
+    places_in_file, harmless = places_of(part), 0
+    for at in places_in_file:
         data[at] ^= 0x10
-        with pytest.raises(ReadError):
-            Package(io.BytesIO(bytes(data))).tile(*ROOT)
+        try:
+            package = Package(io.BytesIO(bytes(data)))
+            package.tile(*ROOT)
+        except ReadError:
+            pass
+        else:
+            harmless += 1
+            assert part != "payload" and (package.metadata, package._places) == (metadata, places), at
         data[at] ^= 0x10
+    assert harmless <= 10 < len(places_in_file)
 
 
 def test_files_that_are_cut_are_refused():

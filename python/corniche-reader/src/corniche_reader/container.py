@@ -92,7 +92,9 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
     words = [int.from_bytes(header[at : at + 8], "little") for at in range(8, 80, 8)]
     root, metadata, leaves, tiles, addressed = words[0:2], words[2:4], words[4:6], words[6:8], words[8]
     end = file.seek(0, 2)
-    regions = [(0, 127, "header"), (*root, "root directory"), (*metadata, "metadata"), (*leaves, "leaf directories"), (*tiles, "tiles")]
+    regions: list[tuple[int, int, str]] = [(0, 127, "header")]
+    for (start, length), name in ((root, "root directory"), (metadata, "metadata"), (leaves, "leaf directories"), (tiles, "tiles")):
+        regions.append((start, length, name))
     regions = sorted(region for region in regions if region[1])
     for (start, length, name), (after, _, other) in zip(regions, regions[1:] + [(end, 0, "end of the file")], strict=True):
         if start + length > after:
@@ -109,7 +111,7 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
         at = place.offset + place.length
     if addressed and addressed != len(found):
         raise ContainerError(f"the header names {addressed} tiles, the directories {len(found)}")
-    text = unzip(read_at(file, *metadata, "the metadata"), 16 * MIB, "the metadata")
+    text = unzip(read_at(file, metadata[0], metadata[1], "the metadata"), 16 * MIB, "the metadata")
     try:
         content = json.loads(text)
     except ValueError as cause:
