@@ -41,6 +41,11 @@ def compare(path: Path) -> None:
             for road, other in zip(tile.roads, expected.get("roads_geo") or [], strict=True):
                 assert (road.way_id, road.part, road.road_class) == (other["way_id"], other["part"], other["frc"])
                 assert np.array_equal(road.vertices, np.array(other["line"])), (z, x, y, road.way_id)
+            for known, other in zip(tile.attributes, expected.get("attributes") or [], strict=True):
+                assert (known.way_id, known.form, known.structure, known.layer, known.oneway) == tuple(
+                    other[key] for key in ("way_id", "form", "structure", "layer", "oneway")
+                )
+                assert (known.name, known.reference, known.surface) == tuple(other[key] or "" for key in ("name", "ref", "surface"))
 
 
 def test_the_golden_package_is_read_as_corniche_reads_it():

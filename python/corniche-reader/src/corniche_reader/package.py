@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from .attributes import Attributes, read_attributes
 from .container import Place, parts, read_at
 from .errors import ContainerError, PayloadError, UnknownTile
 from .grid import Grid
@@ -24,6 +25,7 @@ class Tile:
     #: None for a tile without ground.
     terrain: Terrain | None
     roads: list[Road]
+    attributes: list[Attributes]
     sections: dict[int, bytes]
 
 
@@ -85,4 +87,5 @@ class Package:
             if terrain is None:
                 raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground")
             roads = read_roads(found[2], terrain, self.grid, (z, x, y))
-        return Tile(z, x, y, terrain, roads, found)
+        attributes = read_attributes(found[4], f"attributes of tile {z}/{x}/{y}") if 4 in found else []
+        return Tile(z, x, y, terrain, roads, attributes, found)
