@@ -1,0 +1,22 @@
+"""Reads packages of Corniche: tiles of TIN terrain with roads draped on it. Written from `crates/tileset/FORMAT.md`."""
+
+from .attributes import Attributes
+from .errors import ContainerError, PayloadError, ReadError, UnknownTile
+from .package import Package, Tile
+from .roads import CROSSING, SOURCE, TIN_VERTEX, Road
+from .terrain import Terrain
+
+__all__ = [
+    "CROSSING",
+    "SOURCE",
+    "TIN_VERTEX",
+    "Attributes",
+    "ContainerError",
+    "Package",
+    "PayloadError",
+    "ReadError",
+    "Road",
+    "Terrain",
+    "Tile",
+    "UnknownTile",
+]

@@ -1,0 +1,236 @@
+"""The GEO roads section (sections 6 and 7 of the format): classes, heads, points, and vertices that are guessed or surprises."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .codes import Cursor, unzigzag
+from .errors import PayloadError
+from .grid import Grid
+from .mesh import Mesh, Point, orient
+from .terrain import Terrain
+
+#: What a vertex of a line is.
+SOURCE, CROSSING, TIN_VERTEX = 1, 2, 3
+END = (0,)
+
+
+@dataclass(frozen=True)
+class Road:
+    """One part of a way in a tile, draped on the TIN."""
+
+    way_id: int
+    road_class: int
+    part: int
+    #: [x, y, z] of each vertex: working metres, and the height in metres.
+    vertices: NDArray[np.float64]
+    #: What each vertex is: SOURCE, CROSSING or TIN_VERTEX.
+    kinds: NDArray[np.int8]
+
+
+@dataclass
+class _Line:
+    way_id: int
+    part: int
+    flags: int
+    points: list[Point]
+
+
+def read_roads(data: bytes, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
+    """Decodes the section."""
+    what = "GEO roads of tile {}/{}/{}".format(*tile)
+    whole = Cursor(data, what)
+    counts = [(int.from_bytes(whole.take(4), "little"), int.from_bytes(whole.take(4), "little")) for _ in range(9)]
+    lattice = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in terrain.vertices.tolist()]
+    mesh = Mesh(lattice, terrain.triangles.tolist())
+    follower = _Follower(mesh, (terrain.heights_q.astype(np.float64) * grid.quantum_m).tolist(), what)
+    roads = []
+    for number, (lines, size) in enumerate(counts):
+        cursor = Cursor(whole.take(size), what)
+        for line in _lines(cursor, lines, grid.lattice_of_node(tile, 0, 0)):
+            vertices = follower.follow(line, _surprises(cursor))
+            places = np.empty((len(vertices), 3))
+            for i, vertex in enumerate(vertices):
+                u, v, z = vertex[1]
+                places[i, :2] = grid.working(u, v)
+                places[i, 2] = z
+            kinds = np.array([kind for kind, _ in vertices], np.int8)
+            roads.append(Road(line.way_id, number, line.part, places, kinds))
+        cursor.end()
+    whole.end()
+    return roads
+
+
+def _lines(cursor: Cursor, count: int, corner: Point) -> list[_Line]:
+    if count > len(cursor.data):
+        raise PayloadError(f"{cursor.what}: more lines than bytes")
+    way, lines = 0, []
+    for _ in range(count):
+        way += unzigzag(cursor.varint())
+        lines.append(_Line(way, 0, 0, []))
+    for line in lines:
+        line.part = cursor.varint()
+    sizes = []
+    for line in lines:
+        head = cursor.varint()
+        line.flags = head & 3
+        sizes.append(head >> 2)
+    total = sum(sizes)
+    if total > 1 << 22:
+        raise PayloadError(f"{cursor.what}: too many points")
+    if not lines:
+        return lines
+    du, dv = cursor.planes(total), cursor.planes(total)
+    (u, v), at = corner, 0
+    for line, size in zip(lines, sizes, strict=True):
+        for i in range(at, at + size):
+            u, v = u + unzigzag(du[i]), v + unzigzag(dv[i])
+            line.points.append((u, v))
+        at += size
+    return lines
+
+
+def _surprises(cursor: Cursor) -> list[tuple[int, tuple[int, ...]]]:
+    """For each surprise: how many vertices before it are as guessed, and what it is."""
+    found = []
+    for _ in range(cursor.varint()):
+        gap, kind = cursor.varint(), cursor.byte()
+        if kind > TIN_VERTEX:
+            raise PayloadError(f"{cursor.what}: a surprise of the unknown kind {kind}")
+        found.append((gap, (kind, *(cursor.varint() for _ in range((0, 1, 2, 1)[kind])))))
+    return found
+
+
+class _Follower:
+    """Follows lines over the TIN, and computes the places of their vertices in f64 as the format says."""
+
+    def __init__(self, mesh: Mesh, heights_m: list[float], what: str) -> None:
+        self.mesh, self.heights, self.what = mesh, heights_m, what
+
+    def follow(self, line: _Line, surprises: list[tuple[int, tuple[int, ...]]]) -> list[tuple[int, tuple[float, float, float]]]:
+        """Kind and place [u, v, z] of each vertex."""
+        points, used = line.points, line.flags & 1
+        last = len(points) - (line.flags >> 1 & 1)
+        found: list[tuple[int, tuple[float, float, float]]] = []
+        rest: Iterator[tuple[int, tuple[int, ...]]] = iter(surprises)
+        gap, surprise = next(rest, (-1, END))
+        here: tuple[int, ...] | None = None
+        while True:
+            if gap == 0:
+                vertex = surprise
+                gap, surprise = next(rest, (-1, END))
+            else:
+                vertex = self._guess(points, used, last, here)
+                gap -= gap > 0
+            if vertex[0] == 0:
+                break
+            if any(n >= self._count(vertex[0]) for n in vertex[1:]) or len(found) > 1 << 22:
+                raise PayloadError(f"{self.what}: way {line.way_id} names a part of the TIN that does not exist")
+            if vertex[0] == SOURCE:
+                if used >= last:
+                    raise PayloadError(f"{self.what}: way {line.way_id} has more vertices than points")
+                found.append((SOURCE, self._source(points[used], vertex[1])))
+                used += 1
+            elif vertex[0] == CROSSING:
+                if not 0 < used < len(points):
+                    raise PayloadError(f"{self.what}: way {line.way_id} crosses an edge outside its segments")
+                found.append((CROSSING, self._crossing(vertex[1], vertex[2], points[used - 1], points[used])))
+            else:
+                u, v = self.mesh.points[vertex[1]]
+                found.append((TIN_VERTEX, (float(u), float(v), self.heights[vertex[1]])))
+            here = vertex
+        if used != last or gap >= 0:
+            raise PayloadError(f"{self.what}: way {line.way_id} ends before its last point or surprise")
+        return found
+
+    def _count(self, kind: int) -> int:
+        return len(self.mesh.triangles) if kind == SOURCE else len(self.mesh.points)
+
+    def _guess(self, points: list[Point], used: int, last: int, here: tuple[int, ...] | None) -> tuple[int, ...]:
+        if used >= len(points):
+            return END
+        if here is None:
+            if used:
+                raise PayloadError(f"{self.what}: a line with a lead-in does not begin with a surprise")
+            triangle = self.mesh.locate(points[0])
+            return END if triangle is None else (SOURCE, triangle)
+        if used == 0:
+            raise PayloadError(f"{self.what}: a line has a vertex before its first point")
+        guess = self._from(points[used - 1], points[used], here)
+        return END if guess[0] == SOURCE and used >= last else guess
+
+    def _from(self, p: Point, q: Point, here: tuple[int, ...]) -> tuple[int, ...]:
+        mesh = self.mesh
+        if here[0] == SOURCE:
+            t = here[1]
+            corners = mesh.triangles[t]
+            for v in corners:
+                if mesh.points[v] == p:
+                    return self._from_vertex(v, p, q)
+            for k in range(3):
+                a, b = corners[k], corners[(k + 1) % 3]
+                pa, pb = mesh.points[a], mesh.points[b]
+                if orient(pa, pb, p) == 0 and orient(pa, pb, q) < 0:
+                    return self._ahead(mesh.on_left.get((b, a)), p, q, None)
+            return self._ahead(t, p, q, None)
+        if here[0] == TIN_VERTEX:
+            return self._from_vertex(here[1], p, q)
+        a, b = here[1], here[2]
+        edge = (a, b) if orient(p, q, mesh.points[a]) > 0 else (b, a)
+        return self._ahead(mesh.on_left.get(edge), p, q, None)
+
+    def _from_vertex(self, v: int, p: Point, q: Point) -> tuple[int, ...]:
+        mesh = self.mesh
+        for t, k in mesh.around[v]:
+            corners = mesh.triangles[t]
+            pv, after, before = (mesh.points[corners[(k + i) % 3]] for i in range(3))
+            if orient(pv, after, q) >= 0 and orient(before, pv, q) >= 0:
+                return self._ahead(t, p, q, v)
+        return END
+
+    def _ahead(self, t: int | None, p: Point, q: Point, at: int | None) -> tuple[int, ...]:
+        if t is None:
+            return END
+        mesh = self.mesh
+        corners = mesh.triangles[t]
+        places = [mesh.points[v] for v in corners]
+        inside = min(orient(places[k], places[(k + 1) % 3], q) for k in range(3))
+        if inside > 0:
+            return (SOURCE, t)
+        if inside == 0:
+            located = mesh.locate(q)
+            return END if located is None else (SOURCE, located)
+        sides = [orient(p, q, place) for place in places]
+        for k in range(3):
+            if sides[k] < 0 < sides[(k + 1) % 3]:
+                a, b = corners[k], corners[(k + 1) % 3]
+                return (CROSSING, min(a, b), max(a, b))
+        x, y = p if at is None else mesh.points[at]
+        for v, side, (cx, cy) in zip(corners, sides, places, strict=True):
+            if side == 0 and v != at and (q[0] - p[0]) * (cx - x) + (q[1] - p[1]) * (cy - y) > 0:
+                return (TIN_VERTEX, v)
+        return END
+
+    def _source(self, point: Point, triangle: int) -> tuple[float, float, float]:
+        a, b, c = self.mesh.triangles[triangle]
+        (ua, va), (ub, vb), (uc, vc) = (self.mesh.points[k] for k in (a, b, c))
+        bu, bv, cu, cv = float(ub - ua), float(vb - va), float(uc - ua), float(vc - va)
+        du, dv = float(point[0] - ua), float(point[1] - va)
+        total = (bu * cv) - (bv * cu)
+        ha, hb, hc = (self.heights[k] for k in (a, b, c))
+        z = ha + (((((du * cv) - (dv * cu)) / total) * (hb - ha)) + ((((bu * dv) - (bv * du)) / total) * (hc - ha)))
+        return float(point[0]), float(point[1]), z
+
+    def _crossing(self, a: int, b: int, p: Point, q: Point) -> tuple[float, float, float]:
+        sa, sb = orient(p, q, self.mesh.points[a]), orient(p, q, self.mesh.points[b])
+        near, far, s_near, s_far = (a, b, sa, sb) if abs(sa) <= abs(sb) else (b, a, sb, sa)
+        if s_near == s_far:
+            raise PayloadError(f"{self.what}: a line does not cross the edge that it names")
+        t = float(s_near) / float(s_near - s_far)
+        (un, vn), (uf, vf) = self.mesh.points[near], self.mesh.points[far]
+        hn, hf = self.heights[near], self.heights[far]
+        return float(un) + (t * float(uf - un)), float(vn) + (t * float(vf - vn)), hn + (t * (hf - hn))
