@@ -23,6 +23,10 @@ pub(crate) struct ReliefMap {
 
 /// Texels on a side.
 const SIDE: usize = TILE_NODES;
+/// What is less is 0.
+const LEVEL: f32 = 1e-5;
+/// The least that a texel may look away from the ground: the first step above half.
+const LEAST_AWAY: f32 = 0.005;
 /// A node may lie on an edge but for rounding.
 const EDGE: f64 = 1e-9;
 
@@ -84,8 +88,12 @@ fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn texel(direction: [f32; 3]) -> [u8; 3] {
-    direction.map(|axis| ((axis + 1.0) * 127.5).round() as u8)
+/// Nothing looks into the ground: glTF has no such normals.
+fn texel([along, aside, away]: [f32; 3]) -> [u8; 3] {
+    // Between 127 and 128, rounding alone would decide, and differently in two tiles.
+    let level = |axis: f32| if axis.abs() < LEVEL { 0.0 } else { axis };
+    let [x, y, z] = unit([level(along), level(aside), away.max(LEAST_AWAY)]);
+    [x, y, z].map(|axis| ((axis + 1.0) * 127.5).round() as u8)
 }
 
 /// What a program mixes from the normals of vertices at each node, by row from the north; upwards where there is no ground.

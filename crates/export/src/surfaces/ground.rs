@@ -119,10 +119,10 @@ pub(crate) fn across([u, v]: [f64; 2], tile: &LatticeBounds) -> [f32; 2] {
     [share(u, tile.min.u, tile.max.u), 1.0 - share(v, tile.min.v, tile.max.v)]
 }
 
-/// A vector of length one.
+/// A vector of length one; upwards where there is no direction, as halfway between two that are opposite.
 pub(crate) fn unit(vector: [f32; 3]) -> [f32; 3] {
     let length = vector.iter().map(|axis| axis * axis).sum::<f32>().sqrt();
-    vector.map(|axis| axis / length)
+    if length > 0.0 { vector.map(|axis| axis / length) } else { [0.0, 0.0, 1.0] }
 }
 
 /// A triangle whose edges (from corner k to the next) are divided where there is a middle.

@@ -164,6 +164,11 @@ impl<'a> Reader<'a> {
         reader
     }
 
+    /// Whether more was read than there is. A string that was written whole is never read beyond its end.
+    pub(crate) fn is_past_end(&self) -> bool {
+        self.taken > self.bytes.len()
+    }
+
     /// Whether exactly the bytes that are there were read.
     pub(crate) fn is_exact(&self) -> bool {
         self.taken == self.bytes.len()

@@ -86,6 +86,9 @@ impl Guide for Player<'_, '_> {
         guess: &dyn Fn(&[u32]) -> Option<Corner>,
     ) -> Result<Option<u32>, Damage> {
         let Some(first) = guess(&[]) else { return Ok(None) };
+        if self.bits.is_past_end() {
+            return Err(Damage::Invalid { what: "the length of the coded bits" });
+        }
         match self.symbols.code(self.bits, nodes, gate, first, NONE) {
             NONE => Ok(None),
             1 => Ok(Some(first.vertex)),
