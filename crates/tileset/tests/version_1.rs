@@ -1,4 +1,4 @@
-//! A package that was written when version 1 of the format began is read as it was then: its ground, roads and attributes, bit for bit.
+//! A package that was written when version 1 of the format began is read as it was then: its ground, roads, attributes and relief, bit for bit.
 //!
 //! `data/version-1.pmtiles` stays as it is; `data-samples/SOURCES.md` says how it was made. When this test fails, packages that
 //! people have are no longer read.
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use corniche_drape::DrapedVertex;
 use corniche_geom::LatticePoint;
-use corniche_tileset::{FilePackage, GeoRoad, Sections, SvRoad, Terrain};
+use corniche_tileset::{FilePackage, GeoRoad, Relief, Sections, SvRoad, Terrain};
 
 /// Checksums of what was decoded, in little-endian bytes.
 #[derive(Default)]
@@ -20,6 +20,7 @@ struct Sums {
     roads_geo: crc32fast::Hasher,
     roads_sv: crc32fast::Hasher,
     attributes: crc32fast::Hasher,
+    relief: crc32fast::Hasher,
 }
 
 impl Sums {
@@ -40,6 +41,20 @@ impl Sums {
             self.measures.update(&measure.to_le_bytes());
         }
         self.measures.update(&ground.uncovered_nodes.to_le_bytes());
+    }
+
+    fn add_relief(&mut self, relief: &Relief) {
+        let side = relief.heights().columns();
+        for (row, column) in (0..side).flat_map(|row| (0..side).map(move |column| (row, column))) {
+            let height_m = relief.heights().height(column, row);
+            self.relief.update(&height_m.unwrap_or(f32::NEG_INFINITY).to_le_bytes());
+            for slope in relief.border_slope(column, row).into_iter().flatten() {
+                self.relief.update(&slope.to_le_bytes());
+            }
+        }
+        for is_water in relief.water().unwrap_or_default() {
+            self.relief.update(&[u8::from(*is_water)]);
+        }
     }
 
     fn add_geo(&mut self, road: &GeoRoad) {
@@ -101,6 +116,9 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
             counts[2] += ground.tin.triangles().len();
             sums.add_ground(ground);
         }
+        if let Some(relief) = &tile.relief {
+            sums.add_relief(relief);
+        }
         counts[3] += tile.roads_geo.len();
         counts[4] += tile.roads_sv.len();
         tile.roads_geo.iter().for_each(|road| sums.add_geo(road));
@@ -112,8 +130,9 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
             }
         }
     }
-    let Sums { vertices, triangles, normals, measures, roads_geo, roads_sv, attributes } = sums;
-    let sums = [vertices, triangles, normals, measures, roads_geo, roads_sv, attributes]
+    let Sums { vertices, triangles, normals, measures, roads_geo, roads_sv, attributes, relief } =
+        sums;
+    let sums = [vertices, triangles, normals, measures, roads_geo, roads_sv, attributes, relief]
         .map(crc32fast::Hasher::finalize);
     assert_eq!(
         counts,
@@ -129,8 +148,9 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
             3_396_582_731,
             3_293_787_183,
             543_977_351,
-            3_089_146_731
+            3_089_146_731,
+            1_475_074_670
         ],
-        "vertices, triangles, normals, measures, GEO roads, SV roads, attributes"
+        "vertices, triangles, normals, measures, GEO roads, SV roads, attributes, relief"
     );
 }
