@@ -1,5 +1,7 @@
 //! Places on the earth, in metres from the middle of the data.
 
+use std::ops::{Mul, Sub};
+
 use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 
 /// A position from the earth's centre: x towards longitude 0, y towards 90° E, z towards the north pole (EPSG:4978).
@@ -73,7 +75,10 @@ pub(crate) fn dot(one: [f64; 3], other: [f64; 3]) -> f64 {
     one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 }
 
-pub(crate) fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(
+    [a, b, c]: [T; 3],
+    [x, y, z]: [T; 3],
+) -> [T; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 

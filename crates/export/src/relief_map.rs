@@ -11,6 +11,7 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png};
 
 use crate::{
     error::ExportError,
+    globe::cross,
     surfaces::{GroundMesh, unit},
 };
 
@@ -82,10 +83,6 @@ fn seen_from(vertex: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
     let along = tangent(vertex);
     let aside = cross(vertex, along);
     [along, aside, vertex].map(|axis| (0..3).map(|k| axis[k] * direction[k]).sum())
-}
-
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Nothing looks into the ground: glTF has no such normals.

@@ -139,7 +139,7 @@ pub(crate) struct ExportMeshArgs {
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) relief: ReliefMaps,
+    pub(crate) relief: OnOrNone,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,
@@ -231,7 +231,7 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) relief: ReliefMaps,
+    pub(crate) relief: OnOrNone,
     /// Walls below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
@@ -240,7 +240,7 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) skirts: Skirts,
+    pub(crate) skirts: OnOrNone,
     /// Compression of vertices without loss: meshopt, or none
     #[arg(
         long,
@@ -380,16 +380,9 @@ impl From<TileRoadsArg> for TileRoads {
     }
 }
 
-/// Normal maps of the ground.
+/// Whether an export has something: normal maps of the ground, walls below the borders of tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ReliefMaps {
-    On,
-    None,
-}
-
-/// Walls below the borders of tiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Skirts {
+pub(crate) enum OnOrNone {
     On,
     None,
 }

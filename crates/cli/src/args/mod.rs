@@ -28,7 +28,7 @@ pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
     Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportGeoTiffArgs, ExportMeshArgs,
-    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, ReliefMaps, Skirts,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, OnOrNone,
     TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;

@@ -11,7 +11,7 @@ use corniche_tileset::Manifest;
 
 use super::unknown_ending::unknown_ending;
 use crate::{
-    args::{ExportMeshArgs, ReliefMaps},
+    args::{ExportMeshArgs, OnOrNone},
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         bounds: args.bounds,
         roads,
         classes: args.classes.classes(),
-        relief: args.relief == ReliefMaps::On,
+        relief: args.relief == OnOrNone::On,
         style,
         material_file: materials.as_deref().map(file_name),
     };

@@ -8,7 +8,7 @@ use corniche_export::{
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{Compress, ExportTiles3dArgs, ReliefMaps, Skirts},
+    args::{Compress, ExportTiles3dArgs, OnOrNone},
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
@@ -28,8 +28,8 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         roads: TileRoads::from(args.roads),
         classes: args.classes.classes(),
         style,
-        relief: args.relief == ReliefMaps::On,
-        skirts: args.skirts == Skirts::On,
+        relief: args.relief == OnOrNone::On,
+        skirts: args.skirts == OnOrNone::On,
         compress: args.compress == Compress::Meshopt,
         coordinates: match args.heights {
             None => Coordinates::Wgs84,

@@ -66,12 +66,8 @@ impl GlbWriter {
         let offset = self.bytes.length();
         let (target, accessor) = match content {
             Content::Vectors { vectors, has_range } => {
-                self.bytes.push(
-                    bytes_of(vectors.as_flattened().iter().map(|v| v.to_le_bytes())).as_slice(),
-                )?;
-                let mut accessor = json!({
-                    "componentType": F32, "type": "VEC3", "count": vectors.len(),
-                });
+                let mut accessor =
+                    self.put_floats(vectors.as_flattened(), "VEC3", vectors.len())?;
                 if *has_range {
                     let [least, largest] = range_of(vectors);
                     accessor["min"] = json!(least);
@@ -80,18 +76,10 @@ impl GlbWriter {
                 (ARRAY_BUFFER, accessor)
             }
             Content::Places(places) => {
-                let flat = places.as_flattened().iter();
-                self.bytes.push(bytes_of(flat.map(|v| v.to_le_bytes())).as_slice())?;
-                let accessor =
-                    json!({ "componentType": F32, "type": "VEC2", "count": places.len() });
-                (ARRAY_BUFFER, accessor)
+                (ARRAY_BUFFER, self.put_floats(places.as_flattened(), "VEC2", places.len())?)
             }
             Content::Tangents(tangents) => {
-                let flat = tangents.as_flattened().iter();
-                self.bytes.push(bytes_of(flat.map(|v| v.to_le_bytes())).as_slice())?;
-                let accessor =
-                    json!({ "componentType": F32, "type": "VEC4", "count": tangents.len() });
-                (ARRAY_BUFFER, accessor)
+                (ARRAY_BUFFER, self.put_floats(tangents.as_flattened(), "VEC4", tangents.len())?)
             }
             Content::Indices(indices) => {
                 self.bytes
@@ -109,6 +97,12 @@ impl GlbWriter {
         accessor["bufferView"] = json!(self.views.len() - 1);
         self.accessors.push(accessor);
         Ok(self.accessors.len() - 1)
+    }
+
+    /// Puts numbers into the buffer; gives the accessor of items of a type, without its view.
+    fn put_floats(&mut self, flat: &[f32], kind: &str, items: usize) -> io::Result<Value> {
+        self.bytes.push(bytes_of(flat.iter().map(|v| v.to_le_bytes())).as_slice())?;
+        Ok(json!({ "componentType": F32, "type": kind, "count": items }))
     }
 }
 
