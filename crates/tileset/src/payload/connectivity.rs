@@ -131,20 +131,38 @@ impl<'w> Edges<'w> {
         }
         Ok(())
     }
+
+    /// Adds a triangle whose edges are known to have none on that side.
+    fn add_new(&mut self, [a, b, c]: [u32; 3]) {
+        for [from, to, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
+            self.add_edge(from, to, corner);
+        }
+    }
+}
+
+/// What is to the left of a gate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// No triangle.
+    Nothing,
+    /// A vertex that was guessed, so its edges to the gate have no triangle yet.
+    Guessed(u32),
+    /// Any vertex.
+    Named(u32),
 }
 
 /// What decides which triangles the walk finds: the triangles themselves when writing, the symbols when reading.
 pub(crate) trait Guide {
     /// A triangle to start from, not found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
-    /// The vertex to the left of the gate a ► b with the corner d on its right, if there is a triangle. `guess` takes
-    /// the vertices that are no answer and gives the next best one.
+    /// What is to the left of the gate a ► b with the corner d on its right. `guess` takes the vertices that are no answer and gives the
+    /// next best one.
     fn corner(
         &mut self,
         gate: [u32; 3],
         nodes: &Nodes<'_>,
         guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Option<u32>, Damage>;
+    ) -> Result<Answer, Damage>;
 }
 
 /// Walks until `count` triangles are found; gives them and the vertices in the order of the walk. Fails when that
@@ -168,20 +186,23 @@ pub(crate) fn walk(
             let guess = |no: &[u32]| {
                 nodes.best_corner([a, b], |c| !no.contains(&c) && edges.allow([a, b, c]))
             };
-            let corner = guide.corner([a, b, d], nodes, &guess);
-            // This check comes before the answer is used: a search that gave up has no valid result.
+            let answer = guide.corner([a, b, d], nodes, &guess)?;
             work.check()?;
-            let Some(c) = corner? else { continue };
+            let (Answer::Guessed(c) | Answer::Named(c)) = answer else { continue };
+            if let Answer::Guessed(_) = answer {
+                edges.add_new([a, b, c]);
+            } else {
+                check_vertex(c, nodes)?;
+                edges.add([a, b, c])?;
+            }
             ([a, b, c], Some([a, b, d]))
         } else {
-            let start = guide.start(&edges);
+            let start = guide.start(&edges)?;
             work.check()?;
-            (start?, None)
+            start.iter().try_for_each(|&vertex| check_vertex(vertex, nodes))?;
+            edges.add(start)?;
+            (start, None)
         };
-        if triangle.iter().any(|&vertex| vertex as usize >= nodes.len()) {
-            return Err(Damage::Invalid { what: "a triangle's vertex" });
-        }
-        edges.add(triangle)?;
         triangles.push(triangle);
         for vertex in triangle {
             if !std::mem::replace(&mut seen[vertex as usize], true) {
@@ -200,6 +221,14 @@ pub(crate) fn walk(
     let rest = (0..nodes.len() as u32).filter(|&vertex| !seen[vertex as usize]);
     order.extend(rest.map(|vertex| Reached { vertex, gate: [vertex; 3] }));
     Ok((triangles, order))
+}
+
+fn check_vertex(vertex: u32, nodes: &Nodes<'_>) -> Result<(), Damage> {
+    if (vertex as usize) < nodes.len() {
+        Ok(())
+    } else {
+        Err(Damage::Invalid { what: "a triangle's vertex" })
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,5 @@
 //! Vertices as nodes of a tile's grid, and the search for the corner that a Delaunay triangulation would take.
 
-use std::cmp::Ordering;
-
 use corniche_geom::TILE_NODES;
 
 use crate::payload::work_limit::Work;
@@ -10,11 +8,20 @@ use crate::payload::work_limit::Work;
 #[derive(Debug)]
 pub(crate) struct Nodes<'w> {
     /// Column and row.
-    at: Vec<[i64; 2]>,
-    /// How many vertices come before each node, by row, then column.
+    at: Vec<[i32; 2]>,
+    /// A bit for each node, row by row: rows of [`GROUPS`] groups of 64, the westernmost node of a group in its lowest bit. One group
+    /// more at the end, so that 64 nodes can be read from any place.
+    grid: Vec<u64>,
+    /// How many vertices come before each group.
     before: Vec<u32>,
     work: &'w Work,
 }
+
+/// Groups of 64 nodes in a row of the grid.
+const GROUPS: usize = TILE_NODES.div_ceil(64);
+
+/// The last column, and the last row.
+const LAST: i32 = TILE_NODES as i32 - 1;
 
 /// Marks the limit of a search before any vertex is found.
 const NO_VERTEX: u32 = u32::MAX;
@@ -30,30 +37,27 @@ pub(crate) struct Corner {
     pub(crate) cross: i64,
 }
 
-/// A candidate and how it sees the gate: cot of the angle = dot / cross.
-#[derive(Clone, Copy)]
-struct Best {
-    corner: Corner,
-    /// First and last column and row of a box around the circle through the gate and the vertex.
-    columns: [i64; 2],
-    rows: [i64; 2],
-}
-
 impl<'w> Nodes<'w> {
     /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column. Searches count as `work`.
     pub(crate) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
-        let at: Vec<[i64; 2]> = at.map(|node| node.map(i64::from)).collect();
-        let mut before = Vec::with_capacity(TILE_NODES * TILE_NODES + 1);
-        for (vertex, &[column, row]) in at.iter().enumerate() {
-            before.resize(row as usize * TILE_NODES + column as usize + 1, vertex as u32);
+        let at: Vec<[i32; 2]> = at.map(|node| node.map(i32::from)).collect();
+        let mut grid = vec![0_u64; TILE_NODES * GROUPS + 1];
+        for &[column, row] in &at {
+            grid[row as usize * GROUPS + column as usize / 64] |= 1 << (column % 64);
         }
-        before.resize(TILE_NODES * TILE_NODES + 1, at.len() as u32);
-        Self { at, before, work }
+        let before = grid.iter().scan(0, |count, group| {
+            let before = *count;
+            *count += group.count_ones();
+            Some(before)
+        });
+        let before = before.collect();
+        Self { at, grid, before, work }
     }
 
     /// How the corner on the right of a ► b sees this gate: dot and cross, which is positive.
     pub(crate) fn behind(&self, [a, b, d]: [u32; 3]) -> [i64; 2] {
-        let [[ac, ar], [bc, br], [dc, dr]] = [a, b, d].map(|vertex| self.at[vertex as usize]);
+        let [[ac, ar], [bc, br], [dc, dr]] =
+            [a, b, d].map(|vertex| self.at[vertex as usize].map(i64::from));
         let dot = (ac - dc) * (bc - dc) + (ar - dr) * (br - dr);
         [dot, (bc - ac) * (dr - ar) + (ar - br) * (dc - ac)]
     }
@@ -61,7 +65,7 @@ impl<'w> Nodes<'w> {
     /// The square of an edge's length.
     pub(crate) fn length_squared(&self, [a, b]: [u32; 2]) -> i64 {
         let ([ac, ar], [bc, br]) = (self.at[a as usize], self.at[b as usize]);
-        (ac - bc) * (ac - bc) + (ar - br) * (ar - br)
+        i64::from((ac - bc) * (ac - bc) + (ar - br) * (ar - br))
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -77,119 +81,184 @@ impl<'w> Nodes<'w> {
     /// one with the smallest index.
     ///
     /// Rows are searched outwards from the gate until they leave a box around the circle through the best vertex so far. Floating
-    /// point only bounds the search, by more than its error; decisions are exact. It gives up when the allowed work
-    /// is used up; the caller checks this.
+    /// point only bounds the search, by more than its error; decisions are exact.
     pub(crate) fn best_corner(
         &self,
-        gate: [u32; 2],
+        [a, b]: [u32; 2],
         allowed: impl Fn(u32) -> bool,
     ) -> Option<Corner> {
+        let gate = Gate::new(self.at[a as usize], self.at[b as usize]);
         // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
-        let within = |cot| self.best_corner_within(gate, cot, &allowed);
-        within(Some(2)).or_else(|| within(Some(16))).or_else(|| within(None))
+        let found = [Some(2), Some(16), None].into_iter().find_map(|limit_cot| {
+            let mut best = Best::within(limit_cot, &gate);
+            let steps = self.search(&gate, &allowed, &mut best);
+            self.work.add(steps);
+            (best.vertex != NO_VERTEX).then_some(best)
+        });
+        found.map(|Best { vertex, is_tied, dot, cross, .. }| Corner {
+            vertex,
+            is_tied,
+            dot: i64::from(dot),
+            cross: i64::from(cross),
+        })
     }
 
-    /// The same among vertices that see the gate under an angle with at most this cotangent.
-    fn best_corner_within(
-        &self,
-        [a, b]: [u32; 2],
-        limit_cot: Option<i64>,
-        allowed: &impl Fn(u32) -> bool,
-    ) -> Option<Corner> {
-        let ([ac, ar], [bc, br]) = (self.at[a as usize], self.at[b as usize]);
-        let middle = i64::midpoint(ar, br);
-        let last_row = TILE_NODES as i64 - 1;
-        let mut best = limit_cot.map(|dot| {
-            let corner = Corner { vertex: NO_VERTEX, is_tied: false, dot, cross: 1 };
-            circle(corner, [[ac, ar], [bc, br]])
-        });
-        for away in 0..=last_row {
-            if self.work.is_too_much() {
-                break;
-            }
-            let (north, south) = (middle - away, middle + away);
-            let reach = |row: i64| {
-                best.is_none_or(|Best { rows: [first, last], .. }| (first..=last).contains(&row))
-            };
-            let (go_north, go_south) =
-                (north >= 0 && reach(north), away > 0 && south <= last_row && reach(south));
-            // The box meets the gate's rows: once outside on both sides, always outside.
-            if away > (ar - br).abs() && !go_north && !go_south {
-                break;
-            }
-            for (row, go) in [(north, go_north), (south, go_south)] {
-                if go {
-                    self.search_row(row, [[ac, ar], [bc, br]], allowed, &mut best);
-                }
+    /// Looks for better vertices than `best`; gives how many steps that took: rows and vertices.
+    fn search(&self, gate: &Gate, allowed: &impl Fn(u32) -> bool, best: &mut Best) -> usize {
+        let mut steps = 0;
+        let middle = i32::midpoint(gate.a[1], gate.b[1]);
+        // First to the side where the vertex is, then to the other.
+        let ahead = if gate.dx > 0 { -1 } else { 1 };
+        for (mut row, step) in [(middle, ahead), (middle - ahead, -ahead)] {
+            // The box reaches to the gate's middle or beyond.
+            while row >= best.rows[0] && row <= best.rows[1] {
+                steps += 1 + self.search_row(row, gate, allowed, best);
+                row += step;
             }
         }
-        best.map(|best| best.corner).filter(|corner| corner.vertex != NO_VERTEX)
+        steps
     }
 
+    #[inline]
     fn search_row(
         &self,
-        row: i64,
-        [[ac, ar], [bc, br]]: [[i64; 2]; 2],
+        row: i32,
+        gate: &Gate,
         allowed: &impl Fn(u32) -> bool,
-        best: &mut Option<Best>,
-    ) {
-        // x grows with the column, y against the row: left of a ► b means cross > 0.
-        let (dx, dy) = (bc - ac, ar - br);
-        let (mut low, mut high) = (0, TILE_NODES as i64 - 1);
-        // cross = dx · (y − ay) − dy · (x − ax) with y − ay = ar − row.
-        let lift = dx * (ar - row);
-        match dy.signum() {
-            0 if lift <= 0 => return,
-            0 => {}
-            1 => high = high.min(ac + lift.div_euclid(dy)),
-            _ => low = low.max(ac + lift.div_euclid(dy)),
-        }
-        if let Some(Best { columns: [first, last], .. }) = *best {
-            (low, high) = (low.max(first), high.min(last));
-        }
-        if low > high {
-            return;
-        }
-        let first = self.before[row as usize * TILE_NODES + low as usize] as usize;
-        let end = self.before[row as usize * TILE_NODES + high as usize + 1] as usize;
-        for (vertex, &[c, r]) in (first..end).zip(&self.at[first..end]) {
-            let cross = dx * (ar - r) - dy * (c - ac);
-            if cross <= 0 {
-                continue;
-            }
-            let dot = (ac - c) * (bc - c) + (ar - r) * (br - r);
-            let vertex = vertex as u32;
-            let than_best = best.map_or(Ordering::Less, |Best { corner, .. }| {
-                (dot * corner.cross).cmp(&(corner.dot * cross))
-            });
-            if than_best == Ordering::Greater || !allowed(vertex) {
-                continue;
-            }
-            let corner = Corner { vertex, is_tied: false, dot, cross };
-            match best {
-                Some(best) if than_best == Ordering::Equal => {
-                    // The best so far may be the limit of the search, which is no vertex.
-                    let is_tied = best.corner.vertex != NO_VERTEX;
-                    best.corner = if vertex < best.corner.vertex { corner } else { best.corner };
-                    best.corner.is_tied = is_tied;
+        best: &mut Best,
+    ) -> usize {
+        let Gate { a: [ac, ar], b: [bc, br], dx, dy, .. } = *gate;
+        let [low, high] = gate.columns_on_left(row);
+        let (mut low, high) = (low.max(best.columns[0]), high.min(best.columns[1]));
+        let cross_in_row = dx * (ar - row) + dy * ac;
+        let dot_in_row = (ar - row) * (br - row);
+        let mut looked_at = 0;
+        while low <= high {
+            let (group, shift) = (row as usize * GROUPS + low as usize / 64, low as u32 % 64);
+            let here = self.grid[group] >> shift;
+            let mut left = here | (self.grid[group + 1] << 1) << (63 - shift);
+            left &= u64::MAX >> (63 - (high - low).min(63));
+            while left != 0 {
+                let column = low + left.trailing_zeros() as i32;
+                left &= left - 1;
+                looked_at += 1;
+                let cross = cross_in_row - dy * column;
+                let dot = (ac - column) * (bc - column) + dot_in_row;
+                let [new, old] = [
+                    i64::from(dot) * i64::from(best.cross),
+                    i64::from(best.dot) * i64::from(cross),
+                ];
+                if cross > 0 && new <= old {
+                    let vertex = self.vertex(column, row);
+                    if allowed(vertex) {
+                        best.take(vertex, [dot, cross], new == old, gate);
+                    }
                 }
-                _ => *best = Some(circle(corner, [[ac, ar], [bc, br]])),
             }
+            low += 64;
         }
-        self.work.add(1 + end - first);
+        looked_at
+    }
+
+    /// The vertex at a node that has one.
+    fn vertex(&self, column: i32, row: i32) -> u32 {
+        let group = row as usize * GROUPS + column as usize / 64;
+        let west = self.grid[group] & ((1 << (column % 64)) - 1);
+        self.before[group] + west.count_ones()
     }
 }
 
-/// The box around the circle through a, b and the corner: its centre is cot / 2 gate lengths to the left of the gate's middle.
-fn circle(corner: Corner, [[ac, ar], [bc, br]]: [[i64; 2]; 2]) -> Best {
-    let cot = corner.dot as f64 / corner.cross as f64;
-    let (dx, dy) = ((bc - ac) as f64, (ar - br) as f64);
-    // Left of (dx, dy) is (−dy, dx); rows grow downwards.
-    let center = [(ac + bc) as f64 / 2.0 - cot / 2.0 * dy, (ar + br) as f64 / 2.0 - cot / 2.0 * dx];
-    let radius = ((dx * dx + dy * dy) * (1.0 + cot * cot)).sqrt() / 2.0 * (1.0 + 1e-9);
-    // Truncation is towards 0: less than a cell.
-    let [columns, rows] = center.map(|at| [(at - radius) as i64 - 1, (at + radius) as i64 + 1]);
-    Best { corner, columns, rows }
+/// A directed edge a ► b.
+struct Gate {
+    /// Column and row.
+    a: [i32; 2],
+    b: [i32; 2],
+    /// From a to b; y grows against the row.
+    dx: i32,
+    dy: i32,
+    /// Columns that the edge's line goes east from one row to the next one north, times 2^32, rounded.
+    slope: i64,
+}
+
+impl Gate {
+    fn new(a: [i32; 2], b: [i32; 2]) -> Self {
+        let (dx, dy) = (b[0] - a[0], a[1] - b[1]);
+        let slope = if dy == 0 { 0 } else { (i64::from(dx) << 32) / i64::from(dy) };
+        Self { a, b, dx, dy, slope }
+    }
+
+    /// First and last column of a row that can hold nodes strictly to the left of the edge; none, or one more, may do so.
+    ///
+    /// The line meets the row at a whole number of columns, where nodes are on the line, or at least 1/256 from it: the slope's
+    /// error, at most 2^−24 over all rows, does not matter.
+    #[inline]
+    fn columns_on_left(&self, row: i32) -> [i32; 2] {
+        let north = self.a[1] - row;
+        let line = self.a[0] + ((i64::from(north) * self.slope) >> 32) as i32;
+        match self.dy.signum() {
+            1 => [0, line.min(LAST)],
+            -1 => [line.max(0), LAST],
+            _ if self.dx * north > 0 => [0, LAST],
+            _ => [1, 0],
+        }
+    }
+}
+
+/// The best vertex so far and how it sees the gate: cot of the angle = dot / cross. Or the limit of a search, which is [`NO_VERTEX`].
+struct Best {
+    vertex: u32,
+    is_tied: bool,
+    dot: i32,
+    cross: i32,
+    /// First and last column and row of a box around the circle through the gate and the vertex, within the grid.
+    columns: [i32; 2],
+    rows: [i32; 2],
+}
+
+impl Best {
+    /// No vertex, in a search for those that see the gate under an angle with at most this cotangent.
+    fn within(limit_cot: Option<i32>, gate: &Gate) -> Self {
+        let whole = [0, LAST];
+        // A vertex sees the gate under a cotangent of at most 2 · 256².
+        let dot = limit_cot.unwrap_or(4 * LAST * LAST);
+        let mut best =
+            Self { vertex: NO_VERTEX, is_tied: false, dot, cross: 1, columns: whole, rows: whole };
+        if limit_cot.is_some() {
+            best.shrink_box(gate);
+        }
+        best
+    }
+
+    /// Takes a vertex that is better, or as good as the best (`is_equal`).
+    #[inline]
+    fn take(&mut self, vertex: u32, [dot, cross]: [i32; 2], is_equal: bool, gate: &Gate) {
+        if is_equal && self.vertex != NO_VERTEX {
+            self.is_tied = true;
+            if vertex < self.vertex {
+                (self.vertex, self.dot, self.cross) = (vertex, dot, cross);
+            }
+        } else {
+            (self.vertex, self.dot, self.cross, self.is_tied) = (vertex, dot, cross, false);
+            self.shrink_box(gate);
+        }
+    }
+
+    /// Puts the box around the circle through a, b and the vertex: its centre is cot / 2 gate lengths to the left of the gate's middle.
+    #[inline]
+    fn shrink_box(&mut self, &Gate { a, b, dx, dy, .. }: &Gate) {
+        let half_cot = f64::from(self.dot) / f64::from(2 * self.cross);
+        let (dx, dy) = (f64::from(dx), f64::from(dy));
+        // Left of (dx, dy) is (−dy, dx); rows grow downwards.
+        let center = [
+            f64::from(a[0] + b[0]) / 2.0 - half_cot * dy,
+            f64::from(a[1] + b[1]) / 2.0 - half_cot * dx,
+        ];
+        let radius = ((dx * dx + dy * dy) * (0.25 + half_cot * half_cot)).sqrt() * (1.0 + 1e-9);
+        // Truncation is towards 0: less than a cell.
+        let within =
+            |at: f64| [((at - radius) as i32).max(0), ((at + radius) as i32 + 1).min(LAST)];
+        [self.columns, self.rows] = center.map(within);
+    }
 }
 
 #[cfg(test)]

@@ -21,14 +21,13 @@ impl Work {
         self.done.set(self.done.get().saturating_add(steps as u64));
     }
 
-    /// Whether more steps were taken than are allowed. A search then gives up, and its result has no meaning.
-    pub(crate) fn is_too_much(&self) -> bool {
-        self.done.get() > self.limit
-    }
-
     /// An error when more was done than is allowed.
     pub(crate) fn check(&self) -> Result<(), Damage> {
-        if self.is_too_much() { Err(Damage::TooMuchWork { limit: self.limit }) } else { Ok(()) }
+        if self.done.get() > self.limit {
+            Err(Damage::TooMuchWork { limit: self.limit })
+        } else {
+            Ok(())
+        }
     }
 
     /// Steps done.

@@ -70,7 +70,7 @@ fn a_fan_of_the_whole_border_stays_below_the_limit() {
     assert!(10 * steps <= allowed, "{steps} steps of {allowed}");
 }
 
-/// Neither wrong triangles nor a wrong "no triangle" come of a search that gave up.
+/// Also just below what the whole walk takes.
 #[test]
 fn a_walk_beyond_its_limit_is_refused() {
     let tin = triangulate(

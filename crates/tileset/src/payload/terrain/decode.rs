@@ -1,7 +1,7 @@
 use corniche_tin::{Tin, TinVertex};
 
 use crate::limits::{MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, Guide, NAMED, NONE, walk};
+use crate::payload::connectivity::{Answer, Edges, Guide, NAMED, NONE, walk};
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
@@ -84,15 +84,15 @@ impl Guide for Player<'_, '_> {
         gate: [u32; 3],
         nodes: &Nodes<'_>,
         guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Option<u32>, Damage> {
-        let Some(first) = guess(&[]) else { return Ok(None) };
+    ) -> Result<Answer, Damage> {
+        let Some(first) = guess(&[]) else { return Ok(Answer::Nothing) };
         if self.bits.is_past_end() {
             return Err(Damage::Invalid { what: "the length of the coded bits" });
         }
         match self.symbols.code(self.bits, nodes, gate, first, NONE) {
-            NONE => Ok(None),
-            1 => Ok(Some(first.vertex)),
-            NAMED => self.vertex().map(Some),
+            NONE => Ok(Answer::Nothing),
+            1 => Ok(Answer::Guessed(first.vertex)),
+            NAMED => self.vertex().map(Answer::Named),
             rank => {
                 let mut no = vec![first.vertex];
                 loop {
@@ -100,7 +100,7 @@ impl Guide for Player<'_, '_> {
                         .ok_or(Damage::Invalid { what: "a guess that does not exist" })?;
                     no.push(next.vertex);
                     if no.len() == usize::from(rank) {
-                        return Ok(Some(next.vertex));
+                        return Ok(Answer::Guessed(next.vertex));
                     }
                 }
             }

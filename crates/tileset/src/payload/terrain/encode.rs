@@ -2,7 +2,7 @@ use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GUESSES, Guide, NAMED, NONE, walk};
+use crate::payload::connectivity::{Answer, Edges, GUESSES, Guide, NAMED, NONE, walk};
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
 use crate::payload::range_coder::Writer;
@@ -156,22 +156,26 @@ impl Guide for Recorder<'_> {
         gate: [u32; 3],
         nodes: &Nodes<'_>,
         guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Option<u32>, Damage> {
+    ) -> Result<Answer, Damage> {
         let corner = self.edges.corner(gate[0], gate[1]);
         let Some(first) = guess(&[]) else {
             // Without a candidate there is no triangle, or it is not counter-clockwise.
             return if corner.is_none() {
-                Ok(None)
+                Ok(Answer::Nothing)
             } else {
                 Err(Damage::Invalid { what: "a triangle's vertex" })
             };
         };
         let symbol = corner.map_or(NONE, |actual| rank(actual, first, guess));
         self.symbols.code(self.bits, nodes, gate, first, symbol);
-        if let (NAMED, Some(actual)) = (symbol, corner) {
-            self.symbols.number(self.bits, actual)?;
+        match (corner, symbol) {
+            (None, _) => Ok(Answer::Nothing),
+            (Some(actual), NAMED) => {
+                self.symbols.number(self.bits, actual)?;
+                Ok(Answer::Named(actual))
+            }
+            (Some(actual), _) => Ok(Answer::Guessed(actual)),
         }
-        Ok(corner)
     }
 }
 
