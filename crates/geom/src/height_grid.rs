@@ -1,3 +1,6 @@
+/// Heights that are compared at the same time.
+const LANES: usize = 8;
+
 /// A regular grid of heights in metres, row 0 in the north, row by row. A gap holds no height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightGrid {
@@ -99,9 +102,26 @@ impl HeightGrid {
     /// Lowest and highest height; `None` when no node has a height.
     #[must_use]
     pub fn range_m(&self) -> Option<[f32; 2]> {
-        let mut heights = self.heights_m.iter().copied().filter(|height_m| !height_m.is_nan());
-        let first = heights.next()?;
-        Some(heights.fold([first, first], |[low, high], h| [low.min(h), high.max(h)]))
+        // Several heights at a time; comparisons with NaN are false.
+        let (chunks, rest) = self.heights_m.as_chunks::<LANES>();
+        let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        let mut look = |lane: usize, height_m: f32| {
+            low[lane] = if height_m < low[lane] { height_m } else { low[lane] };
+            high[lane] = if height_m > high[lane] { height_m } else { high[lane] };
+        };
+        for chunk in chunks {
+            for (lane, &height_m) in chunk.iter().enumerate() {
+                look(lane, height_m);
+            }
+        }
+        for &height_m in rest {
+            look(0, height_m);
+        }
+        let range_m = [
+            low.into_iter().fold(f32::INFINITY, f32::min),
+            high.into_iter().fold(f32::NEG_INFINITY, f32::max),
+        ];
+        (range_m[0] <= range_m[1]).then_some(range_m)
     }
 
     /// The rectangle of `columns` × `rows` nodes whose north-west node is (`column`, `row`).
@@ -110,7 +130,13 @@ impl HeightGrid {
     /// When it reaches outside the grid.
     #[must_use]
     pub fn window(&self, column: usize, row: usize, columns: usize, rows: usize) -> Self {
-        Self::from_fn(columns, rows, |c, r| self.heights_m[(row + r) * self.columns + column + c])
+        assert!(column + columns <= self.columns && row + rows <= self.rows, "a window outside");
+        let mut heights_m = Vec::with_capacity(columns * rows);
+        for row in row..row + rows {
+            let from = row * self.columns + column;
+            heights_m.extend_from_slice(&self.heights_m[from..from + columns]);
+        }
+        Self { columns, rows, heights_m }
     }
 }
 

@@ -406,6 +406,7 @@ fn a_payload_with_the_stored_ground_is_the_payload_encoded_anew() {
     let context = corniche_tileset::PayloadContext {
         frame: manifest.frame,
         quantum_m: manifest.vertical.quantum_m,
+        metres_per_unit: manifest.metres_per_unit,
     };
     let mut tiles = SOUND.encoded.clone();
     tiles.sort_by_key(|(id, _)| pmtiles_order(*id));

@@ -30,7 +30,7 @@ pub fn frame() -> Frame {
 /// What the tiles of the small package are encoded with.
 #[must_use]
 pub fn context() -> PayloadContext {
-    PayloadContext { frame: frame(), quantum_m: QUANTUM_M }
+    PayloadContext { frame: frame(), quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] }
 }
 
 /// The tiles of the small package, in its order.

@@ -22,6 +22,7 @@ mod roads_sv;
 mod terrain;
 
 mod class_table;
+mod coded_lines;
 mod connectivity;
 mod corner_guess;
 mod magnitudes;
@@ -29,6 +30,7 @@ mod number_codes;
 mod points;
 mod range_coder;
 mod route_guess;
+mod source_grid;
 mod work_limit;
 
 mod damage;

@@ -1,4 +1,5 @@
 use std::num::{NonZeroU8, NonZeroU32};
+use std::sync::LazyLock;
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
 use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
@@ -8,7 +9,8 @@ use proptest::prelude::*;
 
 use super::{
     Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad, Terrain,
-    TilePayload, context::Context, decode, encode,
+    TilePayload, context::Context, decode, encode, number_codes::Cursor, section_kind::Kind,
+    source_grid::SourceGrid,
 };
 
 const QUANTUM_M: f64 = 0.25;
@@ -18,7 +20,20 @@ fn frame() -> Frame {
 }
 
 fn context() -> PayloadContext {
-    PayloadContext { frame: frame(), quantum_m: QUANTUM_M }
+    PayloadContext { frame: frame(), quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] }
+}
+
+/// As if the CRS were in degrees: OSM's grid has steps of 1/256 m, and the points of [`geo_roads`] are on it.
+fn context_in_degrees() -> PayloadContext {
+    PayloadContext { metres_per_unit: [39_062.5; 2], ..context() }
+}
+
+static FRAME: LazyLock<Frame> = LazyLock::new(frame);
+
+/// OSM's grid in [`context_in_degrees`].
+fn grid() -> SourceGrid<'static> {
+    let steps = [1_f64 / 256.0; 2].map(f64::to_le_bytes).concat();
+    SourceGrid::read(&mut Cursor::new(&steps), &FRAME).unwrap()
 }
 
 fn id() -> TileId {
@@ -244,15 +259,31 @@ fn ground_ranges_are_rounded_outwards() {
 #[test]
 fn every_cut_and_every_flipped_bit_is_noticed() {
     let payload = sample();
-    let bytes = encode(&payload, &context()).unwrap().bytes;
-    for length in 0..bytes.len() {
-        assert!(read(&bytes[..length], Sections::ALL).is_err(), "cut to {length} bytes");
+    for context in [context(), context_in_degrees()] {
+        let bytes = encode(&payload, &context).unwrap().bytes;
+        for length in 0..bytes.len() {
+            assert!(read(&bytes[..length], Sections::ALL).is_err(), "cut to {length} bytes");
+        }
+        for bit in 0..8 * bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            let error = read(&damaged, Sections::ALL).expect_err("a flipped bit");
+            assert!(error.to_string().starts_with("tile 1/1/0, "), "{error}");
+        }
     }
-    for bit in 0..8 * bytes.len() {
-        let mut damaged = bytes.clone();
-        damaged[bit / 8] ^= 1 << (bit % 8);
-        let error = read(&damaged, Sections::ALL).expect_err("a flipped bit");
-        assert!(error.to_string().starts_with("tile 1/1/0, "), "{error}");
+}
+
+/// On OSM's grid lines are range-coded bits, off it planes; both say the same, and tell the same sizes afterwards.
+#[test]
+fn lines_on_the_grid_of_osm_are_coded_and_come_back() {
+    let payload = sample();
+    for (context, is_coded) in [(context(), false), (context_in_degrees(), true)] {
+        let encoded = encode(&payload, &context).unwrap();
+        let sections = super::envelope::open(&encoded.bytes, id()).unwrap();
+        let found = super::envelope::road_section(&sections, Kind::RoadsGeo).unwrap();
+        assert_eq!(found.unwrap().1, is_coded);
+        assert_eq!(read(&encoded.bytes, Sections::ALL).as_ref(), Ok(&payload));
+        assert_eq!(super::payload_sizes(&encoded.bytes, id()), Ok(encoded.sizes));
     }
 }
 
@@ -265,16 +296,21 @@ fn hostile_sections_do_not_panic() {
     let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
     let sections = [
         super::terrain::encode(payload.terrain.as_ref().unwrap(), scale).unwrap(),
-        super::roads_geo::encode(&payload.roads_geo, corner, &surface).unwrap().0,
-        super::roads_sv::encode(&payload.roads_sv, corner, QUANTUM_M).unwrap().0,
+        super::roads_geo::encode(&payload.roads_geo, None, corner, &surface).unwrap().0,
+        super::roads_sv::encode(&payload.roads_sv, None, corner, QUANTUM_M).unwrap().0,
         super::attributes::encode(&payload.attributes).unwrap(),
+        super::roads_geo::encode(&payload.roads_geo, Some(grid()), corner, &surface).unwrap().0,
+        super::roads_sv::encode(&payload.roads_sv, Some(grid()), corner, QUANTUM_M).unwrap().0,
     ];
+    let frame = frame();
     let mut try_one = |kind: usize, bytes: &[u8]| {
         let whole = match kind {
             0 => super::terrain::decode(bytes, scale).is_ok(),
-            1 => super::roads_geo::decode(bytes, corner, &surface).is_ok(),
-            2 => super::roads_sv::decode(bytes, corner, QUANTUM_M).is_ok(),
-            _ => super::attributes::decode(bytes).is_ok(),
+            1 => super::roads_geo::decode(bytes, None, corner, &surface).is_ok(),
+            2 => super::roads_sv::decode(bytes, None, corner, QUANTUM_M).is_ok(),
+            3 => super::attributes::decode(bytes).is_ok(),
+            4 => super::roads_geo::decode(bytes, Some(&frame), corner, &surface).is_ok(),
+            _ => super::roads_sv::decode(bytes, Some(&frame), corner, QUANTUM_M).is_ok(),
         };
         reached[usize::from(whole)] += 1;
     };
@@ -451,8 +487,11 @@ proptest! {
             roads_sv: vec![],
             attributes: vec![],
         };
-        let bytes = encode(&payload, &context()).unwrap().bytes;
-        prop_assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
+        for context in [context(), context_in_degrees()] {
+            let bytes = encode(&payload, &context).unwrap().bytes;
+            let decoded = read(&bytes, Sections::ALL);
+            prop_assert_eq!(decoded.as_ref(), Ok(&payload));
+        }
     }
 
     /// Roads for shadow volumes and their attributes come back; ranges hold what they held.
@@ -484,6 +523,13 @@ proptest! {
                 attributes: vec![],
             };
         let decoded = read(&encode(&payload, &context()).unwrap().bytes, Sections::ALL).unwrap();
+        let corner = frame().tile_lattice_bounds(id()).min;
+        // Points anywhere on the lattice, beside the grid as well; those too far apart have no code.
+        let coded = super::roads_sv::encode(&roads_sv, Some(grid()), corner, QUANTUM_M);
+        if let Ok((bytes, _)) = coded {
+            let coded = super::roads_sv::decode(&bytes, Some(&FRAME), corner, QUANTUM_M);
+            prop_assert_eq!(coded.as_ref(), Ok(&decoded.roads_sv));
+        }
         prop_assert_eq!(decoded.roads_sv.len(), roads_sv.len());
         for (read, written) in decoded.roads_sv.iter().zip(&roads_sv) {
             prop_assert_eq!(&read.line.points, &written.line.points);
@@ -500,7 +546,8 @@ proptest! {
         prop_assert!(read(&bytes, Sections::ALL).is_err());
         let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
         let _ = super::terrain::decode(&bytes, scale);
-        let _ = super::roads_sv::decode(&bytes, corner, QUANTUM_M);
+        let _ = super::roads_sv::decode(&bytes, None, corner, QUANTUM_M);
+        let _ = super::roads_sv::decode(&bytes, Some(&FRAME), corner, QUANTUM_M);
         let _ = super::attributes::decode(&bytes);
     }
 }
@@ -531,8 +578,9 @@ fn the_smallest_tile_has_these_bytes() {
     };
     let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
     let ground = payload.terrain.as_ref().unwrap();
-    let geo =
-        super::roads_geo::encode(&payload.roads_geo, corner, &surface(&ground.tin)).unwrap().0;
+    let geo = super::roads_geo::encode(&payload.roads_geo, None, corner, &surface(&ground.tin))
+        .unwrap()
+        .0;
     let raw = super::terrain::encode(ground, scale).unwrap();
     let page = include_str!("../FORMAT.md");
     let parts = [encode(&payload, &context()).unwrap().bytes, raw, geo].map(|bytes| {

@@ -76,7 +76,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             roads_sv: vec![],
             attributes: vec![],
         };
-        let context = PayloadContext { frame, quantum_m };
+        let context = PayloadContext { frame, quantum_m, metres_per_unit: [1.0; 2] };
         let start = std::time::Instant::now();
         let encoded = encode(&payload, &context).unwrap();
         let encode_ms = start.elapsed().as_secs_f64() * 1e3;

@@ -156,24 +156,28 @@ pub fn measure(
 ) -> Deviation {
     let distances_m = distances_m(buckets, window, placement);
     let mut deviation = Deviation::default();
-    for (index, (&distance_m, height_m)) in distances_m.iter().zip(window.raw()).enumerate() {
-        if height_m.is_nan() {
-            continue;
-        }
-        let distance_m = (!distance_m.is_nan()).then_some(distance_m);
-        match distance_m {
-            Some(distance_m) => {
-                deviation.covered_nodes += 1;
-                deviation.max_abs_m = deviation.max_abs_m.max(distance_m);
+    let columns = window.columns().max(1);
+    let rows = window.raw().chunks_exact(columns).zip(distances_m.chunks_exact(columns));
+    for (row, (heights_m, distances_m)) in rows.enumerate() {
+        for (column, (height_m, &distance_m)) in heights_m.iter().zip(distances_m).enumerate() {
+            if height_m.is_nan() {
+                continue;
             }
-            None => deviation.uncovered_nodes += 1,
+            let distance_m = (distance_m >= 0.0).then_some(distance_m);
+            match distance_m {
+                Some(distance_m) => {
+                    deviation.covered_nodes += 1;
+                    deviation.max_abs_m = deviation.max_abs_m.max(distance_m);
+                }
+                None => deviation.uncovered_nodes += 1,
+            }
+            each(column, row, distance_m);
         }
-        each(index % window.columns(), index / window.columns(), distance_m);
     }
     deviation
 }
 
-/// The distance of each node of a window from the TIN; NaN where no triangle lies there.
+/// The distance of each node of a window from the TIN; negative where there is no triangle or no height.
 fn distances_m(
     buckets: &TriangleBuckets,
     window: &HeightGrid,
@@ -181,14 +185,17 @@ fn distances_m(
 ) -> Vec<f64> {
     let heights_m = window.raw();
     // Where several triangles meet, the largest distance is taken: their planes differ by rounding.
-    let mut distances_m = vec![f64::NAN; heights_m.len()];
+    let mut distances_m = vec![-1.0_f64; heights_m.len()];
     buckets.for_each_stretch(placement, [window.columns(), window.rows()], |nodes, plane| {
+        let scale = plane.scale.abs();
         let nodes = heights_m[nodes.clone()].iter().zip(&mut distances_m[nodes]);
         // Division does not change the order, so the largest distance of a finest tile is exact except for this one
         // rounding.
-        for (step, (&height_m, distance_m)) in nodes.enumerate() {
+        for (step, (&height_m, most_m)) in (0_i32..).zip(nodes) {
             let scaled = f64::from(height_m) * plane.scale - plane.scaled_m(step);
-            *distance_m = distance_m.max(scaled.abs() / plane.scale.abs());
+            let distance_m = scaled.abs() / scale;
+            // Written so, and not with `max`, it is one instruction for several nodes; NaN is never larger.
+            *most_m = if distance_m > *most_m { distance_m } else { *most_m };
         }
     });
     distances_m
@@ -208,7 +215,7 @@ pub fn heights_m(
 ) -> Vec<f64> {
     let mut heights_m = vec![f64::NAN; size[0] * size[1]];
     buckets.for_each_stretch(placement, size, |nodes, plane| {
-        for (step, height_m) in heights_m[nodes].iter_mut().enumerate() {
+        for (step, height_m) in (0..).zip(&mut heights_m[nodes]) {
             *height_m = plane.scaled_m(step) / plane.scale;
         }
     });
@@ -227,8 +234,8 @@ struct RowOfPlane {
 impl RowOfPlane {
     /// The height some nodes after the first, times the scale.
     #[inline]
-    fn scaled_m(&self, step: usize) -> f64 {
-        self.first_m + self.step_m * step as f64
+    fn scaled_m(&self, step: i32) -> f64 {
+        self.first_m + self.step_m * f64::from(step)
     }
 }
 

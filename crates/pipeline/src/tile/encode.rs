@@ -63,7 +63,11 @@ pub(crate) fn with_ground(
         uncovered_nodes: deviation.uncovered_nodes,
     };
     let payload = TilePayload { relief, ..laid.into_payload(id, terrain) };
-    let encoding = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
+    let encoding = PayloadContext {
+        frame: *frame,
+        quantum_m: levels.quantum_m(),
+        metres_per_unit: context.grid.metres_per_unit,
+    };
     let encoded = match earlier {
         Some(earlier) => corniche_tileset::encode_with_ground_of(earlier, &payload, &encoding)?,
         None => corniche_tileset::encode(&payload, &encoding)?,

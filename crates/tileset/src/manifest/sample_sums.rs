@@ -44,7 +44,7 @@ impl SampleSums {
         self.on_tin += 1;
         self.max_m = self.max_m.max(distance_m);
         let quanta = distance_m / self.quantum_m;
-        let parts = (quanta * PARTS_TO_A_QUANTUM).round().min(MOST_PARTS) as u64;
+        let parts = round((quanta * PARTS_TO_A_QUANTUM).min(MOST_PARTS));
         self.squares += u128::from(parts) * u128::from(parts);
         let bin = bin_of(quanta as u64);
         if bin >= self.bins.len() {
@@ -118,6 +118,13 @@ mod sparse {
         }
         Ok(bins)
     }
+}
+
+/// A number from 0 to [`MOST_PARTS`], rounded, half up. `f64::round` calls a function on processors for which programs are made.
+#[inline]
+fn round(number: f64) -> u64 {
+    let whole = number as i64;
+    (whole + i64::from(number - whole as f64 >= 0.5)) as u64
 }
 
 /// The bin of a distance of so many whole quanta.

@@ -48,6 +48,24 @@ pub(crate) struct Head {
     pub(crate) flags: u8,
 }
 
+/// Checks that the lines of a class are sorted.
+#[derive(Default)]
+pub(crate) struct LineOrder {
+    last: Option<(i64, u32)>,
+}
+
+impl LineOrder {
+    /// Fails if `next` is not after the line before it.
+    pub(crate) fn check(&mut self, next: &Head) -> Result<(), Damage> {
+        let next = Some((next.way_id, next.part));
+        if next <= self.last {
+            return Err(Damage::Invalid { what: "lines are not sorted" });
+        }
+        self.last = next;
+        Ok(())
+    }
+}
+
 /// The heads of a class.
 pub(crate) struct Heads {
     pub(crate) heads: Vec<Head>,
@@ -87,10 +105,8 @@ impl Heads {
                 limit: MAX_POINTS as u64,
             })?;
         }
-        let order = |head: &Head| (head.way_id, head.part);
-        if !heads.is_sorted_by(|a, b| order(a) < order(b)) {
-            return Err(Damage::Invalid { what: "lines are not sorted" });
-        }
+        let mut order = LineOrder::default();
+        heads.iter().try_for_each(|head| order.check(head))?;
         Ok(Self { heads, points })
     }
 }
@@ -103,9 +119,10 @@ mod write {
     use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
     use crate::payload::number_codes::{put_varint, zigzag};
 
-    /// Writes the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
+    /// Writes `before`, the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
     pub(crate) fn encode<R>(
         roads: &[R],
+        before: Vec<u8>,
         key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),
         mut put: impl FnMut(&[R], &mut Vec<u8>) -> Result<(), &'static str>,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
@@ -115,7 +132,7 @@ mod write {
         if roads.len() > MAX_LINES {
             return Err("more than a million lines");
         }
-        let (mut table, mut body) = (Vec::new(), Vec::new());
+        let (mut table, mut body) = (before, Vec::new());
         let mut class_bytes = [0; FunctionalRoadClass::COUNT];
         for (class, bytes) in FunctionalRoadClass::all().zip(&mut class_bytes) {
             let first = roads.partition_point(|road| key(road).0 < class);

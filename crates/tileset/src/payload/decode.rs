@@ -42,7 +42,14 @@ pub fn decode(
         }
         envelope::section(&sections, kind).map_err(inside(kind))
     };
-    let roads_geo = read(Kind::RoadsGeo, Sections::ROADS_GEO)?;
+    let read_roads = |kind: Kind, section: Sections| {
+        if !wanted.contains(section) {
+            return Ok(None);
+        }
+        let found = envelope::road_section(&sections, kind).map_err(inside(kind))?;
+        Ok(found.map(|(bytes, is_coded)| (bytes, is_coded.then_some(frame))))
+    };
+    let roads_geo = read_roads(Kind::RoadsGeo, Sections::ROADS_GEO)?;
     let needs_terrain = wanted.contains(Sections::TERRAIN) || roads_geo.is_some();
     let ground = if needs_terrain {
         let bytes = envelope::section(&sections, Kind::Terrain).map_err(inside(Kind::Terrain))?;
@@ -58,11 +65,11 @@ pub fn decode(
         .transpose()
         .map_err(inside(Kind::Relief))?;
     let roads_geo = roads_geo
-        .map(|bytes| decode_geo(&bytes, ground.as_ref(), &context))
+        .map(|(bytes, coded_in)| decode_geo(&bytes, coded_in, ground.as_ref(), &context))
         .transpose()
         .map_err(inside(Kind::RoadsGeo))?;
-    let roads_sv = read(Kind::RoadsSv, Sections::ROADS_SV)?
-        .map(|bytes| roads_sv::decode(&bytes, context.corner, quantum_m))
+    let roads_sv = read_roads(Kind::RoadsSv, Sections::ROADS_SV)?
+        .map(|(bytes, coded_in)| roads_sv::decode(&bytes, coded_in, context.corner, quantum_m))
         .transpose()
         .map_err(inside(Kind::RoadsSv))?;
     let mut records = read(Kind::Attributes, Sections::ATTRIBUTES)?
@@ -96,6 +103,7 @@ pub fn decode(
 /// Decodes the GEO roads, which need the ground that they lie on.
 fn decode_geo(
     bytes: &[u8],
+    coded_in: Option<&Frame>,
     ground: Option<&Terrain>,
     context: &Context,
 ) -> Result<Vec<GeoRoad>, Damage> {
@@ -103,5 +111,5 @@ fn decode_geo(
         return Err(Damage::Invalid { what: "roads without the ground they lie on" });
     };
     let surface = Surface::new(&ground.tin, context.placement);
-    roads_geo::decode(bytes, context.corner, &surface)
+    roads_geo::decode(bytes, coded_in, context.corner, &surface)
 }

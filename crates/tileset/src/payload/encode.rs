@@ -1,4 +1,4 @@
-use corniche_geom::Frame;
+use corniche_geom::{Frame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
@@ -7,6 +7,7 @@ use crate::payload::damage::EncodeError;
 use crate::payload::envelope::{Content, SectionSize, StoredSection};
 use crate::payload::section_kind::Kind;
 use crate::payload::sizes::PayloadSizes;
+use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::TilePayload;
 use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
 
@@ -17,6 +18,8 @@ pub struct PayloadContext {
     pub frame: Frame,
     /// One step of `height_q`, metres; a power of two.
     pub quantum_m: f64,
+    /// Working metres of one unit of the package's CRS, east and north; 1, or some 100 000 where it is in degrees.
+    pub metres_per_unit: [f64; 2],
 }
 
 /// A payload as bytes, and the sizes of its parts.
@@ -108,17 +111,20 @@ fn encode_sections(
         let inside = inside(Kind::RoadsGeo);
         let ground = payload.terrain.as_ref().ok_or_else(|| inside("roads without ground"))?;
         let surface = Surface::new(&ground.tin, placement);
-        let (bytes, class_bytes) =
-            roads_geo::encode(&payload.roads_geo, corner, &surface).map_err(inside)?;
+        let encode = |grid| roads_geo::encode(&payload.roads_geo, grid, corner, &surface);
+        let points = payload.roads_geo.iter().flat_map(|road| roads_geo::points_of(&road.line));
+        let (content, class_bytes) = coded_or_raw(encode, context, points).map_err(inside)?;
         geo_class_bytes = class_bytes;
-        sections.push((Kind::RoadsGeo, Content::Raw(bytes)));
+        sections.push((Kind::RoadsGeo, content));
     }
     let mut sv_class_bytes = [0; FunctionalRoadClass::COUNT];
     if !payload.roads_sv.is_empty() {
-        let coded = roads_sv::encode(&payload.roads_sv, corner, quantum_m);
-        let (bytes, class_bytes) = coded.map_err(inside(Kind::RoadsSv))?;
+        let encode = |grid| roads_sv::encode(&payload.roads_sv, grid, corner, quantum_m);
+        let points = payload.roads_sv.iter().flat_map(|road| road.line.points.iter().copied());
+        let (content, class_bytes) =
+            coded_or_raw(encode, context, points).map_err(inside(Kind::RoadsSv))?;
         sv_class_bytes = class_bytes;
-        sections.push((Kind::RoadsSv, Content::Raw(bytes)));
+        sections.push((Kind::RoadsSv, content));
     }
     if !payload.attributes.is_empty() {
         let bytes = attributes::encode(&payload.attributes).map_err(inside(Kind::Attributes))?;
@@ -154,4 +160,20 @@ fn encode_sections(
         sv_class_bytes,
     };
     Ok(EncodedTile { bytes, sizes })
+}
+
+/// A section's bytes before compression, and how many of them each class takes; or what cannot be encoded.
+type Encoded = Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str>;
+
+/// A section of roads as range-coded bits, if its points lie on OSM's grid and all its numbers have codes; else as planes for zstd.
+fn coded_or_raw<'f>(
+    encode: impl Fn(Option<SourceGrid<'f>>) -> Encoded,
+    context: &'f PayloadContext,
+    points: impl Iterator<Item = LatticePoint>,
+) -> Result<(Content<'static>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
+    let grid = SourceGrid::of_osm(&context.frame, context.metres_per_unit, points);
+    if let Some(Ok((bytes, class_bytes))) = grid.map(|grid| encode(Some(grid))) {
+        return Ok((Content::Coded(bytes), class_bytes));
+    }
+    encode(None).map(|(bytes, class_bytes)| (Content::Raw(bytes), class_bytes))
 }

@@ -27,6 +27,9 @@ pub(crate) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
 pub(crate) const ZSTD: u8 = 1;
 
+/// Stored bytes are lines as range-coded bits: in road sections only.
+pub(crate) const CODED: u8 = 2;
+
 /// A section as it lies in the payload.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoredSection<'a> {
@@ -110,6 +113,17 @@ pub(crate) fn section(
     sections: &[StoredSection<'_>],
     kind: Kind,
 ) -> Result<Option<Vec<u8>>, Damage> {
+    match road_section(sections, kind)? {
+        Some((_, true)) => Err(Damage::Invalid { what: "an unknown compression" }),
+        found => Ok(found.map(|(bytes, _)| bytes)),
+    }
+}
+
+/// The same of a section with roads, and whether its lines are range-coded bits.
+pub(crate) fn road_section(
+    sections: &[StoredSection<'_>],
+    kind: Kind,
+) -> Result<Option<(Vec<u8>, bool)>, Damage> {
     let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
         return Ok(None);
     };
@@ -125,10 +139,14 @@ pub(crate) fn section(
         return Err(Damage::Checksum);
     }
     match section.compression {
-        STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
-        STORED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
+        STORED | CODED if section.bytes.len() == raw_length => {
+            Ok(Some((section.bytes.to_vec(), section.compression == CODED)))
+        }
+        STORED | CODED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
         // Writers compress where that makes a section smaller.
-        ZSTD if section.bytes.len() < raw_length => decompress(section.bytes, raw_length).map(Some),
+        ZSTD if section.bytes.len() < raw_length => {
+            decompress(section.bytes, raw_length).map(|bytes| Some((bytes, false)))
+        }
         ZSTD => Err(Damage::Invalid { what: "the length of a compressed section" }),
         _ => Err(Damage::Invalid { what: "an unknown compression" }),
     }
@@ -209,6 +227,8 @@ pub(crate) enum Content<'a> {
     Raw(Vec<u8>),
     /// Bytes that do not become smaller by compression.
     Packed(Cow<'a, [u8]>),
+    /// Lines as range-coded bits.
+    Coded(Vec<u8>),
     /// Bytes as another payload of the tile has them.
     Stored(StoredSection<'a>),
 }
@@ -265,6 +285,10 @@ pub(crate) fn seal(
             Content::Packed(raw) => {
                 check_size(id, section, raw)?;
                 (STORED, raw.as_ref(), raw.len(), crc32fast::hash(raw))
+            }
+            Content::Coded(raw) => {
+                check_size(id, section, raw)?;
+                (CODED, raw.as_slice(), raw.len(), crc32fast::hash(raw))
             }
             Content::Raw(raw) => {
                 check_size(id, section, raw)?;

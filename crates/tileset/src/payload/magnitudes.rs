@@ -1,4 +1,4 @@
-//! How the terrain section's numbers become bits: by their length in binary, which two contexts foretell.
+//! How numbers become bits: by their length in binary, which two contexts foretell.
 
 use crate::payload::range_coder::{Bits, Model};
 
@@ -25,13 +25,18 @@ impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
     }
 
     /// Codes a number with a magnitude below 2^32; a context beyond the last counts as the last.
-    pub(crate) fn code<B: Bits>(
+    pub(crate) fn code<B: Bits>(&mut self, bits: &mut B, contexts: [usize; 2], number: i64) -> i64 {
+        let magnitude = self.code_magnitude(bits, contexts, number.unsigned_abs()) as i64;
+        if magnitude != 0 && bits.even(u32::from(number < 0)) == 1 { -magnitude } else { magnitude }
+    }
+
+    /// The same for a number that is not negative, or whose sign is coded elsewhere.
+    pub(crate) fn code_magnitude<B: Bits>(
         &mut self,
         bits: &mut B,
         [first, second]: [usize; 2],
-        number: i64,
-    ) -> i64 {
-        let asked = number.unsigned_abs();
+        asked: u64,
+    ) -> u64 {
         let wanted = (u64::BITS - asked.leading_zeros()) as usize;
         let lengths = self.by_first[first.min(FIRST - 1)]
             .iter_mut()
@@ -57,7 +62,7 @@ impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
             };
             magnitude = magnitude << 1 | u64::from(digit);
         }
-        if bits.even(u32::from(number < 0)) == 1 { -(magnitude as i64) } else { magnitude as i64 }
+        magnitude
     }
 }
 

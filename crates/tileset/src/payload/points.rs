@@ -7,7 +7,7 @@ use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, unzigzag};
 
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
-const REACH_STEPS: i64 = 1 << 55;
+pub(crate) const REACH_STEPS: i64 = 1 << 55;
 
 /// The points of all lines of a class, the first relative to `corner`. Neighbours in a line differ.
 pub(crate) fn decode_points(

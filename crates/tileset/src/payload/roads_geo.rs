@@ -1,74 +1,140 @@
 //! The GEO roads section: source points, and the vertices that do not follow from them.
 
+mod surprises;
+
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::LatticePoint;
+use corniche_geom::{Frame, LatticePoint};
+use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
 use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
-use crate::payload::class_table::{self, Heads};
+use crate::payload::class_table::{self, Head, Heads, LineOrder};
+use crate::payload::coded_lines::LineCoder;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 use crate::payload::points::decode_points;
+use crate::payload::range_coder::Reader;
+use crate::payload::roads_geo::surprises::{
+    CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX,
+};
 use crate::payload::route_guess::Route;
+use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::GeoRoad;
 use crate::payload::work_limit::Work;
 
-/// Kinds of vertices that are not as guessed.
-const END: u8 = 0;
-const SOURCE: u8 = 1;
-const CROSSING: u8 = 2;
-const VERTEX: u8 = 3;
-
+/// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
 pub(crate) fn decode(
     bytes: &[u8],
+    coded_in: Option<&Frame>,
     corner: LatticePoint,
     surface: &Surface,
 ) -> Result<Vec<GeoRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
-    let mut roads = Vec::new();
-    let work = Work::new(MAX_ROUTE_STEPS);
-    let mut room = Room { points: MAX_POINTS, vertices: MAX_LINE_VERTICES };
+    let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
+    let mut section = Section {
+        surface,
+        work: Work::new(MAX_ROUTE_STEPS),
+        points: MAX_POINTS,
+        vertices: MAX_LINE_VERTICES,
+        roads: Vec::new(),
+    };
     for (class, lines, blob) in class_table::decode(&mut cursor)? {
+        match grid {
+            Some(grid) => section.add_coded(class, lines, blob, LineCoder::new(grid, corner))?,
+            None => section.add(class, lines, blob, corner)?,
+        }
+    }
+    cursor.finish()?;
+    Ok(section.roads)
+}
+
+/// A section that is being read.
+struct Section<'s> {
+    surface: &'s Surface,
+    work: Work,
+    /// How many points, and vertices of lines, it may still have.
+    points: usize,
+    vertices: usize,
+    roads: Vec<GeoRoad>,
+}
+
+impl Section<'_> {
+    /// Adds the lines of a class.
+    fn add(
+        &mut self,
+        class: FunctionalRoadClass,
+        lines: usize,
+        blob: &[u8],
+        corner: LatticePoint,
+    ) -> Result<(), Damage> {
         let mut blob = Cursor::new(blob);
-        let heads = Heads::decode(&mut blob, lines, &mut room.points)?;
+        let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
         let points = decode_points(&mut blob, &heads, corner)?;
         let mut points = points.as_slice();
         for head in &heads.heads {
-            // Flag bits of the point count: 1 lead-in, 2 lead-out.
-            let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
             let (of_line, rest) = points.split_at_checked(head.points).ok_or(Damage::TooShort)?;
             points = rest;
-            if of_line.len() < leads.iter().filter(|&&lead| lead).count() {
-                return Err(Damage::Invalid { what: "a line without points" });
-            }
-            let route = Route::new(surface, of_line, leads, &work);
-            let vertices = decode_line(&mut blob, route, &mut room.vertices)?;
-            let [lead_in, lead_out] = [of_line.first(), of_line.last()];
-            let line = DrapedLine {
-                lead_in: lead_in.copied().filter(|_| leads[0]),
-                vertices,
-                lead_out: lead_out.copied().filter(|_| leads[1]),
-            };
-            roads.push(GeoRoad { way_id: head.way_id, part: head.part, class, line });
+            self.add_line(class, *head, of_line, &mut blob)?;
         }
-        blob.finish()?;
+        blob.finish()
     }
-    cursor.finish()?;
-    Ok(roads)
-}
 
-/// What a section may still hold.
-struct Room {
-    points: usize,
-    vertices: usize,
+    /// The same of range-coded bits.
+    fn add_coded(
+        &mut self,
+        class: FunctionalRoadClass,
+        lines: usize,
+        blob: &[u8],
+        mut coder: LineCoder<'_>,
+    ) -> Result<(), Damage> {
+        let mut bits = Reader::new(blob);
+        let mut surprises = SurpriseCoder::new();
+        let mut points = Vec::new();
+        let mut order = LineOrder::default();
+        for _ in 0..lines {
+            let head =
+                coder.read_line(&mut bits, &mut self.points, &mut points, |_, _, _| Ok(()))?;
+            order.check(&head)?;
+            let mut surprises = surprises.reading(&mut bits, head.flags);
+            self.add_line(class, head, &points, &mut surprises)?;
+        }
+        if bits.is_exact() {
+            Ok(())
+        } else {
+            Err(Damage::Invalid { what: "the length of the coded bits" })
+        }
+    }
+
+    fn add_line(
+        &mut self,
+        class: FunctionalRoadClass,
+        head: Head,
+        points: &[LatticePoint],
+        surprises: &mut impl Surprises,
+    ) -> Result<(), Damage> {
+        // Flag bits of the point count: 1 lead-in, 2 lead-out.
+        let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
+        if points.len() < leads.iter().filter(|&&lead| lead).count() {
+            return Err(Damage::Invalid { what: "a line without points" });
+        }
+        let route = Route::new(self.surface, points, leads, &self.work);
+        let vertices = decode_line(surprises, route, &mut self.vertices)?;
+        let line = DrapedLine {
+            lead_in: points.first().copied().filter(|_| leads[0]),
+            vertices,
+            lead_out: points.last().copied().filter(|_| leads[1]),
+        };
+        self.roads.push(GeoRoad { way_id: head.way_id, part: head.part, class, line });
+        Ok(())
+    }
 }
 
 fn decode_line(
-    surprises: &mut Cursor<'_>,
+    surprises: &mut impl Surprises,
     mut route: Route<'_>,
     room: &mut usize,
 ) -> Result<Vec<DrapedVertex>, Damage> {
-    let mut left = surprises.bounded(MAX_LINE_VERTICES, "number of surprises")?;
+    let mut left = surprises.count()?;
     let mut until = gap(surprises, left)?;
     let mut vertices = Vec::new();
     loop {
@@ -99,12 +165,12 @@ fn decode_line(
 }
 
 /// How many vertices are as guessed before the next surprise, if any is left.
-fn gap(surprises: &mut Cursor<'_>, left: usize) -> Result<usize, Damage> {
-    if left > 0 { surprises.bounded(MAX_LINE_VERTICES, "place of a surprise") } else { Ok(0) }
+fn gap(surprises: &mut impl Surprises, left: usize) -> Result<usize, Damage> {
+    if left > 0 { surprises.gap() } else { Ok(0) }
 }
 
 fn decode_surprise(
-    surprises: &mut Cursor<'_>,
+    surprises: &mut impl Surprises,
     route: &Route<'_>,
 ) -> Result<Option<DrapedVertex>, Damage> {
     let surface = route.surface();
@@ -114,8 +180,8 @@ fn decode_surprise(
         .checked_sub(1)
         .ok_or(Damage::Invalid { what: "a road without ground" })?;
     let last_triangle = surface.triangles().len().saturating_sub(1);
-    let kind = surprises.byte()?;
-    let mut index = |last: usize, what| surprises.bounded(last, what).map(|index| index as u32);
+    let kind = surprises.kind()?;
+    let mut index = |last: usize, what| surprises.index(last, what);
     Ok(match kind {
         END => None,
         SOURCE => {
@@ -145,21 +211,28 @@ fn decode_surprise(
 }
 
 #[cfg(feature = "write")]
-pub(crate) use write::encode;
+pub(crate) use write::{encode, points_of};
 
 #[cfg(feature = "write")]
 mod write {
     use corniche_roads::FunctionalRoadClass;
 
     use super::{
-        CROSSING, Damage, DrapedLine, DrapedVertex, END, GeoRoad, LatticePoint, MAX_LINE_VERTICES,
-        MAX_POINTS, MAX_ROUTE_STEPS, Route, SOURCE, Surface, VERTEX, Work, class_table,
+        Damage, DrapedLine, DrapedVertex, GeoRoad, LatticePoint, LineCoder, MAX_LINE_VERTICES,
+        MAX_POINTS, MAX_ROUTE_STEPS, Route, SourceGrid, Surface, SurpriseCoder, Work, class_table,
     };
-    use crate::payload::{class_table::Head, number_codes::put_varint, points::put_points};
+    use crate::payload::{
+        class_table::Head,
+        points::put_points,
+        range_coder::Writer,
+        roads_geo::surprises::{Surprise, put_surprises},
+    };
 
-    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
+    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
+    /// range-coded bits.
     pub(crate) fn encode(
         roads: &[GeoRoad],
+        grid: Option<SourceGrid<'_>>,
         corner: LatticePoint,
         surface: &Surface,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
@@ -171,59 +244,94 @@ mod write {
         let mut all_points = 0;
         class_table::encode(
             roads,
+            grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec()),
             |road| (road.class, road.way_id, road.part),
             |of_class, out| {
-                let mut heads = Vec::with_capacity(of_class.len());
-                let mut points = Vec::new();
-                let mut surprises = Vec::new();
-                for road in of_class {
-                    let first = points.len();
-                    points.extend(road.line.lead_in);
-                    points.extend(road.line.vertices.iter().filter_map(|vertex| match vertex {
-                        DrapedVertex::Source { point, .. } => Some(*point),
-                        _ => None,
-                    }));
-                    points.extend(road.line.lead_out);
-                    if points[first..].windows(2).any(|pair| pair[0] == pair[1]) {
-                        return Err("a segment without length");
-                    }
-                    let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
-                    heads.push(Head {
-                        way_id: road.way_id,
-                        part: road.part,
-                        points: points.len() - first,
-                        flags: u8::from(leads[0]) | u8::from(leads[1]) << 1,
-                    });
-                    put_surprises(
-                        &mut surprises,
-                        &road.line,
-                        Route::new(surface, &points[first..], leads, &work),
-                    )?;
-                }
-                all_points += points.len();
+                let lines = of_class.iter().map(|road| Line::new(road, surface, &work));
+                let lines = lines.collect::<Result<Vec<_>, _>>()?;
+                all_points += lines.iter().map(|line| line.points.len()).sum::<usize>();
                 if all_points > MAX_POINTS {
                     return Err("more than four million points");
                 }
-                class_table::put_heads(out, &heads);
-                put_points(out, &points, corner)?;
-                out.extend(surprises);
-                Ok(())
+                match grid {
+                    Some(grid) => put_coded(out, &lines, LineCoder::new(grid, corner)),
+                    None => put(out, &lines, corner),
+                }
             },
         )
     }
 
-    fn put_surprises(
+    /// A road, taken apart.
+    struct Line {
+        head: Head,
+        points: Vec<LatticePoint>,
+        surprises: Vec<Surprise>,
+    }
+
+    impl Line {
+        fn new(road: &GeoRoad, surface: &Surface, work: &Work) -> Result<Self, &'static str> {
+            let points = points_of(&road.line);
+            if points.windows(2).any(|pair| pair[0] == pair[1]) {
+                return Err("a segment without length");
+            }
+            let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
+            let head = Head {
+                way_id: road.way_id,
+                part: road.part,
+                points: points.len(),
+                flags: u8::from(leads[0]) | u8::from(leads[1]) << 1,
+            };
+            let surprises = surprises_of(&road.line, Route::new(surface, &points, leads, work))?;
+            Ok(Self { head, points, surprises })
+        }
+    }
+
+    fn put(out: &mut Vec<u8>, lines: &[Line], corner: LatticePoint) -> Result<(), &'static str> {
+        let heads: Vec<Head> = lines.iter().map(|line| line.head).collect();
+        let points: Vec<LatticePoint> =
+            lines.iter().flat_map(|line| line.points.iter().copied()).collect();
+        class_table::put_heads(out, &heads);
+        put_points(out, &points, corner)?;
+        for line in lines {
+            put_surprises(out, &line.surprises);
+        }
+        Ok(())
+    }
+
+    fn put_coded(
         out: &mut Vec<u8>,
+        lines: &[Line],
+        mut coder: LineCoder<'_>,
+    ) -> Result<(), &'static str> {
+        let mut bits = Writer::new(Vec::new());
+        let mut surprises = SurpriseCoder::new();
+        for line in lines {
+            coder.write_line(&mut bits, line.head, &line.points, |_, _, _| ())?;
+            surprises.write(&mut bits, line.head.flags, &line.surprises);
+        }
+        out.extend(bits.finish());
+        Ok(())
+    }
+
+    /// Lead-in, source points and lead-out.
+    pub(crate) fn points_of(line: &DrapedLine) -> Vec<LatticePoint> {
+        let sources = line.vertices.iter().filter_map(|vertex| match vertex {
+            DrapedVertex::Source { point, .. } => Some(*point),
+            _ => None,
+        });
+        line.lead_in.into_iter().chain(sources).chain(line.lead_out).collect()
+    }
+
+    fn surprises_of(
         line: &DrapedLine,
         mut route: Route<'_>,
-    ) -> Result<(), &'static str> {
+    ) -> Result<Vec<Surprise>, &'static str> {
         let surface = route.surface();
         let (vertex_count, triangle_count) = (surface.points().len(), surface.triangles().len());
         if line.vertices.len() < 2 {
             return Err("a line of fewer than two vertices");
         }
         let mut surprises = Vec::new();
-        let mut count = 0;
         let mut as_guessed = 0;
         for vertex in line.vertices.iter().copied().map(Some).chain([None]) {
             let fits = match vertex {
@@ -240,40 +348,17 @@ mod write {
             if route.guess().map_err(too_much)? == vertex {
                 as_guessed += 1;
             } else {
-                put_varint(&mut surprises, as_guessed);
+                surprises.push(Surprise { as_guessed, vertex });
                 as_guessed = 0;
-                count += 1;
-                put_surprise(&mut surprises, vertex);
             }
             if let Some(vertex) = vertex {
                 route.go(vertex).map_err(too_much)?;
             }
         }
-        put_varint(out, count);
-        out.extend(surprises);
-        Ok(())
+        Ok(surprises)
     }
 
     fn too_much(_: Damage) -> &'static str {
         "roads that take readers too many steps to follow"
-    }
-
-    fn put_surprise(out: &mut Vec<u8>, vertex: Option<DrapedVertex>) {
-        match vertex {
-            None => out.push(END),
-            Some(DrapedVertex::Source { triangle, .. }) => {
-                out.push(SOURCE);
-                put_varint(out, u64::from(triangle));
-            }
-            Some(DrapedVertex::Crossing { a, b }) => {
-                out.push(CROSSING);
-                put_varint(out, u64::from(a));
-                put_varint(out, u64::from(b));
-            }
-            Some(DrapedVertex::Vertex { vertex }) => {
-                out.push(VERTEX);
-                put_varint(out, u64::from(vertex));
-            }
-        }
     }
 }

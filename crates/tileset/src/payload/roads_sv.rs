@@ -1,32 +1,65 @@
 //! The SV roads section: plan lines, and how high the ground is along each segment.
 
+mod ground_ranges;
+
 use corniche_drape::SvLine;
-use corniche_geom::LatticePoint;
+use corniche_geom::{Frame, LatticePoint};
+use corniche_roads::FunctionalRoadClass;
 
 use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{self, Heads};
+use crate::payload::class_table::{self, Head, Heads, LineOrder};
+use crate::payload::coded_lines::LineCoder;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, unzigzag};
 use crate::payload::points::decode_points;
+use crate::payload::range_coder::Reader;
+use crate::payload::roads_sv::ground_ranges::RangeCoder;
+use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::SvRoad;
 
 /// Heights stay below this many quanta, where f64 knows every whole number.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
 
+/// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
 pub(crate) fn decode(
     bytes: &[u8],
+    coded_in: Option<&Frame>,
     corner: LatticePoint,
     quantum_m: f64,
 ) -> Result<Vec<SvRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
-    let mut roads = Vec::new();
-    let mut room = MAX_POINTS;
+    let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
+    let mut section = Section { quantum_m, points: MAX_POINTS, roads: Vec::new() };
     for (class, lines, blob) in class_table::decode(&mut cursor)? {
-        let mut blob = Cursor::new(blob);
-        let heads = Heads::decode(&mut blob, lines, &mut room)?;
-        if heads.heads.iter().any(|head| head.points < 2 || head.flags != 0) {
-            return Err(Damage::Invalid { what: "a line of fewer than two points" });
+        match grid {
+            Some(grid) => section.add_coded(class, lines, blob, LineCoder::new(grid, corner))?,
+            None => section.add(class, lines, blob, corner)?,
         }
+    }
+    cursor.finish()?;
+    Ok(section.roads)
+}
+
+/// A section that is being read.
+struct Section {
+    quantum_m: f64,
+    /// How many points it may still have.
+    points: usize,
+    roads: Vec<SvRoad>,
+}
+
+impl Section {
+    /// Adds the lines of a class.
+    fn add(
+        &mut self,
+        class: FunctionalRoadClass,
+        lines: usize,
+        blob: &[u8],
+        corner: LatticePoint,
+    ) -> Result<(), Damage> {
+        let mut blob = Cursor::new(blob);
+        let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
+        heads.heads.iter().try_for_each(check_head)?;
         let points = decode_points(&mut blob, &heads, corner)?;
         let segments = heads.points - heads.heads.len();
         let (lows, spans) = (blob.planes(segments)?, blob.planes(segments)?);
@@ -35,23 +68,77 @@ pub(crate) fn decode(
         let mut ranges = Vec::with_capacity(segments);
         for (low, span) in lows.iter().zip(spans.iter()) {
             low_q = low_q.wrapping_add(unzigzag(low));
-            let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
-            let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
-            let high_q = high_q.ok_or(Damage::Invalid { what: "a height range" })?;
-            ranges.push([low_q as f64 * quantum_m, high_q as f64 * quantum_m]);
+            ranges.push(self.range_m(low_q, span)?);
         }
         let (mut points, mut ranges) = (points.as_slice(), ranges.as_slice());
         for head in &heads.heads {
             let of_line = points.split_at_checked(head.points).ok_or(Damage::TooShort)?;
             let of_segments = ranges.split_at_checked(head.points - 1).ok_or(Damage::TooShort)?;
             (points, ranges) = (of_line.1, of_segments.1);
-            let line =
-                SvLine { points: of_line.0.to_vec(), ground_range_m: of_segments.0.to_vec() };
-            roads.push(SvRoad { way_id: head.way_id, part: head.part, class, line });
+            self.add_line(class, head, of_line.0.to_vec(), of_segments.0.to_vec());
+        }
+        Ok(())
+    }
+
+    /// The same of range-coded bits.
+    fn add_coded(
+        &mut self,
+        class: FunctionalRoadClass,
+        lines: usize,
+        blob: &[u8],
+        mut coder: LineCoder<'_>,
+    ) -> Result<(), Damage> {
+        let mut bits = Reader::new(blob);
+        let mut order = LineOrder::default();
+        let mut range_coder = RangeCoder::new();
+        let (mut points, mut room) = (Vec::new(), self.points);
+        for _ in 0..lines {
+            let mut ranges_m = Vec::new();
+            let add_range = |coder: &mut LineCoder<'_>, bits: &mut Reader<'_>, number: usize| {
+                if number > 0 {
+                    let (low_q, span) = range_coder.code(bits, coder.last_length(), (0, 0));
+                    ranges_m.push(self.range_m(low_q, span)?);
+                }
+                Ok(())
+            };
+            let head = coder.read_line(&mut bits, &mut room, &mut points, add_range)?;
+            check_head(&head)?;
+            order.check(&head)?;
+            self.add_line(class, &head, points.clone(), ranges_m);
+        }
+        self.points = room;
+        if bits.is_exact() {
+            Ok(())
+        } else {
+            Err(Damage::Invalid { what: "the length of the coded bits" })
         }
     }
-    cursor.finish()?;
-    Ok(roads)
+
+    fn add_line(
+        &mut self,
+        class: FunctionalRoadClass,
+        head: &Head,
+        points: Vec<LatticePoint>,
+        ground_range_m: Vec<[f64; 2]>,
+    ) {
+        let line = SvLine { points, ground_range_m };
+        self.roads.push(SvRoad { way_id: head.way_id, part: head.part, class, line });
+    }
+
+    /// A ground range in metres.
+    fn range_m(&self, low_q: i64, span: u64) -> Result<[f64; 2], Damage> {
+        let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
+        let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
+        let high_q = high_q.ok_or(Damage::Invalid { what: "a height range" })?;
+        Ok([low_q as f64 * self.quantum_m, high_q as f64 * self.quantum_m])
+    }
+}
+
+fn check_head(head: &Head) -> Result<(), Damage> {
+    if head.points < 2 || head.flags != 0 {
+        return Err(Damage::Invalid { what: "a line of fewer than two points" });
+    }
+    Ok(())
 }
 
 #[cfg(feature = "write")]
@@ -61,16 +148,21 @@ pub(crate) use write::encode;
 mod write {
     use corniche_roads::FunctionalRoadClass;
 
-    use super::{LatticePoint, MAX_POINTS, REACH_Q, SvRoad, class_table};
+    use super::{
+        LatticePoint, LineCoder, MAX_POINTS, REACH_Q, RangeCoder, SourceGrid, SvRoad, class_table,
+    };
     use crate::payload::{
         class_table::Head,
         number_codes::{put_planes, zigzag},
         points::put_points,
+        range_coder::Writer,
     };
 
-    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
+    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
+    /// range-coded bits.
     pub(crate) fn encode(
         roads: &[SvRoad],
+        grid: Option<SourceGrid<'_>>,
         corner: LatticePoint,
         quantum_m: f64,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
@@ -79,47 +171,82 @@ mod write {
         }
         class_table::encode(
             roads,
+            grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec()),
             |road| (road.class, road.way_id, road.part),
-            |of_class, out| {
-                let mut heads = Vec::with_capacity(of_class.len());
-                let mut points = Vec::new();
-                let (mut lows, mut spans) = (Vec::new(), Vec::new());
-                let mut previous = 0;
-                for SvRoad { way_id, part, line, .. } in of_class {
-                    if line.points.len() < 2
-                        || line.points.windows(2).any(|pair| pair[0] == pair[1])
-                    {
-                        return Err("a line without length");
-                    }
-                    if line.ground_range_m.len() != line.points.len() - 1 {
-                        return Err("ground ranges that are not one for each segment");
-                    }
-                    heads.push(Head {
-                        way_id: *way_id,
-                        part: *part,
-                        points: line.points.len(),
-                        flags: 0,
-                    });
-                    points.extend(&line.points);
-                    for &[low_m, high_m] in &line.ground_range_m {
-                        // Outwards; a quantum is a power of two, so dividing by it loses nothing.
-                        let (low, high) =
-                            ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
-                        if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
-                            return Err("a ground range that is none");
-                        }
-                        let (low, high) = (low as i64, high as i64);
-                        lows.push(zigzag(low - previous));
-                        spans.push((high - low) as u64);
-                        previous = low;
-                    }
-                }
-                class_table::put_heads(out, &heads);
-                put_points(out, &points, corner)?;
-                put_planes(out, &lows);
-                put_planes(out, &spans);
-                Ok(())
+            |of_class, out| match grid {
+                Some(grid) => put_coded(out, of_class, LineCoder::new(grid, corner), quantum_m),
+                None => put(out, of_class, corner, quantum_m),
             },
         )
+    }
+
+    fn put(
+        out: &mut Vec<u8>,
+        roads: &[SvRoad],
+        corner: LatticePoint,
+        quantum_m: f64,
+    ) -> Result<(), &'static str> {
+        let heads = roads.iter().map(head_of).collect::<Result<Vec<_>, _>>()?;
+        let points: Vec<LatticePoint> =
+            roads.iter().flat_map(|road| road.line.points.iter().copied()).collect();
+        let (mut lows, mut spans) = (Vec::new(), Vec::new());
+        let mut previous = 0;
+        for range_m in roads.iter().flat_map(|road| &road.line.ground_range_m) {
+            let (low, span) = range_q(*range_m, quantum_m)?;
+            lows.push(zigzag(low - previous));
+            spans.push(span);
+            previous = low;
+        }
+        class_table::put_heads(out, &heads);
+        put_points(out, &points, corner)?;
+        put_planes(out, &lows);
+        put_planes(out, &spans);
+        Ok(())
+    }
+
+    fn put_coded(
+        out: &mut Vec<u8>,
+        roads: &[SvRoad],
+        mut coder: LineCoder<'_>,
+        quantum_m: f64,
+    ) -> Result<(), &'static str> {
+        let mut bits = Writer::new(Vec::new());
+        let mut range_coder = RangeCoder::new();
+        for road in roads {
+            let line = &road.line;
+            let ranges = line.ground_range_m.iter().map(|&range_m| range_q(range_m, quantum_m));
+            let ranges = ranges.collect::<Result<Vec<_>, _>>()?;
+            let mut is_exact = true;
+            coder.write_line(&mut bits, head_of(road)?, &line.points, |coder, bits, number| {
+                if let Some(&range) = number.checked_sub(1).and_then(|segment| ranges.get(segment))
+                {
+                    is_exact &= range_coder.code(bits, coder.last_length(), range) == range;
+                }
+            })?;
+            if !is_exact {
+                return Err("a height too far from the one before");
+            }
+        }
+        out.extend(bits.finish());
+        Ok(())
+    }
+
+    fn head_of(SvRoad { way_id, part, line, .. }: &SvRoad) -> Result<Head, &'static str> {
+        if line.points.len() < 2 || line.points.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err("a line without length");
+        }
+        if line.ground_range_m.len() != line.points.len() - 1 {
+            return Err("ground ranges that are not one for each segment");
+        }
+        Ok(Head { way_id: *way_id, part: *part, points: line.points.len(), flags: 0 })
+    }
+
+    /// Lowest ground and how much higher the highest is, in quanta: outwards. A quantum is a power of two, so dividing by it loses nothing.
+    fn range_q([low_m, high_m]: [f64; 2], quantum_m: f64) -> Result<(i64, u64), &'static str> {
+        let (low, high) = ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
+        if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
+            return Err("a ground range that is none");
+        }
+        Ok((low as i64, (high as i64 - low as i64) as u64))
     }
 }

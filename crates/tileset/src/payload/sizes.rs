@@ -7,6 +7,7 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::SectionSize;
 use crate::payload::number_codes::Cursor;
 use crate::payload::section_kind::Kind;
+use crate::payload::source_grid::GRID_BYTES;
 use crate::payload::{class_table, envelope};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
@@ -45,8 +46,10 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
     let sections = envelope::open(bytes, id).map_err(failed("header"))?;
     let class_bytes = |kind: Kind| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
         let mut sizes = [0; FunctionalRoadClass::COUNT];
-        if let Some(raw) = envelope::section(&sections, kind)? {
-            for (class, _, bytes) in class_table::decode(&mut Cursor::new(&raw))? {
+        if let Some((raw, is_coded)) = envelope::road_section(&sections, kind)? {
+            let mut cursor = Cursor::new(&raw);
+            cursor.take(if is_coded { GRID_BYTES } else { 0 })?;
+            for (class, _, bytes) in class_table::decode(&mut cursor)? {
                 sizes[usize::from(class.number())] = bytes.len() as u64;
             }
         }

@@ -64,7 +64,8 @@ pub(crate) fn package(folder: &Path) -> PathBuf {
     ids.sort_by_key(|id| pmtiles_order(*id));
     let path = folder.join("country.pmtiles");
     let mut writer = Writer::create(&path, &manifest(&country)).unwrap();
-    let context = PayloadContext { frame: country.frame, quantum_m: QUANTUM_M };
+    let context =
+        PayloadContext { frame: country.frame, quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] };
     for id in ids {
         writer.add(id, &encode(&country.payload(id), &context).unwrap().bytes).unwrap();
     }

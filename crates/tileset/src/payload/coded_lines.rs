@@ -1,0 +1,291 @@
+//! Lines of a class as range-coded bits: their heads and points, in both road sections.
+//!
+//! A road goes on in about the direction it had, so a step from one point to the next is turned and mirrored until the step before it
+//! points between east and north-east:
+//!
+//! ```text
+//!        across                    p is the step before, in the first octant; the next step is coded as
+//!          │      ⋰ ╱ q            how far it goes along (mostly on, sometimes back), and then how far
+//!          │   ⋰ ╱ ╱               across, on which side: both in contexts of the length and the slope of p.
+//!          │⋰  ╱╱──── p
+//!          └──────────── along
+//! ```
+
+use std::collections::HashMap;
+
+use corniche_geom::LatticePoint;
+
+use crate::limits::MAX_POINTS;
+use crate::payload::class_table::Head;
+use crate::payload::damage::Damage;
+use crate::payload::magnitudes::Magnitudes;
+use crate::payload::points::REACH_STEPS;
+use crate::payload::range_coder::{Bits, Model, Reader};
+use crate::payload::source_grid::SourceGrid;
+
+/// Binary digits of a step, from 0 to 32.
+const LENGTHS: usize = 33;
+/// Fourths of the slope of the step before, and none before.
+const SLOPES: usize = 5;
+/// Lengths of a step along that contexts of the step across tell apart.
+const ALONG_LENGTHS: usize = 20;
+/// Points of the grid are within so many steps from 0: more than once around the earth.
+const REACH: i64 = 1 << 33;
+
+/// What a coder knows of a class's lines.
+pub(crate) struct LineCoder<'f> {
+    grid: SourceGrid<'f>,
+    corner: LatticePoint,
+    way_ids: Magnitudes<1, 1>,
+    parts: Magnitudes<1, 1>,
+    counts: Magnitudes<1, 1>,
+    flags: [Model; 2],
+    starts: [Magnitudes<1, 1>; 2],
+    along: Magnitudes<LENGTHS, SLOPES>,
+    across: Magnitudes<{ ALONG_LENGTHS * SLOPES }, LENGTHS>,
+    goes_back: [[Model; 4]; SLOPES],
+    is_across_south: [[[Model; 7]; 2]; SLOPES],
+    is_off_grid: Model,
+    off_grid: [Magnitudes<1, 1>; 2],
+    is_known: [[Model; 2]; 3],
+    steps_back: Magnitudes<1, 1>,
+    /// Different points so far, on the grid and on the lattice: roads meet at some of them.
+    known: Vec<([i64; 2], LatticePoint)>,
+    /// Where a point is among them; in a writer.
+    known_at: HashMap<LatticePoint, usize>,
+    was_known: bool,
+    way_id: i64,
+    /// The last point, on the grid.
+    at: [i64; 2],
+    /// The step to it, if there was one in its line.
+    before: Option<[i64; 2]>,
+}
+
+/// Binary digits of a number.
+fn length(number: i64) -> usize {
+    (u64::BITS - number.unsigned_abs().leading_zeros()) as usize
+}
+
+const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
+const FAR: Damage = Damage::Invalid { what: "a point far away from its tile" };
+
+impl<'f> LineCoder<'f> {
+    /// For the lines of one class of a tile with this south-western corner.
+    pub(crate) fn new(grid: SourceGrid<'f>, corner: LatticePoint) -> Self {
+        Self {
+            grid,
+            corner,
+            way_ids: Magnitudes::new(),
+            parts: Magnitudes::new(),
+            counts: Magnitudes::new(),
+            flags: [Model::NEW; 2],
+            starts: [Magnitudes::new(), Magnitudes::new()],
+            along: Magnitudes::new(),
+            across: Magnitudes::new(),
+            goes_back: [[Model::NEW; 4]; SLOPES],
+            is_across_south: [[[Model::NEW; 7]; 2]; SLOPES],
+            is_off_grid: Model::NEW,
+            off_grid: [Magnitudes::new(), Magnitudes::new()],
+            is_known: [[Model::NEW; 2]; 3],
+            steps_back: Magnitudes::new(),
+            known: Vec::new(),
+            known_at: HashMap::new(),
+            was_known: false,
+            way_id: 0,
+            at: [0; 2],
+            before: None,
+        }
+    }
+
+    /// Codes the head of the next line. A reader's head does not matter.
+    pub(crate) fn code_head<B: Bits>(&mut self, bits: &mut B, head: Head) -> Result<Head, Damage> {
+        let step = head.way_id.wrapping_sub(self.way_id);
+        let way_id = self.way_id.wrapping_add(self.way_ids.code(bits, [0; 2], step));
+        self.way_id = way_id;
+        let part = self.parts.code_magnitude(bits, [0; 2], u64::from(head.part)) as u32;
+        let points = self.counts.code_magnitude(bits, [0; 2], head.points as u64) as usize;
+        let flag =
+            |bits: &mut B, model, flag| bits.bit(model, u32::from(head.flags & flag != 0)) as u8;
+        let [lead_in, lead_out] = &mut self.flags;
+        let flags = flag(bits, lead_in, 1) | flag(bits, lead_out, 2) << 1;
+        if points > MAX_POINTS {
+            return Err(Damage::Invalid { what: "number of points" });
+        }
+        self.before = None;
+        self.was_known = false;
+        Ok(Head { way_id, part, points, flags })
+    }
+
+    /// Codes point `number` of a line. A reader has no `asked`.
+    pub(crate) fn code_point<B: Bits>(
+        &mut self,
+        bits: &mut B,
+        number: usize,
+        head: &Head,
+        asked: Option<LatticePoint>,
+    ) -> Result<LatticePoint, Damage> {
+        let place = match number {
+            0 => 0,
+            _ if number + 1 < head.points => 1,
+            _ => 2,
+        };
+        let asked_known = asked.and_then(|point| self.known_at.get(&point).copied());
+        let model = &mut self.is_known[place][usize::from(self.was_known)];
+        self.was_known = bits.bit(model, u32::from(asked_known.is_some())) == 1;
+        if self.was_known {
+            let newest = self.known.len() as u64;
+            let back = asked_known.map_or(0, |at| newest - 1 - at as u64);
+            let back = self.steps_back.code_magnitude(bits, [0; 2], back);
+            let at = newest.checked_sub(back + 1).ok_or(UNKNOWN)? as usize;
+            let (to, point) = *self.known.get(at).ok_or(UNKNOWN)?;
+            self.before = Some([to[0] - self.at[0], to[1] - self.at[1]])
+                .filter(|&step| number > 0 && step != [0; 2]);
+            self.at = to;
+            return Ok(point);
+        }
+        let point = self.code_new_point(bits, number == 0, asked)?;
+        if asked.is_some() {
+            self.known_at.insert(point, self.known.len());
+        }
+        self.known.push((self.at, point));
+        Ok(point)
+    }
+
+    fn code_new_point<B: Bits>(
+        &mut self,
+        bits: &mut B,
+        is_first: bool,
+        asked: Option<LatticePoint>,
+    ) -> Result<LatticePoint, Damage> {
+        let nearest = asked.map_or([0; 2], |point| self.grid.nearest(point));
+        let step = [0, 1].map(|axis| nearest[axis].wrapping_sub(self.at[axis]));
+        let step = if is_first {
+            let [east, north] = &mut self.starts;
+            [east.code(bits, [0; 2], step[0]), north.code(bits, [0; 2], step[1])]
+        } else {
+            let step = self.code_step(bits, step);
+            self.before = Some(step).filter(|&step| step != [0; 2]);
+            step
+        };
+        let to = [0, 1].map(|axis| self.at[axis] + step[axis]);
+        if to.iter().any(|at| at.abs() > REACH) {
+            return Err(FAR);
+        }
+        self.at = to;
+        let on_grid = self.grid.lattice_point(to).ok_or(FAR)?;
+        let off = asked.map_or([0; 2], |point| [point.u - on_grid.u, point.v - on_grid.v]);
+        let off = if bits.bit(&mut self.is_off_grid, u32::from(off != [0; 2])) == 1 {
+            let [east, north] = &mut self.off_grid;
+            [east.code(bits, [0; 2], off[0]), north.code(bits, [0; 2], off[1])]
+        } else {
+            [0; 2]
+        };
+        let point = LatticePoint::new(on_grid.u + off[0], on_grid.v + off[1]);
+        let far = |at: i64, corner: i64| at.abs_diff(corner) > REACH_STEPS as u64;
+        if far(point.u, self.corner.u) || far(point.v, self.corner.v) {
+            return Err(FAR);
+        }
+        Ok(point)
+    }
+
+    fn code_step<B: Bits>(&mut self, bits: &mut B, step: [i64; 2]) -> [i64; 2] {
+        let before = self.before.unwrap_or_default();
+        let [west, south] = before.map(|step| step < 0);
+        let is_steep = before[1].abs() > before[0].abs();
+        let mirror = |[x, y]: [i64; 2]| {
+            [if west { x.wrapping_neg() } else { x }, if south { y.wrapping_neg() } else { y }]
+        };
+        let swap = |[x, y]: [i64; 2]| if is_steep { [y, x] } else { [x, y] };
+        let [long, short] = swap(before.map(i64::abs));
+        let long_length = length(long);
+        let slope = if long == 0 { 0 } else { 1 + (4 * short / long).min(3) as usize };
+        let [along, across] = swap(mirror(step));
+
+        let along_size =
+            self.along.code_magnitude(bits, [long_length, slope], along.unsigned_abs()) as i64;
+        let along_length = length(along_size);
+        let across_contexts = [along_length.min(ALONG_LENGTHS - 1) * SLOPES + slope, long_length];
+        let across_size =
+            self.across.code_magnitude(bits, across_contexts, across.unsigned_abs()) as i64;
+        let mut goes_back = 0;
+        if along_size != 0 {
+            let size = (along_length + 2).saturating_sub(long_length).min(3);
+            goes_back = bits.bit(&mut self.goes_back[slope][size], u32::from(along < 0));
+        }
+        let mut is_across_south = 0;
+        if across_size != 0 {
+            let size = (length(across_size) + 3).saturating_sub(along_length).min(6);
+            let model = &mut self.is_across_south[slope][goes_back as usize][size];
+            is_across_south = bits.bit(model, u32::from(across < 0));
+        }
+        let signed = |size: i64, is_negative: u32| if is_negative == 1 { -size } else { size };
+        mirror(swap([signed(along_size, goes_back), signed(across_size, is_across_south)]))
+    }
+
+    /// Reads head and `points` of the next line, which take the `room` that the section has left; calls `after_each` after each point, with its number.
+    pub(crate) fn read_line(
+        &mut self,
+        bits: &mut Reader<'_>,
+        room: &mut usize,
+        points: &mut Vec<LatticePoint>,
+        mut after_each: impl FnMut(&mut Self, &mut Reader<'_>, usize) -> Result<(), Damage>,
+    ) -> Result<Head, Damage> {
+        let head = self.code_head(bits, Head { way_id: 0, part: 0, points: 0, flags: 0 })?;
+        *room = room.checked_sub(head.points).ok_or(Damage::TooLarge {
+            what: "points of a section",
+            length: MAX_POINTS as u64 + 1,
+            limit: MAX_POINTS as u64,
+        })?;
+        check_end(bits)?;
+        points.clear();
+        for number in 0..head.points {
+            check_end(bits)?;
+            let point = self.code_point(bits, number, &head, None)?;
+            if points.last() == Some(&point) {
+                return Err(Damage::Invalid { what: "a segment without length" });
+            }
+            points.push(point);
+            after_each(self, bits, number)?;
+        }
+        Ok(head)
+    }
+
+    /// Binary digits of the step to the last point; 0 after the first point of a line.
+    pub(crate) fn last_length(&self) -> usize {
+        self.before.map_or(0, |[east, north]| length(east).max(length(north)))
+    }
+}
+
+/// Beyond the end come zeros, as many as one asks for.
+fn check_end(bits: &Reader<'_>) -> Result<(), Damage> {
+    if bits.is_past_end() { Err(Damage::TooShort) } else { Ok(()) }
+}
+
+#[cfg(feature = "write")]
+impl LineCoder<'_> {
+    /// Writes head and points of the next line, and calls `after_each` after each point, with its number. Fails where a number has no code: a
+    /// step of more than 2^32.
+    pub(crate) fn write_line(
+        &mut self,
+        bits: &mut crate::payload::range_coder::Writer,
+        head: Head,
+        points: &[LatticePoint],
+        mut after_each: impl FnMut(&mut Self, &mut crate::payload::range_coder::Writer, usize),
+    ) -> Result<(), &'static str> {
+        const NO_CODE: &str = "a way or a point too far from the one before";
+        if self.code_head(bits, head) != Ok(head) {
+            return Err(NO_CODE);
+        }
+        for (number, &point) in points.iter().enumerate() {
+            if self.code_point(bits, number, &head, Some(point)) != Ok(point) {
+                return Err(NO_CODE);
+            }
+            after_each(self, bits, number);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(all(test, feature = "write"))]
+#[path = "coded_lines_tests.rs"]
+mod tests;

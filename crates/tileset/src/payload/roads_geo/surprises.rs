@@ -1,0 +1,189 @@
+//! Vertices of lines that are not as guessed, in both forms of the section.
+
+use crate::limits::MAX_LINE_VERTICES;
+use crate::payload::damage::Damage;
+use crate::payload::magnitudes::Magnitudes;
+use crate::payload::number_codes::Cursor;
+use crate::payload::range_coder::{Bits, Model, Reader};
+
+/// Kinds of surprises.
+pub(crate) const END: u8 = 0;
+pub(crate) const SOURCE: u8 = 1;
+pub(crate) const CROSSING: u8 = 2;
+pub(crate) const VERTEX: u8 = 3;
+
+const COUNT: Damage = Damage::Invalid { what: "number of surprises" };
+const GAP: Damage = Damage::Invalid { what: "place of a surprise" };
+
+/// The surprises of a line, as they are read: their number; then for each a gap, a kind and indices.
+pub(crate) trait Surprises {
+    fn count(&mut self) -> Result<usize, Damage>;
+    /// How many vertices are as guessed before the next surprise.
+    fn gap(&mut self) -> Result<usize, Damage>;
+    fn kind(&mut self) -> Result<u8, Damage>;
+    /// A number up to `last`; `what` names it in errors.
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage>;
+}
+
+impl Surprises for Cursor<'_> {
+    fn count(&mut self) -> Result<usize, Damage> {
+        self.bounded(MAX_LINE_VERTICES, "number of surprises")
+    }
+
+    fn gap(&mut self) -> Result<usize, Damage> {
+        self.bounded(MAX_LINE_VERTICES, "place of a surprise")
+    }
+
+    fn kind(&mut self) -> Result<u8, Damage> {
+        self.byte()
+    }
+
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage> {
+        self.bounded(last, what).map(|index| index as u32)
+    }
+}
+
+/// What a coder knows of a class's surprises.
+pub(crate) struct SurpriseCoder {
+    /// By the flags of the line: a line with a lead-in always has one.
+    counts: Magnitudes<4, 1>,
+    gaps: Magnitudes<1, 1>,
+    kinds: [Model; 4],
+    indices: Magnitudes<1, 1>,
+}
+
+impl SurpriseCoder {
+    pub(crate) fn new() -> Self {
+        Self {
+            counts: Magnitudes::new(),
+            gaps: Magnitudes::new(),
+            kinds: [Model::NEW; 4],
+            indices: Magnitudes::new(),
+        }
+    }
+
+    fn code_count<B: Bits>(&mut self, bits: &mut B, flags: u8, count: u64) -> u64 {
+        self.counts.code_magnitude(bits, [usize::from(flags), 0], count)
+    }
+
+    fn code_gap<B: Bits>(&mut self, bits: &mut B, gap: u64) -> u64 {
+        self.gaps.code_magnitude(bits, [0; 2], gap)
+    }
+
+    fn code_kind<B: Bits>(&mut self, bits: &mut B, kind: u8) -> u8 {
+        let high = bits.bit(&mut self.kinds[1], u32::from(kind >> 1));
+        let low = bits.bit(&mut self.kinds[2 + high as usize], u32::from(kind & 1));
+        (high << 1 | low) as u8
+    }
+
+    fn code_index<B: Bits>(&mut self, bits: &mut B, index: u64) -> u64 {
+        self.indices.code_magnitude(bits, [0; 2], index)
+    }
+
+    /// The surprises of the next line, whose flags these are.
+    pub(crate) fn reading<'c, 'b>(
+        &'c mut self,
+        bits: &'c mut Reader<'b>,
+        flags: u8,
+    ) -> CodedSurprises<'c, 'b> {
+        CodedSurprises { coder: self, bits, flags }
+    }
+}
+
+/// Surprises of a line in range-coded bits.
+pub(crate) struct CodedSurprises<'c, 'b> {
+    coder: &'c mut SurpriseCoder,
+    bits: &'c mut Reader<'b>,
+    flags: u8,
+}
+
+impl CodedSurprises<'_, '_> {
+    fn check(&self, number: u64, last: usize, damage: Damage) -> Result<usize, Damage> {
+        // Beyond the end come zeros, as many as one asks for.
+        if self.bits.is_past_end() {
+            return Err(Damage::TooShort);
+        }
+        usize::try_from(number).ok().filter(|&number| number <= last).ok_or(damage)
+    }
+}
+
+impl Surprises for CodedSurprises<'_, '_> {
+    fn count(&mut self) -> Result<usize, Damage> {
+        let count = self.coder.code_count(self.bits, self.flags, 0);
+        self.check(count, MAX_LINE_VERTICES, COUNT)
+    }
+
+    fn gap(&mut self) -> Result<usize, Damage> {
+        let gap = self.coder.code_gap(self.bits, 0);
+        self.check(gap, MAX_LINE_VERTICES, GAP)
+    }
+
+    fn kind(&mut self) -> Result<u8, Damage> {
+        Ok(self.coder.code_kind(self.bits, 0))
+    }
+
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage> {
+        let index = self.coder.code_index(self.bits, 0);
+        self.check(index, last, Damage::Invalid { what }).map(|index| index as u32)
+    }
+}
+
+#[cfg(feature = "write")]
+pub(crate) use write::{Surprise, put_surprises};
+
+#[cfg(feature = "write")]
+mod write {
+    use corniche_drape::DrapedVertex;
+
+    use super::{CROSSING, END, SOURCE, SurpriseCoder, VERTEX};
+    use crate::payload::{number_codes::put_varint, range_coder::Writer};
+
+    /// A vertex that is not as guessed, or the end of the line.
+    pub(crate) struct Surprise {
+        /// How many vertices before it are as guessed, since the surprise before.
+        pub(crate) as_guessed: u64,
+        pub(crate) vertex: Option<DrapedVertex>,
+    }
+
+    impl Surprise {
+        /// Its kind and indices.
+        fn parts(&self) -> (u8, Vec<u64>) {
+            match self.vertex {
+                None => (END, vec![]),
+                Some(DrapedVertex::Source { triangle, .. }) => (SOURCE, vec![u64::from(triangle)]),
+                Some(DrapedVertex::Crossing { a, b }) => {
+                    (CROSSING, vec![u64::from(a), u64::from(b)])
+                }
+                Some(DrapedVertex::Vertex { vertex }) => (VERTEX, vec![u64::from(vertex)]),
+            }
+        }
+    }
+
+    /// Writes the surprises of a line.
+    pub(crate) fn put_surprises(out: &mut Vec<u8>, surprises: &[Surprise]) {
+        put_varint(out, surprises.len() as u64);
+        for surprise in surprises {
+            let (kind, indices) = surprise.parts();
+            put_varint(out, surprise.as_guessed);
+            out.push(kind);
+            for index in indices {
+                put_varint(out, index);
+            }
+        }
+    }
+
+    impl SurpriseCoder {
+        /// Writes the surprises of a line with these flags.
+        pub(crate) fn write(&mut self, bits: &mut Writer, flags: u8, surprises: &[Surprise]) {
+            self.code_count(bits, flags, surprises.len() as u64);
+            for surprise in surprises {
+                let (kind, indices) = surprise.parts();
+                self.code_gap(bits, surprise.as_guessed);
+                self.code_kind(bits, kind);
+                for index in indices {
+                    self.code_index(bits, index);
+                }
+            }
+        }
+    }
+}
