@@ -9,8 +9,7 @@ use proptest::prelude::*;
 
 use super::{
     Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad, Terrain,
-    TilePayload, context::Context, decode, encode, number_codes::Cursor, section_kind::Kind,
-    source_grid::SourceGrid,
+    TilePayload, context::Context, decode, encode, number_codes::Cursor, source_grid::SourceGrid,
 };
 
 const QUANTUM_M: f64 = 0.25;
@@ -280,7 +279,7 @@ fn lines_on_the_grid_of_osm_are_coded_and_come_back() {
     for (context, is_coded) in [(context(), false), (context_in_degrees(), true)] {
         let encoded = encode(&payload, &context).unwrap();
         let sections = super::envelope::open(&encoded.bytes, id()).unwrap();
-        let found = super::envelope::road_section(&sections, Kind::RoadsGeo).unwrap();
+        let found = super::envelope::road_section(&sections, super::section_kind::GEO).unwrap();
         assert_eq!(found.unwrap().1, is_coded);
         assert_eq!(read(&encoded.bytes, Sections::ALL).as_ref(), Ok(&payload));
         assert_eq!(super::payload_sizes(&encoded.bytes, id()), Ok(encoded.sizes));

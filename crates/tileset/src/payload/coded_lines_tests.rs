@@ -86,7 +86,7 @@ fn a_line_that_goes_on_beyond_its_bits_is_refused() {
         let mut bits = Reader::new(&bytes);
         let mut coder = LineCoder::new(grid(), LatticePoint::new(0, 0));
         let (mut room, mut points) = (MAX_POINTS, Vec::new());
-        let lines =
+        let mut lines =
             (0..1000).map(|_| coder.read_line(&mut bits, &mut room, &mut points, |_, _, _| Ok(())));
         assert!(lines.any(|line| line.is_err()));
         assert!(MAX_POINTS - room < 1 << 22);

@@ -4,7 +4,7 @@ use corniche_tin::Surface;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
-use crate::payload::section_kind::{Kind, Sections};
+use crate::payload::section_kind::{GEO, Kind, RoadKinds, SV, Sections};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
 use crate::payload::{
     areas, attributes, boundaries, envelope, road_tags, roads_geo, roads_sv, terrain,
@@ -42,14 +42,14 @@ pub fn decode(
         }
         envelope::section(&sections, kind).map_err(inside(kind))
     };
-    let read_roads = |kind: Kind, section: Sections| {
+    let read_roads = |roads: RoadKinds, section: Sections| {
         if !wanted.contains(section) {
             return Ok(None);
         }
-        let found = envelope::road_section(&sections, kind).map_err(inside(kind))?;
+        let found = envelope::road_section(&sections, roads).map_err(inside(roads.planes))?;
         Ok(found.map(|(bytes, is_coded)| (bytes, is_coded.then_some(frame))))
     };
-    let roads_geo = read_roads(Kind::RoadsGeo, Sections::ROADS_GEO)?;
+    let roads_geo = read_roads(GEO, Sections::ROADS_GEO)?;
     let needs_terrain = wanted.contains(Sections::TERRAIN) || roads_geo.is_some();
     let ground = if needs_terrain {
         let bytes = envelope::section(&sections, Kind::Terrain).map_err(inside(Kind::Terrain))?;
@@ -68,7 +68,7 @@ pub fn decode(
         .map(|(bytes, coded_in)| decode_geo(&bytes, coded_in, ground.as_ref(), &context))
         .transpose()
         .map_err(inside(Kind::RoadsGeo))?;
-    let roads_sv = read_roads(Kind::RoadsSv, Sections::ROADS_SV)?
+    let roads_sv = read_roads(SV, Sections::ROADS_SV)?
         .map(|(bytes, coded_in)| roads_sv::decode(&bytes, coded_in, context.corner, quantum_m))
         .transpose()
         .map_err(inside(Kind::RoadsSv))?;

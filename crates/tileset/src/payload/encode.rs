@@ -5,7 +5,7 @@ use corniche_tin::Surface;
 use crate::payload::context::Context;
 use crate::payload::damage::EncodeError;
 use crate::payload::envelope::{Content, SectionSize, StoredSection};
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::{GEO, Kind, RoadKinds, SV};
 use crate::payload::sizes::PayloadSizes;
 use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::TilePayload;
@@ -113,18 +113,18 @@ fn encode_sections(
         let surface = Surface::new(&ground.tin, placement);
         let encode = |grid| roads_geo::encode(&payload.roads_geo, grid, corner, &surface);
         let points = payload.roads_geo.iter().flat_map(|road| roads_geo::points_of(&road.line));
-        let (content, class_bytes) = coded_or_raw(encode, context, points).map_err(inside)?;
+        let (section, class_bytes) = coded_or_raw(GEO, encode, context, points).map_err(inside)?;
         geo_class_bytes = class_bytes;
-        sections.push((Kind::RoadsGeo, content));
+        sections.push(section);
     }
     let mut sv_class_bytes = [0; FunctionalRoadClass::COUNT];
     if !payload.roads_sv.is_empty() {
         let encode = |grid| roads_sv::encode(&payload.roads_sv, grid, corner, quantum_m);
         let points = payload.roads_sv.iter().flat_map(|road| road.line.points.iter().copied());
-        let (content, class_bytes) =
-            coded_or_raw(encode, context, points).map_err(inside(Kind::RoadsSv))?;
+        let (section, class_bytes) =
+            coded_or_raw(SV, encode, context, points).map_err(inside(Kind::RoadsSv))?;
         sv_class_bytes = class_bytes;
-        sections.push((Kind::RoadsSv, content));
+        sections.push(section);
     }
     if !payload.attributes.is_empty() {
         let bytes = attributes::encode(&payload.attributes).map_err(inside(Kind::Attributes))?;
@@ -148,8 +148,8 @@ fn encode_sections(
     };
     let sizes = PayloadSizes {
         terrain: size(Kind::Terrain),
-        roads_geo: size(Kind::RoadsGeo),
-        roads_sv: size(Kind::RoadsSv),
+        roads_geo: size(Kind::RoadsGeo).or(size(Kind::CodedGeo)),
+        roads_sv: size(Kind::RoadsSv).or(size(Kind::CodedSv)),
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
@@ -167,13 +167,14 @@ type Encoded = Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str
 
 /// A section of roads as range-coded bits, if its points lie on OSM's grid and all its numbers have codes; else as planes for zstd.
 fn coded_or_raw<'f>(
+    kinds: RoadKinds,
     encode: impl Fn(Option<SourceGrid<'f>>) -> Encoded,
     context: &'f PayloadContext,
     points: impl Iterator<Item = LatticePoint>,
-) -> Result<(Content<'static>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
+) -> Result<((Kind, Content<'static>), [u64; FunctionalRoadClass::COUNT]), &'static str> {
     let grid = SourceGrid::of_osm(&context.frame, context.metres_per_unit, points);
     if let Some(Ok((bytes, class_bytes))) = grid.map(|grid| encode(Some(grid))) {
-        return Ok((Content::Coded(bytes), class_bytes));
+        return Ok(((kinds.coded, Content::Packed(bytes.into())), class_bytes));
     }
-    encode(None).map(|(bytes, class_bytes)| (Content::Raw(bytes), class_bytes))
+    encode(None).map(|(bytes, class_bytes)| ((kinds.planes, Content::Raw(bytes)), class_bytes))
 }

@@ -10,7 +10,7 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use crate::limits::MAX_SECTION_BYTES;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::{Kind, RoadKinds};
 
 /// First bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
@@ -26,9 +26,6 @@ const ENTRY_BYTES: usize = 20;
 pub(crate) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
 pub(crate) const ZSTD: u8 = 1;
-
-/// Stored bytes are lines as range-coded bits: in road sections only.
-pub(crate) const CODED: u8 = 2;
 
 /// A section as it lies in the payload.
 #[derive(Debug, Clone, Copy)]
@@ -113,17 +110,6 @@ pub(crate) fn section(
     sections: &[StoredSection<'_>],
     kind: Kind,
 ) -> Result<Option<Vec<u8>>, Damage> {
-    match road_section(sections, kind)? {
-        Some((_, true)) => Err(Damage::Invalid { what: "an unknown compression" }),
-        found => Ok(found.map(|(bytes, _)| bytes)),
-    }
-}
-
-/// The same of a section with roads, and whether its lines are range-coded bits.
-pub(crate) fn road_section(
-    sections: &[StoredSection<'_>],
-    kind: Kind,
-) -> Result<Option<(Vec<u8>, bool)>, Damage> {
     let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
         return Ok(None);
     };
@@ -139,16 +125,24 @@ pub(crate) fn road_section(
         return Err(Damage::Checksum);
     }
     match section.compression {
-        STORED | CODED if section.bytes.len() == raw_length => {
-            Ok(Some((section.bytes.to_vec(), section.compression == CODED)))
-        }
-        STORED | CODED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
+        STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
+        STORED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
         // Writers compress where that makes a section smaller.
-        ZSTD if section.bytes.len() < raw_length => {
-            decompress(section.bytes, raw_length).map(|bytes| Some((bytes, false)))
-        }
+        ZSTD if section.bytes.len() < raw_length => decompress(section.bytes, raw_length).map(Some),
         ZSTD => Err(Damage::Invalid { what: "the length of a compressed section" }),
         _ => Err(Damage::Invalid { what: "an unknown compression" }),
+    }
+}
+
+/// The same of the roads of a tile, and whether their lines are range-coded bits: a section of one of two kinds.
+pub(crate) fn road_section(
+    sections: &[StoredSection<'_>],
+    roads: RoadKinds,
+) -> Result<Option<(Vec<u8>, bool)>, Damage> {
+    match (section(sections, roads.planes)?, section(sections, roads.coded)?) {
+        (Some(_), Some(_)) => Err(Damage::Invalid { what: "two sections for the same roads" }),
+        (Some(planes), None) => Ok(Some((planes, false))),
+        (None, coded) => Ok(coded.map(|coded| (coded, true))),
     }
 }
 
@@ -215,6 +209,13 @@ pub struct SectionSize {
     pub stored: u64,
 }
 
+impl SectionSize {
+    /// This, or `other` if this section is absent.
+    pub(crate) fn or(self, other: Self) -> Self {
+        if self.stored > 0 { self } else { other }
+    }
+}
+
 /// zstd's level: from 16 on it splits blocks where the statistics change, which suits streams laid end to end; 19
 /// saves less than 1 % more at twice the time.
 #[cfg(feature = "write")]
@@ -227,8 +228,6 @@ pub(crate) enum Content<'a> {
     Raw(Vec<u8>),
     /// Bytes that do not become smaller by compression.
     Packed(Cow<'a, [u8]>),
-    /// Lines as range-coded bits.
-    Coded(Vec<u8>),
     /// Bytes as another payload of the tile has them.
     Stored(StoredSection<'a>),
 }
@@ -285,10 +284,6 @@ pub(crate) fn seal(
             Content::Packed(raw) => {
                 check_size(id, section, raw)?;
                 (STORED, raw.as_ref(), raw.len(), crc32fast::hash(raw))
-            }
-            Content::Coded(raw) => {
-                check_size(id, section, raw)?;
-                (CODED, raw.as_slice(), raw.len(), crc32fast::hash(raw))
             }
             Content::Raw(raw) => {
                 check_size(id, section, raw)?;

@@ -36,7 +36,23 @@ kinds! {
     Photo = 7, "photo section";
     Areas = 8, "areas section";
     Boundaries = 9, "boundaries section";
+    CodedGeo = 10, "coded GEO roads section";
+    CodedSv = 11, "coded SV roads section";
 }
+
+/// The two kinds of section that roads of a method can be in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RoadKinds {
+    /// Numbers in planes.
+    pub(crate) planes: Kind,
+    /// Range-coded bits.
+    pub(crate) coded: Kind,
+}
+
+/// Centre-lines on the TIN.
+pub(crate) const GEO: RoadKinds = RoadKinds { planes: Kind::RoadsGeo, coded: Kind::CodedGeo };
+/// Plan lines for shadow volumes.
+pub(crate) const SV: RoadKinds = RoadKinds { planes: Kind::RoadsSv, coded: Kind::CodedSv };
 
 /// Which sections of a payload to decode; combine them with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,9 +64,9 @@ impl Sections {
     /// The ground.
     pub const TERRAIN: Self = Self::of(Kind::Terrain);
     /// Centre-lines on the TIN. Reads the ground too, which they lie on.
-    pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo);
+    pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo).and(Self::of(Kind::CodedGeo));
     /// Plan lines for shadow volumes.
-    pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
+    pub const ROADS_SV: Self = Self::of(Kind::RoadsSv).and(Self::of(Kind::CodedSv));
     /// The attributes of each way, of both sections that have some.
     pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
     /// The raster of the level, for shading.

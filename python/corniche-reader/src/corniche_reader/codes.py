@@ -145,6 +145,11 @@ class Numbers:
 
     def read(self, first: int = 0, second: int = 0) -> int:
         """The next number; contexts above the largest count as the largest."""
+        m = self.unsigned(first, second)
+        return -m if m and self.bits.even() else m
+
+    def unsigned(self, first: int = 0, second: int = 0) -> int:
+        """The next number of a kind without signs."""
         bits = self.bits
         x, y = self.x[min(first, len(self.x) - 1)], self.y[min(second, len(self.y) - 1)]
         length = 0
@@ -155,4 +160,4 @@ class Numbers:
         m, z = 1, self.z[length]
         for _ in range(length - 1):
             m = 2 * m + (bits.bit(z[m]) if m < 4 else bits.even())
-        return -m if bits.even() else m
+        return m

@@ -55,9 +55,21 @@ class Grid:
             (self.root_corner[1] - s * (256 * y + row)) * self.steps[1],
         )
 
+    def snap(self, x: float, y: float) -> tuple[int, int]:
+        """The lattice point nearest to a place in working metres."""
+        u = (x - self.origin_m[0]) / self.cell_m[0] * self.steps[0]
+        v = (y - self.origin_m[1]) / self.cell_m[1] * self.steps[1]
+        return _round(u), _round(v)
+
     def working(self, u: float, v: float) -> tuple[float, float]:
         """Working metres of a place on the lattice."""
         return (
             self.origin_m[0] + self.cell_m[0] * (u / float(self.steps[0])),
             self.origin_m[1] + self.cell_m[1] * (v / float(self.steps[1])),
         )
+
+
+def _round(x: float) -> int:
+    """Rounds half away from zero."""
+    whole = int(x)
+    return whole + (1 if x > 0 else -1) * (abs(x - whole) >= 0.5)

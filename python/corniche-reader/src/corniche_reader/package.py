@@ -83,9 +83,10 @@ class Package:
         found = sections(read_at(self._file, place.offset, place.length, f"tile {z}/{x}/{y}"), (z, x, y))
         terrain = read_terrain(found[1], self.grid, (z, x, y)) if 1 in found else None
         roads: list[Road] = []
-        if 2 in found:
-            if terrain is None:
-                raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground")
-            roads = read_roads(found[2], terrain, self.grid, (z, x, y))
+        kind = 10 if 10 in found else 2
+        if kind in found:
+            if terrain is None or {2, 10} <= found.keys():
+                raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground, or twice")
+            roads = read_roads(found[kind], kind == 10, terrain, self.grid, (z, x, y))
         attributes = read_attributes(found[4], f"attributes of tile {z}/{x}/{y}") if 4 in found else []
         return Tile(z, x, y, terrain, roads, attributes, found)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Cursor, unzigzag
+from .coded_lines import Line, coded_lines
 from .errors import PayloadError
 from .grid import Grid
 from .mesh import Mesh, Point, orient
@@ -32,27 +35,28 @@ class Road:
     kinds: NDArray[np.int8]
 
 
-@dataclass
-class _Line:
-    way_id: int
-    part: int
-    flags: int
-    points: list[Point]
-
-
-def read_roads(data: bytes, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
-    """Decodes the section."""
+def read_roads(data: bytes, is_coded: bool, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
+    """Decodes the section; `is_coded` tells whether it is one of range-coded bits."""
     what = "GEO roads of tile {}/{}/{}".format(*tile)
     whole = Cursor(data, what)
+    step_m = struct.unpack("<2d", whole.take(16)) if is_coded else (0.0, 0.0)
+    if is_coded and not all(0 < step < math.inf for step in step_m):
+        raise PayloadError(f"{what}: the steps of the grid are beyond their limits")
     counts = [(int.from_bytes(whole.take(4), "little"), int.from_bytes(whole.take(4), "little")) for _ in range(9)]
     lattice = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in terrain.vertices.tolist()]
     mesh = Mesh(lattice, terrain.triangles.tolist())
     follower = _Follower(mesh, (terrain.heights_q.astype(np.float64) * grid.quantum_m).tolist(), what)
     roads = []
     for number, (lines, size) in enumerate(counts):
-        cursor = Cursor(whole.take(size), what)
-        for line in _lines(cursor, lines, grid.lattice_of_node(tile, 0, 0)):
-            vertices = follower.follow(line, _surprises(cursor))
+        content = whole.take(size)
+        if is_coded:
+            found = coded_lines(content, lines, (step_m[0], step_m[1]), grid, what)
+        else:
+            cursor = Cursor(content, what)
+            found = [(line, _surprises(cursor)) for line in _lines(cursor, lines, grid.lattice_of_node(tile, 0, 0))]
+            cursor.end()
+        for line, surprises in found:
+            vertices = follower.follow(line, surprises)
             places = np.empty((len(vertices), 3))
             for i, vertex in enumerate(vertices):
                 u, v, z = vertex[1]
@@ -60,18 +64,17 @@ def read_roads(data: bytes, terrain: Terrain, grid: Grid, tile: tuple[int, int, 
                 places[i, 2] = z
             kinds = np.array([kind for kind, _ in vertices], np.int8)
             roads.append(Road(line.way_id, number, line.part, places, kinds))
-        cursor.end()
     whole.end()
     return roads
 
 
-def _lines(cursor: Cursor, count: int, corner: Point) -> list[_Line]:
+def _lines(cursor: Cursor, count: int, corner: Point) -> list[Line]:
     if count > len(cursor.data):
         raise PayloadError(f"{cursor.what}: more lines than bytes")
     way, lines = 0, []
     for _ in range(count):
         way += unzigzag(cursor.varint())
-        lines.append(_Line(way, 0, 0, []))
+        lines.append(Line(way, 0, 0, []))
     for line in lines:
         line.part = cursor.varint()
     sizes = []
@@ -111,7 +114,7 @@ class _Follower:
     def __init__(self, mesh: Mesh, heights_m: list[float], what: str) -> None:
         self.mesh, self.heights, self.what = mesh, heights_m, what
 
-    def follow(self, line: _Line, surprises: list[tuple[int, tuple[int, ...]]]) -> list[tuple[int, tuple[float, float, float]]]:
+    def follow(self, line: Line, surprises: list[tuple[int, tuple[int, ...]]]) -> list[tuple[int, tuple[float, float, float]]]:
         """Kind and place [u, v, z] of each vertex."""
         points, used = line.points, line.flags & 1
         last = len(points) - (line.flags >> 1 & 1)

@@ -1,0 +1,119 @@
+"""Lines of a class as range-coded bits (coded road sections of the format)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .codes import Bits, Numbers, models
+from .errors import PayloadError
+from .grid import Grid
+from .mesh import Point
+
+#: A surprise: how many vertices before it are as guessed, and what it is.
+Surprise = tuple[int, tuple[int, ...]]
+MOST = 1 << 22
+
+
+@dataclass
+class Line:
+    """Head and points of a line."""
+
+    way_id: int
+    part: int
+    flags: int
+    points: list[Point]
+
+
+def coded_lines(data: bytes, count: int, step_m: tuple[float, float], grid: Grid, what: str) -> list[tuple[Line, list[Surprise]]]:
+    """All lines of a class of GEO roads, with their surprises."""
+    if count == 0:
+        return []
+    bits = Bits(data, what)
+    lines = list(_Class(bits, step_m, grid).lines(count))
+    bits.end()
+    return lines
+
+
+class _Class:
+    """The models of a class, and what is known of it so far."""
+
+    def __init__(self, bits: Bits, step_m: tuple[float, float], grid: Grid) -> None:
+        self.bits, self.step_m, self.grid = bits, step_m, grid
+        self.ids, self.parts, self.sizes, self.back = (Numbers(bits, 1, 1) for _ in range(4))
+        self.starts = Numbers(bits, 1, 1), Numbers(bits, 1, 1)
+        self.beside = Numbers(bits, 1, 1), Numbers(bits, 1, 1)
+        self.along, self.across = Numbers(bits, 33, 5), Numbers(bits, 100, 33)
+        self.flags, self.off = models(2), models(1)[0]
+        self.same = [models(2) for _ in range(3)]
+        self.negative_along = [models(4) for _ in range(5)]
+        self.negative_across = [[models(7), models(7)] for _ in range(5)]
+        self.counts, self.gaps, self.indices = Numbers(bits, 4, 1), Numbers(bits, 1, 1), Numbers(bits, 1, 1)
+        self.kinds = models(4)
+        self.at: Point = (0, 0)
+        self.new: list[tuple[Point, Point]] = []
+
+    def lines(self, count: int) -> Iterator[tuple[Line, list[Surprise]]]:
+        """Reads so many lines."""
+        way, left = 0, MOST
+        for _ in range(count):
+            way += self.ids.read()
+            part, size = self.parts.unsigned(), self.sizes.unsigned()
+            flags = self.bits.bit(self.flags[0]) | self.bits.bit(self.flags[1]) << 1
+            left -= size
+            if left < 0:
+                raise PayloadError(f"{self.bits.what}: too many points")
+            yield Line(way, part, flags, list(self._points(size))), self._surprises(flags)
+
+    def _points(self, size: int) -> Iterator[Point]:
+        before, was = (0, 0), 0
+        for i in range(size):
+            place = 0 if i == 0 else 1 if i + 1 < size else 2
+            last = self.at
+            was = self.bits.bit(self.same[place][was])
+            if was:
+                back = self.back.unsigned()
+                if back >= len(self.new):
+                    raise PayloadError(f"{self.bits.what}: a point that was not there before")
+                self.at, point = self.new[-1 - back]
+            else:
+                step = tuple(kind.read() for kind in self.starts) if i == 0 else self._step(before)
+                self.at = last[0] + step[0], last[1] + step[1]
+                if max(map(abs, self.at)) > 1 << 33:
+                    raise PayloadError(f"{self.bits.what}: a point far away")
+                u, v = self.grid.snap(self.at[0] * self.step_m[0], self.at[1] * self.step_m[1])
+                if self.bits.bit(self.off):
+                    u, v = u + self.beside[0].read(), v + self.beside[1].read()
+                point = u, v
+                self.new.append((self.at, point))
+            before = (0, 0) if i == 0 else (self.at[0] - last[0], self.at[1] - last[1])
+            yield point
+
+    def _step(self, before: Point) -> Point:
+        long, short = sorted(map(abs, before), reverse=True)
+        slope = 1 + min(4 * short // long, 3) if long else 0
+        along = self.along.unsigned(long.bit_length(), slope)
+        across = self.across.unsigned(5 * min(along.bit_length(), 19) + slope, long.bit_length())
+        back = 0
+        if along:
+            back = self.bits.bit(self.negative_along[slope][min(max(along.bit_length() + 2 - long.bit_length(), 0), 3)])
+        side = 0
+        if across:
+            size = min(max(across.bit_length() + 3 - along.bit_length(), 0), 6)
+            side = self.bits.bit(self.negative_across[slope][back][size])
+        step = -along if back else along, -across if side else across
+        if abs(before[1]) > abs(before[0]):
+            step = step[1], step[0]
+        return -step[0] if before[0] < 0 else step[0], -step[1] if before[1] < 0 else step[1]
+
+    def _surprises(self, flags: int) -> list[Surprise]:
+        count = self.counts.unsigned(flags)
+        if count > MOST:
+            raise PayloadError(f"{self.bits.what}: too many surprises")
+        found = []
+        for _ in range(count):
+            gap = self.gaps.unsigned()
+            high = self.bits.bit(self.kinds[1])
+            kind = 2 * high + self.bits.bit(self.kinds[2 + high])
+            found.append((gap, (kind, *(self.indices.unsigned() for _ in range((0, 1, 2, 1)[kind])))))
+        return found
