@@ -101,9 +101,10 @@ fn add_point(sum: &mut crc32fast::Hasher, point: LatticePoint) {
     sum.update(&point.v.to_le_bytes());
 }
 
-#[test]
-fn a_package_of_version_1_is_read_bit_for_bit() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/version-1.pmtiles");
+/// What was decoded: tiles, vertices, triangles, GEO roads, SV roads; and the sums of vertices, triangles, normals, measures, GEO roads, SV roads,
+/// attributes, relief.
+fn decoded(name: &str) -> ([usize; 5], [u32; 8]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
     let package = FilePackage::open(&path).unwrap();
     assert_eq!(package.manifest().format_version, 1);
     let mut sums = Sums::default();
@@ -132,13 +133,14 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
     }
     let Sums { vertices, triangles, normals, measures, roads_geo, roads_sv, attributes, relief } =
         sums;
-    let sums = [vertices, triangles, normals, measures, roads_geo, roads_sv, attributes, relief]
-        .map(crc32fast::Hasher::finalize);
-    assert_eq!(
-        counts,
-        [9, 8_486, 16_236, 186, 196],
-        "tiles, vertices, triangles, GEO roads, SV roads"
-    );
+    let sums = [vertices, triangles, normals, measures, roads_geo, roads_sv, attributes, relief];
+    (counts, sums.map(crc32fast::Hasher::finalize))
+}
+
+#[test]
+fn a_package_of_version_1_is_read_bit_for_bit() {
+    let (counts, sums) = decoded("version-1.pmtiles");
+    assert_eq!(counts, [9, 8_486, 16_236, 186, 196]);
     assert_eq!(
         sums,
         [
@@ -150,7 +152,26 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
             543_977_351,
             3_089_146_731,
             1_475_074_670
-        ],
-        "vertices, triangles, normals, measures, GEO roads, SV roads, attributes, relief"
+        ]
+    );
+}
+
+/// With coded road sections, and normals with all their steps.
+#[test]
+fn a_package_in_degrees_is_read_bit_for_bit() {
+    let (counts, sums) = decoded("version-1-degrees.pmtiles");
+    assert_eq!(counts, [3, 34_728, 68_363, 67, 79]);
+    assert_eq!(
+        sums,
+        [
+            3_730_533_569,
+            1_431_616_150,
+            2_354_463_935,
+            649_694_805,
+            3_124_893_398,
+            4_283_887_136,
+            3_993_724_804,
+            0
+        ]
     );
 }

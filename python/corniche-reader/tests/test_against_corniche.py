@@ -13,7 +13,7 @@ import pytest
 from corniche_reader import Package
 
 REPOSITORY = Path(__file__).parents[3]
-GOLDEN = REPOSITORY / "crates/tileset/tests/data/version-1.pmtiles"
+GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-1.pmtiles", "version-1-degrees.pmtiles")]
 DATA = Path(os.environ.get("CORNICHE_DATA", REPOSITORY.parent / "shared/data"))
 PROGRAM = os.environ.get("CORNICHE")
 REAL = {
@@ -48,8 +48,9 @@ def compare(path: Path) -> None:
                 assert (known.name, known.reference, known.surface) == tuple(other[key] or "" for key in ("name", "ref", "surface"))
 
 
-def test_the_golden_package_is_read_as_corniche_reads_it():
-    compare(GOLDEN)
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_the_golden_packages_are_read_as_corniche_reads_them(path):
+    compare(path)
 
 
 @pytest.mark.parametrize("name", REAL)
