@@ -1,5 +1,7 @@
 //! Packages: PMTiles files of payloads with a manifest.
 
+#[cfg(feature = "write")]
+mod close_up;
 mod directory;
 mod error;
 #[cfg(not(target_arch = "wasm32"))]

@@ -132,6 +132,27 @@ fn a_package_is_a_clustered_pmtiles_file_with_true_bounds() {
     assert_eq!(header.n_addressed_tiles().map(std::num::NonZero::get), Some(3));
 }
 
+/// A package of few tiles has no 16 KB for their directory, and is otherwise the same.
+#[test]
+fn few_tiles_keep_little_for_their_directory() {
+    let wide = three_tiles();
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = Writer::new_for(&mut bytes, &manifest(2), 3).unwrap();
+    let package = open(wide.clone()).unwrap();
+    for id in pollster::block_on(package.tile_ids()).unwrap() {
+        writer.add(id, &pollster::block_on(package.tile(id)).unwrap().unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    let close = bytes.into_inner();
+    assert!(close.len() + 15_900 < wide.len(), "{} of {} bytes", close.len(), wide.len());
+    let close = open(close).unwrap();
+    assert_eq!(close.manifest(), package.manifest());
+    for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
+        let [one, other] = [&close, &package].map(|package| pollster::block_on(package.tile(id)));
+        assert!(one.unwrap().unwrap() == other.unwrap().unwrap());
+    }
+}
+
 #[test]
 fn many_tiles_need_leaf_directories_and_are_all_found() {
     let manifest = manifest(8);

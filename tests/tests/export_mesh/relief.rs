@@ -3,8 +3,9 @@
 use std::fs;
 
 use e2e::{
-    build_pass,
+    build_pass, corniche,
     photo::{build, inputs, photo},
+    text,
 };
 use gdal::{Dataset, raster::Buffer};
 
@@ -60,4 +61,24 @@ fn reliefs_are_seen_from_the_vertices() {
     }
     let plain = export(&without, "none.glb", &["--relief", "none"]);
     assert!(read_reliefs(&plain).is_empty());
+}
+
+/// Only GLB has normal maps: whoever asks for them in another format is told so.
+#[test]
+fn a_relief_in_a_format_without_normal_maps_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--relief", "finest", "--max-error", "20"]);
+    for ending in ["ply", "obj"] {
+        let model = folder.path().join(format!("model.{ending}"));
+        let words = ["export", "mesh", text(&package), "-o", text(&model), "--relief", "on"];
+        let ran = corniche(words);
+        assert_eq!(ran.code, 2, "{}", ran.err);
+        assert!(
+            ran.err.contains(&format!("a model in .{ending} has no normal maps")),
+            "{}",
+            ran.err
+        );
+        assert!(!model.exists());
+    }
 }

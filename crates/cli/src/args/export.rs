@@ -131,15 +131,9 @@ pub(crate) struct ExportMeshArgs {
     /// Functional road classes that are taken, such as 0-4,7
     #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
     pub(crate) classes: Classes,
-    /// With .glb: normal maps of the ground from the package's relief
-    #[arg(
-        long,
-        value_enum,
-        default_value = "on",
-        value_name = "on|none",
-        hide_possible_values = true
-    )]
-    pub(crate) relief: OnOrNone,
+    /// With .glb: normal maps of the ground from the package's relief [default: on for .glb]
+    #[arg(long, value_enum, value_name = "on|none", hide_possible_values = true)]
+    pub(crate) relief: Option<OnOrNone>,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,

@@ -28,6 +28,12 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
         unknown_ending(&args.output, &endings)
     })?;
+    if args.relief == Some(OnOrNone::On) && format != MeshFormat::Glb {
+        return Err(Failure::unusable(format!(
+            "--relief on: a model in .{} has no normal maps; write a .glb, or leave the option out",
+            format.ending()
+        )));
+    }
     let style = styles::style(&args.style)?;
     let package = packages::open(&args.package)?;
     let roads = ModelRoads::from(args.roads);
@@ -40,7 +46,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         bounds: args.bounds,
         roads,
         classes: args.classes.classes(),
-        relief: args.relief == OnOrNone::On,
+        relief: args.relief != Some(OnOrNone::None),
         style,
         material_file: materials.as_deref().map(file_name),
     };

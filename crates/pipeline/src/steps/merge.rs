@@ -135,7 +135,8 @@ fn write(
     let failed = |source| BuildError::Write { path: target.named.to_path_buf(), source };
     let payloads = context.store.items(Kind::Payload as u8);
     context.observer.begin(Stage::Package, Some(payloads.len() as u64));
-    let mut writer = Writer::create(target.finished, manifest).map_err(failed)?;
+    let mut writer =
+        Writer::create_for(target.finished, manifest, payloads.len()).map_err(failed)?;
     for item in payloads {
         if context.observer.is_cancelled() {
             return Err(BuildError::Interrupted);

@@ -8,6 +8,7 @@ use std::{
 use corniche_geom::TileId;
 use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoord, TileType};
 
+use crate::package::close_up::CloseUp;
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
 use crate::package::tile_order::pmtiles_order;
 use crate::{
@@ -68,31 +69,47 @@ impl From<PmtError> for WriteError {
 ///
 /// The header comes last: until [`Writer::finish`] the file begins with zeros, and no reader takes it for a package.
 pub struct Writer<W: Write + Seek> {
-    tiles: PmTilesStreamWriter<W>,
+    tiles: PmTilesStreamWriter<CloseUp<W>>,
     file: Option<Arc<File>>,
     max_level: u8,
     previous: Option<TileId>,
 }
 
 impl Writer<Arc<File>> {
-    /// Creates a file, or empties it.
+    /// Creates a file, or empties it, for any number of tiles.
     ///
     /// # Errors
     /// When that fails, or the manifest cannot be written.
     pub fn create(path: &Path, manifest: &Manifest) -> Result<Self, WriteError> {
+        Self::create_for(path, manifest, usize::MAX)
+    }
+
+    /// The same for at most so many tiles: a package of few is up to 16 KB smaller.
+    ///
+    /// # Errors
+    /// As [`Writer::create`]; when there are more, [`Writer::finish`] may fail.
+    pub fn create_for(path: &Path, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let file = Arc::new(File::create(path)?);
-        let mut writer = Self::new(Arc::clone(&file), manifest)?;
+        let mut writer = Self::new_for(Arc::clone(&file), manifest, tiles)?;
         writer.file = Some(file);
         Ok(writer)
     }
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// Writes to `out`, which is empty.
+    /// Writes to `out`, which is empty, any number of tiles.
     ///
     /// # Errors
     /// When that fails, or the manifest cannot be written.
     pub fn new(out: W, manifest: &Manifest) -> Result<Self, WriteError> {
+        Self::new_for(out, manifest, usize::MAX)
+    }
+
+    /// The same for at most so many tiles: a package of few is up to 16 KB smaller.
+    ///
+    /// # Errors
+    /// As [`Writer::new`]; when there are more, [`Writer::finish`] may fail.
+    pub fn new_for(out: W, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let bounds = manifest.wgs84_bounds;
         let [lon, lat] = bounds.center();
         let max_level = manifest.frame.max_level();
@@ -105,7 +122,7 @@ impl<W: Write + Seek> Writer<W> {
             .center(lon, lat)
             .center_zoom(0)
             .metadata(to_json(manifest)?)
-            .create(out)?;
+            .create(CloseUp::new(out, tiles))?;
         Ok(Self { tiles, file: None, max_level, previous: None })
     }
 

@@ -1,0 +1,116 @@
+//! A file in which nothing lies between the root directory and the metadata.
+//!
+//! The crate pmtiles keeps the first 16 384 bytes for header and root directory, as it writes them last. A package of a hundred
+//! tiles needs 2 % of them. Here all that it writes behind those bytes goes to a place further in front:
+//!
+//! ```text
+//! the writer's places   ├ header ┤ root ┤ zeros ............ 16384 ┤ metadata ┤ tiles …
+//! places in the file    ├ header ┤ root ┤ kept ┤ metadata ┤ tiles …
+//! ```
+
+use std::io::{self, Seek, SeekFrom, Write};
+
+use crate::package::header::{HEADER_BYTES, INITIAL_BYTES};
+
+/// Where the header has offsets of what lies behind the root directory: metadata, leaf directories, data.
+const OFFSETS: [usize; 3] = [24, 40, 56];
+
+/// Most bytes of a tile in the root directory, compressed or not: four numbers of at most ten bytes.
+const ENTRY_BYTES: usize = 40;
+/// What a gzip frame needs at most beside that: head, end, and a part in 2000 for what cannot be compressed.
+const FRAME_BYTES: usize = 128;
+
+/// Writes to `out` as to a file that begins with [`INITIAL_BYTES`] for header and root directory, but keeps fewer.
+#[derive(Debug)]
+pub(crate) struct CloseUp<W> {
+    out: W,
+    /// The writer's place.
+    at: u64,
+    header: [u8; HEADER_BYTES],
+    /// How much further in front things lie.
+    shift: u64,
+}
+
+impl<W: Write + Seek> CloseUp<W> {
+    /// For a file of at most `tiles` tiles, written from the start of `out` on.
+    pub(crate) fn new(out: W, tiles: usize) -> Self {
+        let root = tiles.saturating_mul(ENTRY_BYTES).saturating_add(FRAME_BYTES);
+        let shift = (INITIAL_BYTES - HEADER_BYTES).saturating_sub(root) as u64;
+        Self { out, at: 0, header: [0; HEADER_BYTES], shift }
+    }
+
+    /// Where what is kept for header and root directory ends in the file.
+    fn kept(&self) -> u64 {
+        INITIAL_BYTES as u64 - self.shift
+    }
+
+    /// Puts a part of the header to what there is of it, and the header into the file.
+    fn write_header(&mut self, part: &[u8]) -> io::Result<()> {
+        let from = self.at as usize;
+        self.header[from..from + part.len()].copy_from_slice(part);
+        let mut header = self.header;
+        for place in OFFSETS {
+            let (_, rest) = header.split_at_mut(place);
+            if let Some(offset) = rest.first_chunk_mut::<8>() {
+                let told = u64::from_le_bytes(*offset);
+                if told >= INITIAL_BYTES as u64 {
+                    *offset = (told - self.shift).to_le_bytes();
+                }
+            }
+        }
+        self.out.seek(SeekFrom::Start(0))?;
+        self.out.write_all(&header)
+    }
+}
+
+impl<W: Write + Seek> Write for CloseUp<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let until = |end: u64| bytes.len().min((end - self.at) as usize);
+        let length = if self.at < HEADER_BYTES as u64 {
+            let length = until(HEADER_BYTES as u64);
+            self.write_header(&bytes[..length])?;
+            length
+        } else if self.at < self.kept() {
+            let length = until(self.kept());
+            self.out.seek(SeekFrom::Start(self.at))?;
+            self.out.write(&bytes[..length])?
+        } else if self.at < INITIAL_BYTES as u64 {
+            // Zeros that are left out; a root directory never comes so far.
+            let length = until(INITIAL_BYTES as u64);
+            if bytes[..length].iter().any(|&byte| byte != 0) {
+                return Err(io::Error::other(
+                    "a root directory larger than the number of tiles allows",
+                ));
+            }
+            length
+        } else {
+            self.out.seek(SeekFrom::Start(self.at - self.shift))?;
+            self.out.write(bytes)?
+        };
+        self.at += length as u64;
+        Ok(length)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Write + Seek> Seek for CloseUp<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let place = match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::Current(by) => self.at.checked_add_signed(by),
+            SeekFrom::End(by) => {
+                let end = self.out.seek(SeekFrom::End(0))? + self.shift;
+                end.checked_add_signed(by)
+            }
+        };
+        self.at = place.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.at)
+    }
+}
+
+#[cfg(test)]
+#[path = "close_up_tests.rs"]
+mod tests;
