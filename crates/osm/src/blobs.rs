@@ -13,6 +13,7 @@ use crate::{
     ReadOsmError,
     audit::audit,
     blob::{BlobHeader, BlobRefusal, MAX_BLOB_BYTES, MAX_BLOB_HEADER_BYTES, decoder_blob, unpack},
+    block::Block,
     formats::{START_BYTES, other_format},
 };
 
@@ -224,20 +225,20 @@ impl<R: Read + Seek> BlobFile<R> {
         numbers.iter().map(|&number| self.data[number].blob_bytes).sum()
     }
 
-    /// Decodes the data blobs with these numbers in parallel and hands on what `look` makes of each unpacked block and `scan`
-    /// of the decoded one, in their order. `scan` is told how many bytes it may find, and gives up beyond.
+    /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
+    /// order. `scan` is told how many bytes it may find, and fails beyond.
     ///
     /// A few blobs per thread are held at a time. An error from `take` ends the reading.
-    pub(crate) fn for_each<L: Send, T: Send>(
+    pub(crate) fn for_each_block<T: Send>(
         &mut self,
         numbers: &[usize],
         decoding: &Decoding<'_>,
-        look: impl Fn(&[u8]) -> L + Sync,
-        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
-        mut take: impl FnMut(usize, L, T) -> Result<(), ReadOsmError>,
+        scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
+        mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         const BLOBS_PER_THREAD: usize = 4;
-        let decode = |blob: &Vec<u8>, limits| decode(blob, limits, &look, &scan);
+        let scan =
+            |blob: &Vec<u8>, limits: Limits| scan(checked_block(blob, limits)?, limits.found_bytes);
         let stop = |path: &Path| {
             let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
             if (decoding.should_stop)() { Err(stopped) } else { Ok(()) }
@@ -252,24 +253,33 @@ impl<R: Read + Seek> BlobFile<R> {
                 sought.map_err(|source| self.unreadable(source))?;
                 blobs.push(self.read_part(part)?);
             }
-            let scanned: Vec<Option<(L, T)>> = decoding
+            let scanned: Vec<Option<T>> = decoding
                 .pool
-                .install(|| blobs.par_iter().map(|blob| decode(blob, SIDE_BY_SIDE).ok()).collect());
+                .install(|| blobs.par_iter().map(|blob| scan(blob, SIDE_BY_SIDE).ok()).collect());
             for ((&number, blob), found) in batch.iter().zip(&blobs).zip(scanned) {
-                let (looked, scanned) = if let Some(found) = found {
+                let found = if let Some(found) = found {
                     found
                 } else {
                     // Too large to be decoded beside others, or damaged: decoding it alone shows which.
                     stop(&self.path)?;
                     let offset = self.data[number].offset;
-                    decode(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                    scan(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
                 };
-                take(number, looked, scanned)?;
+                take(number, found)?;
             }
             read_bytes += self.bytes_of(batch);
             (decoding.on_bytes)(read_bytes);
         }
         Ok(())
+    }
+
+    /// Whether the data blob with this number seems to hold nodes and nothing else. It is not checked.
+    pub(crate) fn seems_all_nodes(&mut self, number: usize) -> bool {
+        let Some(&part) = self.data.get(number) else { return false };
+        let blob = self.source.seek(SeekFrom::Start(part.blob_offset)).ok();
+        let blob = blob.and_then(|_| self.read_part(part).ok());
+        let block = blob.and_then(|blob| unpack(&blob, SIDE_BY_SIDE.unpacked_bytes).ok());
+        block.is_some_and(|block| !Block::new(&block).has_others_than_nodes())
     }
 
     fn check_end(&self, offset: u64, end: u64) -> Result<(), ReadOsmError> {
@@ -303,23 +313,18 @@ fn header_block(block: &[u8]) -> Result<HeaderBlock, BlobRefusal> {
     decoder_blob("OSMHeader", block).and_then(|blob| blob.to_headerblock()).map_err(of_decoder)
 }
 
-/// Unpacks, checks and decodes a blob and makes of it what `look` and `scan` do.
-fn decode<L, T>(
-    blob: &[u8],
-    limits: Limits,
-    look: &impl Fn(&[u8]) -> L,
-    scan: &impl Fn(&PrimitiveBlock, u64) -> Option<T>,
-) -> Result<(L, T), BlobRefusal> {
+/// Unpacks a blob and checks what it holds.
+fn checked_block(blob: &[u8], limits: Limits) -> Result<Vec<u8>, BlobRefusal> {
     let block = unpack(blob, limits.unpacked_bytes)?;
     audit(&block, limits.decoded_bytes).map_err(BlobRefusal::Damaged)?;
-    let looked = look(&block);
+    Ok(block)
+}
+
+/// Hands a block that was checked to the decoder.
+pub(crate) fn decode(block: Vec<u8>) -> Result<PrimitiveBlock, BlobRefusal> {
     let blob = decoder_blob("OSMData", &block).map_err(of_decoder)?;
     drop(block);
-    let block = blob.to_primitiveblock().map_err(of_decoder)?;
-    drop(blob);
-    let scanned = scan(&block, limits.found_bytes);
-    let scanned = scanned.ok_or("its roads take more memory than those of a block may")?;
-    Ok((looked, scanned))
+    blob.to_primitiveblock().map_err(of_decoder)
 }
 
 /// For kinds of errors that the decoder does not have yet.

@@ -31,15 +31,18 @@ mod reading;
 mod share;
 mod shares;
 
+mod deferred;
 mod find_ways;
 mod hand_out;
 mod locate_nodes;
 mod make_roads;
+mod nodes_last;
 mod number_nodes;
 
 mod audit;
 mod blob;
 mod blobs;
+mod block;
 mod extracts;
 mod formats;
 mod open_file;
@@ -64,6 +67,7 @@ mod way_facts;
 mod area_loss;
 mod boundary_loss;
 mod defect;
+mod defect_bytes;
 mod error;
 mod kept_error;
 mod summary;

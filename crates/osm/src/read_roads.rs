@@ -5,10 +5,11 @@ use corniche_roads::Road;
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::BlobFile,
+    deferred::Deferred,
     extracts::Extracts,
     find_ways::{FoundWays, find_ways},
-    locate_nodes::FileNodes,
     make_roads::{WaysAndNodes, make_roads},
+    nodes_last::NodesLast,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -102,21 +103,59 @@ fn read_all<R: Read + Seek>(
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
     let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
-    let failed = |error| reading.scratch_failed(error);
-
-    let all: Vec<usize> = (0..file.len()).collect();
-    let FoundWays { ways, located, node_blobs, mut summary, .. } =
-        find_ways(&reading, &mut file, &all, on_defect)?;
+    let leading = file.leading_node_blobs();
+    let read =
+        if leading > 0 { read_once(&reading, &mut file, leading, sink, on_defect)? } else { None };
+    let mut summary = match read {
+        Some(summary) => summary,
+        // Nothing comes before all ways, so nothing can be out of order.
+        None => read_once(&reading, &mut file, 0, sink, on_defect)?.unwrap_or_default(),
+    };
     summary.blobs_passed_over = file.blobs_passed_over();
     let header = file.take_header();
     summary.header_bounds_deg = header.bounds_deg;
     summary.generator = header.generator;
     summary.timestamp_s = header.timestamp_s;
+    Ok(summary)
+}
+
+/// Reads so many first blobs, which seem to hold nodes alone, after all others. `None` if there is something else in them; then nothing
+/// was handed on.
+fn read_once<R: Read + Seek>(
+    reading: &Reading<'_>,
+    file: &mut Extracts<R>,
+    leading: usize,
+    sink: &mut dyn FnMut(Road),
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<Option<ExtractSummary>, ReadOsmError> {
+    let failed = |error| reading.scratch_failed(error);
+    let defects = Deferred::new(reading.request.scratch, reading.shares().defects, on_defect);
+    if leading == 0 {
+        defects.release().map_err(failed)?;
+    }
+    let mut on_defect = |defect| defects.push(defect);
+    let others: Vec<usize> = (leading..file.len()).collect();
+    let FoundWays { ways, located, node_blobs, mut summary, versions, .. } =
+        find_ways(reading, file, &others, &mut on_defect)?;
+    let mut nodes = NodesLast {
+        file,
+        unread: leading,
+        node_blobs,
+        versions,
+        defects: &defects,
+        nodes_seen: 0,
+        is_out_of_order: false,
+    };
     let found = WaysAndNodes {
         ways: ways.finish().map_err(failed)?,
         located: located.finish().map_err(failed)?,
-        nodes: &mut FileNodes { file: &mut file, node_blobs: &node_blobs },
+        nodes: &mut nodes,
     };
-    make_roads(&reading, found, &mut summary, sink, on_defect)?;
-    Ok(summary)
+    let made = make_roads(reading, found, &mut summary, sink, &mut on_defect);
+    if nodes.is_out_of_order {
+        return Ok(None);
+    }
+    made?;
+    summary.nodes_seen += nodes.nodes_seen;
+    Ok(Some(summary))
 }
