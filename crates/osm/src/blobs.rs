@@ -82,6 +82,20 @@ pub(crate) struct Decoding<'a> {
     pub(crate) on_bytes: &'a dyn Fn(u64),
 }
 
+impl Decoding<'_> {
+    fn check_stop(&self, path: &Path) -> Result<(), ReadOsmError> {
+        let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
+        if (self.should_stop)() { Err(stopped) } else { Ok(()) }
+    }
+}
+
+/// What was found in a blob, or the blob if it could not be looked at beside others.
+struct Scanned<T> {
+    number: usize,
+    bytes: u64,
+    found: Result<T, Vec<u8>>,
+}
+
 impl<R: Read + Seek> BlobFile<R> {
     /// Lists the blobs of a file and reads its header. `path` is its name in messages.
     pub(crate) fn open(path: &Path, mut source: R) -> Result<Self, ReadOsmError> {
@@ -228,7 +242,8 @@ impl<R: Read + Seek> BlobFile<R> {
     /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
     /// order. `scan` is told how many bytes it may find, and fails beyond.
     ///
-    /// A few blobs per thread are held at a time. An error from `take` ends the reading.
+    /// A few blobs per thread are held at a time. While they are looked at, this thread hands on what was found in those before, and reads
+    /// those that follow. An error from `take` ends the reading.
     pub(crate) fn for_each_block<T: Send>(
         &mut self,
         numbers: &[usize],
@@ -237,40 +252,72 @@ impl<R: Read + Seek> BlobFile<R> {
         mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         const BLOBS_PER_THREAD: usize = 4;
+        let pool = decoding.pool;
         let scan =
-            |blob: &Vec<u8>, limits: Limits| scan(checked_block(blob, limits)?, limits.found_bytes);
-        let stop = |path: &Path| {
-            let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
-            if (decoding.should_stop)() { Err(stopped) } else { Ok(()) }
-        };
+            |blob: &[u8], limits: Limits| scan(checked_block(blob, limits)?, limits.found_bytes);
         let mut read_bytes = 0;
-        for batch in numbers.chunks(decoding.pool.current_num_threads() * BLOBS_PER_THREAD) {
-            stop(&self.path)?;
-            let mut blobs = Vec::with_capacity(batch.len());
-            for &number in batch {
-                let part = self.data[number];
-                let sought = self.source.seek(SeekFrom::Start(part.blob_offset));
-                sought.map_err(|source| self.unreadable(source))?;
-                blobs.push(self.read_part(part)?);
-            }
-            let scanned: Vec<Option<T>> = decoding
-                .pool
-                .install(|| blobs.par_iter().map(|blob| scan(blob, SIDE_BY_SIDE).ok()).collect());
-            for ((&number, blob), found) in batch.iter().zip(&blobs).zip(scanned) {
-                let found = if let Some(found) = found {
-                    found
-                } else {
+        let mut batches = numbers.chunks(pool.current_num_threads() * BLOBS_PER_THREAD);
+        let mut blobs = self.read_batch(batches.next(), decoding)?;
+        let mut before: Vec<Scanned<T>> = Vec::new();
+        while !(blobs.is_empty() && before.is_empty()) {
+            let mut scanned = Vec::new();
+            let mut waiting = std::mem::take(&mut before).into_iter().peekable();
+            let (taken, next) = pool.in_place_scope(|scope| {
+                scope.spawn(|_| {
+                    let found = |(number, blob): (usize, Vec<u8>)| Scanned {
+                        number,
+                        bytes: blob.len() as u64,
+                        found: scan(&blob, SIDE_BY_SIDE).map_err(|_| blob),
+                    };
+                    scanned = blobs.into_par_iter().map(found).collect();
+                });
+                let next = self.read_batch(batches.next(), decoding);
+                let mut taken = Ok(());
+                while taken.is_ok()
+                    && let Some(Scanned { number, bytes, found: Ok(found) }) =
+                        waiting.next_if(|scanned| scanned.found.is_ok())
+                {
+                    read_bytes += bytes;
+                    taken = take(number, found);
+                }
+                (taken, next)
+            });
+            taken?;
+            for Scanned { number, bytes, found } in waiting {
+                let found = match found {
+                    Ok(found) => found,
                     // Too large to be decoded beside others, or damaged: decoding it alone shows which.
-                    stop(&self.path)?;
-                    let offset = self.data[number].offset;
-                    scan(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                    Err(blob) => {
+                        decoding.check_stop(&self.path)?;
+                        let offset = self.data[number].offset;
+                        scan(&blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                    }
                 };
+                read_bytes += bytes;
                 take(number, found)?;
             }
-            read_bytes += self.bytes_of(batch);
             (decoding.on_bytes)(read_bytes);
+            (before, blobs) = (scanned, next?);
         }
         Ok(())
+    }
+
+    /// Reads the blobs with these numbers, if there are any.
+    fn read_batch(
+        &mut self,
+        numbers: Option<&[usize]>,
+        decoding: &Decoding<'_>,
+    ) -> Result<Vec<(usize, Vec<u8>)>, ReadOsmError> {
+        let Some(numbers) = numbers else { return Ok(Vec::new()) };
+        decoding.check_stop(&self.path)?;
+        let mut blobs = Vec::with_capacity(numbers.len());
+        for &number in numbers {
+            let part = self.data[number];
+            let sought = self.source.seek(SeekFrom::Start(part.blob_offset));
+            sought.map_err(|source| self.unreadable(source))?;
+            blobs.push((number, self.read_part(part)?));
+        }
+        Ok(blobs)
     }
 
     /// Whether the data blob with this number seems to hold nodes and nothing else. It is not checked.

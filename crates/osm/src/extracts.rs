@@ -142,7 +142,8 @@ impl<R: Read + Seek> Extracts<R> {
     /// checked. Of several extracts none.
     pub(crate) fn leading_node_blobs(&mut self) -> usize {
         let [file] = self.files.as_mut_slice() else { return 0 };
-        let (mut nodes, mut others) = (0, file.len());
+        // Where ways come first nothing is sought.
+        let (mut nodes, mut others) = (0, if file.seems_all_nodes(0) { file.len() } else { 0 });
         while nodes < others {
             let middle = nodes.midpoint(others);
             if file.seems_all_nodes(middle) {

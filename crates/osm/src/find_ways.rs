@@ -49,8 +49,8 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
 ) -> Result<FoundWays<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
     let mut found = FoundWays {
-        ways: Sorter::new(request.scratch, shares.ways),
-        located: Sorter::new(request.scratch, shares.located),
+        ways: reading.sorter(shares.ways),
+        located: reading.sorter(shares.located),
         node_blobs: Vec::new(),
         summary: ExtractSummary::default(),
         versions: Versions::default(),

@@ -7,10 +7,11 @@
 //!                                          │                                           │
 //!  Road, in order of way id ◄── assemble ◄─┴─ hand_out ◄── Stop in the ways' order ◄───┘
 //!
-//!  blob ──► unpack, within its limit ──► audit ──► osmpbf ──► objects
+//!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place     (areas, boundaries: osmpbf)
 //! ```
 //!
-//! Both passes decode blobs in parallel inside the pool of the caller. No block reaches the decoder before it was checked: what
+//! Of an extract that is sorted by kind the blobs before the first way are left for `locate_nodes`, so that each is unpacked once
+//! (`nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
 //! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.

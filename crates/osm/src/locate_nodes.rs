@@ -74,7 +74,7 @@ pub(crate) fn locate_nodes<'a>(
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<LocatedNodes<'a>, ReadOsmError> {
     let NodeQuestions { mentions, mentions_count, located } = questions;
-    let stops = Sorter::new(reading.request.scratch, reading.shares().stops);
+    let stops = reading.sorter(reading.shares().stops);
     let mut nodes = LocatedNodes { stops, needed: 0, missing: 0 };
     let mut mentions = Ahead::new(mentions);
     let mut located = Ahead::new(located);

@@ -2,6 +2,9 @@
 
 use std::io;
 
+use corniche_store::{SortRecord, Sorter};
+use rayon::prelude::*;
+
 use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
 
 /// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
@@ -50,7 +53,14 @@ pub(crate) struct Reading<'a> {
     pub(crate) len_bytes: u64,
 }
 
-impl Reading<'_> {
+impl<'a> Reading<'a> {
+    /// Sorts within so much memory, in the pool.
+    pub(crate) fn sorter<T: SortRecord + 'a>(&self, memory_bytes: u64) -> Sorter<'a, T> {
+        let ReadRequest { scratch, pool, .. } = *self.request;
+        let sort = move |records: &mut [T]| pool.install(|| records.par_sort_unstable());
+        Sorter::new(scratch, memory_bytes).sorted_by(sort)
+    }
+
     pub(crate) fn shares(&self) -> Shares {
         let sixteenth = self.request.memory_bytes / 16;
         Shares {
