@@ -20,6 +20,9 @@ const UNKNOWN_BYTES: u64 = 256;
 /// Nodes are 0, ways 1, relations 2.
 const LAST_MEMBER_KIND: u64 = 2;
 
+/// The words for a message without a field that it must have.
+const INCOMPLETE: &str = "is missing required fields";
+
 /// Far more tags than any object has.
 const MAX_TAGS: u64 = 1 << 16;
 
@@ -82,7 +85,11 @@ impl Audit {
             }
         }
         // If a message comes in several parts, the decoder keeps only the last part.
-        if tables > 1 { Err(format!("it has {tables} tables of strings")) } else { Ok(()) }
+        match tables {
+            0 => Err(format!("it {INCOMPLETE}: a table of strings")),
+            1 => Ok(()),
+            _ => Err(format!("it has {tables} tables of strings")),
+        }
     }
 
     fn group(&mut self, group: &[u8]) -> Result<(), String> {
@@ -109,18 +116,23 @@ impl Audit {
     }
 
     fn node(&mut self, node: &[u8]) -> Result<(), String> {
-        let (mut id, mut place) = (0, [0; 2]);
+        let (mut id, mut place) = (None, [None; 2]);
         for field in wire::fields(node) {
             let field = field?;
             match field.number {
-                1 => id = zigzag(field.value.varint()?),
+                1 => id = Some(zigzag(field.value.varint()?)),
                 2 | 3 => self.count(field.value)?,
                 4 => self.message(field.value.bytes()?)?,
-                8 | 9 => place[field.number as usize - 8] = zigzag(field.value.varint()?),
+                8 | 9 => {
+                    place[field.number as usize - 8] = Some(zigzag(field.value.varint()?));
+                }
                 _ => self.spend(UNKNOWN_BYTES)?,
             }
         }
-        let is_placed = (0..2).all(|axis| self.nano_deg(axis, place[axis]).is_some());
+        let (Some(id), [Some(lat), Some(lon)]) = (id, place) else {
+            return Err(format!("a node {INCOMPLETE}: its id or its place"));
+        };
+        let is_placed = self.nano_deg(0, lat).and(self.nano_deg(1, lon)).is_some();
         if is_placed { Ok(()) } else { Err(format!("the place of node {id} overflows")) }
     }
 
@@ -180,13 +192,13 @@ impl Audit {
     }
 
     fn way(&mut self, way: &[u8]) -> Result<(), String> {
-        let (mut id, mut keys, mut values) = (0, 0, 0);
+        let (mut id, mut has_id, mut keys, mut values) = (0, false, 0, 0);
         let mut nodes = Sum::default();
         let mut places = [Sum::default(); 2];
         for field in wire::fields(way) {
             let field = field?;
             match field.number {
-                1 => id = field.value.varint()?.cast_signed(),
+                1 => (id, has_id) = (field.value.varint()?.cast_signed(), true),
                 2 => keys += self.text_numbers("way", id, field.value)?,
                 3 => values += self.text_numbers("way", id, field.value)?,
                 4 => self.message(field.value.bytes()?)?,
@@ -199,7 +211,9 @@ impl Audit {
             }
         }
         let [lats, lons] = places.map(|sum| sum.count);
-        if keys != values {
+        if !has_id {
+            Err(format!("a way {INCOMPLETE}: its id"))
+        } else if keys != values {
             Err(format!("way {id} has {keys} keys and {values} values"))
         } else if keys > MAX_TAGS {
             Err(format!("way {id} has {keys} tags"))
@@ -214,13 +228,13 @@ impl Audit {
     }
 
     fn relation(&mut self, relation: &[u8]) -> Result<(), String> {
-        let (mut id, mut keys, mut values) = (0, 0, 0);
+        let (mut id, mut has_id, mut keys, mut values) = (0, false, 0, 0);
         let (mut roles, mut kinds) = (0, 0);
         let mut members = Sum::default();
         for field in wire::fields(relation) {
             let field = field?;
             match field.number {
-                1 => id = field.value.varint()?.cast_signed(),
+                1 => (id, has_id) = (field.value.varint()?.cast_signed(), true),
                 2 => keys += self.text_numbers("relation", id, field.value)?,
                 3 => values += self.text_numbers("relation", id, field.value)?,
                 4 => self.message(field.value.bytes()?)?,
@@ -243,7 +257,9 @@ impl Audit {
             }
         }
         let ids = members.count;
-        if keys != values {
+        if !has_id {
+            Err(format!("a relation {INCOMPLETE}: its id"))
+        } else if keys != values {
             Err(format!("relation {id} has {keys} keys and {values} values"))
         } else if keys > MAX_TAGS {
             Err(format!("relation {id} has {keys} tags"))

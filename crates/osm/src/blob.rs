@@ -5,8 +5,8 @@
 
 use std::io::Read;
 
-use flate2::{Decompress, FlushDecompress, Status};
 use osmpbf::BlobReader;
+use zlib_rs::{Inflate, InflateFlush, Status};
 
 use crate::wire::{self, WireError, push_varint};
 
@@ -111,20 +111,27 @@ fn inflate(packed: &[u8], most_bytes: usize) -> Result<Vec<u8>, BlobRefusal> {
     /// Deflate unpacks one byte to at most 1032 (zlib, *Technical Details*), so a buffer of this size is always large
     /// enough.
     const MOST_GROWTH: usize = 1032;
+    /// 2^15 bytes, the most that a zlib stream can name.
+    const LARGEST_WINDOW: u8 = 15;
     let damaged = |reason: &str| Err(BlobRefusal::Damaged(reason.to_owned()));
     // One byte more than allowed, so that a stream that is too long can be noticed.
     let room = most_bytes.min(packed.len().saturating_mul(MOST_GROWTH)) + 1;
-    let mut block = Vec::with_capacity(room);
-    let mut stream = Decompress::new(true);
+    let mut block = vec![0; room];
+    let mut stream = Inflate::new(true, LARGEST_WINDOW);
     loop {
         let before = (stream.total_in(), stream.total_out());
-        let rest = &packed[before.0 as usize..];
-        match stream.decompress_vec(rest, &mut block, FlushDecompress::Finish) {
+        let (rest, room) = (&packed[before.0 as usize..], &mut block[before.1 as usize..]);
+        let status = stream.decompress(rest, room, InflateFlush::Finish);
+        let unpacked = stream.total_out() as usize;
+        match status {
             Ok(Status::StreamEnd) if stream.total_in() < packed.len() as u64 => {
                 return damaged("its packed data goes on after its end");
             }
-            Ok(Status::StreamEnd) if block.len() <= most_bytes => return Ok(block),
-            Ok(_) if block.len() > most_bytes => {
+            Ok(Status::StreamEnd) if unpacked <= most_bytes => {
+                block.truncate(unpacked);
+                return Ok(block);
+            }
+            Ok(_) if unpacked > most_bytes => {
                 return damaged(&format!("it unpacks to more than {most_bytes} bytes"));
             }
             Ok(_) if (stream.total_in(), stream.total_out()) == before => {

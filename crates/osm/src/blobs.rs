@@ -13,6 +13,7 @@ use crate::{
     ReadOsmError,
     audit::audit,
     blob::{BlobHeader, BlobRefusal, MAX_BLOB_BYTES, MAX_BLOB_HEADER_BYTES, decoder_blob, unpack},
+    block::Block,
     formats::{START_BYTES, other_format},
 };
 
@@ -79,6 +80,20 @@ pub(crate) struct Decoding<'a> {
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
     /// Is told after every few blobs how many bytes of them were read since the start.
     pub(crate) on_bytes: &'a dyn Fn(u64),
+}
+
+impl Decoding<'_> {
+    fn check_stop(&self, path: &Path) -> Result<(), ReadOsmError> {
+        let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
+        if (self.should_stop)() { Err(stopped) } else { Ok(()) }
+    }
+}
+
+/// What was found in a blob, or the blob if it could not be looked at beside others.
+struct Scanned<T> {
+    number: usize,
+    bytes: u64,
+    found: Result<T, Vec<u8>>,
 }
 
 impl<R: Read + Seek> BlobFile<R> {
@@ -224,52 +239,94 @@ impl<R: Read + Seek> BlobFile<R> {
         numbers.iter().map(|&number| self.data[number].blob_bytes).sum()
     }
 
-    /// Decodes the data blobs with these numbers in parallel and hands on what `look` makes of each unpacked block and `scan`
-    /// of the decoded one, in their order. `scan` is told how many bytes it may find, and gives up beyond.
+    /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
+    /// order. `scan` is told how many bytes it may find, and fails beyond.
     ///
-    /// A few blobs per thread are held at a time. An error from `take` ends the reading.
-    pub(crate) fn for_each<L: Send, T: Send>(
+    /// A few blobs per thread are held at a time. While they are looked at, this thread hands on what was found in those before, and reads
+    /// those that follow. An error from `take` ends the reading.
+    pub(crate) fn for_each_block<T: Send>(
         &mut self,
         numbers: &[usize],
         decoding: &Decoding<'_>,
-        look: impl Fn(&[u8]) -> L + Sync,
-        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
-        mut take: impl FnMut(usize, L, T) -> Result<(), ReadOsmError>,
+        scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
+        mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         const BLOBS_PER_THREAD: usize = 4;
-        let decode = |blob: &Vec<u8>, limits| decode(blob, limits, &look, &scan);
-        let stop = |path: &Path| {
-            let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
-            if (decoding.should_stop)() { Err(stopped) } else { Ok(()) }
-        };
+        let pool = decoding.pool;
+        let scan =
+            |blob: &[u8], limits: Limits| scan(checked_block(blob, limits)?, limits.found_bytes);
         let mut read_bytes = 0;
-        for batch in numbers.chunks(decoding.pool.current_num_threads() * BLOBS_PER_THREAD) {
-            stop(&self.path)?;
-            let mut blobs = Vec::with_capacity(batch.len());
-            for &number in batch {
-                let part = self.data[number];
-                let sought = self.source.seek(SeekFrom::Start(part.blob_offset));
-                sought.map_err(|source| self.unreadable(source))?;
-                blobs.push(self.read_part(part)?);
-            }
-            let scanned: Vec<Option<(L, T)>> = decoding
-                .pool
-                .install(|| blobs.par_iter().map(|blob| decode(blob, SIDE_BY_SIDE).ok()).collect());
-            for ((&number, blob), found) in batch.iter().zip(&blobs).zip(scanned) {
-                let (looked, scanned) = if let Some(found) = found {
-                    found
-                } else {
+        let mut batches = numbers.chunks(pool.current_num_threads() * BLOBS_PER_THREAD);
+        let mut blobs = self.read_batch(batches.next(), decoding)?;
+        let mut before: Vec<Scanned<T>> = Vec::new();
+        while !(blobs.is_empty() && before.is_empty()) {
+            let mut scanned = Vec::new();
+            let mut waiting = std::mem::take(&mut before).into_iter().peekable();
+            let (taken, next) = pool.in_place_scope(|scope| {
+                scope.spawn(|_| {
+                    let found = |(number, blob): (usize, Vec<u8>)| Scanned {
+                        number,
+                        bytes: blob.len() as u64,
+                        found: scan(&blob, SIDE_BY_SIDE).map_err(|_| blob),
+                    };
+                    scanned = blobs.into_par_iter().map(found).collect();
+                });
+                let next = self.read_batch(batches.next(), decoding);
+                let mut taken = Ok(());
+                while taken.is_ok()
+                    && let Some(Scanned { number, bytes, found: Ok(found) }) =
+                        waiting.next_if(|scanned| scanned.found.is_ok())
+                {
+                    read_bytes += bytes;
+                    taken = take(number, found);
+                }
+                (taken, next)
+            });
+            taken?;
+            for Scanned { number, bytes, found } in waiting {
+                let found = match found {
+                    Ok(found) => found,
                     // Too large to be decoded beside others, or damaged: decoding it alone shows which.
-                    stop(&self.path)?;
-                    let offset = self.data[number].offset;
-                    decode(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                    Err(blob) => {
+                        decoding.check_stop(&self.path)?;
+                        let offset = self.data[number].offset;
+                        scan(&blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                    }
                 };
-                take(number, looked, scanned)?;
+                read_bytes += bytes;
+                take(number, found)?;
             }
-            read_bytes += self.bytes_of(batch);
             (decoding.on_bytes)(read_bytes);
+            (before, blobs) = (scanned, next?);
         }
         Ok(())
+    }
+
+    /// Reads the blobs with these numbers, if there are any.
+    fn read_batch(
+        &mut self,
+        numbers: Option<&[usize]>,
+        decoding: &Decoding<'_>,
+    ) -> Result<Vec<(usize, Vec<u8>)>, ReadOsmError> {
+        let Some(numbers) = numbers else { return Ok(Vec::new()) };
+        decoding.check_stop(&self.path)?;
+        let mut blobs = Vec::with_capacity(numbers.len());
+        for &number in numbers {
+            let part = self.data[number];
+            let sought = self.source.seek(SeekFrom::Start(part.blob_offset));
+            sought.map_err(|source| self.unreadable(source))?;
+            blobs.push((number, self.read_part(part)?));
+        }
+        Ok(blobs)
+    }
+
+    /// Whether the data blob with this number seems to hold nodes and nothing else. It is not checked.
+    pub(crate) fn seems_all_nodes(&mut self, number: usize) -> bool {
+        let Some(&part) = self.data.get(number) else { return false };
+        let blob = self.source.seek(SeekFrom::Start(part.blob_offset)).ok();
+        let blob = blob.and_then(|_| self.read_part(part).ok());
+        let block = blob.and_then(|blob| unpack(&blob, SIDE_BY_SIDE.unpacked_bytes).ok());
+        block.is_some_and(|block| !Block::new(&block).has_others_than_nodes())
     }
 
     fn check_end(&self, offset: u64, end: u64) -> Result<(), ReadOsmError> {
@@ -303,23 +360,18 @@ fn header_block(block: &[u8]) -> Result<HeaderBlock, BlobRefusal> {
     decoder_blob("OSMHeader", block).and_then(|blob| blob.to_headerblock()).map_err(of_decoder)
 }
 
-/// Unpacks, checks and decodes a blob and makes of it what `look` and `scan` do.
-fn decode<L, T>(
-    blob: &[u8],
-    limits: Limits,
-    look: &impl Fn(&[u8]) -> L,
-    scan: &impl Fn(&PrimitiveBlock, u64) -> Option<T>,
-) -> Result<(L, T), BlobRefusal> {
+/// Unpacks a blob and checks what it holds.
+fn checked_block(blob: &[u8], limits: Limits) -> Result<Vec<u8>, BlobRefusal> {
     let block = unpack(blob, limits.unpacked_bytes)?;
     audit(&block, limits.decoded_bytes).map_err(BlobRefusal::Damaged)?;
-    let looked = look(&block);
+    Ok(block)
+}
+
+/// Hands a block that was checked to the decoder.
+pub(crate) fn decode(block: Vec<u8>) -> Result<PrimitiveBlock, BlobRefusal> {
     let blob = decoder_blob("OSMData", &block).map_err(of_decoder)?;
     drop(block);
-    let block = blob.to_primitiveblock().map_err(of_decoder)?;
-    drop(blob);
-    let scanned = scan(&block, limits.found_bytes);
-    let scanned = scanned.ok_or("its roads take more memory than those of a block may")?;
-    Ok((looked, scanned))
+    blob.to_primitiveblock().map_err(of_decoder)
 }
 
 /// For kinds of errors that the decoder does not have yet.

@@ -9,7 +9,8 @@ use osmpbf::PrimitiveBlock;
 
 use crate::{
     ReadOsmError,
-    blobs::{BlobFile, Decoding, Header},
+    blob::BlobRefusal,
+    blobs::{BlobFile, Decoding, Header, decode},
     open_file::{Extract, open_file},
     read_request::ReadRequest,
 };
@@ -87,14 +88,14 @@ impl<R: Read + Seek> Extracts<R> {
         self.files.iter().map(|file| file.blobs_passed_over).sum()
     }
 
-    /// As [`BlobFile::for_each`], over all files; `take` is told the number of the file, too. The numbers of a file come one after another.
-    pub(crate) fn for_each<L: Send, T: Send>(
+    /// As [`BlobFile::for_each_block`], over all files; `take` is told the number of the file, too. The numbers of a file come one after
+    /// another.
+    pub(crate) fn for_each_block<T: Send>(
         &mut self,
         numbers: &[usize],
         decoding: &Decoding<'_>,
-        look: impl Fn(&[u8]) -> L + Sync,
-        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
-        mut take: impl FnMut([usize; 2], L, T) -> Result<(), ReadOsmError>,
+        scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
+        mut take: impl FnMut([usize; 2], T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         let mut rest = numbers;
         let mut done_bytes = 0;
@@ -109,16 +110,51 @@ impl<R: Read + Seek> Extracts<R> {
             let before = done_bytes;
             let of_file =
                 Decoding { on_bytes: &|bytes| (decoding.on_bytes)(before + bytes), ..*decoding };
-            self.files[file].for_each(
-                &own,
-                &of_file,
-                &look,
-                &scan,
-                |number, looked, scanned| take([file, start + number], looked, scanned),
-            )?;
+            self.files[file].for_each_block(&own, &of_file, &scan, |number, found| {
+                take([file, start + number], found)
+            })?;
             done_bytes += self.files[file].bytes_of(&own);
             rest = later;
         }
         Ok(())
     }
+
+    /// The same with what `look` makes of each block and `scan` of the decoded one.
+    pub(crate) fn for_each<L: Send, T: Send>(
+        &mut self,
+        numbers: &[usize],
+        decoding: &Decoding<'_>,
+        look: impl Fn(&[u8]) -> L + Sync,
+        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
+        mut take: impl FnMut([usize; 2], L, T) -> Result<(), ReadOsmError>,
+    ) -> Result<(), ReadOsmError> {
+        let scan = |block: Vec<u8>, most_bytes| {
+            let looked = look(&block);
+            let scanned = scan(&decode(block)?, most_bytes).ok_or(TOO_MUCH_FOUND)?;
+            Ok((looked, scanned))
+        };
+        self.for_each_block(numbers, decoding, scan, |place, (looked, scanned)| {
+            take(place, looked, scanned)
+        })
+    }
+
+    /// How many blobs, from the first on, seem to hold nodes alone, if the extract is sorted by kind: they are found by bisection, and not
+    /// checked. Of several extracts none.
+    pub(crate) fn leading_node_blobs(&mut self) -> usize {
+        let [file] = self.files.as_mut_slice() else { return 0 };
+        // Where ways come first nothing is sought.
+        let (mut nodes, mut others) = (0, if file.seems_all_nodes(0) { file.len() } else { 0 });
+        while nodes < others {
+            let middle = nodes.midpoint(others);
+            if file.seems_all_nodes(middle) {
+                nodes = middle + 1;
+            } else {
+                others = middle;
+            }
+        }
+        nodes
+    }
 }
+
+/// Why a block is refused in which a scan found more than it may.
+pub(crate) const TOO_MUCH_FOUND: &str = "its roads take more memory than those of a block may";

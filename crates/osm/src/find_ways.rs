@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::Decoding,
-    extracts::Extracts,
+    block::Block,
+    extracts::{Extracts, TOO_MUCH_FOUND},
     id_range::IdRange,
     reading::{Reading, Step},
     records::{Located, WayRecord, age},
@@ -48,8 +49,8 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
 ) -> Result<FoundWays<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
     let mut found = FoundWays {
-        ways: Sorter::new(request.scratch, shares.ways),
-        located: Sorter::new(request.scratch, shares.located),
+        ways: reading.sorter(shares.ways),
+        located: reading.sorter(shares.located),
         node_blobs: Vec::new(),
         summary: ExtractSummary::default(),
         versions: Versions::default(),
@@ -64,12 +65,15 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         should_stop: reading.should_stop,
         on_bytes: &|bytes| reading.tell(Step::Ways, bytes, data_bytes),
     };
-    file.for_each(
+    file.for_each_block(
         numbers,
         &decoding,
-        |block| (Versions::scan(block), IdRange::scan(block)),
-        |block, most_bytes| Ways::scan(block, table, counted, most_bytes),
-        |[file, number], (versions_of_block, ids), of_block| {
+        |block, most_bytes| {
+            let ways = Ways::scan(&Block::new(&block), table, counted, most_bytes);
+            let looked = (Versions::scan(&block), IdRange::scan(&block));
+            Ok((looked, ways.ok_or(TOO_MUCH_FOUND)?))
+        },
+        |[file, number], ((versions_of_block, ids), of_block)| {
             let file = file as u32;
             append_versions(reading, &mut found.versions, versions_of_block.of_file(file))?;
             found.held_bytes += of_block.held_bytes;

@@ -1,11 +1,14 @@
 //! Puts ways and the places of their nodes together, and makes roads of them.
 
+use std::ops::Range;
+
 use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use crate::{
     ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
+    read_request::Place,
     reading::{Reading, Step},
     records::Stop,
     spool::{SpoolReader, damaged},
@@ -14,12 +17,12 @@ use crate::{
 };
 
 const WAYS_PER_TASK: usize = 256;
-const TASKS_PER_THREAD: usize = 8;
+const TASKS_PER_THREAD: usize = 4;
 /// An ordinary way has about ten nodes; with more, fewer ways are taken at a time.
 const STOPS_PER_THREAD: usize = 16 * WAYS_PER_TASK * TASKS_PER_THREAD;
 
 /// Hands what becomes of each way to `take`, in the order of the ways. They are made a few thousand at a time, so that the
-/// roads of a country never lie in memory at once.
+/// roads of a country never lie in memory at once. While some are made, this thread hands out those before, and reads those that follow.
 pub(crate) fn hand_out(
     reading: &Reading<'_>,
     mut ways: SpoolReader<'_>,
@@ -30,30 +33,59 @@ pub(crate) fn hand_out(
     let pool = reading.request.pool;
     let place = reading.request.place;
     let mut done = 0;
-    loop {
+    let mut next = || Batch::read(reading, &mut ways, &mut stops, pool.current_num_threads());
+    let mut batch = next()?;
+    let mut before: Vec<Vec<Assembled>> = Vec::new();
+    while !(batch.ways.is_empty() && before.is_empty()) {
         reading.check_stop()?;
-        let batch = Batch::read(reading, &mut ways, &mut stops, pool.current_num_threads())?;
-        if batch.ways.is_empty() {
-            reading.tell(Step::Roads, 1, 1);
-            return Ok(());
-        }
-        let assembled: Vec<_> = pool.install(|| {
-            let tasks = batch.ways.par_chunks(WAYS_PER_TASK);
-            tasks.map(|some| assemble(some, &batch.stops, place)).collect()
+        let mut assembled = Vec::new();
+        let following = pool.in_place_scope(|scope| {
+            scope.spawn(|_| {
+                let tasks = batch.ways.par_chunks(WAYS_PER_TASK);
+                assembled = tasks.map(|some| batch.assemble(some, place)).collect();
+            });
+            let following = next();
+            before.drain(..).flatten().for_each(&mut *take);
+            following
         });
-        for some in assembled {
-            some?.into_iter().for_each(&mut *take);
-        }
+        let results: Result<Vec<_>, HandOutError> = assembled.into_iter().collect();
+        before = results.map_err(|error| error.of(reading))?;
         done += batch.ways.len() as u64;
         reading.tell(Step::Roads, done, ways_count);
+        batch = following?;
     }
+    reading.tell(Step::Roads, 1, 1);
+    Ok(())
 }
 
 /// Some ways, and the places of all their nodes.
 #[derive(Default)]
 struct Batch {
-    ways: Vec<PlainWay>,
+    ways: Vec<PackedWay>,
+    /// What the ways are, as bytes.
+    kinds: Vec<u8>,
     stops: Vec<Stop>,
+}
+
+/// A way of a batch.
+struct PackedWay {
+    way_id: i64,
+    kind: Range<usize>,
+    stops: Range<usize>,
+}
+
+enum HandOutError {
+    Damaged,
+    Osm(ReadOsmError),
+}
+
+impl HandOutError {
+    fn of(self, reading: &Reading<'_>) -> ReadOsmError {
+        match self {
+            Self::Damaged => reading.scratch_failed(damaged()),
+            Self::Osm(error) => error,
+        }
+    }
 }
 
 impl Batch {
@@ -68,10 +100,16 @@ impl Batch {
         while batch.ways.len() < threads * WAYS_PER_TASK * TASKS_PER_THREAD
             && batch.stops.len() < threads * STOPS_PER_THREAD
         {
+            let kinds = &mut batch.kinds;
             let way = ways.next(|bytes| {
                 let way_id = zigzag(varint(bytes).ok()?);
                 let nodes = varint(bytes).ok()?;
-                Some((way_id, nodes, take_way(bytes)?))
+                let length = varint(bytes).ok()?.try_into().ok()?;
+                let (kind, rest) = bytes.split_at_checked(length)?;
+                *bytes = rest;
+                let first = kinds.len();
+                kinds.extend(kind);
+                Some((way_id, nodes, first..kinds.len()))
             });
             let Some((way_id, nodes, kind)) = way.map_err(failed)? else { break };
             let first = batch.stops.len();
@@ -80,8 +118,21 @@ impl Batch {
                 batch.stops.push(stop.map_err(failed)?);
             }
             let stops = first..batch.stops.len();
-            batch.ways.push(PlainWay { way_id, kind, stops });
+            batch.ways.push(PackedWay { way_id, kind, stops });
         }
         Ok(batch)
+    }
+
+    fn assemble(
+        &self,
+        some: &[PackedWay],
+        place: &Place<'_>,
+    ) -> Result<Vec<Assembled>, HandOutError> {
+        let plain = |way: &PackedWay| {
+            let kind = take_way(&mut &self.kinds[way.kind.clone()])?;
+            Some(PlainWay { way_id: way.way_id, kind, stops: way.stops.clone() })
+        };
+        let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
+        assemble(&ways.ok_or(HandOutError::Damaged)?, &self.stops, place).map_err(HandOutError::Osm)
     }
 }

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::wire::{self, Field, Value, zigzag};
+use crate::{
+    block::{Packed, parts},
+    wire::{self, Field, Value, zigzag},
+};
 
 /// The smallest and the largest id of a block's nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,20 +23,10 @@ impl IdRange {
             own.least = own.least.min(id);
             own.most = own.most.max(id);
         };
-        for group in wire::fields(block).flatten().filter_map(|field| bytes_of(field, 2)) {
-            for field in wire::fields(group).flatten() {
-                if let Some(node) = bytes_of(field, 1) {
-                    include(plain_id(node));
-                } else if let Some(nodes) = bytes_of(field, 2) {
-                    let mut id = 0_i64;
-                    let ids = wire::fields(nodes).flatten().filter(|field| field.number == 1);
-                    for numbers in ids.filter_map(|field| field.value.numbers().ok()) {
-                        for step in numbers.flatten() {
-                            id = id.wrapping_add(zigzag(step));
-                            include(id);
-                        }
-                    }
-                }
+        for group in parts(block, 2) {
+            parts(group, 1).map(plain_id).for_each(&mut include);
+            for nodes in parts(group, 2) {
+                Packed::of(nodes, 1).sums().for_each(&mut include);
             }
         }
         range
@@ -61,13 +54,6 @@ fn plain_id(node: &[u8]) -> i64 {
         _ => None,
     };
     wire::fields(node).flatten().filter_map(id_of).last().unwrap_or_default()
-}
-
-fn bytes_of(field: Field<'_>, number: u32) -> Option<&[u8]> {
-    match field.value {
-        Value::Bytes(bytes) if field.number == number => Some(bytes),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -7,10 +7,11 @@
 //!                                          │                                           │
 //!  Road, in order of way id ◄── assemble ◄─┴─ hand_out ◄── Stop in the ways' order ◄───┘
 //!
-//!  blob ──► unpack, within its limit ──► audit ──► osmpbf ──► objects
+//!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place     (areas, boundaries: osmpbf)
 //! ```
 //!
-//! Both passes decode blobs in parallel inside the pool of the caller. No block reaches the decoder before it was checked: what
+//! Of an extract that is sorted by kind the blobs before the first way are left for `locate_nodes`, so that each is unpacked once
+//! (`nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
 //! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.
@@ -31,15 +32,18 @@ mod reading;
 mod share;
 mod shares;
 
+mod deferred;
 mod find_ways;
 mod hand_out;
 mod locate_nodes;
 mod make_roads;
+mod nodes_last;
 mod number_nodes;
 
 mod audit;
 mod blob;
 mod blobs;
+mod block;
 mod extracts;
 mod formats;
 mod open_file;
@@ -64,6 +68,7 @@ mod way_facts;
 mod area_loss;
 mod boundary_loss;
 mod defect;
+mod defect_bytes;
 mod error;
 mod kept_error;
 mod summary;

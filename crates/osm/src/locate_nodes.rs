@@ -7,13 +7,13 @@
 use std::io::{self, Read, Seek};
 
 use corniche_store::{Sorted, Sorter};
-use osmpbf::PrimitiveBlock;
 
 use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
     blobs::Decoding,
-    extracts::Extracts,
+    block::Block,
+    extracts::{Extracts, TOO_MUCH_FOUND},
     find_ways::NodeBlob,
     id_range::IdRange,
     nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
@@ -74,7 +74,7 @@ pub(crate) fn locate_nodes<'a>(
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<LocatedNodes<'a>, ReadOsmError> {
     let NodeQuestions { mentions, mentions_count, located } = questions;
-    let stops = Sorter::new(reading.request.scratch, reading.shares().stops);
+    let stops = reading.sorter(reading.shares().stops);
     let mut nodes = LocatedNodes { stops, needed: 0, missing: 0 };
     let mut mentions = Ahead::new(mentions);
     let mut located = Ahead::new(located);
@@ -94,6 +94,12 @@ pub(crate) fn locate_nodes<'a>(
         }
         done += chunk.mentions_count;
         chunk.answer(reading, &places, &mut nodes.stops)?;
+    }
+    if done == 0 {
+        // Blobs that hold nodes are checked and counted, also if no road needs one.
+        let share = ShareOfNodes { before: 0, own: 0, all: 0 };
+        let mut none = NodePlaces::new(0, reading.precedence());
+        source.read(reading, &NodeIds::new(Vec::new()), &share, &mut none)?;
     }
     reading.tell(Step::Nodes, 1, 1);
     Ok(nodes)
@@ -122,14 +128,17 @@ impl<R: Read + Seek> NodeSource for FileNodes<'_, R> {
         share: &ShareOfNodes,
         places: &mut NodePlaces,
     ) -> Result<(), ReadOsmError> {
-        let on_bytes = |bytes: u64, all_bytes: u64| {
-            let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes.max(1));
-            reading.tell(Step::Nodes, share.before + done as u64, share.all);
-        };
+        let on_bytes = |bytes: u64, all_bytes: u64| tell_nodes(reading, share, bytes, all_bytes);
         let take = &mut |(number, location, version)| places.set(number, location, version);
         read_places(reading, self.file, self.node_blobs, ids, &on_bytes, take)?;
         Ok(())
     }
+}
+
+/// Tells that so many of the bytes were read that a chunk needs.
+pub(crate) fn tell_nodes(reading: &Reading<'_>, share: &ShareOfNodes, bytes: u64, all_bytes: u64) {
+    let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes.max(1));
+    reading.tell(Step::Nodes, share.before + done as u64, share.all);
 }
 
 /// Reads those of some blobs that may hold some nodes, and hands on the places of these nodes by their numbers. `on_bytes` is told how
@@ -152,12 +161,14 @@ pub(crate) fn read_places<R: Read + Seek>(
         should_stop: reading.should_stop,
         on_bytes: &|bytes| on_bytes(bytes, all_bytes),
     };
-    let take = |_, (), found: Vec<FoundNode>| {
+    let take = |_, found: Vec<FoundNode>| {
         found.into_iter().for_each(&mut *take);
         Ok(())
     };
-    let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);
-    file.for_each(&numbers, &decoding, |_| (), scan, take)?;
+    let scan = |block: Vec<u8>, most_bytes| {
+        Ok(ids.scan(&Block::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
+    };
+    file.for_each_block(&numbers, &decoding, scan, take)?;
     Ok(all_bytes)
 }
 

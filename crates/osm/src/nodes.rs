@@ -1,7 +1,8 @@
 //! Where the nodes lie that roads need: a table of some of them at a time.
 
-use osmpbf::PrimitiveBlock;
+use std::ops::ControlFlow;
 
+use crate::block::Block;
 use crate::location::{Location, MISSING, degrees, location_from_nano};
 
 /// Ids in ascending order; a node's number is its index here.
@@ -40,29 +41,20 @@ impl NodeIds {
     }
 
     /// The listed nodes of a block, by number, with their places; `None` if they take more than `most_bytes`.
-    pub(crate) fn scan(&self, block: &PrimitiveBlock, most_bytes: u64) -> Option<Vec<FoundNode>> {
+    pub(crate) fn scan(&self, block: &Block<'_>, most_bytes: u64) -> Option<Vec<FoundNode>> {
         let mut found = Vec::new();
-        for group in block.groups() {
-            let dense = group.dense_nodes();
-            let dense = dense.map(|node| {
-                let version = node.info().map_or(0, osmpbf::DenseNodeInfo::version);
-                (node.id(), node.nano_lon(), node.nano_lat(), version)
-            });
-            let plain = group.nodes().map(|node| {
-                let version = node.info().version().unwrap_or_default();
-                (node.id(), node.nano_lon(), node.nano_lat(), version)
-            });
-            let mut search = self.search();
-            for (id, lon_nano_deg, lat_nano_deg, version) in dense.chain(plain) {
-                if let Some(number) = search.find(id) {
-                    found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg), version));
-                }
+        let mut search = self.search();
+        let end = block.try_each_node(|node| {
+            if let Some(number) = search.find(node.id) {
+                let location = location_from_nano(node.lon_nano_deg, node.lat_nano_deg);
+                found.push((number, location, node.version));
                 if size_of_val(found.as_slice()) as u64 > most_bytes {
-                    return None;
+                    return ControlFlow::Break(());
                 }
             }
-        }
-        Some(found)
+            ControlFlow::Continue(())
+        });
+        end.is_continue().then_some(found)
     }
 
     /// The number of a node.

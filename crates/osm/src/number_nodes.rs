@@ -41,7 +41,7 @@ pub(crate) fn number_nodes<'a>(
     let failed = |error| reading.scratch_failed(error);
     let mut numbered = NumberedNodes {
         ways: Spool::new(request.scratch, shares.spool),
-        mentions: Sorter::new(request.scratch, shares.mentions),
+        mentions: reading.sorter(shares.mentions),
         ways_count: 0,
         mentions_count: 0,
         duplicates: 0,
@@ -141,6 +141,7 @@ impl NumberedNodes<'_> {
         ways.push(|bytes| {
             push_varint(bytes, to_zigzag(way.way_id));
             push_varint(bytes, nodes);
+            push_varint(bytes, road.len() as u64);
             bytes.extend(road);
         })
     }

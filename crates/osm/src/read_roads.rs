@@ -1,14 +1,18 @@
-use std::io::{Read, Seek};
+use std::{
+    cell::Cell,
+    io::{Read, Seek},
+};
 
 use corniche_roads::Road;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::BlobFile,
+    deferred::Deferred,
     extracts::Extracts,
     find_ways::{FoundWays, find_ways},
-    locate_nodes::FileNodes,
     make_roads::{WaysAndNodes, make_roads},
+    nodes_last::NodesLast,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -30,9 +34,10 @@ use crate::{
 /// - Each extract for itself must be none with several versions.
 ///
 /// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
-/// (`LocationsOnWays`). It is read twice: ways, then nodes. Blobs whose nodes no road needs are read once. Of an extract that
-/// is sorted by id, each blob is read at most twice, and once more for each time that the needed nodes fill a quarter of
-/// [`ReadRequest::memory_bytes`], at 18 bytes each; one that is not sorted is read anew each time.
+/// (`LocationsOnWays`). An extract that is sorted by kind is read once: ways, then nodes, but for a few blobs among which the first way is
+/// sought. One that is not is read twice, and its ways a third time if nodes come first and ways among them. If the needed nodes do not
+/// fit in a quarter of [`ReadRequest::memory_bytes`], at 18 bytes each, blobs with nodes are read anew for each part that fits: if they
+/// are sorted by id, those with nodes of that part alone, so each blob once more, and once more where a part ends within it.
 /// `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.
 ///
 /// # Memory
@@ -40,7 +45,7 @@ use crate::{
 /// [`ReadRequest::scratch`], where it takes some 30 bytes for each time that a road names a node, and once more as much for
 /// each time that the sorters must merge their runs in several steps. On top come
 /// - the blobs that are being decoded: see the limits;
-/// - a few thousand ways that are handed out at a time, 100 bytes for each of their nodes;
+/// - a few thousand ways that are handed out, made or read at a time, 100 bytes for each of their nodes;
 /// - 48 bytes for each blob of the file, and the texts of the summary.
 ///
 /// # Limits
@@ -58,8 +63,8 @@ use crate::{
 /// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
 ///
 /// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
-/// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 192
-/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
+/// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 256
+/// MiB and eight packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
 /// which OSM allows 2000. In scratch space there is at most four times as much as is kept, for each step of the
 /// merging. Time, without that of reading an unsorted file anew, is proportional to the unpacked size, which deflate keeps below
 /// 1032 times that of the file.
@@ -101,22 +106,69 @@ fn read_all<R: Read + Seek>(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
+    let most = Cell::new(0);
+    let told = |done: u64, all: u64| {
+        // What is read once more is told once.
+        most.set(done.max(most.get()));
+        if let Some(on_progress) = request.on_progress {
+            on_progress(most.get(), all);
+        }
+    };
+    let request = &ReadRequest { on_progress: Some(&told), ..*request };
     let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
-    let failed = |error| reading.scratch_failed(error);
-
-    let all: Vec<usize> = (0..file.len()).collect();
-    let FoundWays { ways, located, node_blobs, mut summary, .. } =
-        find_ways(&reading, &mut file, &all, on_defect)?;
+    let leading = file.leading_node_blobs();
+    let read =
+        if leading > 0 { read_once(&reading, &mut file, leading, sink, on_defect)? } else { None };
+    let mut summary = match read {
+        Some(summary) => summary,
+        // Nothing comes before all ways, so nothing can be out of order.
+        None => read_once(&reading, &mut file, 0, sink, on_defect)?.unwrap_or_default(),
+    };
     summary.blobs_passed_over = file.blobs_passed_over();
     let header = file.take_header();
     summary.header_bounds_deg = header.bounds_deg;
     summary.generator = header.generator;
     summary.timestamp_s = header.timestamp_s;
+    Ok(summary)
+}
+
+/// Reads so many first blobs, which seem to hold nodes alone, after all others. `None` if there is something else in them; then nothing
+/// was handed on.
+fn read_once<R: Read + Seek>(
+    reading: &Reading<'_>,
+    file: &mut Extracts<R>,
+    leading: usize,
+    sink: &mut dyn FnMut(Road),
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<Option<ExtractSummary>, ReadOsmError> {
+    let failed = |error| reading.scratch_failed(error);
+    let defects = Deferred::new(reading.request.scratch, reading.shares().defects, on_defect);
+    if leading == 0 {
+        defects.release().map_err(failed)?;
+    }
+    let mut on_defect = |defect| defects.push(defect);
+    let others: Vec<usize> = (leading..file.len()).collect();
+    let FoundWays { ways, located, node_blobs, mut summary, versions, .. } =
+        find_ways(reading, file, &others, &mut on_defect)?;
+    let mut nodes = NodesLast {
+        file,
+        unread: leading,
+        node_blobs,
+        versions,
+        defects: &defects,
+        nodes_seen: 0,
+        is_out_of_order: false,
+    };
     let found = WaysAndNodes {
         ways: ways.finish().map_err(failed)?,
         located: located.finish().map_err(failed)?,
-        nodes: &mut FileNodes { file: &mut file, node_blobs: &node_blobs },
+        nodes: &mut nodes,
     };
-    make_roads(&reading, found, &mut summary, sink, on_defect)?;
-    Ok(summary)
+    let made = make_roads(reading, found, &mut summary, sink, &mut on_defect);
+    if nodes.is_out_of_order {
+        return Ok(None);
+    }
+    made?;
+    summary.nodes_seen += nodes.nodes_seen;
+    Ok(Some(summary))
 }

@@ -2,16 +2,19 @@
 
 use std::io;
 
+use corniche_store::{SortRecord, Sorter};
+use rayon::prelude::*;
+
 use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
 
 /// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
 ///
-/// | | ways | mentions | located | spool | ids | visits | stops | all |
-/// |---|---|---|---|---|---|---|---|---|
-/// | ways are read | 8 | | 1 | | | | | 9 |
-/// | nodes are numbered | 8 | 4 | 1 | 1 | | | | 14 |
-/// | nodes are located | | 4 | 1 | 1 | 4 | 2 | 4 | 16 |
-/// | roads are handed out | | | | 1 | | | 4 | 5 |
+/// | | ways | mentions | located | defects | spool | ids | visits | stops | all |
+/// |---|---|---|---|---|---|---|---|---|---|
+/// | ways are read | 8 | | ½ | ½ | | | | | 9 |
+/// | nodes are numbered | 8 | 4 | ½ | ½ | 1 | | | | 14 |
+/// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 16 |
+/// | roads are handed out | | | | | 1 | | | 4 | 5 |
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
     /// Road ways that are sorted by id, bytes; so are all of these.
@@ -20,6 +23,8 @@ pub(crate) struct Shares {
     pub(crate) mentions: u64,
     /// The same with the places that the ways give.
     pub(crate) located: u64,
+    /// Defects that are not told yet.
+    pub(crate) defects: u64,
     /// What the roads are, in their order.
     pub(crate) spool: u64,
     /// Nodes whose places are sought.
@@ -48,13 +53,21 @@ pub(crate) struct Reading<'a> {
     pub(crate) len_bytes: u64,
 }
 
-impl Reading<'_> {
+impl<'a> Reading<'a> {
+    /// Sorts within so much memory, in the pool.
+    pub(crate) fn sorter<T: SortRecord + 'a>(&self, memory_bytes: u64) -> Sorter<'a, T> {
+        let ReadRequest { scratch, pool, .. } = *self.request;
+        let sort = move |records: &mut [T]| pool.install(|| records.par_sort_unstable());
+        Sorter::new(scratch, memory_bytes).sorted_by(sort)
+    }
+
     pub(crate) fn shares(&self) -> Shares {
         let sixteenth = self.request.memory_bytes / 16;
         Shares {
             ways: 8 * sixteenth,
             mentions: 4 * sixteenth,
-            located: sixteenth,
+            located: sixteenth / 2,
+            defects: sixteenth / 2,
             spool: sixteenth,
             ids: 4 * sixteenth,
             visits: 2 * sixteenth,
@@ -74,8 +87,11 @@ impl Reading<'_> {
 
     /// Fails if the caller wants no more.
     pub(crate) fn check_stop(&self) -> Result<(), ReadOsmError> {
-        let stopped = || ReadOsmError::Stopped { path: self.request.path.to_path_buf() };
-        if (self.should_stop)() { Err(stopped()) } else { Ok(()) }
+        if (self.should_stop)() { Err(self.stopped()) } else { Ok(()) }
+    }
+
+    pub(crate) fn stopped(&self) -> ReadOsmError {
+        ReadOsmError::Stopped { path: self.request.path.to_path_buf() }
     }
 
     /// The same, for loops over small things: asks once in a while. `count` counts them.

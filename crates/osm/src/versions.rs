@@ -14,7 +14,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::wire::{self, Field, Value, zigzag};
+use crate::{
+    block::{Packed, parts, to_version},
+    wire::{self, Value, zigzag},
+};
 
 const KINDS: [&str; 3] = ["node", "way", "relation"];
 
@@ -70,7 +73,7 @@ impl Versions {
     /// Looks through a block (message `PrimitiveBlock`) that was audited: all of it can be read.
     pub(crate) fn scan(block: &[u8]) -> Self {
         let mut versions = Self::default();
-        for group in messages(block, 2) {
+        for group in parts(block, 2) {
             for field in wire::fields(group).flatten() {
                 match (field.number, field.value) {
                     (1, Value::Bytes(node)) => versions.object(0, node, zigzag),
@@ -120,15 +123,13 @@ impl Versions {
 
     /// Arrays of ids, versions and marks; the latter two may be shorter, or not be there at all.
     fn dense(&mut self, nodes: &[u8]) {
-        let infos = || messages(nodes, 5);
-        let mut versions = infos().flat_map(|info| numbers(info, 1)).peekable();
-        let mut visible = infos().flat_map(|info| numbers(info, 6)).peekable();
-        if versions.peek().is_none() && visible.peek().is_none() {
+        let info = parts(nodes, 5).last().unwrap_or_default();
+        let [versions, visible] = [1, 6].map(|number| Packed::of(info, number));
+        if versions.is_empty() && visible.is_empty() {
             return;
         }
-        let mut id = 0_i64;
-        for step in numbers(nodes, 1) {
-            id = id.wrapping_add(zigzag(step));
+        let (mut versions, mut visible) = (versions.numbers(), visible.numbers());
+        for id in Packed::of(nodes, 1).sums() {
             let version = versions.next().map_or(0, to_version);
             self.take(0, id, Info { version, is_deleted: visible.next() == Some(0) });
         }
@@ -169,25 +170,4 @@ impl Info {
             }
         }
     }
-}
-
-/// The parts of a message in fields of this number.
-fn messages(message: &[u8], number: u32) -> impl Iterator<Item = &[u8]> {
-    let of_number = move |field: &Field<'_>| field.number == number;
-    wire::fields(message).flatten().filter(of_number).filter_map(|field| field.value.bytes().ok())
-}
-
-/// The numbers of a repeated field, one after another; nothing is kept of them.
-fn numbers(message: &[u8], number: u32) -> impl Iterator<Item = u64> {
-    let of_number = move |field: &Field<'_>| field.number == number;
-    wire::fields(message)
-        .flatten()
-        .filter(of_number)
-        .filter_map(|field| field.value.numbers().ok())
-        .flat_map(Iterator::flatten)
-}
-
-/// An `int32`: of a negative one, ten bytes are written, and what does not fit is no version.
-fn to_version(number: u64) -> i32 {
-    i32::try_from(number.cast_signed()).unwrap_or(0)
 }

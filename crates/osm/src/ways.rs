@@ -6,10 +6,10 @@ use corniche_roads::{
     Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes,
     tags_taken_otherwise,
 };
-use osmpbf::{PrimitiveBlock, Way};
 
 use crate::{
     Defect, ExtractSummary, HighwayCount, LeftOutReason,
+    block::{Block, BlockWay},
     location::{Location, location_from_nano},
     records::WayRecord,
     text::Text,
@@ -42,38 +42,48 @@ pub(crate) struct Ways {
     node_ids: Vec<i64>,
 }
 
+/// What the ways of a block are judged by.
+struct Judge<'a> {
+    /// Keys and values of the block's tags.
+    texts: &'a [&'a [u8]],
+    /// Which of them are the key `highway`; usually one.
+    highway: Vec<usize>,
+    table: &'a FrcTable,
+}
+
 /// What counts for each way, besides its nodes and texts.
 const WAY_BYTES: usize = 240;
 
 impl Ways {
     /// Finds the roads of a block; `None` if they take more than `most_bytes`.
     pub(crate) fn scan(
-        block: &PrimitiveBlock,
+        block: &Block<'_>,
         table: &FrcTable,
         counted: Counted,
         most_bytes: u64,
     ) -> Option<Self> {
         let mut ways = Self::default();
-        for group in block.groups() {
-            ways.summary.nodes_seen += (group.nodes().len() + group.dense_nodes().len()) as u64;
-            for way in group.ways() {
-                ways.summary.ways_seen += 1;
-                match counted {
-                    Counted::ByBlock => ways.look_at(&way, table),
-                    Counted::ByWay => ways.look_at_alone(&way, table),
-                }
-                if ways.held_bytes > most_bytes {
-                    return None;
-                }
+        ways.summary.nodes_seen = block.nodes_count();
+        let texts = block.texts();
+        let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
+        let judge = Judge { texts: &texts, highway, table };
+        for way in block.ways() {
+            ways.summary.ways_seen += 1;
+            match counted {
+                Counted::ByBlock => ways.look_at(&way, &judge),
+                Counted::ByWay => ways.look_at_alone(&way, &judge),
+            }
+            if ways.held_bytes > most_bytes {
+                return None;
             }
         }
         Some(ways)
     }
 
     /// The same, with counts and defects in the way's record: it counts only if no other extract has it, too.
-    fn look_at_alone(&mut self, way: &Way<'_>, table: &FrcTable) {
+    fn look_at_alone(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
         let mut own = Self { node_ids: std::mem::take(&mut self.node_ids), ..Self::default() };
-        own.look_at(way, table);
+        own.look_at(way, judge);
         let Self { roads, located, defects, summary, held_bytes, node_ids } = own;
         self.node_ids = node_ids;
         self.located.extend(located);
@@ -86,21 +96,19 @@ impl Ways {
         }
     }
 
-    fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) {
-        let strings = way.raw_stringtable();
-        let is_highway =
-            |(key, _): (u32, u32)| strings.get(key as usize).is_some_and(|key| key == b"highway");
+    fn look_at(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
         // Most ways are buildings and land cover; their tags need no decoding.
-        if !way.raw_tags().any(is_highway) {
+        if !way.keys().any(|key| judge.highway.contains(&key)) {
             return;
         }
+        let Judge { texts, table, .. } = judge;
         // The block was checked: no tag is outside its table.
-        let text = |index: u32| Text::new(strings.get(index as usize).map_or(&[], Vec::as_slice));
+        let text = |index: usize| Text::new(texts.get(index).copied().unwrap_or_default());
         let owned: Vec<[Text<'_>; 2]> =
-            way.raw_tags().map(|(key, value)| [text(key), text(value)]).collect();
+            way.keys().zip(way.values()).map(|(key, value)| [text(key), text(value)]).collect();
         let tags: Vec<(&str, &str)> =
             owned.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
-        let way_id = way.id();
+        let way_id = way.id;
         let is_any = |is: fn(&Text<'_>) -> bool| owned.iter().flatten().any(is);
         if is_any(|text| matches!(text.text, Cow::Owned(_))) {
             self.push_defect(Defect::DamagedText { way_id });
@@ -118,8 +126,8 @@ impl Ways {
         self.defects.push(defect);
     }
 
-    fn judge(&mut self, way: &Way<'_>, tags: &[(&str, &str)], table: &FrcTable) {
-        let way_id = way.id();
+    fn judge(&mut self, way: &BlockWay<'_, '_>, tags: &[(&str, &str)], table: &FrcTable) {
+        let way_id = way.id;
         let highway =
             tags.iter().find(|(key, _)| *key == "highway").map_or("", |&(_, value)| value);
         self.summary.highway_ways += 1;
@@ -171,42 +179,44 @@ impl Ways {
         }
     }
 
-    fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: &RoadAttributes) {
+    fn take(
+        &mut self,
+        way: &BlockWay<'_, '_>,
+        class: FunctionalRoadClass,
+        attributes: &RoadAttributes,
+    ) {
         self.keep(way, attributes.text_bytes(), |ids| way_bytes(ids, class, attributes));
     }
 
     /// Keeps a way that is no road here, for its length.
-    fn leave_out(&mut self, way: &Way<'_>, reason: LeftOutReason, highway: &str) {
+    fn leave_out(&mut self, way: &BlockWay<'_, '_>, reason: LeftOutReason, highway: &str) {
         self.keep(way, highway.len(), |ids| left_out_bytes(ids, reason, highway));
     }
 
     fn keep(
         &mut self,
-        way: &Way<'_>,
+        way: &BlockWay<'_, '_>,
         text_bytes: usize,
         to_bytes: impl FnOnce(&[i64]) -> Box<[u8]>,
     ) {
         self.node_ids.clear();
         self.node_ids.extend(way.refs());
-        let locations = way.node_locations();
-        let has_locations = locations.len() > 0;
         // The block was checked: one for each node, or none at all.
-        if has_locations {
-            let locations = locations
-                .map(|location| location_from_nano(location.nano_lon(), location.nano_lat()));
-            self.located.extend(self.node_ids.iter().copied().zip(locations));
-        }
+        let locations = way.places_nano_deg().map(|[lon, lat]| location_from_nano(lon, lat));
+        let before = self.located.len();
+        self.located.extend(self.node_ids.iter().copied().zip(locations));
+        let has_locations = self.located.len() > before;
         let location_bytes = if has_locations { size_of::<(i64, Location)>() } else { 0 };
         let node_bytes = size_of::<i64>() + location_bytes;
         // Lists grow by doubling; each node is sorted twice.
         self.held_bytes += (text_bytes + WAY_BYTES + 2 * self.node_ids.len() * node_bytes) as u64;
         self.roads.push(WayRecord {
-            way_id: way.id(),
+            way_id: way.id,
             age: 0,
             file: 0,
             facts: Box::default(),
             order: self.roads.len() as u64,
-            version: way.info().version().and_then(known_version).unwrap_or_default(),
+            version: known_version(way.version).unwrap_or_default(),
             bytes: to_bytes(&self.node_ids),
         });
     }

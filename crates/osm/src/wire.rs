@@ -96,7 +96,7 @@ impl<'a> Value<'a> {
     pub(crate) fn numbers(self) -> Result<Numbers<'a>, WireError> {
         match self {
             Self::Varint(number) => Ok(Numbers { single: Some(number), rest: &[] }),
-            Self::Bytes(bytes) => Ok(Numbers { single: None, rest: bytes }),
+            Self::Bytes(bytes) => Ok(Numbers::of(bytes)),
             Self::Fixed => Err("a field is not of the kind it should be"),
         }
     }
@@ -108,9 +108,17 @@ pub(crate) struct Numbers<'a> {
     rest: &'a [u8],
 }
 
+impl<'a> Numbers<'a> {
+    /// Those that are packed in these bytes.
+    pub(crate) fn of(packed: &'a [u8]) -> Self {
+        Self { single: None, rest: packed }
+    }
+}
+
 impl Iterator for Numbers<'_> {
     type Item = Result<u64, WireError>;
 
+    #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         if let Some(number) = self.single.take() {
             return Some(Ok(number));
@@ -129,6 +137,21 @@ impl Iterator for Numbers<'_> {
 /// Seven bits a byte, least first, the top bit set on all bytes but the last.
 #[inline]
 pub(crate) fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
+    // Most numbers are small, and this much is worth a place in every loop.
+    match **rest {
+        [first, ref after @ ..] if first < 0x80 => {
+            *rest = after;
+            Ok(u64::from(first))
+        }
+        [first, second, ref after @ ..] if second < 0x80 => {
+            *rest = after;
+            Ok(u64::from(first & 0x7f) | u64::from(second) << 7)
+        }
+        _ => long_varint(rest),
+    }
+}
+
+fn long_varint(rest: &mut &[u8]) -> Result<u64, WireError> {
     let mut number = 0;
     for (place, &byte) in rest.iter().take(10).enumerate() {
         if place == 9 && byte > 1 {

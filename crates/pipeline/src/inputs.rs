@@ -1,6 +1,6 @@
 //! The files that a run reads: what they are called, their content's hash, and whether they stayed as they were.
 //!
-//! GDAL reads a raster's blocks in any order, and an extract is read twice, so content is not hashed while it is used. It is
+//! GDAL reads a raster's blocks in any order, and an extract ways first, so content is not hashed while it is used. It is
 //! hashed once, in a pass before. The file system then proves that the bytes used are the bytes hashed: size, times and
 //! inode are noted before a file is first read and compared after it was last read.
 //!

@@ -39,13 +39,25 @@ pub struct Sorter<'a, T> {
     records: Vec<T>,
     extra_bytes: usize,
     runs: VecDeque<Run>,
+    sort: Sort<'a, T>,
 }
+
+/// What puts the records that are in memory in order.
+type Sort<'a, T> = Box<dyn Fn(&mut [T]) + 'a>;
 
 impl<'a, T: SortRecord> Sorter<'a, T> {
     /// Keeps at most about `memory_bytes` in memory; a single record may be larger.
     pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
         let memory_bytes = usize::try_from(memory_bytes).unwrap_or(usize::MAX);
-        Self { scratch, memory_bytes, records: Vec::new(), extra_bytes: 0, runs: VecDeque::new() }
+        let sort = Box::new(|records: &mut [T]| records.sort_unstable());
+        let (records, runs) = (Vec::new(), VecDeque::new());
+        Self { scratch, memory_bytes, records, extra_bytes: 0, runs, sort }
+    }
+
+    /// Lets `sort` put records in order that are in memory: side by side in several threads, for example. It must do so in place.
+    #[must_use]
+    pub fn sorted_by(self, sort: impl Fn(&mut [T]) + 'a) -> Self {
+        Self { sort: Box::new(sort), ..self }
     }
 
     /// Adds a record.
@@ -78,7 +90,7 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
 
     /// Writes what is in memory as a run.
     fn spill(&mut self) -> io::Result<()> {
-        self.records.sort_unstable();
+        (self.sort)(&mut self.records);
         let mut writer = RunWriter::new(self.scratch, page_bytes(self.memory_bytes, 8));
         // A new list for the next run: the pages of this one that were used would stay, beside what the records hold next time.
         for record in mem::take(&mut self.records) {
@@ -95,7 +107,7 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
     /// When the scratch space fails.
     pub fn finish(mut self) -> io::Result<Sorted<'a, T>> {
         if self.runs.is_empty() {
-            self.records.sort_unstable();
+            (self.sort)(&mut self.records);
             return Ok(Sorted(Source::Memory(self.records.into_iter())));
         }
         if !self.records.is_empty() {

@@ -30,7 +30,13 @@ impl LocatedWays<'_> {
         reading: &Reading<'_>,
     ) -> Result<Option<LocatedWay>, ReadOsmError> {
         let failed = |error| reading.scratch_failed(error);
-        let take_way = |bytes: &mut &[u8]| Some((zigzag(varint(bytes).ok()?), varint(bytes).ok()?));
+        let take_way = |bytes: &mut &[u8]| {
+            let (way_id, nodes) = (zigzag(varint(bytes).ok()?), varint(bytes).ok()?);
+            // Nothing is asked of what they are.
+            let length = varint(bytes).ok()?.try_into().ok()?;
+            *bytes = bytes.get(length..)?;
+            Some((way_id, nodes))
+        };
         let Some((way_id, nodes)) = self.ways.next(take_way).map_err(failed)? else {
             return Ok(None);
         };

@@ -5,6 +5,7 @@ use corniche_store::SortRecord;
 use super::{blocks::BlockRecord, merged::HasId};
 use crate::{
     Defect,
+    defect_bytes::{push_defect, take_defect},
     location::Location,
     records::{Located, WayRecord},
     wire::{push_varint, to_zigzag, varint, zigzag},
@@ -104,25 +105,15 @@ impl HasId for Located {
     }
 }
 
-/// More than any defect takes: its text is a key and a value of 255 characters each at most.
-const MOST_DEFECT_BYTES: usize = 1 << 16;
-
 impl BlockRecord for Defect {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
-        // Writing to a list cannot fail, and every defect can be written.
-        let written =
-            bincode::serde::encode_into_std_write(self, bytes, bincode::config::standard());
-        debug_assert!(written.is_ok(), "{self:?}");
+        push_defect(bytes, self);
     }
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        // Damaged bytes may claim a text of any length; a defect names one value of a tag at most.
-        let limited = bincode::config::standard().with_limit::<MOST_DEFECT_BYTES>();
-        let (defect, used) = bincode::serde::decode_from_slice(bytes, limited).ok()?;
-        *bytes = bytes.get(used..)?;
-        Some(defect)
+        take_defect(bytes)
     }
 }
 

@@ -131,7 +131,7 @@ impl Laid {
         if self.geo.len() + self.sv.len() > before {
             self.attributes.entry(road.way_id).or_insert_with(|| RoadRecord {
                 way_id: road.way_id,
-                attributes: road.attributes.clone(),
+                attributes: (*road.attributes).clone(),
             });
         }
         if fate != RoadFate::default() {

@@ -286,8 +286,9 @@ impl<'a> Gathered<'a> {
         }
         let splitting = &self.splitting;
         let first = self.totals.roads as u32;
-        let split = |(index, road): (usize, &Road)| {
-            let mut road = splitting.split(road);
+        // Roads are dropped where they are split, not by the one thread that takes the pieces.
+        let split = |(index, road): (usize, Road)| {
+            let mut road = splitting.split(&road);
             let pieces = std::mem::take(&mut road.pieces).into_iter();
             let ordinal = first + index as u32;
             let record = |(id, piece): (TileId, RoadPiece)| PieceRecord {
@@ -298,7 +299,7 @@ impl<'a> Gathered<'a> {
             (road, pieces.map(record).collect())
         };
         let roads: Vec<(SplitRoad, Vec<PieceRecord>)> =
-            self.pool.install(|| batch.par_iter().enumerate().map(split).collect());
+            self.pool.install(|| batch.into_par_iter().enumerate().map(split).collect());
         for (road, pieces) in roads {
             if let Err(error) = self.take(&road, pieces) {
                 self.failed = Some(error);

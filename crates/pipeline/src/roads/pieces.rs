@@ -1,5 +1,7 @@
 //! What a tile needs of its roads: pieces of their lines as its level shows them.
 
+use std::sync::Arc;
+
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::Artifacts;
@@ -25,7 +27,8 @@ use crate::{
 pub(crate) struct RoadPiece {
     pub(crate) way_id: i64,
     pub(crate) class: FunctionalRoadClass,
-    pub(crate) attributes: RoadAttributes,
+    /// All pieces of a road have the same.
+    pub(crate) attributes: Arc<RoadAttributes>,
     /// How many points of the source line belong to the tile.
     pub(crate) source_points: u64,
     /// The same of the level's simplified line.
@@ -126,7 +129,7 @@ impl RoadPiece {
     fn take(rest: &mut Take<'_>) -> Option<Self> {
         let way_id = rest.signed()?;
         let &[class] = rest.bytes(1)? else { return None };
-        let attributes = take_attributes(rest)?;
+        let attributes = Arc::new(take_attributes(rest)?);
         let [source_points, simplified_points] = [rest.unsigned()?, rest.unsigned()?];
         let count = rest.count()?;
         let mut before = LatticePoint::new(0, 0);

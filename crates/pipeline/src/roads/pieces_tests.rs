@@ -39,6 +39,7 @@ fn pieces() -> impl Strategy<Value = RoadPiece> {
     (any::<i64>(), 0..9_u8, attributes, any::<[u64; 2]>(), runs()).prop_map(
         |(way_id, class, attributes, [source_points, simplified_points], runs)| {
             let class = FunctionalRoadClass::new(class).unwrap();
+            let attributes = Arc::new(attributes);
             RoadPiece { way_id, class, attributes, source_points, simplified_points, runs }
         },
     )

@@ -1,10 +1,10 @@
 //! Splits a road into the pieces that the tiles of all levels need.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::Arc};
 
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use super::{
     pieces::{RoadPiece, Run},
@@ -51,10 +51,11 @@ impl Splitting<'_> {
             length_in(&clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds)));
         // Cuts are rounded to whole micrometres.
         let outside_um = asked_um.saturating_sub(inside_um);
+        let attributes = Arc::new(road.attributes.clone());
         let mut pieces = Vec::new();
         for level in self.levels.numbers() {
             if self.levels.shows(level, road.class) {
-                self.split_level(&parts, level, &mut pieces);
+                self.split_level(&parts, &attributes, level, &mut pieces);
             }
         }
         SplitRoad {
@@ -83,7 +84,13 @@ impl Splitting<'_> {
     }
 
     /// The pieces of one level.
-    fn split_level(&self, parts: &[Part<'_>], level: u8, pieces: &mut Vec<(TileId, RoadPiece)>) {
+    fn split_level(
+        &self,
+        parts: &[Part<'_>],
+        attributes: &Arc<RoadAttributes>,
+        level: u8,
+        pieces: &mut Vec<(TileId, RoadPiece)>,
+    ) {
         let levels = self.levels;
         let lines: Vec<LevelLine<'_>> = parts
             .iter()
@@ -111,7 +118,7 @@ impl Splitting<'_> {
                 RoadPiece {
                     way_id: road.way_id,
                     class: road.class,
-                    attributes: road.attributes.clone(),
+                    attributes: Arc::clone(attributes),
                     source_points: lines.iter().map(|line| line.source.count(id)).sum(),
                     simplified_points: lines.iter().map(|line| line.simplified.count(id)).sum(),
                     runs: runs

@@ -1,0 +1,108 @@
+use corniche_testing::pbf::{Block as Made, deltas, field, number, varint, zigzags};
+use osmpbf::PrimitiveBlock;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{audit::audit, blobs::decode};
+
+/// Id, longitude and latitude in nanodegrees, version.
+fn nodes_of(block: &Block<'_>) -> Vec<(i64, i64, i64, i32)> {
+    let mut nodes = Vec::new();
+    let _ = block.try_each_node(|node| {
+        nodes.push((node.id, node.lon_nano_deg, node.lat_nano_deg, node.version));
+        ControlFlow::Continue(())
+    });
+    nodes
+}
+
+fn decoded(message: &[u8]) -> PrimitiveBlock {
+    audit(message, u64::MAX).unwrap();
+    decode(message.to_vec()).unwrap()
+}
+
+type MadeWay = (i64, Vec<i64>, Vec<(usize, usize)>);
+
+const TEXTS: [&str; 4] = ["highway", "track", "name", "Ä"];
+
+fn made_block() -> impl Strategy<Value = Made> {
+    let node = (-9_i64..99, -900_000_i64..900_000, -900_000_i64..900_000);
+    let nodes = || prop::collection::vec(node.clone(), 0..20);
+    let refs = prop::collection::vec(-5_i64..500, 0..9);
+    let tags = prop::collection::vec((0..TEXTS.len(), 0..TEXTS.len()), 0..4);
+    let ways = prop::collection::vec((-3_i64..99, refs, tags), 0..9);
+    (nodes(), nodes(), ways).prop_map(|(dense, plain, ways): (_, _, Vec<MadeWay>)| {
+        let mut block = Made::new();
+        block.dense(&dense);
+        block.plain(&plain);
+        for (id, refs, tags) in ways {
+            let tags: Vec<_> =
+                tags.into_iter().map(|(key, value)| (TEXTS[key], TEXTS[value])).collect();
+            block.way(id, &tags, &refs);
+        }
+        block
+    })
+}
+
+proptest! {
+    /// The decoder of another author is the oracle.
+    #[test]
+    fn nodes_and_ways_are_those_that_the_decoder_finds(made in made_block()) {
+        let bytes = made.bytes();
+        let (block, decoded) = (Block::new(&bytes), decoded(&bytes));
+        let mut expected = Vec::new();
+        for group in decoded.groups() {
+            expected.extend(group.dense_nodes().map(|node| (node.id(), node.nano_lon(), node.nano_lat(), 0)));
+            expected.extend(group.nodes().map(|node| (node.id(), node.nano_lon(), node.nano_lat(), 0)));
+        }
+        prop_assert_eq!(nodes_of(&block), expected);
+        prop_assert_eq!(block.nodes_count() as usize, nodes_of(&block).len());
+        let texts = block.texts();
+        let text = |index: usize| str::from_utf8(texts[index]).unwrap();
+        let ways: Vec<_> = block.ways().map(|way| {
+            let tags = way.keys().zip(way.values()).map(|(key, value)| (text(key), text(value)));
+            (way.id, way.refs().collect::<Vec<_>>(), tags.collect::<Vec<_>>())
+        }).collect();
+        let of_decoder = decoded.groups().flat_map(|group| group.ways().collect::<Vec<_>>());
+        let of_decoder: Vec<_> = of_decoder.collect();
+        let expected: Vec<_> = of_decoder.iter().map(|way| {
+            (way.id(), way.refs().collect::<Vec<_>>(), way.tags().collect::<Vec<_>>())
+        }).collect();
+        prop_assert_eq!(&ways, &expected);
+        let has_ways = !ways.is_empty();
+        prop_assert_eq!(block.has_others_than_nodes(), has_ways);
+    }
+}
+
+/// Packed, one by one, and in parts: the same numbers.
+#[test]
+fn numbers_in_several_parts_are_joined() {
+    let whole = field(8, &deltas(&[5, 300, 7]));
+    let steps = [5_i64, 295, -293].map(|step| zigzags(&[step]));
+    let alone = steps.each_ref().map(|step| [varint(8 << 3), step.clone()].concat()).concat();
+    let parts = [field(8, &steps[0]), field(8, &steps[1..].concat())].concat();
+    for refs in [whole, alone, parts] {
+        let mut made = Made::new();
+        made.groups = vec![field(3, &[number(1, 7), refs].concat())];
+        let bytes = made.bytes();
+        let block = Block::new(&bytes);
+        let refs: Vec<_> = block.ways().flat_map(|way| way.refs().collect::<Vec<_>>()).collect();
+        assert_eq!(refs, [5, 300, 7]);
+    }
+}
+
+/// Places are steps from an offset, and versions need no times beside them.
+#[test]
+fn places_follow_granularity_and_offset() {
+    let nodes = [
+        field(1, &deltas(&[1, 2])),
+        field(5, &field(1, &[3, 4])),
+        field(8, &deltas(&[10, 20])),
+        field(9, &deltas(&[-1, 1])),
+    ];
+    let mut made = Made::new();
+    made.groups = vec![field(2, &nodes.concat())];
+    let bytes = [made.bytes(), number(17, 1000), number(19, 7), number(20, -7)].concat();
+    audit(&bytes, u64::MAX).unwrap();
+    let block = Block::new(&bytes);
+    assert_eq!(nodes_of(&block), [(1, -1007, 10_007, 3), (2, 993, 20_007, 4)]);
+}
