@@ -131,7 +131,7 @@ impl<S: ByteSource> PackageTiles<S> {
         }))
     }
 
-    /// Reads a tile that exists without all but its slopes, errors and heights.
+    /// Reads the slopes, errors and heights of a tile that exists, and nothing else of it.
     ///
     /// # Errors
     /// When it cannot be read or is damaged.
