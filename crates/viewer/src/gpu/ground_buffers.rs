@@ -111,7 +111,7 @@ impl GroundBuffers {
 /// Two bytes for each index of a mesh whose vertices allow it, else four. The largest number of two bytes has a meaning of its own in
 /// strips of triangles and is left out.
 fn index_format(mesh: &GroundMesh) -> IndexFormat {
-    if mesh.vertices.len() <= usize::from(u16::MAX) {
+    if u16::try_from(mesh.vertices.len()).is_ok() {
         IndexFormat::Uint16
     } else {
         IndexFormat::Uint32
@@ -120,7 +120,7 @@ fn index_format(mesh: &GroundMesh) -> IndexFormat {
 
 /// Bytes of so many indices, a multiple of 4 as buffers need it.
 fn index_buffer_bytes(indices: u64, format: IndexFormat) -> u64 {
-    (indices * format.byte_size() as u64).next_multiple_of(4)
+    (indices * u64::from(format.byte_size())).next_multiple_of(4)
 }
 
 /// The contents of the buffer of indices.
