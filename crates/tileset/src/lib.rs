@@ -50,8 +50,9 @@ pub use package::{
 pub use package::{WriteError, Writer};
 pub use payload::{
     AreaRecord, AreaRings, BoundaryRecord, Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER,
-    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload,
-    decode, decode_areas, decode_boundaries, decode_photo, payload_sizes,
+    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
+    TerrainSummary, TilePayload, decode, decode_areas, decode_boundaries, decode_photo,
+    payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{

@@ -7,6 +7,7 @@ mod decode;
 #[cfg(feature = "write")]
 mod encode;
 mod sizes;
+mod summary;
 
 mod context;
 mod envelope;
@@ -52,7 +53,8 @@ pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
 pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
-pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
+pub use summary::terrain_summary;
+pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TerrainSummary, TilePayload};
 
 #[cfg(test)]
 #[path = "payload_tests.rs"]

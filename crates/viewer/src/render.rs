@@ -238,7 +238,7 @@ fn slopes_above(
     id: TileId,
     uploaded: &mut BTreeMap<TileId, SlopeChain>,
 ) -> Option<SlopeChain> {
-    let parent = store.get(id.parent()?)?;
+    let parent = store.with_slopes(id.parent()?)?;
     if let Some(known) = uploaded.get(&parent.id) {
         return Some(known.clone());
     }
@@ -261,15 +261,14 @@ fn camera(
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
     let place = request.camera.place(package.manifest())?;
-    // In a store of its own: the report counts only the tiles that were read for the view.
     let at_place_m = match place {
-        Some(at) => TileStore::new(package).ground_height_m(at)?,
+        Some(at) => store.ground_height_m(at)?,
         None => None,
     };
     let no_ground = || RenderError::NoGround { name: request.name.clone() };
     let data = package.manifest().data_bounds;
     let extent = if request.camera.is_overview() {
-        TileStore::new(package).map_extent(data)?.ok_or_else(no_ground)?
+        store.map_extent(data)?.ok_or_else(no_ground)?
     } else {
         MapExtent::of_data(data, height_range_m)
     };

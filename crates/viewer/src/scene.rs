@@ -2,7 +2,7 @@
 
 mod level_connectors;
 
-use std::{collections::BTreeSet, slice};
+use std::collections::BTreeSet;
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
@@ -17,7 +17,8 @@ use crate::{
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
 
-/// Loads what `camera` needs, level by level, until nothing is missing, and says what to draw.
+/// Chooses tiles for `camera`, level by level, and says what to draw. Only tiles that are drawn are loaded; of those above them
+/// errors and heights are read, and the slopes with which finer tiles are shaded.
 ///
 /// # Errors
 /// When a tile cannot be read, or `is_stopped` returned true.
@@ -29,14 +30,17 @@ pub fn settle(
 ) -> Result<Vec<Drawn>, SettleError> {
     loop {
         let selection = lod::select(store, camera, quality);
-        if selection.requests.is_empty() {
-            return Ok(selection.drawn);
-        }
+        let asked = |store: &mut TileStore<'_>, load: &dyn Fn(&mut TileStore<'_>) -> _| {
+            if is_stopped() { Err(SettleError::Stopped) } else { Ok(load(store)?) }
+        };
         for request in &selection.requests {
-            if is_stopped() {
-                return Err(SettleError::Stopped);
+            asked(store, &|store| store.pass(request.id))?;
+        }
+        if selection.requests.is_empty() {
+            for drawn in &selection.drawn {
+                asked(store, &|store| store.load_drawn(drawn))?;
             }
-            store.load(slice::from_ref(request))?;
+            return Ok(selection.drawn);
         }
     }
 }

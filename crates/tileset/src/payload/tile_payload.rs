@@ -38,6 +38,15 @@ pub struct Terrain {
     pub uncovered_nodes: u64,
 }
 
+/// What the ground of a tile states about itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TerrainSummary {
+    /// See [`Terrain::geometric_error_m`].
+    pub geometric_error_m: f64,
+    /// See [`Terrain::height_range_m`].
+    pub height_range_m: [f64; 2],
+}
+
 /// A road in a tile's GEO section.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GeoRoad {

@@ -25,6 +25,7 @@ pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayo
 pub(crate) struct GroundBuffers {
     vertices: Buffer,
     indices: Buffer,
+    index_format: IndexFormat,
     /// The indices of the ground, then those of the skirts, then those of edges of the ground inside the tile.
     surface: Range<u32>,
     skirts: Range<u32>,
@@ -41,9 +42,11 @@ impl GroundBuffers {
         let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
         let all = mesh.indices.len() as u32;
         let surface = mesh.surface_indices as u32;
+        let index_format = index_format(mesh);
         (all > 0).then(|| Self {
             vertices: buffer(&vertex_bytes(&mesh.vertices), BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
+            indices: buffer(&index_bytes(&mesh.indices, index_format), BufferUsages::INDEX),
+            index_format,
             surface: 0..surface,
             skirts: surface..mesh.skirt_indices as u32,
             walls: surface..all,
@@ -55,7 +58,7 @@ impl GroundBuffers {
     /// Bytes of the buffers that [`GroundBuffers::new`] makes of a mesh.
     pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
         mesh.vertices.len() as u64 * VERTEX_BYTES
-            + mesh.indices.len() as u64 * size_of::<u32>() as u64
+            + index_buffer_bytes(mesh.indices.len() as u64, index_format(mesh))
     }
 
     /// Bytes of its buffers; the edges count once they have been drawn.
@@ -74,30 +77,61 @@ impl GroundBuffers {
 
     /// Draws the triangles of the ground. Pipeline and bind groups are set.
     pub(crate) fn draw_surface(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, &self.indices, self.surface.clone());
+        self.draw(pass, (&self.indices, self.index_format), self.surface.clone());
     }
 
     /// Draws the triangles of the skirts. Pipeline and bind groups are set.
     pub(crate) fn draw_skirts(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, &self.indices, self.skirts.clone());
+        self.draw(pass, (&self.indices, self.index_format), self.skirts.clone());
     }
 
     /// Draws the walls: wherever the ground may end. Pipeline and bind groups are set.
     pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, &self.indices, self.walls.clone());
+        self.draw(pass, (&self.indices, self.index_format), self.walls.clone());
     }
 
     /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set.
     pub(crate) fn draw_edges(&self, gpu: &Gpu, pass: &mut RenderPass<'_>) {
         let edges = self.edges(gpu);
-        self.draw(pass, edges, 0..(edges.size() / 4) as u32);
+        self.draw(pass, (edges, IndexFormat::Uint32), 0..(edges.size() / 4) as u32);
     }
 
-    fn draw(&self, pass: &mut RenderPass<'_>, indices: &Buffer, part: Range<u32>) {
+    fn draw(
+        &self,
+        pass: &mut RenderPass<'_>,
+        (indices, format): (&Buffer, IndexFormat),
+        part: Range<u32>,
+    ) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+        pass.set_index_buffer(indices.slice(..), format);
         pass.draw_indexed(part, 0, 0..1);
     }
+}
+
+/// Two bytes for each index of a mesh whose vertices allow it, else four. The largest number of two bytes has a meaning of its own in
+/// strips of triangles and is left out.
+fn index_format(mesh: &GroundMesh) -> IndexFormat {
+    if u16::try_from(mesh.vertices.len()).is_ok() {
+        IndexFormat::Uint16
+    } else {
+        IndexFormat::Uint32
+    }
+}
+
+/// Bytes of so many indices, a multiple of 4 as buffers need it.
+fn index_buffer_bytes(indices: u64, format: IndexFormat) -> u64 {
+    (indices * u64::from(format.byte_size())).next_multiple_of(4)
+}
+
+/// The contents of the buffer of indices.
+fn index_bytes(indices: &[u32], format: IndexFormat) -> Vec<u8> {
+    let mut bytes = match format {
+        // All of them are below the number of vertices.
+        IndexFormat::Uint16 => indices.iter().flat_map(|at| (*at as u16).to_ne_bytes()).collect(),
+        IndexFormat::Uint32 => bytemuck::cast_slice(indices).to_vec(),
+    };
+    bytes.resize(index_buffer_bytes(indices.len() as u64, format) as usize, 0);
+    bytes
 }
 
 /// Each edge of some triangles, once.

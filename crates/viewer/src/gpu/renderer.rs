@@ -1,3 +1,5 @@
+use std::sync::OnceLock;
+
 use wgpu::{CommandEncoder, LoadOp};
 
 use super::{
@@ -29,36 +31,36 @@ use crate::{
     tiles::LineLayer,
 };
 
-/// Knows how to draw tiles; holds nothing of any frame.
+/// Knows how to draw tiles; holds nothing of any frame. What not every picture needs is made when a picture first needs it.
 pub struct Renderer {
     layouts: SharedLayouts,
     terrain: Terrain,
-    areas: StencilAreas,
-    geo_roads: RoadPipeline,
-    sv_roads: RoadPipeline,
+    areas: OnceLock<StencilAreas>,
+    geo_roads: OnceLock<RoadPipeline>,
+    sv_roads: OnceLock<RoadPipeline>,
     blocks: LabelBlocks,
     composite: Composite,
-    line_colors: LineColors,
+    line_colors: OnceLock<LineColors>,
     average: Average,
-    difference: Difference,
+    difference: OnceLock<Difference>,
 }
 
 impl Renderer {
-    /// Makes all pipelines.
+    /// Makes the pipelines that every picture needs.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
         let device = &gpu.device;
         let layouts = SharedLayouts::new(device);
         Self {
             terrain: Terrain::new(device, &layouts),
-            areas: StencilAreas::new(device, &layouts),
-            geo_roads: geo_roads::pipeline(device, &layouts),
-            sv_roads: sv_roads::pipeline(device, &layouts),
+            areas: OnceLock::new(),
+            geo_roads: OnceLock::new(),
+            sv_roads: OnceLock::new(),
             blocks: LabelBlocks::new(device, &layouts),
             composite: Composite::new(device, &layouts),
-            line_colors: LineColors::new(device, &layouts),
+            line_colors: OnceLock::new(),
             average: Average::new(device),
-            difference: Difference::new(device),
+            difference: OnceLock::new(),
             layouts,
         }
     }
@@ -100,7 +102,7 @@ impl Renderer {
         self.areas_pass(gpu, &mut encoder, &shared, &areas, view, targets);
         self.areas_pass(gpu, &mut encoder, &shared, &drawn_areas, &drawn_view, targets);
         mark(&mut encoder, 2);
-        self.labels_pass(&mut encoder, &shared, &roads, view, &targets.roads);
+        self.labels_pass(gpu, &mut encoder, &shared, &roads, view, &targets.roads);
         mark(&mut encoder, 3);
         self.composite_pass(gpu, &mut encoder, &shared, view, targets);
         for layer in LineLayer::ALL {
@@ -131,7 +133,8 @@ impl Renderer {
         }
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("difference") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        self.difference.draw(gpu, &mut encoder, first, second, into);
+        let difference = self.difference.get_or_init(|| Difference::new(&gpu.device));
+        difference.draw(gpu, &mut encoder, first, second, into);
         self.average.draw(gpu, &mut encoder, into);
         gpu.queue.submit([encoder.finish()]);
         Ok(())
@@ -175,12 +178,14 @@ impl Renderer {
         }
         let stencil = &targets.stencil(gpu).view;
         let mut pass = begin_with_stencil(encoder, "areas", &targets.ground.view, stencil);
-        self.areas.draw(gpu, &mut pass, shared, areas, view);
+        let drawable = self.areas.get_or_init(|| StencilAreas::new(&gpu.device, &self.layouts));
+        drawable.draw(gpu, &mut pass, shared, areas, view);
     }
 
     /// Labels of roads, or of lines of a layer: of each tile those of the classes that are shown there.
     fn labels_pass(
         &self,
+        gpu: &Gpu,
         encoder: &mut CommandEncoder,
         shared: &SharedBindings,
         lines: &LabelledLines<'_>,
@@ -193,11 +198,22 @@ impl Renderer {
         let of_tiles =
             of_tiles.filter_map(|(index, (buffers, classes))| Some((index, (*buffers)?, *classes)));
         match view.roads.method {
-            RoadMethod::Geometry => self.geo_roads.draw(&mut pass, shared, of_tiles),
-            RoadMethod::ShadowVolumes => self.sv_roads.draw(&mut pass, shared, of_tiles),
+            RoadMethod::Geometry => self.geo_roads(gpu).draw(&mut pass, shared, of_tiles),
+            RoadMethod::ShadowVolumes => self.sv_roads(gpu).draw(&mut pass, shared, of_tiles),
             RoadMethod::None => return,
         }
-        lines.connectors.draw(&mut pass, shared, &self.sv_roads);
+        if !lines.connectors.is_empty() {
+            lines.connectors.draw(&mut pass, shared, self.sv_roads(gpu));
+        }
+    }
+
+    fn geo_roads(&self, gpu: &Gpu) -> &RoadPipeline {
+        self.geo_roads.get_or_init(|| geo_roads::pipeline(&gpu.device, &self.layouts))
+    }
+
+    /// Connectors are drawn as shadow volumes whatever the method.
+    fn sv_roads(&self, gpu: &Gpu) -> &RoadPipeline {
+        self.sv_roads.get_or_init(|| sv_roads::pipeline(&gpu.device, &self.layouts))
     }
 
     /// A layer of lines, over the samples of the picture. Where no tile has such lines, or the style draws none, there is no such pass.
@@ -219,11 +235,13 @@ impl Renderer {
         }
         let shared = shared.with_view(gpu, &self.layouts, &view, targets);
         let labels = targets.lines(gpu);
-        self.labels_pass(encoder, &shared, &lines, &view, labels);
+        self.labels_pass(gpu, encoder, &shared, &lines, &view, labels);
         self.blocks.find(gpu, encoder, &shared, labels);
         let into = [targets.picture().drawn()];
         let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
-        self.line_colors.draw(gpu, &mut pass, &shared, &view, targets);
+        let line_colors =
+            self.line_colors.get_or_init(|| LineColors::new(&gpu.device, &self.layouts));
+        line_colors.draw(gpu, &mut pass, &shared, &view, targets);
     }
 
     /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or

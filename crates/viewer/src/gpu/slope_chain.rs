@@ -2,7 +2,7 @@ use corniche_geom::{TILE_CELLS, TileId};
 use wgpu::{TextureFormat, TextureView};
 
 use super::{Gpu, square_texture::square};
-use crate::tiles::{ShadingSlopes, TileGeometry};
+use crate::tiles::{MOST_SLOPES_ABOVE, ShadingSlopes, TileGeometry};
 
 /// The slopes: rise east and north.
 const SLOPES: TextureFormat = TextureFormat::Rg16Float;
@@ -20,7 +20,7 @@ pub struct SlopeChain {
 impl SlopeChain {
     /// Slopes of so many levels are bound. A pixel of a tile is rarely more than two levels coarser than the tile, because tiles
     /// are chosen by the size of their cells; beyond the last level, that level is shown.
-    pub(crate) const LEVELS: usize = 4;
+    pub(crate) const LEVELS: usize = MOST_SLOPES_ABOVE + 1;
 
     /// Uploads the slopes of a tile. `above` has those of its parent. A tile without slopes has none above it either: it is
     /// shaded by its triangles.

@@ -32,15 +32,18 @@ struct GroundColors {
 // Slopes gentler than this are shaded as if they were steeper; tangent of the angle.
 const GENTLE_SLOPE = 0.12;
 
-// Colour of the ground at a true height.
+// Colour of the ground at a true height: between the two stops that it lies between. Only these two are mixed: to mix all of them in
+// turn gives the same colour and took a tenth of the time of a picture on software Vulkan.
 fn tint_at(height_m: f32) -> vec3<f32> {
-    var color = colors.tint[0].rgb;
-    for (var k = 1u; k < u32(colors.heights.w); k++) {
-        let low = colors.tint[k - 1u].w;
-        let t = clamp((height_m - low) / (colors.tint[k].w - low), 0.0, 1.0);
-        color = mix(color, colors.tint[k].rgb, t);
+    let last = u32(colors.heights.w) - 1u;
+    var k = min(1u, last);
+    while k < last && height_m > colors.tint[k].w {
+        k++;
     }
-    return color;
+    let above = colors.tint[k];
+    let below = colors.tint[max(k, 1u) - 1u];
+    let t = clamp((height_m - below.w) / max(above.w - below.w, 1e-30), 0.0, 1.0);
+    return mix(below.rgb, above.rgb, t);
 }
 
 // How much light a slope gets from one direction: 1 on level ground, less on slopes turned away, below 0 beyond a right angle.

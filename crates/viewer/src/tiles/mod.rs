@@ -27,7 +27,6 @@ mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
-pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     drawn_area::DrawnArea,
@@ -50,3 +49,4 @@ pub(crate) use self::{
     plan_scale::PlanScale,
     roads::{BadRoad, Bed, GroundLine, NearHeights, OPEN_M, RoadEnd, dash_of_segment_m},
 };
+pub(crate) use self::{shading_slopes::ShadingSlopes, store::MOST_SLOPES_ABOVE};

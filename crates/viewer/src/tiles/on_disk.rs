@@ -7,7 +7,7 @@ use corniche_tileset::{AnySource, FilePackage, Manifest, OpenError};
 use super::{
     LoadTileError, MapPackage, Overlays, PackageTiles, TileCatalog, TileGeometry, TileSource,
 };
-use crate::options::RoadMethod;
+use crate::{lod::GroundSummary, options::RoadMethod};
 
 /// A package in a file, or elsewhere where threads can wait for its tiles.
 #[derive(Debug)]
@@ -72,6 +72,14 @@ impl TileCatalog for PackageSource {
 impl TileSource for PackageSource {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         pollster::block_on(self.0.load(id))
+    }
+
+    fn summary(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
+        pollster::block_on(self.0.summary(id))
+    }
+
+    fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        pollster::block_on(self.0.load_slopes(id))
     }
 }
 

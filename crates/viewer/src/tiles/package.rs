@@ -3,14 +3,14 @@ use std::{collections::BTreeSet, sync::Arc};
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{
     ByteSource, Manifest, OpenError, Package, Sections, decode, decode_areas, decode_boundaries,
-    decode_photo,
+    decode_photo, terrain_summary,
 };
 
 use super::{
     LayerLine, LineLayer, LineMethods, LoadTileError, MapPackage, Overlays, PhotoImage, PlanScale,
-    TileCatalog, TileGeometry, TileLines, geometry::LineGround,
+    ShadingSlopes, TileCatalog, TileGeometry, TileLines, geometry::LineGround,
 };
-use crate::options::RoadMethod;
+use crate::{lod::GroundSummary, options::RoadMethod};
 
 /// What every picture needs of a tile.
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
@@ -112,6 +112,47 @@ impl<S: ByteSource> PackageTiles<S> {
             [true, false] => LineMethods::Geometry,
             [false, _] => LineMethods::ShadowVolumes,
         }
+    }
+
+    /// Reads errors and heights of a tile that exists; `None` without ground.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    pub async fn summary(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
+        let failed = |source| LoadTileError { id, source };
+        let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
+        let Some(bytes) = bytes else { return Ok(None) };
+        let quantum_m = self.manifest().vertical.quantum_m;
+        let summary = terrain_summary(&bytes, id, self.frame(), quantum_m);
+        let summary = summary.map_err(|error| failed(error.into()))?;
+        Ok(summary.map(|ground| GroundSummary {
+            geometric_error_m: ground.geometric_error_m,
+            height_range_m: ground.height_range_m,
+        }))
+    }
+
+    /// Reads the slopes, errors and heights of a tile that exists, and nothing else of it.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    pub async fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        let failed = |source| LoadTileError { id, source };
+        let quantum_m = self.manifest().vertical.quantum_m;
+        let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
+        let none = TileLines::default();
+        let tile = TileGeometry::assemble(id, None, &none, self.frame(), quantum_m);
+        let Some(bytes) = bytes else { return Ok(tile) };
+        let summary = terrain_summary(&bytes, id, self.frame(), quantum_m);
+        let Some(ground) = summary.map_err(|error| failed(error.into()))? else { return Ok(tile) };
+        let payload = decode(&bytes, id, self.frame(), quantum_m, Sections::RELIEF)
+            .map_err(|error| failed(error.into()))?;
+        let cell = self.frame().level_cell(id.z());
+        let summary = Some(GroundSummary {
+            geometric_error_m: ground.geometric_error_m,
+            height_range_m: ground.height_range_m,
+        });
+        let shading = payload.relief.as_ref().map(|relief| ShadingSlopes::new(relief, cell));
+        Ok(TileGeometry { summary, shading, ..tile })
     }
 
     /// Reads and decodes a tile that exists.

@@ -2,6 +2,7 @@ use corniche_geom::{Frame, TileId};
 use corniche_tileset::Manifest;
 
 use super::TileGeometry;
+use crate::lod::GroundSummary;
 
 /// Why a tile could not be had.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +30,23 @@ pub trait TileSource: TileCatalog {
     /// # Errors
     /// When it cannot be read or is damaged.
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError>;
+
+    /// Errors and heights of a tile that exists; `None` without ground. This is all that is asked of a tile while tiles are chosen.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    fn summary(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
+        Ok(self.load(id)?.summary)
+    }
+
+    /// Reads of a tile that exists its slopes, and more only if that costs nothing: they are all that is drawn of a tile where finer
+    /// tiles take its place.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        self.load(id)
+    }
 }
 
 /// A package before any of its tiles is loaded: which tiles there are, and its table of contents.

@@ -3,22 +3,34 @@ use std::collections::BTreeMap;
 use corniche_geom::{Bounds, TileId};
 
 use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
-use crate::lod::{GroundSummary, Node, Request, TileTree};
+use crate::lod::{Drawn, GroundSummary, Node, Request, TileTree};
 
 /// More tiles than these are not loaded to find out where roads are.
 const FEW_TILES: usize = 64;
 
-/// The tiles loaded so far.
+/// A tile is shaded with its own slopes and with those of so many tiles above it.
+pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
+
+/// The tiles loaded so far. Of tiles that are only passed while tiles are chosen it holds errors and heights.
 pub struct TileStore<'a> {
     source: &'a dyn TileSource,
     tiles: BTreeMap<TileId, TileGeometry>,
+    /// Of all tiles that were read in any way.
+    summaries: BTreeMap<TileId, Option<GroundSummary>>,
+    /// Tiles of which nothing but slopes is drawn.
+    coarser: BTreeMap<TileId, TileGeometry>,
 }
 
 impl<'a> TileStore<'a> {
     /// An empty store of the tiles of `source`.
     #[must_use]
     pub fn new(source: &'a dyn TileSource) -> Self {
-        Self { source, tiles: BTreeMap::new() }
+        Self {
+            source,
+            tiles: BTreeMap::new(),
+            summaries: BTreeMap::new(),
+            coarser: BTreeMap::new(),
+        }
     }
 
     /// Loads the requested tiles, in order, if they are not loaded yet.
@@ -27,8 +39,43 @@ impl<'a> TileStore<'a> {
     /// At the first tile that cannot be read.
     pub fn load(&mut self, requests: &[Request]) -> Result<(), LoadTileError> {
         for request in requests {
-            if !self.tiles.contains_key(&request.id) {
-                self.tiles.insert(request.id, self.source.load(request.id)?);
+            self.load_tile(request.id)?;
+        }
+        Ok(())
+    }
+
+    fn load_tile(&mut self, id: TileId) -> Result<(), LoadTileError> {
+        if !self.tiles.contains_key(&id) {
+            let tile = self.source.load(id)?;
+            self.summaries.insert(id, tile.summary);
+            self.tiles.insert(id, tile);
+        }
+        Ok(())
+    }
+
+    /// Reads errors and heights of a tile, if they are not known yet. For [`TileTree`] the tile is loaded then.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn pass(&mut self, id: TileId) -> Result<(), LoadTileError> {
+        if !self.summaries.contains_key(&id) {
+            self.summaries.insert(id, self.source.summary(id)?);
+        }
+        Ok(())
+    }
+
+    /// Loads a tile that is drawn, and the slopes of those tiles above it that it is shaded with.
+    ///
+    /// # Errors
+    /// When one of them cannot be read.
+    pub fn load_drawn(&mut self, drawn: &Drawn) -> Result<(), LoadTileError> {
+        self.load_tile(drawn.id)?;
+        let above = std::iter::successors(drawn.id.parent(), |id| id.parent());
+        for id in above.take(MOST_SLOPES_ABOVE) {
+            if !self.tiles.contains_key(&id) && !self.coarser.contains_key(&id) {
+                let tile = self.source.load_slopes(id)?;
+                self.summaries.insert(id, tile.summary);
+                self.coarser.insert(id, tile);
             }
         }
         Ok(())
@@ -40,16 +87,22 @@ impl<'a> TileStore<'a> {
         self.source.exists(id)
     }
 
-    /// How many tiles are loaded.
+    /// How many tiles were read, in whole or in part.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.tiles.len()
+        self.summaries.len()
     }
 
-    /// Whether no tile is loaded.
+    /// Whether no tile was read.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.tiles.is_empty()
+        self.summaries.is_empty()
+    }
+
+    /// A tile of which at least the slopes are loaded.
+    #[must_use]
+    pub fn with_slopes(&self, id: TileId) -> Option<&TileGeometry> {
+        self.tiles.get(&id).or_else(|| self.coarser.get(&id))
     }
 
     /// A loaded tile.
@@ -58,7 +111,7 @@ impl<'a> TileStore<'a> {
         self.tiles.get(&id)
     }
 
-    /// The ground of the root tile, which it loads: the lowest and highest true height of all ground, and the error of the
+    /// The ground of the root tile, of which it reads no more: the lowest and highest true height of all ground, and the error of the
     /// coarsest ground. `None` without any ground.
     ///
     /// # Errors
@@ -67,8 +120,8 @@ impl<'a> TileStore<'a> {
         if !self.exists(TileId::ROOT) {
             return Ok(None);
         }
-        self.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
-        Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
+        self.pass(TileId::ROOT)?;
+        Ok(self.summaries.get(&TileId::ROOT).copied().flatten())
     }
 
     /// What a first view shows: where the roads of the coarsest level with roads are, else all of the data, whose rectangle is
@@ -80,8 +133,9 @@ impl<'a> TileStore<'a> {
         let Some(ground) = self.coarsest_ground()? else { return Ok(None) };
         let mut level = vec![TileId::ROOT];
         while !level.is_empty() && level.len() <= FEW_TILES {
-            let requests = level.iter().map(|&id| Request { id, coarseness: f64::INFINITY });
-            self.load(&requests.collect::<Vec<_>>())?;
+            for id in &level {
+                self.load_tile(*id)?;
+            }
             let tiles: Vec<&TileGeometry> = level.iter().filter_map(|id| self.get(*id)).collect();
             if let Some(extent) = MapExtent::of_roads(&tiles, data) {
                 return Ok(Some(extent));
@@ -95,29 +149,35 @@ impl<'a> TileStore<'a> {
         Ok(Some(MapExtent::of_data(data, ground.height_range_m)))
     }
 
-    /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
+    /// True height of the ground at a position, from the finest tile that has ground there; loads it.
     ///
     /// # Errors
     /// When a tile cannot be read.
     pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
-        let mut found = None;
+        let mut there = Vec::new();
         let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
         while let Some(id) = next {
-            self.load(&[Request { id, coarseness: f64::INFINITY }])?;
-            found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
+            there.push(id);
             next = (id.z() < self.max_level())
                 .then(|| id.children().find(|child| self.plan_bounds(*child).contains(at)))
                 .flatten()
                 .filter(|child| self.source.exists(*child));
         }
-        Ok(found)
+        for id in there.into_iter().rev() {
+            self.load_tile(id)?;
+            let height_m = self.get(id).and_then(|tile| tile.ground_height_m(at));
+            if height_m.is_some() {
+                return Ok(height_m);
+            }
+        }
+        Ok(None)
     }
 }
 
 impl TileTree for TileStore<'_> {
     fn node(&self, id: TileId) -> Node {
-        match self.tiles.get(&id) {
-            Some(tile) => Node::Loaded(tile.summary),
+        match self.summaries.get(&id) {
+            Some(summary) => Node::Loaded(*summary),
             None if self.source.exists(id) => Node::Listed,
             None => Node::Absent,
         }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use corniche_geom::TileId;
 use corniche_viewer::{
     CameraRequest,
+    lod::Request,
     tiles::{BlockingPackage, MapExtent, MapPackage, TileStore},
 };
 
@@ -39,6 +40,7 @@ impl OpenedPackage {
         } else {
             MapExtent::of_data(data, ground.height_range_m)
         };
+        store.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
         let root = store.get(TileId::ROOT).ok_or_else(no_ground)?;
         let package: Arc<dyn MapPackage> = Arc::<dyn BlockingPackage + Send + Sync>::clone(&tiles);
         let shown = ShownPackage::of(request, package, root, extent)?;

@@ -43,6 +43,11 @@ impl LevelConnectors {
         Self { list, instances }
     }
 
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     /// Draws the connectors with the pipeline of shadow volumes.
     pub(crate) fn draw(
         &self,

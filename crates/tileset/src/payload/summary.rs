@@ -1,0 +1,42 @@
+//! What the ground of a tile states about itself, without its triangles.
+
+use corniche_geom::{Frame, TileId};
+
+use crate::payload::context::Context;
+use crate::payload::damage::DecodeError;
+use crate::payload::envelope;
+use crate::payload::number_codes::Cursor;
+use crate::payload::section_kind::Kind;
+use crate::payload::terrain::record::Record;
+use crate::payload::tile_payload::TerrainSummary;
+
+/// Reads what the ground of a tile states about itself; `None` without ground. Its triangles are not decoded: this is for tiles that
+/// are looked at to find those that are drawn.
+///
+/// # Errors
+/// When the bytes are not a payload of tile `id`, the section is damaged, or what it states is impossible. What the triangles are coded
+/// in is covered by the section's checksum alone.
+pub fn terrain_summary(
+    bytes: &[u8],
+    id: TileId,
+    frame: &Frame,
+    quantum_m: f64,
+) -> Result<Option<TerrainSummary>, DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
+    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let inside = failed(Kind::Terrain.name());
+    let section = envelope::section(&sections, Kind::Terrain).map_err(inside)?;
+    let record = section
+        .map(|section| Record::read(&mut Cursor::new(&section), context.scale))
+        .transpose()
+        .map_err(inside)?;
+    Ok(record.map(|record| TerrainSummary {
+        geometric_error_m: record.geometric_error_m,
+        height_range_m: record.height_range_m,
+    }))
+}
+
+#[cfg(test)]
+#[path = "summary_tests.rs"]
+mod tests;
