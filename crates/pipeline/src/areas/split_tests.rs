@@ -120,6 +120,12 @@ proptest! {
             for (id, parts) in &tiles {
                 let Some(east) = id.neighbour(1, 0) else { continue };
                 let line = frame.tile_lattice_bounds(*id).max.u;
+                // On the coarse lattice an edge of the outline itself can come to lie on the line: it has the area on one side alone.
+                let near = |point: &&LatticePoint| (point.u - line).abs() <= splitting.step(level);
+                let rings = area.polygons.iter().flat_map(Polygon::rings);
+                if rings.map(|ring| ring.points().iter().filter(near).count()).any(|count| count > 1) {
+                    continue;
+                }
                 let other = tiles.get(&east).map_or_else(Vec::new, |parts| along(parts, line));
                 prop_assert_eq!(along(parts, line), other, "{} and {}", id, east);
             }
