@@ -36,7 +36,8 @@ impl<'a> Deferred<'a> {
         match &mut *self.kept.borrow_mut() {
             Some(kept) => {
                 if let Err(error) = kept.push(|bytes| push_defect(bytes, &defect)) {
-                    self.failed.set(Some(error));
+                    let first = self.failed.take().unwrap_or(error);
+                    self.failed.set(Some(first));
                 }
             }
             None => (self.on_defect.borrow_mut())(defect),

@@ -11,7 +11,7 @@ pub enum ReadOsmError {
     Open { path: PathBuf, source: io::Error },
     #[error("cannot read OSM extract {path:?}")]
     Read { path: PathBuf, source: io::Error },
-    #[error("{path:?} is {found}, not a file; it is read twice, so give it as a file")]
+    #[error("{path:?} is {found}, not a file; it is read more than once, so give it as a file")]
     NotAFile { path: PathBuf, found: &'static str },
     #[error("OSM extract {path:?} is empty (0 bytes); fetch it again")]
     Empty { path: PathBuf },

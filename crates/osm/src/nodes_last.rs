@@ -1,4 +1,4 @@
-//! Reads the nodes of an extract after its ways, so that each blob is unpacked once.
+//! Reads the nodes of an extract after its ways, so that each blob is unpacked once, but for those that a bisection looks at.
 //!
 //! ```text
 //!  │ nodes … nodes │ nodes and ways │ ways … │ relations … │     an extract that is sorted by kind

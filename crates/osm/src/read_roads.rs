@@ -35,7 +35,8 @@ use crate::{
 ///
 /// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
 /// (`LocationsOnWays`). An extract that is sorted by kind is read once: ways, then nodes, but for a few blobs among which the first way is
-/// sought. One that is not is read twice, and its ways a third time if nodes come first and ways among them. If the needed nodes do not
+/// sought. One that is not is read twice; if nodes come first and ways among them, blobs up to the first way are read once more, and
+/// scratch space is taken once more. If the needed nodes do not
 /// fit in a quarter of [`ReadRequest::memory_bytes`], at 18 bytes each, blobs with nodes are read anew for each part that fits: if they
 /// are sorted by id, those with nodes of that part alone, so each blob once more, and once more where a part ends within it.
 /// `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.

@@ -35,7 +35,7 @@ pub const MAX_VERTICES: usize = TILE_NODES * TILE_NODES;
 pub const MAX_TRIANGLES: usize = 2 * (TILE_NODES - 1) * (TILE_NODES - 1);
 /// Lines of one road section.
 pub const MAX_LINES: usize = 1 << 20;
-/// Points of all lines of one road section: 64 MiB in memory.
+/// Points of all lines of one road section: 64 MiB in memory, and while a coded section is read 128 MiB more.
 pub const MAX_POINTS: usize = 1 << 22;
 /// Vertices of all lines of the GEO section, crossings included: 128 MiB in memory.
 pub const MAX_LINE_VERTICES: usize = 1 << 22;

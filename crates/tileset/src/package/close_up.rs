@@ -26,6 +26,10 @@ pub(crate) struct CloseUp<W> {
     out: W,
     /// The writer's place.
     at: u64,
+    /// Where `out` is.
+    out_at: Option<u64>,
+    /// The first bytes were passed: what comes to them now is header and root directory, no zeros.
+    is_past_zeros: bool,
     header: [u8; HEADER_BYTES],
     /// How much further in front things lie.
     shift: u64,
@@ -36,7 +40,7 @@ impl<W: Write + Seek> CloseUp<W> {
     pub(crate) fn new(out: W, tiles: usize) -> Self {
         let root = tiles.saturating_mul(ENTRY_BYTES).saturating_add(FRAME_BYTES);
         let shift = (INITIAL_BYTES - HEADER_BYTES).saturating_sub(root) as u64;
-        Self { out, at: 0, header: [0; HEADER_BYTES], shift }
+        Self { out, at: 0, out_at: None, is_past_zeros: false, header: [0; HEADER_BYTES], shift }
     }
 
     /// Where what is kept for header and root directory ends in the file.
@@ -58,8 +62,26 @@ impl<W: Write + Seek> CloseUp<W> {
                 }
             }
         }
-        self.out.seek(SeekFrom::Start(0))?;
+        self.go_to(0)?;
+        self.out_at = None;
         self.out.write_all(&header)
+    }
+
+    fn go_to(&mut self, place: u64) -> io::Result<()> {
+        if self.out_at != Some(place) {
+            self.out_at = None;
+            self.out.seek(SeekFrom::Start(place))?;
+            self.out_at = Some(place);
+        }
+        Ok(())
+    }
+
+    fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<usize> {
+        self.go_to(place)?;
+        self.out_at = None;
+        let length = self.out.write(bytes)?;
+        self.out_at = Some(place + length as u64);
+        Ok(length)
     }
 }
 
@@ -71,23 +93,18 @@ impl<W: Write + Seek> Write for CloseUp<W> {
             self.write_header(&bytes[..length])?;
             length
         } else if self.at < self.kept() {
-            let length = until(self.kept());
-            self.out.seek(SeekFrom::Start(self.at))?;
-            self.out.write(&bytes[..length])?
+            self.write_at(self.at, &bytes[..until(self.kept())])?
         } else if self.at < INITIAL_BYTES as u64 {
-            // Zeros that are left out; a root directory never comes so far.
-            let length = until(INITIAL_BYTES as u64);
-            if bytes[..length].iter().any(|&byte| byte != 0) {
-                return Err(io::Error::other(
-                    "a root directory larger than the number of tiles allows",
-                ));
+            // Zeros that are left out. A root directory comes so far only if there are more tiles than were announced.
+            if self.is_past_zeros {
+                return Err(io::Error::other("a root directory of more tiles than were announced"));
             }
-            length
+            until(INITIAL_BYTES as u64)
         } else {
-            self.out.seek(SeekFrom::Start(self.at - self.shift))?;
-            self.out.write(bytes)?
+            self.write_at(self.at - self.shift, bytes)?
         };
         self.at += length as u64;
+        self.is_past_zeros |= self.at >= INITIAL_BYTES as u64;
         Ok(length)
     }
 
@@ -102,6 +119,7 @@ impl<W: Write + Seek> Seek for CloseUp<W> {
             SeekFrom::Start(place) => Some(place),
             SeekFrom::Current(by) => self.at.checked_add_signed(by),
             SeekFrom::End(by) => {
+                self.out_at = None;
                 let end = self.out.seek(SeekFrom::End(0))? + self.shift;
                 end.checked_add_signed(by)
             }

@@ -23,7 +23,7 @@ use crate::payload::points::REACH_STEPS;
 use crate::payload::range_coder::{Bits, Model, Reader};
 use crate::payload::source_grid::SourceGrid;
 
-/// Binary digits of a step, from 0 to 32.
+/// Binary digits of a step, from 0 to 32 and more: what is above counts as 32.
 const LENGTHS: usize = 33;
 /// Fourths of the slope of the step before, and none before.
 const SLOPES: usize = 5;
@@ -173,7 +173,9 @@ impl<'f> LineCoder<'f> {
         }
         self.at = to;
         let on_grid = self.grid.lattice_point(to).ok_or(FAR)?;
-        let off = asked.map_or([0; 2], |point| [point.u - on_grid.u, point.v - on_grid.v]);
+        let off = asked.map_or([0; 2], |point| {
+            [point.u.wrapping_sub(on_grid.u), point.v.wrapping_sub(on_grid.v)]
+        });
         let off = if bits.bit(&mut self.is_off_grid, u32::from(off != [0; 2])) == 1 {
             let [east, north] = &mut self.off_grid;
             [east.code(bits, [0; 2], off[0]), north.code(bits, [0; 2], off[1])]
@@ -264,7 +266,7 @@ fn check_end(bits: &Reader<'_>) -> Result<(), Damage> {
 #[cfg(feature = "write")]
 impl LineCoder<'_> {
     /// Writes head and points of the next line, and calls `after_each` after each point, with its number. Fails where a number has no code: a
-    /// step of more than 2^32.
+    /// step of 2^32 or more.
     pub(crate) fn write_line(
         &mut self,
         bits: &mut crate::payload::range_coder::Writer,

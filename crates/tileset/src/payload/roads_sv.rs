@@ -91,9 +91,9 @@ impl Section {
         let mut bits = Reader::new(blob);
         let mut order = LineOrder::default();
         let mut range_coder = RangeCoder::new();
-        let (mut points, mut room) = (Vec::new(), self.points);
+        let (mut points, mut ranges_m, mut room) = (Vec::new(), Vec::new(), self.points);
         for _ in 0..lines {
-            let mut ranges_m = Vec::new();
+            ranges_m.clear();
             let add_range = |coder: &mut LineCoder<'_>, bits: &mut Reader<'_>, number: usize| {
                 if number > 0 {
                     let (low_q, span) = range_coder.code(bits, coder.last_length(), (0, 0));
@@ -104,7 +104,8 @@ impl Section {
             let head = coder.read_line(&mut bits, &mut room, &mut points, add_range)?;
             check_head(&head)?;
             order.check(&head)?;
-            self.add_line(class, &head, points.clone(), ranges_m);
+            // Lines are many and short: clones have no spare capacity.
+            self.add_line(class, &head, points.clone(), ranges_m.clone());
         }
         self.points = room;
         if bits.is_exact() {
@@ -250,3 +251,7 @@ mod write {
         Ok((low as i64, (high as i64 - low as i64) as u64))
     }
 }
+
+#[cfg(all(test, feature = "write"))]
+#[path = "roads_sv_tests.rs"]
+mod tests;

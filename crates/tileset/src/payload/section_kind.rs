@@ -36,8 +36,8 @@ kinds! {
     Photo = 7, "photo section";
     Areas = 8, "areas section";
     Boundaries = 9, "boundaries section";
-    CodedGeo = 10, "coded GEO roads section";
-    CodedSv = 11, "coded SV roads section";
+    CodedGeo = 10, "GEO roads section";
+    CodedSv = 11, "SV roads section";
 }
 
 /// The two kinds of section that roads of a method can be in.

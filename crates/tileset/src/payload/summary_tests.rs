@@ -33,10 +33,15 @@ fn damage_anywhere_in_the_section_is_noticed() {
     let package = golden();
     let (frame, quantum_m) = (package.manifest().frame, package.manifest().vertical.quantum_m);
     let id = package.tile_ids().unwrap()[0];
-    let mut bytes = package.tile(id).unwrap().unwrap();
+    let bytes = package.tile(id).unwrap().unwrap();
     // The first byte of the first section, which is the terrain, comes after the table.
     let sections = usize::from(bytes[6]);
     let first = 16 + 20 * sections + 4;
-    bytes[first + 60] ^= 1;
-    assert!(terrain_summary(&bytes, id, &frame, quantum_m).is_err());
+    let stored = u32::from_le_bytes(bytes[24..28].try_into().unwrap()) as usize;
+    assert!(stored > 1000);
+    for at in (first..first + stored).step_by(61).chain([first + stored - 1]) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1;
+        assert!(terrain_summary(&damaged, id, &frame, quantum_m).is_err(), "byte {at}");
+    }
 }

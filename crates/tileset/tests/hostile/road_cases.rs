@@ -1,13 +1,13 @@
 //! Road sections and road attributes.
 
-use corniche_drape::{DrapedLine, DrapedVertex};
+use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{
     package::{QUANTUM_M, context, frame},
     payload::Section,
     pmtiles::put_varint,
 };
-use corniche_tileset::{GeoRoad, Terrain, TilePayload, encode};
+use corniche_tileset::{GeoRoad, PayloadContext, SvRoad, Terrain, TilePayload, encode};
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use crate::{
@@ -19,6 +19,8 @@ use crate::{
 
 const GEO: u16 = 2;
 const SV: u16 = 3;
+const CODED_GEO: u16 = 10;
+const CODED_SV: u16 = 11;
 const ATTRIBUTES: u16 = 4;
 const TAGS: u16 = 5;
 /// Bytes of the table of classes.
@@ -55,6 +57,71 @@ fn sv_lines(lines: usize, points: usize) -> Vec<u8> {
     planes(&mut blob, 0, 0, 0);
     planes(&mut blob, 0, 0, 0);
     road_section(lines as u32, &blob)
+}
+
+/// The same lines as a coded section: points on a grid of half a metre, which takes the writer to it.
+fn coded_sv_lines(lines: i64, points: i64) -> Vec<u8> {
+    let context = PayloadContext { metres_per_unit: [5e6; 2], ..context() };
+    let class = FunctionalRoadClass::new(0).unwrap();
+    let line = |way_id: i64| {
+        let point = |k: i64| frame().snap([(k % 1000) as f64 / 2.0, (way_id % 1000) as f64 / 2.0]);
+        let points: Vec<_> = (0..points).map(|k| point(k).unwrap()).collect();
+        let ground_range_m = vec![[0.0, 0.0]; points.len() - 1];
+        SvRoad { way_id, part: 0, class, line: SvLine { points, ground_range_m } }
+    };
+    let tile = TilePayload {
+        id: "0/0/0".parse().unwrap(),
+        terrain: None,
+        relief: None,
+        roads_geo: vec![],
+        roads_sv: (0..lines).map(line).collect(),
+        attributes: vec![],
+    };
+    let bytes = encode(&tile, &context).unwrap().bytes;
+    assert_eq!(bytes[16..18], CODED_SV.to_le_bytes());
+    bytes
+}
+
+/// A coded section with lines of class 0 alone.
+fn coded_section(steps_m: [f64; 2], lines: u32, bits: &[u8]) -> Vec<u8> {
+    [steps_m.map(f64::to_le_bytes).concat(), road_section(lines, bits)].concat()
+}
+
+/// Cases of coded road sections.
+fn coded_cases() -> Vec<Case> {
+    let plain = |raw: Vec<u8>| with_sections(&[Section::plain(CODED_SV, raw)]);
+    let steps = |steps_m: [f64; 2]| plain(coded_section(steps_m, 1, &[0x55; 40]));
+    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
+    vec![
+        read("a million coded lines of four points", 512, with_tile(coded_sv_lines(1 << 20, 4))),
+        read("one coded line of four million points", 512, with_tile(coded_sv_lines(1, 1 << 22))),
+        refused("a grid without steps", steps([0.0, 1.0]), "steps of a grid"),
+        refused("a grid of no number", steps([1.0, f64::NAN]), "steps of a grid"),
+        refused("a grid as wide as the lattice and wider", steps([1e300; 2]), "SV roads section"),
+        refused(
+            "a million coded lines, 40 bytes",
+            plain(coded_section([0.5; 2], 1 << 20, &[0; 40])),
+            "SV roads section",
+        ),
+        refused(
+            "coded bits that say all ones",
+            plain(coded_section([0.5; 2], 9, &[0xff; 400])),
+            "SV roads section",
+        ),
+        refused(
+            "coded roads without ground",
+            with_sections(&[Section::plain(CODED_GEO, coded_section([0.5; 2], 1, &[0; 40]))]),
+            "without the ground",
+        ),
+        refused(
+            "roads in planes and coded",
+            with_sections(&[
+                Section::plain(SV, sv_lines(2, 3)),
+                Section::plain(CODED_SV, coded_section([0.5; 2], 1, &[0; 40])),
+            ]),
+            "two sections for the same roads",
+        ),
+    ]
 }
 
 /// Lists of the attributes section: texts, then one list of eight bytes and seven of `widths` bytes an item.
@@ -374,5 +441,6 @@ pub(crate) fn all() -> Vec<Case> {
         ),
     ];
     cases.extend(tag_cases());
+    cases.extend(coded_cases());
     cases
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .codes import Bits, Numbers, models
 from .errors import PayloadError
@@ -12,7 +13,8 @@ from .mesh import Point
 
 #: A surprise: how many vertices before it are as guessed, and what it is.
 Surprise = tuple[int, tuple[int, ...]]
-MOST = 1 << 22
+#: Points, and vertices that are not as guessed, of a class; lines.
+MOST, MOST_LINES = 1 << 22, 1 << 20
 
 
 @dataclass
@@ -27,6 +29,8 @@ class Line:
 
 def coded_lines(data: bytes, count: int, step_m: tuple[float, float], grid: Grid, what: str) -> list[tuple[Line, list[Surprise]]]:
     """All lines of a class of GEO roads, with their surprises."""
+    if (count == 0) != (len(data) == 0) or count > MOST_LINES:
+        raise PayloadError(f"{what}: the table of classes is wrong")
     if count == 0:
         return []
     bits = Bits(data, what)
@@ -52,10 +56,12 @@ class _Class:
         self.kinds = models(4)
         self.at: Point = (0, 0)
         self.new: list[tuple[Point, Point]] = []
+        self.surprises = 0
 
     def lines(self, count: int) -> Iterator[tuple[Line, list[Surprise]]]:
         """Reads so many lines."""
         way, left = 0, MOST
+        last: tuple[int, int] | None = None
         for _ in range(count):
             way += self.ids.read()
             part, size = self.parts.unsigned(), self.sizes.unsigned()
@@ -63,7 +69,13 @@ class _Class:
             left -= size
             if left < 0:
                 raise PayloadError(f"{self.bits.what}: too many points")
-            yield Line(way, part, flags, list(self._points(size))), self._surprises(flags)
+            if last is not None and (way, part) <= last:
+                raise PayloadError(f"{self.bits.what}: lines are not sorted")
+            last = way, part
+            points = list(self._points(size))
+            if any(a == b for a, b in pairwise(points)):
+                raise PayloadError(f"{self.bits.what}: a segment without length")
+            yield Line(way, part, flags, points), self._surprises(flags)
 
     def _points(self, size: int) -> Iterator[Point]:
         before, was = (0, 0), 0
@@ -108,7 +120,8 @@ class _Class:
 
     def _surprises(self, flags: int) -> list[Surprise]:
         count = self.counts.unsigned(flags)
-        if count > MOST:
+        self.surprises += count
+        if self.surprises > MOST:
             raise PayloadError(f"{self.bits.what}: too many surprises")
         found = []
         for _ in range(count):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .errors import ContainerError
+from .errors import ContainerError, PayloadError
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,9 @@ class Grid:
         """The lattice point nearest to a place in working metres."""
         u = (x - self.origin_m[0]) / self.cell_m[0] * self.steps[0]
         v = (y - self.origin_m[1]) / self.cell_m[1] * self.steps[1]
+        # No comparison is true for what is no number.
+        if not (abs(u) < 1 << 50 and abs(v) < 1 << 50):
+            raise PayloadError("a point of a road lies beyond the lattice")
         return _round(u), _round(v)
 
     def working(self, u: float, v: float) -> tuple[float, float]:
