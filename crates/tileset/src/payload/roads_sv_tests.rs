@@ -7,6 +7,9 @@ use super::*;
 
 const QUANTUM_M: f64 = 0.25;
 
+/// Place, lowest ground of the segment to it, and how much higher its highest is, in height steps.
+type Point = ([i64; 2], i32, u32);
+
 /// Its lattice has 2^14 steps to 10 m.
 static FRAME: LazyLock<Frame> = LazyLock::new(|| {
     Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).expect("a frame")
@@ -28,10 +31,10 @@ proptest! {
             1..8,
         ),
     ) {
-        let road = |(&(class, way_id, part), line): (&(u8, i64, u32), &Vec<([i64; 2], i32, u32)>)| {
+        let road = |(&(class, way_id, part), line): (&(u8, i64, u32), &Vec<Point>)| {
             let mut points: Vec<LatticePoint> = line.iter().map(|(p, ..)| LatticePoint::new(p[0], p[1])).collect();
             points.dedup();
-            let range_m = |&(_, low, span): &(_, i32, u32)| {
+            let range_m = |&(_, low, span): &Point| {
                 [f64::from(low) * QUANTUM_M, (f64::from(low) + f64::from(span)) * QUANTUM_M]
             };
             let ground_range_m = line.iter().skip(1).take(points.len() - 1).map(range_m).collect();
