@@ -403,11 +403,7 @@ fn the_package_is_no_target_and_the_plan_says_what_it_makes() {
 #[test]
 fn a_payload_with_the_stored_ground_is_the_payload_encoded_anew() {
     let manifest = &SOUND.parts.manifest;
-    let context = corniche_tileset::PayloadContext {
-        frame: manifest.frame,
-        quantum_m: manifest.vertical.quantum_m,
-        metres_per_unit: manifest.metres_per_unit,
-    };
+    let context = corniche_tileset::PayloadContext::of(manifest);
     let mut tiles = SOUND.encoded.clone();
     tiles.sort_by_key(|(id, _)| pmtiles_order(*id));
     for ((id, bytes), tile) in tiles.iter().zip(&SOUND.parts.tiles) {

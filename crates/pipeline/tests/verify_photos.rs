@@ -143,11 +143,7 @@ fn without_photo(package: &FilePackage, id: TileId, bytes: &[u8]) -> Vec<u8> {
     let (frame, quantum_m) = (manifest.frame, manifest.vertical.quantum_m);
     let tile: TilePayload =
         corniche_tileset::decode(bytes, id, &frame, quantum_m, Sections::ALL).unwrap();
-    let context = corniche_tileset::PayloadContext {
-        frame,
-        quantum_m,
-        metres_per_unit: manifest.metres_per_unit,
-    };
+    let context = corniche_tileset::PayloadContext::of(manifest);
     corniche_tileset::encode(&tile, &context).unwrap().bytes
 }
 

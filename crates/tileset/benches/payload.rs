@@ -55,10 +55,8 @@ fn writing(c: &mut Criterion) {
     group.sample_size(10);
     for name in PACKAGES {
         let (package, tiles) = package(name);
-        let manifest = package.manifest();
-        let (frame, quantum_m) = (manifest.frame, manifest.vertical.quantum_m);
-        let context =
-            PayloadContext { frame, quantum_m, metres_per_unit: manifest.metres_per_unit };
+        let context = PayloadContext::of(package.manifest());
+        let PayloadContext { frame, quantum_m, .. } = context;
         let decoded = tiles.iter().map(|(id, payload)| {
             decode(payload, *id, &frame, quantum_m, Sections::ALL).expect("a sound tile")
         });

@@ -20,9 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for file in env::args().skip(1) {
         let package = FilePackage::open(Path::new(&file))?;
-        let (frame, quantum_m) = (package.manifest().frame, package.manifest().vertical.quantum_m);
-        let metres_per_unit = package.manifest().metres_per_unit;
-        let context = PayloadContext { frame, quantum_m, metres_per_unit };
+        let context = PayloadContext::of(package.manifest());
+        let PayloadContext { frame, quantum_m, .. } = context;
         let (mut tiles, mut vertices, mut triangles, mut bytes) = (0, 0, 0, 0);
         let mut parts = [0; 5];
         let mut seconds = [0.0; 2];

@@ -65,11 +65,7 @@ fn payload(id: TileId) -> TilePayload {
 /// A package with three tiles.
 fn three_tiles() -> Vec<u8> {
     let manifest = manifest(2);
-    let context = PayloadContext {
-        frame: manifest.frame,
-        quantum_m: manifest.vertical.quantum_m,
-        metres_per_unit: manifest.metres_per_unit,
-    };
+    let context = PayloadContext::of(&manifest);
     let encoded = |id| (id, encode(&payload(id), &context).unwrap().bytes);
     package::written_with(&manifest, ["0/0/0", "1/1/0", "2/3/1"].map(tile).map(encoded))
 }
@@ -106,11 +102,7 @@ fn a_created_file_is_what_is_written_to_memory() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("three.pmtiles");
     let manifest = manifest(2);
-    let context = PayloadContext {
-        frame: manifest.frame,
-        quantum_m: manifest.vertical.quantum_m,
-        metres_per_unit: manifest.metres_per_unit,
-    };
+    let context = PayloadContext::of(&manifest);
     let mut writer = Writer::create(&path, &manifest).unwrap();
     for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
         writer.add(id, &encode(&payload(id), &context).unwrap().bytes).unwrap();

@@ -30,15 +30,15 @@ pub fn settle(
 ) -> Result<Vec<Drawn>, SettleError> {
     loop {
         let selection = lod::select(store, camera, quality);
-        let asked = |store: &mut TileStore<'_>, load: &dyn Fn(&mut TileStore<'_>) -> _| {
-            if is_stopped() { Err(SettleError::Stopped) } else { Ok(load(store)?) }
-        };
+        let check_stop = || if is_stopped() { Err(SettleError::Stopped) } else { Ok(()) };
         for request in &selection.requests {
-            asked(store, &|store| store.pass(request.id))?;
+            check_stop()?;
+            store.pass(request.id)?;
         }
         if selection.requests.is_empty() {
             for drawn in &selection.drawn {
-                asked(store, &|store| store.load_drawn(drawn))?;
+                check_stop()?;
+                store.load_drawn(drawn)?;
             }
             return Ok(selection.drawn);
         }

@@ -85,11 +85,7 @@ pub(crate) fn rehash(manifest: &mut Manifest) {
 }
 
 pub(crate) fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
-    let context = PayloadContext {
-        frame: manifest.frame,
-        quantum_m: manifest.vertical.quantum_m,
-        metres_per_unit: manifest.metres_per_unit,
-    };
+    let context = PayloadContext::of(manifest);
     encode(tile, &context).map(|encoded| encoded.bytes)
 }
 

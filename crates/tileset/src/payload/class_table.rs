@@ -48,6 +48,16 @@ pub(crate) struct Head {
     pub(crate) flags: u8,
 }
 
+/// Takes the points of a line from the `room` that its section has left.
+pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<(), Damage> {
+    *room = room.checked_sub(points).ok_or(Damage::TooLarge {
+        what: "points of a section",
+        length: MAX_POINTS as u64 + 1,
+        limit: MAX_POINTS as u64,
+    })?;
+    Ok(())
+}
+
 /// Checks that the lines of a class are sorted.
 #[derive(Default)]
 pub(crate) struct LineOrder {
@@ -99,11 +109,7 @@ impl Heads {
             let value = cursor.bounded(4 * MAX_POINTS, "number of points")?;
             (head.points, head.flags) = (value / 4, (value % 4) as u8);
             points += head.points;
-            *room = room.checked_sub(head.points).ok_or(Damage::TooLarge {
-                what: "points of a section",
-                length: MAX_POINTS as u64 + 1,
-                limit: MAX_POINTS as u64,
-            })?;
+            take_points(room, head.points)?;
         }
         let mut order = LineOrder::default();
         heads.iter().try_for_each(|head| order.check(head))?;
@@ -118,11 +124,12 @@ pub(crate) use write::{encode, put_heads};
 mod write {
     use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
     use crate::payload::number_codes::{put_varint, zigzag};
+    use crate::payload::source_grid::SourceGrid;
 
-    /// Writes `before`, the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
+    /// Writes the grid of a coded section, the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
     pub(crate) fn encode<R>(
         roads: &[R],
-        before: Vec<u8>,
+        grid: Option<SourceGrid<'_>>,
         key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),
         mut put: impl FnMut(&[R], &mut Vec<u8>) -> Result<(), &'static str>,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
@@ -132,7 +139,8 @@ mod write {
         if roads.len() > MAX_LINES {
             return Err("more than a million lines");
         }
-        let (mut table, mut body) = (before, Vec::new());
+        let mut table = grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec());
+        let mut body = Vec::new();
         let mut class_bytes = [0; FunctionalRoadClass::COUNT];
         for (class, bytes) in FunctionalRoadClass::all().zip(&mut class_bytes) {
             let first = roads.partition_point(|road| key(road).0 < class);

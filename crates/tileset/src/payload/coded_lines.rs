@@ -16,10 +16,12 @@ use std::collections::HashMap;
 use corniche_geom::LatticePoint;
 
 use crate::limits::MAX_POINTS;
-use crate::payload::class_table::Head;
+use crate::payload::class_table::{Head, take_points};
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::Magnitudes;
-use crate::payload::points::REACH_STEPS;
+use crate::payload::points::{FAR, is_near};
+#[cfg(feature = "write")]
+use crate::payload::range_coder::Writer;
 use crate::payload::range_coder::{Bits, Model, Reader};
 use crate::payload::source_grid::SourceGrid;
 
@@ -67,7 +69,6 @@ fn length(number: i64) -> usize {
 }
 
 const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
-const FAR: Damage = Damage::Invalid { what: "a point far away from its tile" };
 
 impl<'f> LineCoder<'f> {
     /// For the lines of one class of a tile with this south-western corner.
@@ -183,11 +184,7 @@ impl<'f> LineCoder<'f> {
             [0; 2]
         };
         let point = LatticePoint::new(on_grid.u + off[0], on_grid.v + off[1]);
-        let far = |at: i64, corner: i64| at.abs_diff(corner) > REACH_STEPS as u64;
-        if far(point.u, self.corner.u) || far(point.v, self.corner.v) {
-            return Err(FAR);
-        }
-        Ok(point)
+        if is_near(point, self.corner) { Ok(point) } else { Err(FAR) }
     }
 
     fn code_step<B: Bits>(&mut self, bits: &mut B, step: [i64; 2]) -> [i64; 2] {
@@ -224,7 +221,8 @@ impl<'f> LineCoder<'f> {
         mirror(swap([signed(along_size, goes_back), signed(across_size, is_across_south)]))
     }
 
-    /// Reads head and `points` of the next line, which take the `room` that the section has left; calls `after_each` after each point, with its number.
+    /// Reads head and `points` of the next line, which take the `room` that the section has left; calls `after_each` after each point, with its
+    /// number.
     pub(crate) fn read_line(
         &mut self,
         bits: &mut Reader<'_>,
@@ -233,15 +231,11 @@ impl<'f> LineCoder<'f> {
         mut after_each: impl FnMut(&mut Self, &mut Reader<'_>, usize) -> Result<(), Damage>,
     ) -> Result<Head, Damage> {
         let head = self.code_head(bits, Head { way_id: 0, part: 0, points: 0, flags: 0 })?;
-        *room = room.checked_sub(head.points).ok_or(Damage::TooLarge {
-            what: "points of a section",
-            length: MAX_POINTS as u64 + 1,
-            limit: MAX_POINTS as u64,
-        })?;
-        check_end(bits)?;
+        take_points(room, head.points)?;
+        bits.check_end()?;
         points.clear();
         for number in 0..head.points {
-            check_end(bits)?;
+            bits.check_end()?;
             let point = self.code_point(bits, number, &head, None)?;
             if points.last() == Some(&point) {
                 return Err(Damage::Invalid { what: "a segment without length" });
@@ -258,21 +252,16 @@ impl<'f> LineCoder<'f> {
     }
 }
 
-/// Beyond the end come zeros, as many as one asks for.
-fn check_end(bits: &Reader<'_>) -> Result<(), Damage> {
-    if bits.is_past_end() { Err(Damage::TooShort) } else { Ok(()) }
-}
-
 #[cfg(feature = "write")]
 impl LineCoder<'_> {
     /// Writes head and points of the next line, and calls `after_each` after each point, with its number. Fails where a number has no code: a
     /// step of 2^32 or more.
     pub(crate) fn write_line(
         &mut self,
-        bits: &mut crate::payload::range_coder::Writer,
+        bits: &mut Writer,
         head: Head,
         points: &[LatticePoint],
-        mut after_each: impl FnMut(&mut Self, &mut crate::payload::range_coder::Writer, usize),
+        mut after_each: impl FnMut(&mut Self, &mut Writer, usize),
     ) -> Result<(), &'static str> {
         const NO_CODE: &str = "a way or a point too far from the one before";
         if self.code_head(bits, head) != Ok(head) {

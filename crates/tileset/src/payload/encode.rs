@@ -2,6 +2,7 @@ use corniche_geom::{Frame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
+use crate::manifest::Manifest;
 use crate::payload::context::Context;
 use crate::payload::damage::EncodeError;
 use crate::payload::envelope::{Content, SectionSize, StoredSection};
@@ -20,6 +21,18 @@ pub struct PayloadContext {
     pub quantum_m: f64,
     /// Working metres of one unit of the package's CRS, east and north; 1, or some 100 000 where it is in degrees.
     pub metres_per_unit: [f64; 2],
+}
+
+impl PayloadContext {
+    /// That of a package.
+    #[must_use]
+    pub fn of(manifest: &Manifest) -> Self {
+        Self {
+            frame: manifest.frame,
+            quantum_m: manifest.vertical.quantum_m,
+            metres_per_unit: manifest.metres_per_unit,
+        }
+    }
 }
 
 /// A payload as bytes, and the sizes of its parts.

@@ -7,7 +7,14 @@ use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, unzigzag};
 
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
-pub(crate) const REACH_STEPS: i64 = 1 << 55;
+const REACH_STEPS: u64 = 1 << 55;
+
+pub(crate) const FAR: Damage = Damage::Invalid { what: "a point far away from its tile" };
+
+/// Whether a point is within reach of the tile's corner.
+pub(crate) fn is_near(point: LatticePoint, corner: LatticePoint) -> bool {
+    point.u.abs_diff(corner.u).max(point.v.abs_diff(corner.v)) <= REACH_STEPS
+}
 
 /// The points of all lines of a class, the first relative to `corner`. Neighbours in a line differ.
 pub(crate) fn decode_points(
@@ -30,13 +37,9 @@ pub(crate) fn decode_points(
             if number > 0 && du == 0 && dv == 0 {
                 return Err(STILL);
             }
-            let step = |from: i64, by: u64, corner: i64| {
-                let to = from.checked_add(unzigzag(by))?;
-                (to.checked_sub(corner)?.checked_abs()? <= REACH_STEPS).then_some(to)
-            };
-            let moved = step(at.u, du, corner.u).zip(step(at.v, dv, corner.v));
-            let (u, v) = moved.ok_or(Damage::Invalid { what: "a point far away from its tile" })?;
-            at = LatticePoint::new(u, v);
+            let moved = at.u.checked_add(unzigzag(du)).zip(at.v.checked_add(unzigzag(dv)));
+            let moved = moved.map(|(u, v)| LatticePoint::new(u, v));
+            at = moved.filter(|&point| is_near(point, corner)).ok_or(FAR)?;
             points.push(at);
         }
     }
@@ -52,9 +55,7 @@ pub(crate) fn put_points(
 ) -> Result<(), &'static str> {
     use crate::payload::number_codes::{put_planes, zigzag};
 
-    let far =
-        |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;
-    if points.iter().any(|point| far(point.u, corner.u) || far(point.v, corner.v)) {
+    if !points.iter().all(|&point| is_near(point, corner)) {
         return Err("a point far away from the tile");
     }
     let steps = |of: fn(&LatticePoint) -> i64| -> Vec<u64> {

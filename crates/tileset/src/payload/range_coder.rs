@@ -3,6 +3,8 @@
 //! Source: Martin 1979, *Range encoding*, in the form that LZMA uses (32-bit range, carries through a byte that is held back);
 //! probabilities are the mean of two that adapt with different speed.
 
+use crate::payload::damage::Damage;
+
 /// What both directions of coding have in common: code that says which bit comes where is written once. A coder that writes
 /// takes `bit` and returns it; one that reads ignores it and returns what it read.
 pub(crate) trait Bits {
@@ -172,6 +174,20 @@ impl<'a> Reader<'a> {
     /// Whether exactly the bytes that are there were read.
     pub(crate) fn is_exact(&self) -> bool {
         self.taken == self.bytes.len()
+    }
+
+    /// Fails where more was read than there is: beyond the end come zeros, as many as one asks for.
+    pub(crate) fn check_end(&self) -> Result<(), Damage> {
+        if self.is_past_end() { Err(Damage::TooShort) } else { Ok(()) }
+    }
+
+    /// Fails unless exactly the bytes that are there were read.
+    pub(crate) fn finish(&self) -> Result<(), Damage> {
+        if self.is_exact() {
+            Ok(())
+        } else {
+            Err(Damage::Invalid { what: "the length of the coded bits" })
+        }
     }
 
     fn widen(&mut self) {

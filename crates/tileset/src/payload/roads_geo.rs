@@ -98,11 +98,7 @@ impl Section<'_> {
             let mut surprises = surprises.reading(&mut bits, head.flags);
             self.add_line(class, head, &points, &mut surprises)?;
         }
-        if bits.is_exact() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "the length of the coded bits" })
-        }
+        bits.finish()
     }
 
     fn add_line(
@@ -244,7 +240,7 @@ mod write {
         let mut all_points = 0;
         class_table::encode(
             roads,
-            grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec()),
+            grid,
             |road| (road.class, road.way_id, road.part),
             |of_class, out| {
                 let lines = of_class.iter().map(|road| Line::new(road, surface, &work));
@@ -270,7 +266,7 @@ mod write {
 
     impl Line {
         fn new(road: &GeoRoad, surface: &Surface, work: &Work) -> Result<Self, &'static str> {
-            let points = points_of(&road.line);
+            let points: Vec<LatticePoint> = points_of(&road.line).collect();
             if points.windows(2).any(|pair| pair[0] == pair[1]) {
                 return Err("a segment without length");
             }
@@ -314,12 +310,12 @@ mod write {
     }
 
     /// Lead-in, source points and lead-out.
-    pub(crate) fn points_of(line: &DrapedLine) -> Vec<LatticePoint> {
+    pub(crate) fn points_of(line: &DrapedLine) -> impl Iterator<Item = LatticePoint> {
         let sources = line.vertices.iter().filter_map(|vertex| match vertex {
             DrapedVertex::Source { point, .. } => Some(*point),
             _ => None,
         });
-        line.lead_in.into_iter().chain(sources).chain(line.lead_out).collect()
+        line.lead_in.into_iter().chain(sources).chain(line.lead_out)
     }
 
     fn surprises_of(

@@ -68,7 +68,7 @@ impl Section {
         let mut ranges = Vec::with_capacity(segments);
         for (low, span) in lows.iter().zip(spans.iter()) {
             low_q = low_q.wrapping_add(unzigzag(low));
-            ranges.push(self.range_m(low_q, span)?);
+            ranges.push(range_m(low_q, span, self.quantum_m)?);
         }
         let (mut points, mut ranges) = (points.as_slice(), ranges.as_slice());
         for head in &heads.heads {
@@ -91,28 +91,24 @@ impl Section {
         let mut bits = Reader::new(blob);
         let mut order = LineOrder::default();
         let mut range_coder = RangeCoder::new();
-        let (mut points, mut ranges_m, mut room) = (Vec::new(), Vec::new(), self.points);
+        let (mut points, mut ranges_m) = (Vec::new(), Vec::new());
+        let quantum_m = self.quantum_m;
         for _ in 0..lines {
             ranges_m.clear();
             let add_range = |coder: &mut LineCoder<'_>, bits: &mut Reader<'_>, number: usize| {
                 if number > 0 {
                     let (low_q, span) = range_coder.code(bits, coder.last_length(), (0, 0));
-                    ranges_m.push(self.range_m(low_q, span)?);
+                    ranges_m.push(range_m(low_q, span, quantum_m)?);
                 }
                 Ok(())
             };
-            let head = coder.read_line(&mut bits, &mut room, &mut points, add_range)?;
+            let head = coder.read_line(&mut bits, &mut self.points, &mut points, add_range)?;
             check_head(&head)?;
             order.check(&head)?;
             // Lines are many and short: clones have no spare capacity.
             self.add_line(class, &head, points.clone(), ranges_m.clone());
         }
-        self.points = room;
-        if bits.is_exact() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "the length of the coded bits" })
-        }
+        bits.finish()
     }
 
     fn add_line(
@@ -125,14 +121,14 @@ impl Section {
         let line = SvLine { points, ground_range_m };
         self.roads.push(SvRoad { way_id: head.way_id, part: head.part, class, line });
     }
+}
 
-    /// A ground range in metres.
-    fn range_m(&self, low_q: i64, span: u64) -> Result<[f64; 2], Damage> {
-        let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
-        let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
-        let high_q = high_q.ok_or(Damage::Invalid { what: "a height range" })?;
-        Ok([low_q as f64 * self.quantum_m, high_q as f64 * self.quantum_m])
-    }
+/// A ground range in metres.
+fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2], Damage> {
+    let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
+    let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
+    let high_q = high_q.ok_or(Damage::Invalid { what: "a height range" })?;
+    Ok([low_q as f64 * quantum_m, high_q as f64 * quantum_m])
 }
 
 fn check_head(head: &Head) -> Result<(), Damage> {
@@ -172,7 +168,7 @@ mod write {
         }
         class_table::encode(
             roads,
-            grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec()),
+            grid,
             |road| (road.class, road.way_id, road.part),
             |of_class, out| match grid {
                 Some(grid) => put_coded(out, of_class, LineCoder::new(grid, corner), quantum_m),

@@ -58,13 +58,13 @@ impl<'f> SourceGrid<'f> {
         metres_per_unit: [f64; 2],
         points: impl Iterator<Item = LatticePoint>,
     ) -> Option<Self> {
-        let step_m = metres_per_unit.map(|metres| metres / PARTS_OF_A_DEGREE);
-        let [one, next] =
-            [0.0, 1.0].map(|steps| frame.fraction_of_position(step_m.map(|m| m * steps)));
-        let is_wide = (next[0] - one[0]).min(next[1] - one[1]) >= WIDER_THAN_LATTICE;
-        let grid = Self { frame, step_m };
+        let grid = Self { frame, step_m: metres_per_unit.map(|metres| metres / PARTS_OF_A_DEGREE) };
+        let least_m = WIDER_THAN_LATTICE * frame.lattice_step_m();
+        if grid.step_m.iter().any(|&step_m| step_m < least_m) {
+            return None;
+        }
         let (mut all, mut on_grid) = (0_usize, 0_usize);
-        for point in points.take_while(|_| is_wide) {
+        for point in points {
             all += 1;
             on_grid += usize::from(grid.lattice_point(grid.nearest(point)) == Some(point));
         }

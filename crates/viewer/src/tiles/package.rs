@@ -122,9 +122,17 @@ impl<S: ByteSource> PackageTiles<S> {
         let failed = |source| LoadTileError { id, source };
         let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
         let Some(bytes) = bytes else { return Ok(None) };
-        let quantum_m = self.manifest().vertical.quantum_m;
-        let summary = terrain_summary(&bytes, id, self.frame(), quantum_m);
-        let summary = summary.map_err(|error| failed(error.into()))?;
+        self.summary_in(&bytes, id)
+    }
+
+    fn summary_in(
+        &self,
+        payload: &[u8],
+        id: TileId,
+    ) -> Result<Option<GroundSummary>, LoadTileError> {
+        let summary =
+            terrain_summary(payload, id, self.frame(), self.manifest().vertical.quantum_m)
+                .map_err(|error| LoadTileError { id, source: error.into() })?;
         Ok(summary.map(|ground| GroundSummary {
             geometric_error_m: ground.geometric_error_m,
             height_range_m: ground.height_range_m,
@@ -142,15 +150,13 @@ impl<S: ByteSource> PackageTiles<S> {
         let none = TileLines::default();
         let tile = TileGeometry::assemble(id, None, &none, self.frame(), quantum_m);
         let Some(bytes) = bytes else { return Ok(tile) };
-        let summary = terrain_summary(&bytes, id, self.frame(), quantum_m);
-        let Some(ground) = summary.map_err(|error| failed(error.into()))? else { return Ok(tile) };
+        let summary = self.summary_in(&bytes, id)?;
+        if summary.is_none() {
+            return Ok(tile);
+        }
         let payload = decode(&bytes, id, self.frame(), quantum_m, Sections::RELIEF)
             .map_err(|error| failed(error.into()))?;
         let cell = self.frame().level_cell(id.z());
-        let summary = Some(GroundSummary {
-            geometric_error_m: ground.geometric_error_m,
-            height_range_m: ground.height_range_m,
-        });
         let shading = payload.relief.as_ref().map(|relief| ShadingSlopes::new(relief, cell));
         Ok(TileGeometry { summary, shading, ..tile })
     }

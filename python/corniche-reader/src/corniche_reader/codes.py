@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from .errors import PayloadError
 
 #: A model: how likely a 0 is, as two estimates (fast, slow) in 65536ths.
@@ -20,6 +22,12 @@ def half_octave(x: int) -> int:
         return x
     e = x.bit_length() - 1
     return 2 * e + (x >> (e - 1) & 1)
+
+
+def round_half_away(x: float) -> int:
+    """The nearest whole number; of two, the one farther from 0."""
+    whole = math.floor(abs(x))
+    return int(math.copysign(whole + (abs(x) - whole >= 0.5), x))
 
 
 def unzigzag(n: int) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from .codes import round_half_away
 from .errors import ContainerError, PayloadError
 
 
@@ -62,7 +63,7 @@ class Grid:
         # No comparison is true for what is no number.
         if not (abs(u) < 1 << 50 and abs(v) < 1 << 50):
             raise PayloadError("a point of a road lies beyond the lattice")
-        return _round(u), _round(v)
+        return round_half_away(u), round_half_away(v)
 
     def working(self, u: float, v: float) -> tuple[float, float]:
         """Working metres of a place on the lattice."""
@@ -70,9 +71,3 @@ class Grid:
             self.origin_m[0] + self.cell_m[0] * (u / float(self.steps[0])),
             self.origin_m[1] + self.cell_m[1] * (v / float(self.steps[1])),
         )
-
-
-def _round(x: float) -> int:
-    """Rounds half away from zero."""
-    whole = int(x)
-    return whole + (1 if x > 0 else -1) * (abs(x - whole) >= 0.5)

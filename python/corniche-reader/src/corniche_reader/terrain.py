@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .codes import Bits, Cursor, Numbers, half_octave
+from .codes import Bits, Cursor, Numbers, half_octave, round_half_away
 from .errors import PayloadError
 from .grid import Grid
 from .walk import Walk, positions, walk
@@ -121,14 +121,8 @@ def _normal_guesses(
             guesses.append((0, 0))
         else:
             scale = 127 / (1 << shift)
-            guesses.append((_round(x / total * scale), _round(y / total * scale)))
+            guesses.append((round_half_away(x / total * scale), round_half_away(y / total * scale)))
     return guesses
-
-
-def _round(x: float) -> int:
-    """Half away from zero."""
-    whole = math.floor(abs(x))
-    return int(math.copysign(whole + (abs(x) - whole >= 0.5), x))
 
 
 def _normals(

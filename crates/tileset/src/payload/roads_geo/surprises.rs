@@ -99,10 +99,7 @@ pub(crate) struct CodedSurprises<'c, 'b> {
 
 impl CodedSurprises<'_, '_> {
     fn check(&self, number: u64, last: usize, damage: Damage) -> Result<usize, Damage> {
-        // Beyond the end come zeros, as many as one asks for.
-        if self.bits.is_past_end() {
-            return Err(Damage::TooShort);
-        }
+        self.bits.check_end()?;
         usize::try_from(number).ok().filter(|&number| number <= last).ok_or(damage)
     }
 }

@@ -38,9 +38,7 @@ pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let guesses = guess_normals(&vertices, &triangles, scale, record.normal_shift);
     let mut normals = vec![[0_i8; 2]; at.len()];
     code_normals(&mut bits, &order, &guesses, record.normal_shift, &mut normals);
-    if !bits.is_exact() {
-        return Err(Damage::Invalid { what: "the length of the coded bits" });
-    }
+    bits.finish()?;
     Ok(Terrain {
         tin: Tin::new(vertices, &triangles)?,
         normals,
