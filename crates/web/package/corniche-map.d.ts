@@ -14,17 +14,16 @@ export interface Target {
   pitch?: number;
   /** Straight from above with parallel rays. */
   above?: boolean;
+  /** From above, instead of the distance: metres in a pixel. */
+  pixel_m?: number;
 }
 
 /** What is seen. */
 export interface Place extends Target {
   /** Metres, of the ground in the middle; absent where there is none. */
   height?: number;
-  distance: number;
   heading: number;
   pitch: number;
-  /** Side of a pixel on the ground from above, metres. */
-  pixel_m?: number;
 }
 
 export interface Settings {
@@ -78,13 +77,15 @@ export interface About {
 }
 
 export interface FrameReport {
-  next: "now" | "asked" | number;
+  next: "now" | "asked";
   is_settled: boolean;
-  view: Place;
+  view: Place | null;
   cursor: { lon: number; lat: number; height: number } | null;
+  /** In the middle, of the screen's pixels and of CSS pixels. */
+  metres_per_pixel: number | null;
   metres_per_point: number | null;
   mode: "map" | "fly";
-  tiles: { drawn: number; missing: number; loading: number; full: number };
+  tiles: { drawn: number; missing: number; loading: number; full: boolean };
   triangles: number;
   segments: number;
   /** Used and allowed. */
@@ -102,7 +103,7 @@ export interface Pick {
   lat: number;
   height: number;
   /** The road at the place. `way` is the id of the way in OpenStreetMap. */
-  road: null | { way: number; class: number; label: string; attributes: Record<string, string | number | boolean | null> };
+  road: null | { way: number; class: number; label: string; attributes: Record<string, string> };
 }
 
 export interface Failure {

@@ -15,7 +15,7 @@ export const usualCount = () => Math.max(2, Math.min(4, (navigator.hardwareConcu
 /**
  * @param {WebAssembly.Module} module
  * @param {number} count
- * @param {(worker: number, message: any) => void} decoded
+ * @param {(message: any) => void} decoded
  * @param {(error: unknown) => void} failed called once at most
  */
 export function startDecoders(module, count, decoded, failed) {
@@ -25,11 +25,11 @@ export function startDecoders(module, count, decoded, failed) {
     if (!hasFailed) failed(error);
     hasFailed = true;
   };
-  const workers = Array.from({ length: count }, (_, index) => {
+  const workers = Array.from({ length: count }, () => {
     const worker = startWorker(script);
     worker.onmessage = (event) => {
       if (event.data?.failed) fail(new Error(event.data.failed));
-      else decoded(index, event.data);
+      else decoded(event.data);
     };
     worker.onerror = (event) => {
       event.preventDefault();

@@ -12,6 +12,8 @@ const REOPEN_TIMES = 3;
 const REOPEN_WITHIN_MS = 60_000;
 const NARROW = 560;
 const WIDE = 720;
+/** Points of the screen that the panel covers, with the space beside it. */
+const PANEL = 298;
 const USUAL_CREDIT = "© OpenStreetMap contributors";
 
 /** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
@@ -205,6 +207,12 @@ export class CornicheMap extends HTMLElement {
     if (!controlsOf(this.getAttribute("controls")).has("panel")) this.#showPanel(false);
   }
 
+  /** Whether the panel is shown at first: where there is room beside it. */
+  #opensPanel() {
+    const wish = this.getAttribute("panel");
+    return controlsOf(this.getAttribute("controls")).has("panel") && (wish === null ? this.clientWidth >= WIDE : wish !== "closed" && this.clientWidth > NARROW);
+  }
+
   #motion() {
     return { inertia: !matchMedia("(prefers-reduced-motion: reduce)").matches && changeOf("inertia", this.getAttribute("inertia"))?.inertia !== false };
   }
@@ -237,7 +245,7 @@ export class CornicheMap extends HTMLElement {
     try {
       session = await openSession({
         src, layout, signal: opening.signal,
-        options: { ...settings, ...(place ? { look_at: place } : {}) },
+        settings, place, covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
         hashName: () => this.#hashName(),
         failed: (failure, from) => this.#lose(failure, from),
@@ -256,9 +264,7 @@ export class CornicheMap extends HTMLElement {
     this.#wanted = {};
     if (Object.keys(late).length > 0) session.set(late);
     layout.opening(false);
-    const wish = this.getAttribute("panel");
-    const hasPanel = controlsOf(this.getAttribute("controls")).has("panel");
-    this.#showPanel(hasPanel && (wish === null ? this.clientWidth >= WIDE : wish !== "closed"));
+    this.#showPanel(this.#opensPanel());
     this.#emit("ready", this.about);
   }
 

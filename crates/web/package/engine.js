@@ -22,7 +22,7 @@ export function failureOf(/** @type {any} */ error) {
   return new Failure("other", error instanceof Error ? error.message : String(error));
 }
 
-/** @type {Promise<{ module: WebAssembly.Module, MapView: any }> | null} */
+/** @type {Promise<{ module: WebAssembly.Module, glue: any }> | null} */
 let engine = null;
 
 /** Says at once where this browser cannot show a map, before anything is fetched for it. */
@@ -67,7 +67,7 @@ async function load() {
   });
   const [module, glue] = await Promise.all([fetchModule(), script]);
   await glue.default({ module_or_path: module });
-  return { module, MapView: glue.MapView };
+  return { module, glue };
 }
 
 /** The renderer, ready to open views. A failure is not kept: the next call tries again. */

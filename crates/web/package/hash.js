@@ -1,4 +1,5 @@
-// The camera in the fragment of the page's address: #lon,lat,distance,heading,pitch, or #NAME=… where a page has several maps.
+// The camera in the fragment of the page's address: #lon,lat,distance,heading,pitch, or #NAME=… where a page has several maps. From above with parallel
+// rays it is #lon,lat,metres in a pixel,heading,0,above.
 
 const NUMBER = /^[+-]?\d+(\.\d+)?$/;
 
@@ -6,7 +7,7 @@ const NUMBER = /^[+-]?\d+(\.\d+)?$/;
  * A place as text; `null` where it is none.
  *
  * @param {string | null} text
- * @returns {import("./corniche-map.js").Place | null}
+ * @returns {import("./corniche-map.js").Target | null}
  */
 export function placeOf(text) {
   const parts = (text ?? "").split(",").map((part) => part.trim());
@@ -16,17 +17,18 @@ export function placeOf(text) {
   if (Math.abs(lon) > 180 || Math.abs(lat) > 90) return null;
   /** @type {any} */
   const place = { lon, lat };
-  if (distance !== undefined) place.distance = distance;
+  if (distance !== undefined) place[above ? "pixel_m" : "distance"] = distance;
   if (heading !== undefined) place.heading = heading;
   if (pitch !== undefined) place.pitch = pitch;
-  if (above) place.above = true;
+  if (above) return { ...place, pitch: 0, above: true };
   return place;
 }
 
 /** @param {import("./corniche-map.js").Place} place */
 export function textOf(place) {
   const rounded = (/** @type {number | undefined} */ value, /** @type {number} */ digits) => +(value ?? 0).toFixed(digits);
-  const parts = [rounded(place.lon, 6), rounded(place.lat, 6), rounded(place.distance, place.distance < 100 ? 2 : 0), rounded(place.heading, 1), rounded(place.pitch, 1)];
+  const metres = (place.above ? place.pixel_m : place.distance) ?? 0;
+  const parts = [rounded(place.lon, 6), rounded(place.lat, 6), rounded(metres, metres < 100 ? 4 : 0), rounded(place.heading, 1), rounded(place.pitch, 1)];
   return parts.join(",") + (place.above ? ",above" : "");
 }
 

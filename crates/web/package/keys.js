@@ -26,6 +26,13 @@ export const HELP = [
   ["?", "this list"],
 ];
 
+/** Plus and minus are elsewhere on keyboards of other countries, where the view looks for them by their place. */
+function zoomCode(/** @type {KeyboardEvent} */ event) {
+  if (/^(Equal|Minus|Numpad|Shift)/.test(event.code)) return null;
+  if (event.key === "+") return ["NumpadAdd", false];
+  return event.key === "-" ? ["NumpadSubtract", false] : null;
+}
+
 /**
  * @param {HTMLCanvasElement} canvas
  * @param {{ view: () => any, wake: () => void, command: (name: string) => boolean }} to `command` says whether it did something
@@ -44,7 +51,8 @@ export function watchKeys(canvas, to) {
       if (event.repeat || to.command(command)) event.preventDefault();
       return;
     }
-    if (to.view()?.key(event.code, isDown, event.shiftKey, event.ctrlKey, now())) {
+    const [code, shift] = zoomCode(event) ?? [event.code, event.shiftKey];
+    if (to.view()?.key(code, isDown, shift, event.ctrlKey, now())) {
       event.preventDefault();
       to.wake();
     }

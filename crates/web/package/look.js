@@ -33,7 +33,7 @@ canvas:focus-visible ~ .cross { display: block; }
 
 .over {
   position: absolute; inset: 0; padding: 0.625rem; display: grid; gap: 0.5rem; pointer-events: none;
-  grid-template: "panel middle stack" minmax(0, 1fr) "bar bar bar" auto / auto minmax(0, 1fr) auto;
+  grid-template: "stack middle panel" minmax(0, 1fr) "bar bar bar" auto / auto minmax(0, 1fr) auto;
 }
 .over > *, .middle > *, .bar > * { pointer-events: auto; }
 .middle { grid-area: middle; display: flex; flex-direction: column; justify-content: space-between; align-items: flex-start; gap: 0.5rem; min-block-size: 0; pointer-events: none !important; }

@@ -2,11 +2,10 @@
 
 /**
  * @param {Element} element what is drawn; out of sight it rests
- * @param {(now_s: number) => "now" | "asked" | number | null} draw returns when the next frame is wanted; `null` ends the loop
+ * @param {(now_s: number) => "now" | "asked" | null} draw returns when the next frame is wanted; `null` ends the loop
  */
 export function makeLoop(element, draw) {
   let request = 0;
-  let timer = 0;
   let isSeen = true;
   let isOver = false;
 
@@ -16,14 +15,9 @@ export function makeLoop(element, draw) {
     const next = draw(performance.now() / 1000);
     if (next === null) return stop();
     if (next === "now") wake();
-    else if (typeof next === "number") {
-      clearTimeout(timer);
-      timer = setTimeout(wake, Math.max(0, next * 1000));
-    }
   }
 
   function wake() {
-    clearTimeout(timer);
     if (!isOver && isSeen && request === 0) request = requestAnimationFrame(frame);
   }
 
@@ -36,7 +30,6 @@ export function makeLoop(element, draw) {
 
   function stop() {
     isOver = true;
-    clearTimeout(timer);
     cancelAnimationFrame(request);
     sight.disconnect();
     document.removeEventListener("visibilitychange", shown);

@@ -114,7 +114,7 @@ export function makePanel(map, about, close) {
     /** @param {import("./corniche-map.js").FrameReport} report */
     report(report) {
       fly.setAttribute("aria-pressed", String(report.mode === "fly"));
-      above.setAttribute("aria-pressed", String(Boolean(report.view.above)));
+      above.setAttribute("aria-pressed", String(Boolean(report.view?.above)));
       const isRecording = report.recording_s !== null;
       record.setAttribute("aria-pressed", String(isRecording));
       setText(record.querySelector("span"), isRecording ? `Stop, ${report.recording_s?.toFixed(0)} s` : "Record a flight");

@@ -9,6 +9,17 @@ import { watchPointers } from "./pointers.js";
 import { watchSize } from "./size.js";
 
 const MOVE_ENDS_MS = 200;
+
+/** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
+function nameOf(/** @type {string} */ src) {
+  const { hash, pathname, protocol } = new URL(src);
+  const name = protocol === "blob:" ? hash.slice(1) : pathname.split("/").pop() ?? "";
+  try {
+    return decodeURIComponent(name).replace(/\.pmtiles$/, "") || "Map";
+  } catch {
+    return name || "Map";
+  }
+}
 const now = () => performance.now() / 1000;
 
 /** The size of the canvas, once it has one: a view is opened for a picture of some size. */
@@ -25,7 +36,7 @@ function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSign
 /**
  * Opens a package.
  *
- * @param {{ src: string, options: Record<string, unknown>, workers: number | null, layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal,
+ * @param {{ src: string, settings: Record<string, unknown>, place: any, covered: number, workers: number | null, layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal,
  *   hashName: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
  *   showCard: () => boolean, command: (name: string) => boolean }} from
  */
@@ -34,8 +45,6 @@ export async function openSession(from) {
   const canvas = layout.canvas();
   /** @type {any} */
   let view = null;
-  /** @type {any[]} */
-  let early = [];
   /** @type {any} */
   let loop = null;
   let isOver = false;
@@ -48,7 +57,7 @@ export async function openSession(from) {
   signal.addEventListener("abort", end);
 
   const size = firstSize(canvas, signal);
-  const { module, MapView } = await loadEngine();
+  const { module, glue } = await loadEngine();
   const [width, height, ratio] = await size;
   if (signal.aborted) return null;
   canvas.width = width;
@@ -64,13 +73,16 @@ export async function openSession(from) {
   const noWorkers = (/** @type {any} */ error) => failed(new Failure("files", `A worker cannot decode tiles: ${error.message}.`, "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it."));
   let decoders;
   try {
-    decoders = startDecoders(module, from.workers ?? usualCount(), (worker, message) => (view ? view.decoded(worker, message) : early.push([worker, message])), noWorkers);
+    decoders = startDecoders(module, from.workers ?? usualCount(), glue.decoded, noWorkers);
   } catch (error) {
     throw new Failure("files", `Workers cannot be started: ${/** @type {Error} */ (error).message}.`, "Check the page's security policy (worker-src).");
   }
   ends.push(decoders.end);
   const host = { wake: () => loop?.wake(), post: decoders.post, workers: decoders.count };
-  const opened = MapView.open(canvas, from.src, JSON.stringify({ ...from.options, size: [width, height], pixels_per_point: ratio }), host);
+  // What workers had under way when they were ended is told as failed, or it would be waited for.
+  ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
+  const options = { settings: from.settings, view: from.place ?? undefined, size_px: [width, height], pixels_per_point: ratio, covered_px: Math.round(from.covered * ratio) };
+  const opened = glue.MapView.open(canvas, from.src, JSON.stringify(options), host);
   // Where a worker fails first, the view is still let go once it is there.
   opened.then((/** @type {any} */ one) => { if (isOver) one.free(); }, () => {});
   try {
@@ -85,11 +97,9 @@ export async function openSession(from) {
     view = null;
     was.free();
   });
-  for (const [worker, message] of early) view.decoded(worker, message);
-  early = [];
 
   /** @type {import("./corniche-map.js").About} */
-  let about = JSON.parse(view.about());
+  let about = { name: nameOf(from.src), ...JSON.parse(view.about()) };
   /** @type {any} */
   let settings = JSON.parse(view.settings());
   /** @type {import("./corniche-map.js").FrameReport | null} */
@@ -103,7 +113,7 @@ export async function openSession(from) {
     if (!view) return "";
     const why = view.set(JSON.stringify(change));
     settings = JSON.parse(view.settings());
-    if ("style" in change) about = JSON.parse(view.about());
+    if ("style" in change) about = { name: about.name, ...JSON.parse(view.about()) };
     show();
     loop?.wake();
     return why;
@@ -120,9 +130,16 @@ export async function openSession(from) {
   }
 
   function lookAt(/** @type {object} */ target, isJump = false) {
-    const why = view?.look_at(JSON.stringify(target), now(), isJump) ?? "";
+    const why = view?.look_at(JSON.stringify(completed(target)), now(), isJump) ?? "";
     loop?.wake();
     return why;
+  }
+
+  /** A place with what it leaves out as it is now. */
+  function completed(/** @type {any} */ target) {
+    const { distance, heading, pitch, above, pixel_m } = report?.view ?? {};
+    const isAbove = target.above ?? (above && target.distance === undefined && target.pitch === undefined);
+    return isAbove ? { heading, pixel_m, ...target, above: true } : { distance, heading, pitch, ...target, above: undefined, pixel_m: undefined };
   }
 
   function goTo(/** @type {string} */ text) {
@@ -142,12 +159,11 @@ export async function openSession(from) {
       return;
     }
     moveTimer = 0;
-    if (report) emit("moveend", report.view);
+    if (report?.view) emit("moveend", report.view);
   }
 
   function watchMoves(/** @type {import("./corniche-map.js").FrameReport} */ now) {
-    const { lon, lat, distance, heading, pitch, above } = now.view;
-    const next = JSON.stringify([lon, lat, distance, heading, pitch, above]);
+    const next = JSON.stringify(now.view);
     if (next === place) return;
     const isFirst = place === "";
     place = next;
@@ -167,7 +183,7 @@ export async function openSession(from) {
       return null;
     }
     report = now;
-    layout.compass.show(now.view);
+    if (now.view) layout.compass.show(now.view);
     layout.scale.show(now.metres_per_point);
     layout.status.show(now);
     layout.progress(now.progress);

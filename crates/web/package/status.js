@@ -10,6 +10,12 @@ export function coordinatesText(/** @type {{ lon: number, lat: number }} */ plac
 
 const heightText = (/** @type {number | undefined} */ height) => (height === undefined || height === null ? "" : `${Math.round(height)} m`);
 
+function cameraText(/** @type {import("./corniche-map.js").Place} */ view) {
+  const heading = `heading ${((Math.round(view.heading) % 360) + 360) % 360}°`;
+  if (view.above || view.distance === undefined) return `from above, ${heading}`;
+  return `${lengthText(+view.distance.toPrecision(3))} away, ${heading}, pitch ${Math.round(view.pitch)}°`;
+}
+
 export function makeStatus() {
   const place = make("span", { class: "place" });
   const camera = make("span", { class: "camera" });
@@ -20,8 +26,7 @@ export function makeStatus() {
     show(report) {
       const { view, cursor, tiles } = report;
       setText(place, cursor ? `${coordinatesText(cursor)}  ${heightText(cursor.height)}` : "");
-      const heading = ((Math.round(view.heading) % 360) + 360) % 360;
-      setText(camera, `${lengthText(+view.distance.toPrecision(3))} away, heading ${heading}°, ${view.above ? "from above" : `pitch ${Math.round(view.pitch)}°`}`);
+      setText(camera, view ? cameraText(view) : "");
       const rest = tiles.loading + tiles.missing;
       setText(loading, rest > 0 ? `${rest} ${rest === 1 ? "tile" : "tiles"} to come` : "");
     },
