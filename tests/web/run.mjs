@@ -3,10 +3,10 @@
 //   node run.mjs SITE PACKAGES CORNICHE PICTURES
 //
 // SITE is the folder made by scripts/web, PACKAGES holds pass.pmtiles and others, CORNICHE is the program, PICTURES a folder for pictures of the page.
-// node --test-name-pattern=PATTERN run.mjs … runs some of them.
+// node --test-reporter=spec --test-name-pattern=PATTERN run.mjs … runs some of them.
 import fs from "node:fs";
 import path from "node:path";
-import { after } from "node:test";
+import { after, describe } from "node:test";
 import { startChromium } from "./browser.mjs";
 import { startServer } from "./server.mjs";
 
@@ -20,15 +20,16 @@ if (!browser) process.exit(0);
 fs.mkdirSync(pictures, { recursive: true });
 const server = await startServer({ site, packages });
 const other = await startServer({ site, packages });
-after(async () => {
-  await browser.close();
-  server.close();
-  other.close();
-});
 
 /** What tests share. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, package: path.join(packages, "pass.pmtiles") };
-for (const name of ["units", "opening", "pixels", "drags", "keys", "sizes", "embedding", "failures", "access", "pictures"]) {
-  const { tests } = await import(`./${name}.mjs`);
-  tests(world);
-}
+const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "embedding", "failures", "access", "pictures"];
+const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
+describe("the page of the browser viewer", () => {
+  for (const { tests } of parts) tests(world);
+  after(async () => {
+    await browser.close();
+    server.close();
+    other.close();
+  });
+});

@@ -6,7 +6,7 @@ import zlib from "node:zlib";
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".css": "text/css", ".wasm": "application/wasm", ".png": "image/png" };
 
-const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="color-scheme" content="light dark"><title>A map</title><link rel="icon" href="data:,">
+const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><meta name="color-scheme" content="light dark"><title>A map</title><link rel="icon" href="data:,">
 <style>body { margin: 0; background: light-dark(#fff, #111); }</style><main></main>
 <script type="module" src="/corniche-map.js"></script></html>`;
 

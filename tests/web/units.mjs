@@ -21,7 +21,7 @@ export function tests({ site }) {
     const above = { lon: 9.5, lat: 47.1, heading: 12, pitch: 0, above: true, pixel_m: 2.5 };
     assert.deepEqual(placeOf(textOf(above)), above);
     assert.deepEqual(placeOf("9.5, 47"), { lon: 9.5, lat: 47 });
-    for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,6", "9.5,47,1e9", null]) assert.equal(placeOf(wrong), null, String(wrong));
+    for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,up", "9.5,47,1e9", null]) assert.equal(placeOf(wrong), null, String(wrong));
     assert.deepEqual(placeInHash("#part&b=9.5,47&a=8,46", "a"), { lon: 8, lat: 46 });
     assert.equal(placeInHash("#9.5,47", "a"), null);
     assert.equal(hashWith("#part&a=8,46", "a", place), `#part&a=${textOf(place)}`);

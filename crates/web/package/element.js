@@ -341,12 +341,12 @@ export class CornicheMap extends HTMLElement {
     const shown = controlsOf(this.getAttribute("controls"));
     if (!session) return false;
     if (name === "close") {
-      if (place.hide() || notices.dismiss()) return true;
-      const isOpen = !session.panel.hidden && session.panel.contains(this.shadowRoot?.activeElement);
-      if (!isOpen) return false;
-      this.#showPanel(false);
-      panelButton.focus();
-      return true;
+      if (!session.panel.hidden && session.panel.contains(this.shadowRoot?.activeElement)) {
+        this.#showPanel(false);
+        panelButton.focus();
+        return true;
+      }
+      return place.hide() || notices.dismiss();
     }
     if (name === "panel" || name === "help") {
       if (!shown.has("panel")) return false;
