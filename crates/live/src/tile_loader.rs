@@ -2,16 +2,16 @@ use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, TileGeometry};
 
 /// The answer to a request for a tile.
-pub(crate) struct Loaded {
+pub struct Loaded {
     /// The tile that was asked for.
-    pub(crate) id: TileId,
+    pub id: TileId,
     /// The decoded tile, or why there is none.
-    pub(crate) tile: Result<TileGeometry, LoadTileError>,
+    pub tile: Result<TileGeometry, LoadTileError>,
 }
 
 /// Loads tiles while the window goes on drawing. Nothing here waits: tiles are requested in one frame and taken in a later
 /// one.
-pub(crate) trait TileLoader {
+pub trait TileLoader {
     /// Asks for tiles, in order, after those asked for before.
     fn request(&mut self, ids: &[TileId]);
     /// Drops the requests on which no work has begun.
@@ -19,7 +19,3 @@ pub(crate) trait TileLoader {
     /// The tiles that have arrived since this was called last.
     fn arrivals(&mut self) -> Vec<Loaded>;
 }
-
-#[cfg(test)]
-#[path = "tile_loader_tests.rs"]
-pub(crate) mod tests;

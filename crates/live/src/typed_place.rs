@@ -10,7 +10,7 @@ use crate::controls::KnownGround;
 ///
 /// # Errors
 /// In words, when the text tells no place or there is no ground.
-pub(crate) fn place_in_world(
+pub fn place_in_world(
     text: &str,
     manifest: &Manifest,
     ground: &dyn KnownGround,

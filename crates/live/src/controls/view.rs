@@ -5,7 +5,7 @@ use corniche_viewer::{
 use glam::{DMat3, DVec2, DVec3};
 
 /// The ground, as far as it is loaded.
-pub(crate) trait KnownGround {
+pub trait KnownGround {
     /// The first ground along a ray.
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
     /// Height of the ground at a place in plan, world metres.
@@ -19,22 +19,22 @@ pub(crate) trait KnownGround {
 
 /// Where the eye is and how it looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct View {
+pub struct View {
     /// The eye, world metres.
-    pub(crate) eye_in_world: DVec3,
+    pub eye_in_world: DVec3,
     /// Direction of view.
-    pub(crate) orientation: Orientation,
+    pub orientation: Orientation,
     /// About how far away the ground is that is looked at; near plane and haze follow from it.
-    pub(crate) focus_m: f64,
+    pub focus_m: f64,
     /// In a view from above, with parallel rays: all ground lies between these heights, world metres. The eye is then over the middle of
     /// the picture, at about the height from which things look as large, and looks straight down.
-    pub(crate) from_above: Option<[f64; 2]>,
+    pub from_above: Option<[f64; 2]>,
 }
 
 impl View {
     /// The view of a camera in perspective, whose direction is `orientation`.
     #[must_use]
-    pub(crate) fn of(camera: &Camera, orientation: Orientation) -> Self {
+    pub fn of(camera: &Camera, orientation: Orientation) -> Self {
         Self {
             eye_in_world: camera.eye_in_world(),
             orientation,
@@ -45,7 +45,7 @@ impl View {
 
     /// The camera for a picture of this size.
     #[must_use]
-    pub(crate) fn camera(&self, size_px: [u32; 2]) -> Camera {
+    pub fn camera(&self, size_px: [u32; 2]) -> Camera {
         let backward = self.world_from_view().z_axis;
         let target = self.eye_in_world - backward * self.focus_m;
         let camera = Camera::look_at(target, self.focus_m, self.orientation, size_px);
@@ -64,7 +64,7 @@ impl View {
     /// What is seen straight from above with parallel rays: `middle` in the middle of the picture, as large as now, within a range of
     /// distances.
     #[must_use]
-    pub(crate) fn seen_from_above(
+    pub fn seen_from_above(
         &self,
         middle: DVec3,
         [least_m, most_m]: [f64; 2],
@@ -81,13 +81,13 @@ impl View {
 
     /// The same place in perspective.
     #[must_use]
-    pub(crate) fn in_perspective(&self) -> Self {
+    pub fn in_perspective(&self) -> Self {
         Self { from_above: None, ..*self }
     }
 
     /// Columns: right, up, backward.
     #[must_use]
-    pub(crate) fn world_from_view(&self) -> DMat3 {
+    pub fn world_from_view(&self) -> DMat3 {
         // The axes depend neither on the position nor on the size of the picture.
         Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view()
     }
@@ -95,7 +95,7 @@ impl View {
     /// The ground at a pixel. Where there is none, the plane at the ground's base height, if that is no farther away than
     /// `most_m`.
     #[must_use]
-    pub(crate) fn ground_at(
+    pub fn ground_at(
         &self,
         at_px: DVec2,
         size_px: [u32; 2],
@@ -110,7 +110,7 @@ impl View {
 
     /// Where the ray through a pixel meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
     #[must_use]
-    pub(crate) fn on_plane(
+    pub fn on_plane(
         &self,
         at_px: DVec2,
         size_px: [u32; 2],
@@ -126,7 +126,7 @@ impl View {
 
     /// The view from another direction in which `pivot` stays on its pixel, at the same distance.
     #[must_use]
-    pub(crate) fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
+    pub fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
         let pivot_in_view = self.world_from_view().transpose() * (pivot - self.eye_in_world);
         let turned = Self { orientation, ..*self };
         Self { eye_in_world: pivot - turned.world_from_view() * pivot_in_view, ..turned }
@@ -134,7 +134,7 @@ impl View {
 
     /// The view with the eye `factor` times as far from `pivot`, which stays on its pixel.
     #[must_use]
-    pub(crate) fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
+    pub fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
         let eye_in_world = pivot + (self.eye_in_world - pivot) * factor;
         // In perspective the focus follows from the eye's height.
         let focus_m = if self.from_above.is_some() { self.focus_m * factor } else { self.focus_m };
@@ -144,7 +144,7 @@ impl View {
     /// The eye moved in plan so that `anchor` is seen at a pixel; `None` where that would take it more than `most_m` away
     /// from the anchor.
     #[must_use]
-    pub(crate) fn dragged(
+    pub fn dragged(
         &self,
         anchor: DVec3,
         at_px: DVec2,
@@ -157,7 +157,7 @@ impl View {
 
     /// How much higher the eye must be to be `clearance_m` above the ground; 0 or negative where it is high enough.
     #[must_use]
-    pub(crate) fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
+    pub fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
         if self.from_above.is_some() {
             return f64::NEG_INFINITY;
@@ -170,7 +170,7 @@ impl View {
     /// The same view with the focus that follows from its height above the ground, by the rule for flights; from above, with the height
     /// that follows from the focus.
     #[must_use]
-    pub(crate) fn refocused(&self, ground: &dyn KnownGround) -> Self {
+    pub fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
         if self.from_above.is_some() {

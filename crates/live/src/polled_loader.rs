@@ -1,4 +1,4 @@
-//! Tiles that nothing waits for: their bytes are in memory and come late, and their futures are polled by hand.
+//! For tests: tiles that nothing waits for: their bytes are in memory and come late, and their futures are polled by hand.
 
 use std::{
     future::poll_fn,
@@ -10,13 +10,16 @@ use std::{
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::tiles::PackageTiles;
 
-use super::*;
+use corniche_geom::TileId;
+use corniche_viewer::tiles::{LoadTileError, TileGeometry};
+
+use crate::tile_loader::{Loaded, TileLoader};
 
 /// How often a read is polled before its bytes are there.
 const POLLS: u32 = 3;
 
 /// Bytes in memory. Each read is pending at first.
-pub(crate) struct LateBytes(MemorySource);
+pub struct LateBytes(MemorySource);
 
 impl ByteSource for LateBytes {
     async fn length(&self) -> Result<u64, SourceError> {
@@ -38,8 +41,11 @@ fn poll<T>(work: Pin<&mut (impl Future<Output = T> + ?Sized)>) -> Poll<T> {
     work.poll(&mut Context::from_waker(Waker::noop()))
 }
 
-/// Polls until it is done; it must be after so many times.
-pub(crate) fn polled<T>(work: impl Future<Output = T>) -> T {
+/// Polls until it is done.
+///
+/// # Panics
+/// When it is not done after many times.
+pub fn polled<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
     for _ in 0..100_000 {
         if let Poll::Ready(done) = poll(work.as_mut()) {
@@ -49,23 +55,29 @@ pub(crate) fn polled<T>(work: impl Future<Output = T>) -> T {
     panic!("the work never gets ready")
 }
 
-/// The small package of `corniche-testing`, whose tiles come late.
-pub(crate) fn late_package() -> Arc<PackageTiles<LateBytes>> {
-    let bytes = LateBytes(MemorySource::new(corniche_testing::package::written()));
-    let package = polled(Package::open(bytes)).unwrap();
-    Arc::new(polled(PackageTiles::new(package)).unwrap())
+/// A package whose tiles come late.
+///
+/// # Panics
+/// When `bytes` are none.
+#[must_use]
+pub fn late_package(bytes: Vec<u8>) -> Arc<PackageTiles<LateBytes>> {
+    let package = polled(Package::open(LateBytes(MemorySource::new(bytes))));
+    let tiles = package.map(|package| polled(PackageTiles::new(package)));
+    Arc::new(tiles.and_then(|tiles| tiles).unwrap_or_else(|error| panic!("{error}")))
 }
 
 type Loading = Pin<Box<dyn Future<Output = Result<TileGeometry, LoadTileError>>>>;
 
 /// Loads tiles in the thread that draws, without waiting for one: each is polled once a frame.
-pub(crate) struct PolledLoader {
+pub struct PolledLoader {
     tiles: Arc<PackageTiles<LateBytes>>,
     under_way: Vec<(TileId, Loading)>,
 }
 
 impl PolledLoader {
-    pub(crate) fn new(tiles: &Arc<PackageTiles<LateBytes>>) -> Self {
+    /// Loads the tiles of a package.
+    #[must_use]
+    pub fn new(tiles: &Arc<PackageTiles<LateBytes>>) -> Self {
         Self { tiles: Arc::clone(tiles), under_way: Vec::new() }
     }
 }
@@ -95,15 +107,6 @@ impl TileLoader for PolledLoader {
     }
 }
 
-#[test]
-fn a_tile_comes_in_a_later_frame_and_nothing_waits_for_it() {
-    let mut loader = PolledLoader::new(&late_package());
-    loader.request(&[TileId::ROOT]);
-    for _ in 0..POLLS {
-        assert!(loader.arrivals().is_empty());
-    }
-    assert_eq!(loader.arrivals().len(), 1);
-    loader.request(&[TileId::ROOT]);
-    loader.forget();
-    assert!(loader.arrivals().is_empty() && loader.under_way.is_empty());
-}
+#[cfg(test)]
+#[path = "polled_loader_tests.rs"]
+mod tests;

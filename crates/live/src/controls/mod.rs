@@ -8,11 +8,12 @@
 //!  double click             zoom in at the cursor; with Shift out
 //!  arrows                   pan; with Shift turn and tilt
 //!  + −                      zoom by a level; with Shift by two
+//!  two fingers              zoom (apart, together) and turn; tilt (both up or down)
 //!  W A S D, Q E             fly mode: ahead, left, back, right, down, up; with Shift fast
 //! ```
 //!
-//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and there are no gestures for touch screens. A
-//! notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
+//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and two fingers zoom and turn at once from the first
+//! movement on. A notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
 //! zoom by whole levels from where the camera is, not to the next whole level: no level is special here. A double click acts
 //! when the button goes down for the second time. The largest tilt is 85°, in `MapLibre` usually 60°. What a drag or a zoom
 //! keeps under the cursor is a point of the terrain. `MapLibre` has nothing on the middle button.
@@ -21,6 +22,7 @@
 //! are in world space: the working CRS, heights times the vertical scale.
 
 mod bounded_view;
+mod fingers;
 mod flying;
 mod gesture;
 mod input;
@@ -31,10 +33,9 @@ mod sight;
 mod travel;
 mod view;
 
-pub use self::options::Inertia;
-pub(crate) use self::{
+pub use self::{
     input::{Button, Input, Key, KeyState, Modifiers},
     navigator::Navigator,
-    options::{Limits, Mode},
+    options::{Inertia, Limits, Mode},
     view::{KnownGround, View},
 };

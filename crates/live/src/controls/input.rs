@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 
 /// A button of the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Button {
+pub enum Button {
     /// Left.
     Left,
     /// Middle: the wheel, pressed.
@@ -13,16 +13,16 @@ pub(crate) enum Button {
 
 /// Keys held down with a button or another key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Modifiers {
+pub struct Modifiers {
     /// Shift.
-    pub(crate) shift: bool,
+    pub shift: bool,
     /// Control.
-    pub(crate) control: bool,
+    pub control: bool,
 }
 
 /// A key that moves the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Key {
+pub enum Key {
     /// Arrow to the left.
     Left,
     /// Arrow to the right.
@@ -51,7 +51,7 @@ pub(crate) enum Key {
 
 /// Whether a key goes down (or is repeated while down) or up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum KeyState {
+pub enum KeyState {
     /// Down.
     Pressed,
     /// Up.
@@ -60,7 +60,7 @@ pub(crate) enum KeyState {
 
 /// What a person does. Positions are pixels of the picture; (0, 0) is its upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Input {
+pub enum Input {
     /// A button goes down.
     Press {
         /// The button.
@@ -80,6 +80,13 @@ pub(crate) enum Input {
         /// The button.
         button: Button,
     },
+    /// Two fingers touch the map, or are elsewhere now. The first time they grab the ground between them.
+    TwoFingers {
+        /// Where they are.
+        at_px: [DVec2; 2],
+    },
+    /// Less than two fingers touch the map.
+    EndTwoFingers,
     /// The wheel turns.
     Wheel {
         /// Notches, or parts of one. Positive is away from the person, and zooms in.

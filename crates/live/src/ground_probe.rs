@@ -4,11 +4,20 @@ use corniche_geom::CoordinateTable;
 use corniche_viewer::camera::Camera;
 use glam::DVec2;
 
-use crate::{controls::KnownGround, window_content::GroundPoint};
+use crate::controls::KnownGround;
+
+/// A place on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundPoint {
+    /// Longitude and latitude, WGS84.
+    pub lon_lat_deg: [f64; 2],
+    /// x and y in the working CRS, true height.
+    pub at_m: [f64; 3],
+}
 
 /// What rays into the scene found. It is kept while neither the scene nor the cursor changes.
 #[derive(Default)]
-pub(crate) struct GroundProbe {
+pub struct GroundProbe {
     cursor_px: Option<DVec2>,
     /// The ground under the cursor, and the side of a pixel there in world metres.
     cursor: Option<(GroundPoint, f64)>,
@@ -17,7 +26,7 @@ pub(crate) struct GroundProbe {
 
 impl GroundProbe {
     /// Looks again at what may have changed. `is_new` says that the scene has.
-    pub(crate) fn look(
+    pub fn look(
         &mut self,
         camera: &Camera,
         cursor_px: Option<DVec2>,
@@ -49,17 +58,17 @@ impl GroundProbe {
     }
 
     /// The ground under the cursor.
-    pub(crate) fn cursor(&self) -> Option<GroundPoint> {
+    pub fn cursor(&self) -> Option<GroundPoint> {
         self.cursor.map(|(point, _)| point)
     }
 
     /// Side of a pixel on the ground under the cursor, world metres.
-    pub(crate) fn cursor_pixel_m(&self) -> Option<f64> {
+    pub fn cursor_pixel_m(&self) -> Option<f64> {
         self.cursor.map(|(_, pixel_m)| pixel_m)
     }
 
     /// Side of a pixel on the ground in the middle of the window, world metres.
-    pub(crate) fn middle_pixel_m(&self) -> Option<f64> {
+    pub fn middle_pixel_m(&self) -> Option<f64> {
         self.middle_pixel_m
     }
 }

@@ -3,6 +3,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     bounded_view::{BoundedView, Moved},
+    fingers::{Fingers, Step},
     flying::Flying,
     gesture::{Gesture, Trail},
     input::{Button, Input, Key, KeyState, Modifiers},
@@ -38,13 +39,14 @@ const MAX_STEP_S: f64 = 0.5;
 
 /// Moves the camera as a person wants.
 #[derive(Debug, Clone)]
-pub(crate) struct Navigator {
+pub struct Navigator {
     seen: BoundedView,
     pixels_per_point: f64,
     mode: Mode,
     inertia: Inertia,
     cursor_px: DVec2,
     gesture: Option<Gesture>,
+    fingers: Option<Fingers>,
     trail: Trail,
     glide_m_per_s: DVec3,
     pending: Pending,
@@ -61,7 +63,7 @@ pub(crate) struct Navigator {
 impl Navigator {
     /// Begins with a view, to which [`Input::Reset`] returns. No side of the picture may be 0.
     #[must_use]
-    pub(crate) fn new(home: View, limits: Limits, size_px: [u32; 2], inertia: Inertia) -> Self {
+    pub fn new(home: View, limits: Limits, size_px: [u32; 2], inertia: Inertia) -> Self {
         Self {
             seen: BoundedView { view: home, home, limits, size_px },
             pixels_per_point: 1.0,
@@ -69,6 +71,7 @@ impl Navigator {
             inertia,
             cursor_px: DVec2::ZERO,
             gesture: None,
+            fingers: None,
             trail: Trail::default(),
             glide_m_per_s: DVec3::ZERO,
             pending: Pending::default(),
@@ -82,38 +85,41 @@ impl Navigator {
 
     /// What is seen now.
     #[must_use]
-    pub(crate) fn view(&self) -> View {
+    pub fn view(&self) -> View {
         self.seen.view
     }
 
     /// The camera for what is seen now.
     #[must_use]
-    pub(crate) fn camera(&self) -> Camera {
+    pub fn camera(&self) -> Camera {
         self.seen.camera()
     }
 
     /// Map mode or fly mode.
     #[must_use]
-    pub(crate) fn mode(&self) -> Mode {
+    pub fn mode(&self) -> Mode {
         self.mode
     }
 
     /// The picture has another size now; no side may be 0.
-    pub(crate) fn resize(&mut self, size_px: [u32; 2]) {
+    pub fn resize(&mut self, size_px: [u32; 2]) {
         self.seen.size_px = size_px;
     }
 
     /// The screen has this many pixels to a point: the smaller its pixels, the more of them a movement of the hand takes.
-    pub(crate) fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
+    pub fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
         self.pixels_per_point = pixels_per_point;
     }
 
     /// All heights become `factor` times what they were: the middle of the picture keeps its place. `ground` is the
     /// ground before that.
-    pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
+    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         self.seen.rescale_heights(factor, ground);
         if let Some(held) = self.gesture.as_mut().and_then(Gesture::held_mut) {
             held.z *= factor;
+        }
+        if let Some(fingers) = &mut self.fingers {
+            fingers.anchor.z *= factor;
         }
         self.pending.pivot = None;
         self.sighted = None;
@@ -124,7 +130,7 @@ impl Navigator {
 
     /// Whether the camera goes on moving without any further input.
     #[must_use]
-    pub(crate) fn is_moving(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.travel.is_some()
             || self.flying.is_moving()
             || self.glide_m_per_s != DVec3::ZERO
@@ -132,7 +138,7 @@ impl Navigator {
     }
 
     /// Takes an input at a time, in seconds of any clock that does not run back.
-    pub(crate) fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
+    pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         let was_moving = self.is_moving();
         match *input {
             Input::Press { button, at_px, modifiers } => {
@@ -148,6 +154,8 @@ impl Navigator {
                     self.gesture = None;
                 }
             }
+            Input::TwoFingers { at_px } => self.move_fingers(at_px, ground),
+            Input::EndTwoFingers => self.fingers = None,
             Input::Wheel { steps, at_px } => {
                 self.cursor_px = at_px;
                 match self.mode {
@@ -163,6 +171,7 @@ impl Navigator {
             Input::Modify { modifiers } => self.flying.set_fast(modifiers.shift),
             Input::LetGo => {
                 self.gesture = None;
+                self.fingers = None;
                 self.flying.let_go();
             }
             Input::NorthUp => {
@@ -186,7 +195,7 @@ impl Navigator {
     }
 
     /// Lets time pass.
-    pub(crate) fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
+    pub fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
         self.advanced_s = now_s;
@@ -315,6 +324,36 @@ impl Navigator {
             ),
         }
         self.trail.push(now_s, self.seen.view.eye_in_world);
+    }
+
+    /// Pinches, turns or tilts. The ground that was between the fingers at first stays between them, or at its place while the map tilts.
+    fn move_fingers(&mut self, at_px: [DVec2; 2], ground: &dyn KnownGround) {
+        if self.mode == Mode::Fly {
+            return;
+        }
+        let Some(fingers) = &mut self.fingers else {
+            self.stop();
+            self.gesture = None;
+            let between_px = at_px[0].midpoint(at_px[1]);
+            let anchor = self.seen.ground_at(between_px, ground);
+            self.fingers = anchor.map(|anchor| Fingers::begin(anchor, at_px));
+            return;
+        };
+        let anchor = fingers.anchor;
+        let Orientation { heading_deg, pitch_deg } = self.seen.view.orientation;
+        match fingers.move_to(at_px, self.pixels_per_point) {
+            Step::None => {}
+            Step::Tilt { points } => {
+                let pitch_deg = pitch_deg - PITCH_DEG_PER_POINT * points;
+                self.seen.turn(anchor, heading_deg, pitch_deg, ground);
+            }
+            Step::Pinch { levels, clockwise_deg, between_px } => {
+                // Too near or too far: the map still turns and moves.
+                let _ = self.seen.zoom_by(anchor, levels, ground);
+                self.seen.turn(anchor, heading_deg - clockwise_deg, pitch_deg, ground);
+                self.seen.pan_to(anchor, between_px, ground);
+            }
+        }
     }
 
     /// After a fast drag the map glides on.

@@ -7,7 +7,7 @@ const STEP_S: f64 = 0.1;
 
 /// A recording under way. Times are seconds of one clock.
 #[derive(Debug, Clone)]
-pub(crate) struct Recorder {
+pub struct Recorder {
     begun_s: f64,
     keyframes: Vec<Keyframe>,
     last: Keyframe,
@@ -15,18 +15,18 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     /// Begins a recording.
-    pub(crate) fn new(now_s: f64, pose: Pose) -> Self {
+    pub fn new(now_s: f64, pose: Pose) -> Self {
         let first = Keyframe { time_s: 0.0, pose };
         Self { begun_s: now_s, keyframes: vec![first], last: first }
     }
 
     /// For how long it has been going on.
-    pub(crate) fn duration_s(&self, now_s: f64) -> f64 {
+    pub fn duration_s(&self, now_s: f64) -> f64 {
         now_s - self.begun_s
     }
 
     /// The camera is here now. If there was no frame for some time, it stood still meanwhile.
-    pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
+    pub fn note(&mut self, now_s: f64, pose: Pose) {
         let now = Keyframe { time_s: self.duration_s(now_s), pose };
         if pose != self.last.pose {
             // It stood still until this movement began, one step before now.
@@ -46,7 +46,7 @@ impl Recorder {
     ///
     /// # Errors
     /// When no time has passed.
-    pub(crate) fn finish(mut self, now_s: f64) -> Result<Flight, FlightError> {
+    pub fn finish(mut self, now_s: f64) -> Result<Flight, FlightError> {
         let end = Keyframe { time_s: self.duration_s(now_s), pose: self.last.pose };
         self.push(self.last);
         self.push(end);

@@ -134,6 +134,31 @@ proptest! {
     }
 
     #[test]
+    fn the_ground_between_two_fingers_stays_there(
+        heading_deg in -180.0..180.0_f64,
+        pitch_deg in 0.0..65.0_f64,
+        [x, y] in [250.0..550.0_f64, 350.0..450.0_f64],
+        apart in 60.0..120.0_f64,
+        way in prop::collection::vec([-25.0..25.0_f64, -15.0..15.0_f64, -0.3..0.3_f64, 0.9..1.12_f64], 1..8),
+    ) {
+        let mut navigator = looking(heading_deg, pitch_deg, 4000.0);
+        let between = DVec2::new(x, y);
+        let grabbed = navigator.view().ground_at(between, SIZE_PX, 4e4, &HILLY).unwrap();
+        let arm = DVec2::new(apart, 0.0);
+        navigator.handle(&Input::TwoFingers { at_px: [between - arm, between + arm] }, 0.0, &HILLY);
+        // A first pinch, so that what follows is no tilt.
+        let (mut between, mut arm) = (between, arm * 1.3);
+        navigator.handle(&Input::TwoFingers { at_px: [between - arm, between + arm] }, 0.0, &HILLY);
+        for ([dx, dy, angle, factor], step) in way.into_iter().zip(1..) {
+            between += DVec2::new(dx, dy);
+            arm = DVec2::from_angle(angle).rotate(arm) * factor;
+            let input = Input::TwoFingers { at_px: [between - arm, between + arm] };
+            navigator.handle(&input, f64::from(step) / 60.0, &HILLY);
+            prop_assert!(off_px(&navigator, grabbed, between.x, between.y) <= 0.5);
+        }
+    }
+
+    #[test]
     fn the_ground_under_the_wheel_stays_there(
         heading_deg in -180.0..180.0_f64,
         pitch_deg in 0.0..65.0_f64,

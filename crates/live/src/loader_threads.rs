@@ -26,7 +26,7 @@ use crate::tile_loader::{Loaded, TileLoader};
 const MOST_THREADS: usize = 4;
 
 /// Threads that load tiles.
-pub(crate) struct LoaderThreads {
+pub struct LoaderThreads {
     shared: Arc<Shared>,
     /// `None` once the workers must end.
     results: Option<mpsc::Receiver<Loaded>>,
@@ -67,7 +67,7 @@ impl Shared {
 
 impl LoaderThreads {
     /// How many workers are useful on this machine: one core is left to the thread that draws.
-    pub(crate) fn usual_number() -> NonZeroUsize {
+    pub fn usual_number() -> NonZeroUsize {
         let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
         NonZeroUsize::new((cores - 1).clamp(1, MOST_THREADS)).unwrap_or(NonZeroUsize::MIN)
     }
@@ -77,7 +77,7 @@ impl LoaderThreads {
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub(crate) fn new<S: TileSource + Send + Sync + ?Sized + 'static>(
+    pub fn new<S: TileSource + Send + Sync + ?Sized + 'static>(
         source: &Arc<S>,
         threads: NonZeroUsize,
         room: usize,
@@ -151,5 +151,5 @@ impl Drop for LoaderThreads {
 }
 
 #[cfg(test)]
-#[path = "loader_tests.rs"]
+#[path = "loader_threads_tests.rs"]
 mod tests;

@@ -19,7 +19,7 @@ use glam::DVec3;
 use crate::{controls::KnownGround, tile_loader::TileLoader};
 
 /// All tiles, from the request to the drawing.
-pub(crate) struct Tiles {
+pub struct Tiles {
     catalog: Arc<dyn TileCatalog>,
     quantum_m: f64,
     loader: Box<dyn TileLoader>,
@@ -39,18 +39,18 @@ pub(crate) struct Tiles {
 
 /// What a frame has to do on the graphics card, in this order.
 #[derive(Default)]
-pub(crate) struct Changes {
+pub struct Changes {
     /// Tiles to remove.
-    pub(crate) evict: Vec<TileId>,
+    pub evict: Vec<TileId>,
     /// Tiles to upload, and then to hand to [`Tiles::keep_ground`].
-    pub(crate) upload: Vec<TileGeometry>,
+    pub upload: Vec<TileGeometry>,
     /// Whether tiles were requested, uploaded or removed: then the next frame may have more to do.
-    pub(crate) is_under_way: bool,
+    pub is_under_way: bool,
 }
 
 impl Tiles {
     /// Nothing loaded yet. `quantum_m` is the package's height step.
-    pub(crate) fn new(
+    pub fn new(
         catalog: Arc<dyn TileCatalog>,
         quantum_m: f64,
         loader: Box<dyn TileLoader>,
@@ -75,7 +75,7 @@ impl Tiles {
     /// Takes the tiles that have arrived. Returns messages about those that cannot be had.
     ///
     /// Such a tile counts as one without ground: finer tiles beneath it are shown where there are any, and else a hole.
-    pub(crate) fn take_arrivals(&mut self) -> Vec<String> {
+    pub fn take_arrivals(&mut self) -> Vec<String> {
         let mut defects = Vec::new();
         for loaded in self.loader.arrivals() {
             if !self.loading.remove(&loaded.id) {
@@ -96,12 +96,7 @@ impl Tiles {
     }
 
     /// Chooses what is drawn, kept and loaded.
-    pub(crate) fn choose(
-        &mut self,
-        camera: &Camera,
-        ahead: Option<&Camera>,
-        quality: Quality,
-    ) -> Changes {
+    pub fn choose(&mut self, camera: &Camera, ahead: Option<&Camera>, quality: Quality) -> Changes {
         let plan = self.streamer.plan(self.catalog.as_ref(), camera, ahead, quality);
         let Plan { evict, upload, drawn, cancel, load, missing } = plan;
         for id in &evict {
@@ -126,19 +121,19 @@ impl Tiles {
 
     /// Keeps the ground of tiles that were uploaded, for rays and heights. Their roads, which are most of a tile in a town,
     /// are dropped: they are needed on the graphics card only.
-    pub(crate) fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
+    pub fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
         for tile in uploaded {
             self.resident.insert(tile.id, tile.without_roads());
         }
     }
 
     /// The ground of the tiles that are on the graphics card.
-    pub(crate) fn resident(&self) -> impl Iterator<Item = &TileGeometry> {
+    pub fn resident(&self) -> impl Iterator<Item = &TileGeometry> {
         self.resident.values()
     }
 
     /// Everything on the graphics card is lost: all tiles are requested again.
-    pub(crate) fn begin_again(&mut self) {
+    pub fn begin_again(&mut self) {
         self.loader.forget();
         self.loading.clear();
         self.streamer = Streamer::new(self.budget);
@@ -149,46 +144,46 @@ impl Tiles {
     }
 
     /// Tiles that are drawn.
-    pub(crate) fn drawn(&self) -> &[Drawn] {
+    pub fn drawn(&self) -> &[Drawn] {
         &self.drawn
     }
 
     /// Tiles that the view needs and that are not on the graphics card yet.
-    pub(crate) fn missing(&self) -> usize {
+    pub fn missing(&self) -> usize {
         self.missing
     }
 
     /// Tiles being loaded.
-    pub(crate) fn loading(&self) -> usize {
+    pub fn loading(&self) -> usize {
         self.loading.len()
     }
 
     /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
     /// was asked.
-    pub(crate) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.is_full
     }
 
     /// Whether [`Tiles::is_full`] holds for the first time since the window opened: true once.
-    pub(crate) fn take_first_time_full(&mut self) -> bool {
+    pub fn take_first_time_full(&mut self) -> bool {
         self.is_full && !std::mem::replace(&mut self.was_full, true)
     }
 
     /// Bytes on the graphics card, and how many there may be.
-    pub(crate) fn bytes_of_budget(&self) -> [u64; 2] {
+    pub fn bytes_of_budget(&self) -> [u64; 2] {
         [self.streamer.resident_bytes(), self.budget.gpu_bytes]
     }
 
     /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
     ///
     /// `height_range_m` are the true heights between which all of it lies.
-    pub(crate) fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
+    pub fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
         ShownGround { tiles: self, vertical_scale, height_range_m }
     }
 }
 
 /// The ground as the camera's controls see it, in world heights: true heights times `vertical_scale`.
-pub(crate) struct ShownGround<'a> {
+pub struct ShownGround<'a> {
     tiles: &'a Tiles,
     vertical_scale: f64,
     height_range_m: [f64; 2],

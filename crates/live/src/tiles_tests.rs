@@ -15,8 +15,8 @@ use glam::DVec2;
 
 use super::*;
 use crate::{
-    platform::LoaderThreads,
-    tile_loader::tests::{PolledLoader, late_package},
+    loader_threads::LoaderThreads,
+    polled_loader::{PolledLoader, late_package},
 };
 
 /// A package of two levels: ground at 100 m, 10 m higher in the finer level. One tile of it is damaged.
@@ -200,7 +200,7 @@ fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Dra
 
 #[test]
 fn tiles_that_nothing_waits_for_are_shown_as_those_on_disk() {
-    let late = late_package();
+    let late = late_package(corniche_testing::package::written());
     let found = shown(late.clone(), Box::new(PolledLoader::new(&late)));
     assert!(found.0.len() > 1, "{found:?}");
 

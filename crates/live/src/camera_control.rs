@@ -12,7 +12,7 @@ use crate::{
 const AHEAD_S: f64 = 0.5;
 
 /// The camera and what moves it.
-pub(crate) struct CameraControl {
+pub struct CameraControl {
     navigator: Navigator,
     clicks: Clicks,
     is_dragging: bool,
@@ -24,7 +24,9 @@ pub(crate) struct CameraControl {
 }
 
 impl CameraControl {
-    pub(crate) fn new(navigator: Navigator, pixels_per_point: f32) -> Self {
+    /// Moves what `navigator` moves, on a screen with so many pixels to a point.
+    #[must_use]
+    pub fn new(navigator: Navigator, pixels_per_point: f32) -> Self {
         Self {
             navigator,
             clicks: Clicks::default(),
@@ -36,7 +38,7 @@ impl CameraControl {
     }
 
     /// A button of the mouse goes down on the map.
-    pub(crate) fn press(
+    pub fn press(
         &mut self,
         button: Button,
         at_px: DVec2,
@@ -58,7 +60,7 @@ impl CameraControl {
     }
 
     /// The same for a press that is never the second of a double click.
-    pub(crate) fn press_once(
+    pub fn press_once(
         &mut self,
         button: Button,
         at_px: DVec2,
@@ -71,7 +73,7 @@ impl CameraControl {
     }
 
     /// Any other input.
-    pub(crate) fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
+    pub fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         match input {
             Input::Move { at_px } => self.clicks.move_to(self.in_points(*at_px)),
             Input::Release { button } => {
@@ -90,7 +92,7 @@ impl CameraControl {
     }
 
     /// Pixels to a point of the screen, as in the last frame.
-    pub(crate) fn pixels_per_point(&self) -> f64 {
+    pub fn pixels_per_point(&self) -> f64 {
         self.pixels_per_point
     }
 
@@ -99,7 +101,7 @@ impl CameraControl {
     }
 
     /// Moves the camera for a frame in a window of this size.
-    pub(crate) fn advance(
+    pub fn advance(
         &mut self,
         now_s: f64,
         size_px: [u32; 2],
@@ -115,7 +117,7 @@ impl CameraControl {
 
     /// Where the camera will be soon if it moves on as it did since the last frame; `None` where it did not move. To be
     /// called once for each frame.
-    pub(crate) fn look_ahead(&mut self, now_s: f64, size_px: [u32; 2]) -> Option<Camera> {
+    pub fn look_ahead(&mut self, now_s: f64, size_px: [u32; 2]) -> Option<Camera> {
         let view = self.view();
         let ahead = self.last_view.and_then(|(last_s, last)| {
             let passed_s = now_s - last_s;
@@ -134,42 +136,42 @@ impl CameraControl {
     }
 
     /// All heights become `factor` times what they were; `ground` is the ground before that.
-    pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
+    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         self.navigator.rescale_heights(factor, ground);
     }
 
     /// How long ago the camera moved last.
-    pub(crate) fn at_rest_s(&self, now_s: f64) -> f64 {
+    pub fn at_rest_s(&self, now_s: f64) -> f64 {
         now_s - self.moved_s
     }
 
     /// Whether the camera goes on moving without any input.
-    pub(crate) fn is_moving(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.navigator.is_moving()
     }
 
     /// Whether a button of the mouse is held down that was pressed on the map.
-    pub(crate) fn is_dragging(&self) -> bool {
+    pub fn is_dragging(&self) -> bool {
         self.is_dragging
     }
 
     /// Map mode or fly mode.
-    pub(crate) fn mode(&self) -> Mode {
+    pub fn mode(&self) -> Mode {
         self.navigator.mode()
     }
 
     /// What is seen now.
-    pub(crate) fn view(&self) -> View {
+    pub fn view(&self) -> View {
         self.navigator.view()
     }
 
     /// Width and height of the window in the last frame, pixels.
-    pub(crate) fn size_px(&self) -> [u32; 2] {
+    pub fn size_px(&self) -> [u32; 2] {
         self.navigator.camera().size_px()
     }
 
     /// The camera as flights have it: with its true height.
-    pub(crate) fn pose(&self, vertical_scale: f64) -> Pose {
+    pub fn pose(&self, vertical_scale: f64) -> Pose {
         let View { eye_in_world: eye, orientation, .. } = self.view();
         Pose { eye_m: [eye.x, eye.y, eye.z / vertical_scale], orientation }
     }

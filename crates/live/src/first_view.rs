@@ -1,45 +1,35 @@
 //! The view with which a window opens.
 
+use corniche_tileset::Manifest;
 use corniche_viewer::{
     CameraRequest, OffGround, SightedGround,
     camera::{Camera, Orientation},
 };
 
-use super::shown_package::ShownPackage;
-use crate::{controls::View, panel};
+use crate::controls::View;
 
-/// The view that was asked for, in a window of this size. `place_height_m` is the true height of the ground at the place
-/// that was asked for.
+/// The view that was asked for, in a window of this size, of which `covered_px` on the right are covered. `vertical_scale` is the world
+/// height of a metre of true height.
 ///
 /// # Errors
 /// When the place that was asked for has no ground.
-pub(crate) fn first_view(
+pub fn first_view(
     camera: CameraRequest,
-    package: &ShownPackage,
-    place_height_m: Option<f64>,
-    exaggeration: f64,
+    manifest: &Manifest,
+    ground: SightedGround,
+    vertical_scale: f64,
     size_px: [u32; 2],
-    pixels_per_point: f32,
+    covered_px: u32,
 ) -> Result<View, OffGround> {
-    let panel_px = panel::first_width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
     let part_px = match camera {
-        // All of it must be visible, so it is framed in the part beside the panel.
+        // All of it must be visible, so it is framed in the part that is not covered.
         CameraRequest::Overview | CameraRequest::OverviewFromAbove => {
-            [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]]
+            [size_px[0].saturating_sub(covered_px).max(1), size_px[1]]
         }
         CameraRequest::LookAt { .. } | CameraRequest::FromAbove { .. } => size_px,
     };
     let orientation = camera.orientation();
-    let camera = camera.camera(
-        package.manifest(),
-        SightedGround {
-            extent: package.extent(),
-            heights_m: package.height_range_m(),
-            at_place_m: place_height_m,
-        },
-        package.vertical_scale(exaggeration),
-        part_px,
-    )?;
+    let camera = camera.camera(manifest, ground, vertical_scale, part_px)?;
     Ok(in_left_part(&camera, orientation, size_px[0]))
 }
 
