@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::{
     clicks::{Click, Clicks},
-    controls::{Button, Input, KnownGround, Mode, Modifiers, Navigator, View},
+    controls::{Button, Inertia, Input, KnownGround, Mode, Modifiers, Navigator, View},
 };
 
 /// Tiles are loaded in advance for where the camera will be after this time.
@@ -89,6 +89,21 @@ impl CameraControl {
             _ => {}
         }
         self.navigator.handle(input, now_s, ground);
+    }
+
+    /// See [`Navigator::jump_to`].
+    pub fn jump_to(&mut self, view: View) {
+        self.navigator.jump_to(view);
+    }
+
+    /// See [`Navigator::travel_to`].
+    pub fn travel_to(&mut self, view: View, now_s: f64) {
+        self.navigator.travel_to(view, now_s);
+    }
+
+    /// See [`Navigator::set_inertia`].
+    pub fn set_inertia(&mut self, inertia: Inertia) {
+        self.navigator.set_inertia(inertia);
     }
 
     /// Pixels to a point of the screen, as in the last frame.

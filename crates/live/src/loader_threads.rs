@@ -117,6 +117,15 @@ impl TileLoader for LoaderThreads {
         self.shared.queue().wanted.clear();
     }
 
+    fn abandon(&mut self, ids: &[TileId]) -> Vec<TileId> {
+        // What a worker has begun it ends.
+        let mut queue = self.shared.queue();
+        let is_waiting = |id: &&TileId| queue.wanted.contains(id);
+        let dropped: Vec<TileId> = ids.iter().filter(is_waiting).copied().collect();
+        queue.wanted.retain(|id| !dropped.contains(id));
+        dropped
+    }
+
     fn arrivals(&mut self) -> Vec<Loaded> {
         self.results.iter().flat_map(mpsc::Receiver::try_iter).collect()
     }

@@ -16,6 +16,11 @@ pub trait TileLoader {
     fn request(&mut self, ids: &[TileId]);
     /// Drops the requests on which no work has begun.
     fn forget(&mut self);
+    /// Stops loading tiles that nobody wants any more, as far as it can. Returns those that will not arrive.
+    fn abandon(&mut self, ids: &[TileId]) -> Vec<TileId> {
+        let _ = ids;
+        Vec::new()
+    }
     /// The tiles that have arrived since this was called last.
     fn arrivals(&mut self) -> Vec<Loaded>;
 }

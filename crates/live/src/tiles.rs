@@ -98,7 +98,7 @@ impl Tiles {
     /// Chooses what is drawn, kept and loaded.
     pub fn choose(&mut self, camera: &Camera, ahead: Option<&Camera>, quality: Quality) -> Changes {
         let plan = self.streamer.plan(self.catalog.as_ref(), camera, ahead, quality);
-        let Plan { evict, upload, drawn, cancel, load, missing } = plan;
+        let Plan { evict, upload, drawn, cancel, load, missing, unwanted } = plan;
         for id in &evict {
             self.resident.remove(id);
         }
@@ -108,6 +108,10 @@ impl Tiles {
         }
         for id in &cancel {
             self.waiting.remove(id);
+        }
+        for id in self.loader.abandon(&unwanted) {
+            self.streamer.abandoned(id);
+            self.loading.remove(&id);
         }
         self.loader.request(&load);
         self.loading.extend(&load);

@@ -244,7 +244,22 @@ impl Navigator {
         }
     }
 
-    fn travel_to(&mut self, view: View, now_s: f64) {
+    /// From now on movements slow down gradually, or end at once.
+    pub fn set_inertia(&mut self, inertia: Inertia) {
+        self.inertia = inertia;
+    }
+
+    /// Takes another view at once, and stops all movements.
+    pub fn jump_to(&mut self, view: View) {
+        self.stop();
+        self.gesture = None;
+        self.fingers = None;
+        self.sighted = None;
+        self.seen.view = view;
+    }
+
+    /// Moves to another view, which takes some time.
+    pub fn travel_to(&mut self, view: View, now_s: f64) {
         self.stop();
         self.gesture = None;
         self.mode = Mode::Map;

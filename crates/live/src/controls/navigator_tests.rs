@@ -58,21 +58,6 @@ impl KnownGround for Hills {
 const FLAT: Hills = Hills { rise_m: 0.0 };
 const HILLY: Hills = Hills { rise_m: 250.0 };
 
-impl Navigator {
-    /// From now on movements slow down gradually, or end at once.
-    fn set_inertia(&mut self, inertia: Inertia) {
-        self.inertia = inertia;
-    }
-
-    /// Takes another view at once, and stops all movements.
-    pub(crate) fn jump_to(&mut self, view: View) {
-        self.stop();
-        self.gesture = None;
-        self.sighted = None;
-        self.seen.view = view;
-    }
-}
-
 fn looking(heading_deg: f64, pitch_deg: f64, distance_m: f64) -> Navigator {
     let orientation = Orientation { heading_deg, pitch_deg };
     let target = DVec3::new(5000.0, 5000.0, 400.0);

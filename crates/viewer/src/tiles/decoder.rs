@@ -5,6 +5,7 @@ use std::sync::Arc;
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, Sections, decode, decode_areas, decode_boundaries, decode_photo};
+use serde::{Deserialize, Serialize};
 
 use super::{
     LayerLine, LineLayer, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale,
@@ -16,7 +17,7 @@ use crate::options::RoadMethod;
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
 
 /// Whether a layer of tiles is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Layer {
     Read,
     LeftOut,
@@ -29,12 +30,14 @@ impl Layer {
 }
 
 /// What is read of tiles. It needs no package, only its manifest: tiles may be decoded in other threads, or in the workers of a page.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TileDecoder {
     sections: Sections,
     photos: Layer,
     areas: Layer,
     boundaries: Layer,
+    /// They do not go to other instances.
+    #[serde(skip)]
     overlays: Arc<Overlays>,
 }
 
