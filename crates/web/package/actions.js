@@ -1,0 +1,75 @@
+// What the buttons and keys do besides moving the camera: flights, pictures, links.
+import { askForFile, download } from "./dom.js";
+import { hashWith } from "./hash.js";
+import { pictureOf } from "./picture.js";
+
+const now = () => performance.now() / 1000;
+const fileName = (/** @type {string} */ name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-") || "map";
+
+/**
+ * @param {{ view: any, about: import("./corniche-map.js").About, canvas: HTMLCanvasElement, report: () => import("./corniche-map.js").FrameReport | null,
+ *   wake: () => void, tell: (kind: "warn" | "tell", text: string) => void, hashName: () => string | null }} map
+ */
+export function makeActions(map) {
+  const { view, about, canvas, tell } = map;
+
+  async function picture() {
+    const { width, height } = canvas;
+    const rgba = await view.read_pixels();
+    return pictureOf(rgba, width, height, about.attribution, width / (canvas.getBoundingClientRect().width || width));
+  }
+
+  /** Starts a recording, or ends it and returns the flight. */
+  function record() {
+    if (map.report()?.recording_s === null || map.report() === null) {
+      view.command("start-recording", now());
+      return "";
+    }
+    return view.command("stop-recording", now());
+  }
+
+  function play(/** @type {string} */ flight) {
+    const why = view.play(flight, now());
+    map.wake();
+    return why;
+  }
+
+  /** The address of the page with this view in it; `null` where the page does not keep views. */
+  function link() {
+    const name = map.hashName();
+    const place = map.report()?.view;
+    return name === null || !place ? null : new URL(hashWith(location.hash, name, place), location.href).href;
+  }
+
+  /** The same, for hands: files are saved and told. */
+  const byHand = {
+    async picture() {
+      download(await picture(), `${fileName(about.name)}.png`);
+      tell("tell", "The picture was saved.");
+    },
+    async record() {
+      const flight = record();
+      if (flight === "") return tell("tell", "The flight of the camera is recorded.");
+      download(new Blob([flight], { type: "application/toml" }), `${fileName(about.name)}-flight.toml`);
+      tell("tell", "The flight was saved.");
+    },
+    async play() {
+      const file = await askForFile(".toml");
+      if (!file) return;
+      const why = play(await file.text());
+      if (why !== "") tell("warn", `${file.name}: ${why}`);
+    },
+    async link() {
+      const address = link();
+      if (address === null) return;
+      try {
+        await navigator.clipboard.writeText(address);
+        tell("tell", "The link to this view was copied.");
+      } catch {
+        // Without the right to write to the clipboard, the link can still be taken by hand.
+        tell("warn", address);
+      }
+    },
+  };
+  return { picture, record, play, link, byHand };
+}

@@ -1,0 +1,46 @@
+// Workers that decode tiles. All run one compiled module.
+
+/** A worker needs a script of the page's own host; where the element comes from another one, a script that imports it will do. */
+function startWorker(/** @type {string} */ script) {
+  if (new URL(script).origin === location.origin) return new Worker(script, { type: "module" });
+  const address = URL.createObjectURL(new Blob([`import ${JSON.stringify(script)};`], { type: "text/javascript" }));
+  const worker = new Worker(address, { type: "module" });
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+  return worker;
+}
+
+/** Enough to hide decoding behind the network, few enough to leave the page a core. */
+export const usualCount = () => Math.max(2, Math.min(4, (navigator.hardwareConcurrency || 4) - 1));
+
+/**
+ * @param {WebAssembly.Module} module
+ * @param {number} count
+ * @param {(message: any) => void} decoded
+ * @param {(error: unknown) => void} failed called once at most
+ */
+export function startDecoders(module, count, decoded, failed) {
+  const script = new URL("./worker.js", import.meta.url).href;
+  let hasFailed = false;
+  const fail = (/** @type {unknown} */ error) => {
+    if (!hasFailed) failed(error);
+    hasFailed = true;
+  };
+  const workers = Array.from({ length: count }, () => {
+    const worker = startWorker(script);
+    worker.onmessage = (event) => {
+      if (event.data?.failed) fail(new Error(event.data.failed));
+      else decoded(event.data);
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      fail(new Error(event.message || "the worker's script cannot be loaded"));
+    };
+    worker.postMessage({ module });
+    return worker;
+  });
+  return {
+    count,
+    post: (/** @type {number} */ index, /** @type {object} */ message, /** @type {ArrayBuffer[]} */ transfer) => workers[index].postMessage(message, transfer),
+    end: () => workers.forEach((worker) => worker.terminate()),
+  };
+}

@@ -1,0 +1,378 @@
+// The custom element: attributes, properties, methods and events around an opened package.
+import { SETTINGS, changeOf, controlsOf, settingsOf } from "./attributes.js";
+import { failureOf } from "./engine.js";
+import { makeFailure } from "./failures.js";
+import { hashWith, placeInHash, placeOf } from "./hash.js";
+import { makeLayout } from "./layout.js";
+import { look } from "./look.js";
+import { openSession } from "./session.js";
+
+const REOPEN_AFTER_MS = 4000;
+const REOPEN_TIMES = 3;
+const REOPEN_WITHIN_MS = 60_000;
+const NARROW = 560;
+const WIDE = 720;
+/** Points of the screen that the panel covers, with the space beside it. */
+const PANEL = 298;
+const USUAL_CREDIT = "© OpenStreetMap contributors";
+
+/** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
+export class CornicheMap extends HTMLElement {
+  static observedAttributes = ["src", "look-at", "label", "controls", "hash", ...SETTINGS.map(([attribute]) => attribute)];
+
+  /** @type {ReturnType<typeof makeLayout>} */
+  #layout;
+  /** @type {any} */
+  #session = null;
+  /** @type {AbortController | null} */
+  #opening = null;
+  #isAsked = false;
+  /** @type {number[]} */
+  #lost = [];
+  #lostTimer = 0;
+  /** Settings that were set before the package was open. @type {Record<string, unknown>} */
+  #wanted = {};
+  /** @type {AbortController | null} */
+  #connected = null;
+
+  constructor() {
+    super();
+    const shadow = this.attachShadow({ mode: "open", delegatesFocus: true });
+    shadow.adoptedStyleSheets = [look()];
+    this.#layout = makeLayout(shadow, {
+      command: (name) => void this.#act(name),
+      set: (change) => this.#session?.setByHand(change),
+      zoom: (steps) => this.#session?.zoom(steps),
+    });
+  }
+
+  connectedCallback() {
+    this.#takeEarlyProperties();
+    this.#connected = new AbortController();
+    const { signal } = this.#connected;
+    window.addEventListener("hashchange", () => this.#followHash(), { signal });
+    // Escape closes what is open, wherever the focus is in the map.
+    this.shadowRoot?.addEventListener("keydown", (event) => {
+      if (/** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && this.#act("close")) event.preventDefault();
+    }, { signal });
+    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session?.set(this.#motion()), { signal });
+    this.#label();
+    this.#controls();
+    this.#open();
+  }
+
+  disconnectedCallback() {
+    this.#connected?.abort();
+    this.#close();
+  }
+
+  /** @param {string} name @param {string | null} _before @param {string | null} text */
+  attributeChangedCallback(name, _before, text) {
+    if (!this.isConnected) return;
+    if (name === "src") this.#open();
+    else if (name === "label") this.#label();
+    else if (name === "controls") this.#controls();
+    else if (name === "look-at") {
+      const place = placeOf(text);
+      if (place && this.#session) this.#session.lookAt(place);
+    } else {
+      const change = changeOf(name, text);
+      if (change) this.settings = change;
+    }
+  }
+
+  /** The address of the package. */
+  get src() {
+    const text = this.getAttribute("src");
+    return text === null || text === "" ? "" : new URL(text, document.baseURI).href;
+  }
+
+  set src(address) {
+    this.setAttribute("src", address);
+  }
+
+  /** All settings; those assigned are changed, the others stay. */
+  get settings() {
+    return structuredClone(this.#session ? this.#session.settings() : { ...settingsOf(this), ...this.#wanted });
+  }
+
+  set settings(change) {
+    if (!this.#session) Object.assign(this.#wanted, change);
+    else {
+      const why = this.#session.set(change);
+      if (why !== "") throw new RangeError(why);
+    }
+  }
+
+  /** What the package is; `null` before it is open. */
+  get about() {
+    return this.#session ? structuredClone(this.#session.about()) : null;
+  }
+
+  /** What the last frame said; `null` before the first one. */
+  get report() {
+    return this.#session?.report() ?? null;
+  }
+
+  /** What is seen: the place in the middle, the distance to it and the direction. An assignment jumps there. */
+  get camera() {
+    return this.report?.view ?? null;
+  }
+
+  set camera(place) {
+    if (place) this.lookAt(place, { jump: true });
+  }
+
+  /** Moves to a place. @param {any} place @param {{ jump?: boolean }} [options] */
+  lookAt(place, options = {}) {
+    const why = this.#need().lookAt(place, options.jump ?? false);
+    if (why !== "") throw new RangeError(why);
+  }
+
+  /** Moves to "lon,lat". @param {string} text */
+  goTo(text) {
+    const why = this.#need().goTo(text);
+    if (why !== "") throw new RangeError(why);
+  }
+
+  /** "north-up", "reset", "toggle-fly" or "toggle-above". @param {string} name */
+  command(name) {
+    this.#need().command(name);
+  }
+
+  /** The place and the road at a position in CSS pixels from the corner of the element. @param {number} x @param {number} y */
+  pick(x, y) {
+    return this.#need().pick(x, y);
+  }
+
+  startRecording() {
+    const { actions, report } = this.#need();
+    if (report()?.recording_s == null) actions.record();
+  }
+
+  /** Ends the recording and returns the flight as TOML. */
+  stopRecording() {
+    const { actions, report } = this.#need();
+    return report()?.recording_s == null ? "" : actions.record();
+  }
+
+  /** Flies a recorded flight. @param {string} flight */
+  play(flight) {
+    const why = this.#need().actions.play(flight);
+    if (why !== "") throw new RangeError(why);
+  }
+
+  /** The map as a PNG with its credits. */
+  picture() {
+    return this.#need().actions.picture();
+  }
+
+  /** The pixels of the map as shown last, RGBA, rows from the top. */
+  readPixels() {
+    return this.#need().readPixels();
+  }
+
+  /** Fulfilled when nothing moves and all tiles of the view are there. */
+  settled() {
+    return this.#need().settled();
+  }
+
+  /** Properties that were assigned before this class was there hide those of the class. */
+  #takeEarlyProperties() {
+    const own = /** @type {any} */ (this);
+    for (const name of ["src", "settings", ...SETTINGS.map(([, property]) => property)]) {
+      if (!Object.hasOwn(this, name)) continue;
+      const value = own[name];
+      delete own[name];
+      own[name] = value;
+    }
+  }
+
+  #need() {
+    if (!this.#session) throw new DOMException("the map is not open yet: wait for its event `ready`", "InvalidStateError");
+    return this.#session;
+  }
+
+  #hashName() {
+    const name = this.getAttribute("hash");
+    return name === null || name === "off" ? null : name;
+  }
+
+  #label() {
+    this.#layout.label(this.getAttribute("label") ?? "Map");
+  }
+
+  #controls() {
+    this.#layout.controls(controlsOf(this.getAttribute("controls")));
+    if (!controlsOf(this.getAttribute("controls")).has("panel")) this.#showPanel(false);
+  }
+
+  /** Whether the panel is shown at first: where there is room beside it. */
+  #opensPanel() {
+    const wish = this.getAttribute("panel");
+    return controlsOf(this.getAttribute("controls")).has("panel") && (wish === null ? this.clientWidth >= WIDE : wish !== "closed" && this.clientWidth > NARROW);
+  }
+
+  #motion() {
+    return { inertia: !matchMedia("(prefers-reduced-motion: reduce)").matches && changeOf("inertia", this.getAttribute("inertia"))?.inertia !== false };
+  }
+
+  /** Several attributes that are set in one turn open the package once. */
+  #open() {
+    if (this.#isAsked) return;
+    this.#isAsked = true;
+    queueMicrotask(() => {
+      this.#isAsked = false;
+      if (!this.isConnected) return;
+      const name = this.#hashName();
+      const place = (name === null ? null : placeInHash(location.hash, name)) ?? placeOf(this.getAttribute("look-at"));
+      this.#close();
+      void this.#start({ ...settingsOf(this), ...this.#motion(), ...this.#wanted }, place);
+    });
+  }
+
+  /** @param {Record<string, unknown>} settings @param {any} place */
+  async #start(settings, place) {
+    const { src } = this;
+    if (src === "") return;
+    const opening = new AbortController();
+    this.#opening = opening;
+    const layout = this.#layout;
+    layout.fail(null);
+    layout.opening(true);
+    /** @type {any} */
+    let session = null;
+    try {
+      session = await openSession({
+        src, layout, signal: opening.signal,
+        settings, place, covered: this.#opensPanel() ? PANEL : 0,
+        workers: Number(this.getAttribute("workers")) || null,
+        hashName: () => this.#hashName(),
+        failed: (failure, from) => this.#lose(failure, from),
+        emit: (name, detail, cancelable) => this.#emit(name, detail, cancelable),
+        showCard: () => controlsOf(this.getAttribute("controls")).has("card"),
+        command: (name) => this.#act(name),
+      });
+    } catch (error) {
+      if (!opening.signal.aborted) this.#fail(failureOf(error));
+      return;
+    }
+    if (opening.signal.aborted || !session) return;
+    this.#session = session;
+    // What was set while the package was being opened.
+    const late = { ...this.#wanted };
+    this.#wanted = {};
+    if (Object.keys(late).length > 0) session.set(late);
+    layout.opening(false);
+    this.#showPanel(this.#opensPanel());
+    this.#emit("ready", this.about);
+  }
+
+  #close() {
+    clearTimeout(this.#lostTimer);
+    this.#opening?.abort();
+    this.#opening = null;
+    this.#session = null;
+    const layout = this.#layout;
+    layout.opening(false);
+    layout.fail(null);
+    layout.place.hide();
+    layout.credit([]);
+    layout.renewCanvas();
+  }
+
+  /** The view cannot go on. A device that was lost comes back: the view is opened again where it was, but not again and again. */
+  #lose(/** @type {import("./engine.js").Failure} */ failure, /** @type {any} */ session) {
+    const settings = session.settings();
+    const place = session.report()?.view ?? null;
+    this.#close();
+    const now = performance.now();
+    this.#lost = this.#lost.filter((at) => now - at < REOPEN_WITHIN_MS);
+    if (failure.kind !== "device-lost" || this.#lost.length >= REOPEN_TIMES) {
+      this.#fail(failure);
+      return;
+    }
+    const last = this.#lost.at(-1) ?? -Infinity;
+    this.#lost.push(now);
+    this.#layout.notices.add("tell", "The graphics device was lost. The map is opened again.");
+    this.#lostTimer = setTimeout(() => void this.#start(settings, place), Math.max(0, last + REOPEN_AFTER_MS - now));
+  }
+
+  #fail(/** @type {import("./engine.js").Failure} */ failure) {
+    const { src } = this;
+    this.#close();
+    this.#layout.fail(makeFailure(failure, { src, still: this.getAttribute("still"), credit: this.getAttribute("credit") ?? USUAL_CREDIT, again: () => this.#open() }));
+    const { kind, message, advice } = failure;
+    this.#emit("error", { kind, message, advice });
+  }
+
+  #emit(/** @type {string} */ name, /** @type {any} */ detail, cancelable = false) {
+    if (name === "moveend") this.#writeHash();
+    return this.dispatchEvent(new CustomEvent(name, { detail, cancelable }));
+  }
+
+  #writeHash() {
+    const name = this.#hashName();
+    const place = this.camera;
+    if (name === null || !place) return;
+    const hash = hashWith(location.hash, name, place);
+    if (hash !== location.hash) history.replaceState(history.state, "", hash);
+  }
+
+  #followHash() {
+    const name = this.#hashName();
+    const place = name === null ? null : placeInHash(location.hash, name);
+    if (place) this.#session?.lookAt(place, true);
+  }
+
+  #showPanel(/** @type {boolean} */ isShown) {
+    const panel = this.#session?.panel;
+    const { panelButton, place } = this.#layout;
+    if (panel) panel.hidden = !isShown;
+    panelButton.setAttribute("aria-expanded", String(Boolean(panel) && isShown));
+    panelButton.setAttribute("aria-pressed", String(Boolean(panel) && isShown));
+    if (isShown && this.clientWidth <= NARROW) place.hide();
+  }
+
+  /** Does what a button or a key asks for; whether it did something. */
+  #act(/** @type {string} */ name) {
+    const session = this.#session;
+    const { notices, place, dialog, panelButton } = this.#layout;
+    const shown = controlsOf(this.getAttribute("controls"));
+    if (!session) return false;
+    if (name === "close") {
+      if (!session.panel.hidden && session.panel.contains(this.shadowRoot?.activeElement)) {
+        this.#showPanel(false);
+        panelButton.focus();
+        return true;
+      }
+      return place.hide() || notices.dismiss();
+    }
+    if (name === "panel" || name === "help") {
+      if (!shown.has("panel")) return false;
+      if (name === "help") dialog.showModal();
+      else {
+        const hadFocus = session.panel.contains(this.shadowRoot?.activeElement);
+        this.#showPanel(session.panel.hidden);
+        if (hadFocus) panelButton.focus();
+      }
+      return true;
+    }
+    if (name === "pick") session.pickMiddle();
+    else if (name in session.actions.byHand) {
+      session.actions.byHand[name]().catch((/** @type {unknown} */ error) => session.tell("warn", failureOf(error).message));
+      session.wake();
+    } else session.command(name);
+    return true;
+  }
+}
+
+// Properties of the same names as the attributes.
+for (const [attribute, property, setting] of SETTINGS) {
+  Object.defineProperty(CornicheMap.prototype, property, {
+    configurable: true,
+    enumerable: true,
+    get() { return this.settings[setting]; },
+    set(value) { this.setAttribute(attribute, value === false ? "off" : value === true ? "on" : value === null ? "style" : String(value)); },
+  });
+}

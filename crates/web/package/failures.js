@@ -1,0 +1,67 @@
+// Failures in words, in the place of the map; a still picture of the package where there is one.
+import { make } from "./dom.js";
+import { icons } from "./icons.js";
+
+/** @type {Record<string, string>} */
+const HEADINGS = {
+  "no-webgpu": "This browser cannot draw the map",
+  "no-adapter": "No graphics device for the map",
+  limits: "The graphics device is too small",
+  network: "The map cannot be reached",
+  "not-found": "There is no map at this address",
+  cors: "The server does not let this page read the map",
+  "no-ranges": "The server cannot send parts of a file",
+  compressed: "The server compresses the map",
+  changed: "The map was replaced",
+  damaged: "The map's file is damaged",
+  foreign: "This file is no map of Corniche",
+  "old-format": "The map's format is too old",
+  "no-ground": "The map has no ground",
+  "off-ground": "The place is not on the map",
+  "out-of-memory": "The graphics memory is full",
+  "device-lost": "The graphics device was lost",
+  files: "The map's program cannot be loaded",
+  "no-source": "No map is named",
+  other: "The map cannot be shown",
+};
+
+/** Where a view cannot be drawn here but could be drawn elsewhere, a picture helps. */
+const WITH_PICTURE = new Set(["no-webgpu", "no-adapter", "limits", "files", "device-lost", "out-of-memory"]);
+
+/** Pictures that may lie beside a package, the likeliest first. */
+export function stillsOf(/** @type {string | null} */ still, /** @type {string} */ src) {
+  if (still) return [still];
+  if (!src || /^(blob|data):/.test(src)) return [];
+  const address = new URL(src, document.baseURI);
+  const path = address.pathname;
+  return ["png", "jpg"].flatMap((ending) => {
+    const names = [path.replace(/\.pmtiles$/, `.${ending}`), `${path}.${ending}`];
+    return [...new Set(names)].filter((name) => name !== path).map((name) => new URL(name, address).href);
+  });
+}
+
+/** Shows the first of some pictures that exists. */
+function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} */ addresses) {
+  const [first, ...rest] = addresses;
+  if (!first) return;
+  image.onerror = () => tryStills(image, rest);
+  image.onload = () => { image.hidden = false; };
+  image.src = first;
+}
+
+/**
+ * @param {import("./engine.js").Failure} failure
+ * @param {{ src: string, still: string | null, credit: string, again: () => void }} about
+ */
+export function makeFailure(failure, about) {
+  const image = make("img", { class: "still", alt: "A picture of the map", hidden: true });
+  if (WITH_PICTURE.has(failure.kind)) tryStills(image, stillsOf(about.still, about.src));
+  const credit = make("p", { class: "still-credit" }, about.credit);
+  const card = make("div", { class: "card failure", role: "alert" },
+    make("h2", {}, icons.warning(), HEADINGS[failure.kind] ?? HEADINGS.other),
+    make("p", {}, failure.message),
+    failure.advice ? make("p", { class: "advice" }, failure.advice) : null,
+    about.src && !about.src.startsWith("blob:") ? make("p", { class: "address" }, about.src) : null,
+    make("button", { type: "button", class: "plain", onclick: about.again }, "Try again"));
+  return make("div", { class: "failed", "data-kind": failure.kind }, image, credit, card);
+}

@@ -1,0 +1,68 @@
+// Keys on the map. Letters of commands go by what is printed on the key, keys to fly by where they are.
+
+/** Commands of the view and of the page, by `KeyboardEvent.key`. */
+export const COMMANDS = { f: "toggle-fly", t: "toggle-above", n: "north-up", r: "reset", Home: "reset", c: "record", v: "link", p: "picture", m: "panel", "?": "help", Enter: "pick", Escape: "close" };
+
+/** What the dialog of keys says. */
+export const HELP = [
+  ["Drag", "move the map with the pointer"],
+  ["Right drag, Ctrl and drag", "turn and tilt about the middle"],
+  ["Middle drag", "turn and tilt about the ground under the pointer"],
+  ["Wheel, double click", "zoom at the pointer; with Shift, a double click zooms out"],
+  ["One finger", "move the map"],
+  ["Two fingers", "pinch to zoom, turn, move up and down to tilt"],
+  ["Click, tap, Enter", "what road is here; Enter asks in the middle of the map"],
+  ["Right click, long press", "coordinates and height of the place"],
+  ["Arrows", "move; with Shift turn and tilt"],
+  ["+ −", "zoom; with Shift twice as far"],
+  ["F", "fly mode and back: W A S D, Q down, E up, Shift faster, wheel sets the speed"],
+  ["T", "straight from above and back"],
+  ["N", "north up"],
+  ["R, Home", "back to the first view"],
+  ["C", "start and stop recording a flight"],
+  ["P", "save a picture"],
+  ["V", "copy a link to this view"],
+  ["M", "show and hide the panel"],
+  ["?", "this list"],
+];
+
+/** Plus and minus are elsewhere on keyboards of other countries, where the view looks for them by their place. */
+function zoomCode(/** @type {KeyboardEvent} */ event) {
+  if (/^(Equal|Minus|Numpad|Shift)/.test(event.code)) return null;
+  if (event.key === "+") return ["NumpadAdd", false];
+  return event.key === "-" ? ["NumpadSubtract", false] : null;
+}
+
+/**
+ * @param {HTMLCanvasElement} canvas
+ * @param {{ view: () => any, wake: () => void, command: (name: string) => boolean }} to `command` says whether it did something
+ */
+export function watchKeys(canvas, to) {
+  const end = new AbortController();
+  const { signal } = end;
+  const now = () => performance.now() / 1000;
+
+  function key(/** @type {KeyboardEvent} */ event, /** @type {boolean} */ isDown) {
+    // Shortcuts of the browser stay its own, and so does the way to the next control.
+    if (event.altKey || event.metaKey || event.ctrlKey || event.key === "Tab") return;
+    const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const command = isDown && /** @type {Record<string, string>} */ (COMMANDS)[name];
+    if (command) {
+      if (event.repeat || to.command(command)) event.preventDefault();
+      return;
+    }
+    const [code, shift] = zoomCode(event) ?? [event.code, event.shiftKey];
+    if (to.view()?.key(code, isDown, shift, event.ctrlKey, now())) {
+      event.preventDefault();
+      to.wake();
+    }
+  }
+
+  canvas.addEventListener("keydown", (event) => key(event, true), { signal });
+  canvas.addEventListener("keyup", (event) => key(event, false), { signal });
+  canvas.addEventListener("blur", () => {
+    to.view()?.let_go(now());
+    to.wake();
+  }, { signal });
+  return () => end.abort();
+}

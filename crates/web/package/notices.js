@@ -1,0 +1,30 @@
+// Notices: what went well disappears by itself, warnings stay until they are dismissed.
+import { make } from "./dom.js";
+import { icons } from "./icons.js";
+
+const TOLD_MS = 5000;
+const MOST = 4;
+
+export function makeNotices() {
+  // Always there, or readers of the screen would not watch it.
+  const element = make("div", { class: "notices", role: "log", "aria-live": "polite", "aria-label": "Notices" });
+  return {
+    element,
+    /** @param {"warn" | "tell"} kind @param {string} text */
+    add(kind, text) {
+      const same = [...element.children].find((one) => one.firstChild?.textContent === text);
+      same?.remove();
+      const notice = make("div", { class: `notice card ${kind}` }, make("span", {}, text),
+        make("button", { type: "button", class: "icon", "aria-label": "Dismiss", onclick: () => notice.remove() }, icons.close()));
+      element.append(notice);
+      if (kind === "tell") setTimeout(() => notice.remove(), TOLD_MS);
+      while (element.children.length > MOST) element.firstChild?.remove();
+    },
+    /** Removes the last one; whether there was one. */
+    dismiss() {
+      const last = element.lastElementChild;
+      last?.remove();
+      return last !== null;
+    },
+  };
+}

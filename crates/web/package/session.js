@@ -1,0 +1,271 @@
+// One opened package: the view, its workers, its frames and its input.
+import { makeActions } from "./actions.js";
+import { startDecoders, usualCount } from "./decoders.js";
+import { Failure, failureOf, loadEngine } from "./engine.js";
+import { watchKeys } from "./keys.js";
+import { makeLoop } from "./loop.js";
+import { makePanel } from "./panel.js";
+import { watchPointers } from "./pointers.js";
+import { watchSize } from "./size.js";
+
+const MOVE_ENDS_MS = 200;
+
+/** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
+function nameOf(/** @type {string} */ src) {
+  const { hash, pathname, protocol } = new URL(src);
+  const name = protocol === "blob:" ? hash.slice(1) : pathname.split("/").pop() ?? "";
+  try {
+    return decodeURIComponent(name).replace(/\.pmtiles$/, "") || "Map";
+  } catch {
+    return name || "Map";
+  }
+}
+const now = () => performance.now() / 1000;
+
+/** The size of the canvas, once it has one: a view is opened for a picture of some size. */
+function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSignal} */ signal) {
+  return new Promise((resolve) => {
+    const end = watchSize(canvas, (...size) => {
+      end();
+      resolve(size);
+    });
+    signal.addEventListener("abort", end);
+  });
+}
+
+/**
+ * Opens a package.
+ *
+ * @param {{ src: string, settings: Record<string, unknown>, place: any, covered: number, workers: number | null, layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal,
+ *   hashName: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
+ *   showCard: () => boolean, command: (name: string) => boolean }} from
+ */
+export async function openSession(from) {
+  const { layout, signal, emit } = from;
+  const canvas = layout.canvas();
+  /** @type {any} */
+  let view = null;
+  /** @type {any} */
+  let loop = null;
+  let isOver = false;
+  const ends = /** @type {(() => void)[]} */ ([]);
+  const end = () => {
+    if (isOver) return;
+    isOver = true;
+    for (const stop of ends.reverse()) stop();
+  };
+  signal.addEventListener("abort", end);
+
+  const size = firstSize(canvas, signal);
+  const { module, glue } = await loadEngine();
+  const [width, height, ratio] = await size;
+  if (signal.aborted) return null;
+  canvas.width = width;
+  canvas.height = height;
+  /** @type {(error: unknown) => void} */
+  let stopOpening = () => {};
+  const failed = (/** @type {unknown} */ error) => {
+    stopOpening(error);
+    if (isOver || !view) return;
+    const failure = failureOf(error);
+    from.failed(failure, session);
+  };
+  const noWorkers = (/** @type {any} */ error) => failed(new Failure("files", `A worker cannot decode tiles: ${error.message}.`, "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it."));
+  let decoders;
+  try {
+    decoders = startDecoders(module, from.workers ?? usualCount(), glue.decoded, noWorkers);
+  } catch (error) {
+    throw new Failure("files", `Workers cannot be started: ${/** @type {Error} */ (error).message}.`, "Check the page's security policy (worker-src).");
+  }
+  ends.push(decoders.end);
+  const host = { wake: () => loop?.wake(), post: decoders.post, workers: decoders.count };
+  // What workers had under way when they were ended is told as failed, or it would be waited for.
+  ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
+  const options = { settings: from.settings, view: from.place ?? undefined, size_px: [width, height], pixels_per_point: ratio, covered_px: Math.round(from.covered * ratio) };
+  const opened = glue.MapView.open(canvas, from.src, JSON.stringify(options), host);
+  // Where a worker fails first, the view is still let go once it is there.
+  opened.then((/** @type {any} */ one) => { if (isOver) one.free(); }, () => {});
+  try {
+    view = await Promise.race([opened, new Promise((_, reject) => { stopOpening = reject; })]);
+  } catch (error) {
+    end();
+    throw error;
+  }
+  if (isOver) return null;
+  ends.push(() => {
+    const was = view;
+    view = null;
+    was.free();
+  });
+
+  /** @type {import("./corniche-map.js").About} */
+  let about = { name: nameOf(from.src), ...JSON.parse(view.about()) };
+  /** @type {any} */
+  let settings = JSON.parse(view.settings());
+  /** @type {import("./corniche-map.js").FrameReport | null} */
+  let report = null;
+  let place = "";
+  let moveTimer = 0;
+  const tell = (/** @type {"warn" | "tell"} */ kind, /** @type {string} */ text) => layout.notices.add(kind, text);
+
+  /** Changes settings; in words, why not. */
+  function set(/** @type {Record<string, unknown>} */ change) {
+    if (!view) return "";
+    const why = view.set(JSON.stringify(change));
+    settings = JSON.parse(view.settings());
+    if ("style" in change) about = { name: about.name, ...JSON.parse(view.about()) };
+    show();
+    loop?.wake();
+    return why;
+  }
+
+  function setByHand(/** @type {Record<string, unknown>} */ change) {
+    const why = set(change);
+    if (why !== "") tell("warn", why);
+  }
+
+  function command(/** @type {string} */ name) {
+    view?.command(name, now());
+    loop?.wake();
+  }
+
+  function lookAt(/** @type {object} */ target, isJump = false) {
+    const why = view?.look_at(JSON.stringify(completed(target)), now(), isJump) ?? "";
+    loop?.wake();
+    return why;
+  }
+
+  /** A place with what it leaves out as it is now. */
+  function completed(/** @type {any} */ target) {
+    const { distance, heading, pitch, above, pixel_m } = report?.view ?? {};
+    const isAbove = target.above ?? (above && target.distance === undefined && target.pitch === undefined);
+    return isAbove ? { heading, pixel_m, ...target, above: true } : { distance, heading, pitch, ...target, above: undefined, pixel_m: undefined };
+  }
+
+  function goTo(/** @type {string} */ text) {
+    const why = view?.go_to(text, now()) ?? "";
+    loop?.wake();
+    return why;
+  }
+
+  function show() {
+    panel.show(settings, about);
+    layout.divider.show(settings);
+  }
+
+  function endMove() {
+    if (pointers.isHeld()) {
+      moveTimer = setTimeout(endMove, MOVE_ENDS_MS);
+      return;
+    }
+    moveTimer = 0;
+    if (report?.view) emit("moveend", report.view);
+  }
+
+  function watchMoves(/** @type {import("./corniche-map.js").FrameReport} */ now) {
+    const next = JSON.stringify(now.view);
+    if (next === place) return;
+    const isFirst = place === "";
+    place = next;
+    if (isFirst) return;
+    clearTimeout(moveTimer);
+    moveTimer = setTimeout(endMove, MOVE_ENDS_MS);
+  }
+
+  function draw(/** @type {number} */ now_s) {
+    if (!view) return null;
+    /** @type {import("./corniche-map.js").FrameReport} */
+    let now;
+    try {
+      now = JSON.parse(view.frame(now_s));
+    } catch (error) {
+      failed(error);
+      return null;
+    }
+    report = now;
+    if (now.view) layout.compass.show(now.view);
+    layout.scale.show(now.metres_per_point);
+    layout.status.show(now);
+    layout.progress(now.progress);
+    panel.report(now);
+    for (const { kind, text } of now.notices) tell(kind, text);
+    watchMoves(now);
+    if (now.is_settled) settle();
+    return now.next;
+  }
+
+  /** @type {(() => void)[]} */
+  let waiting = [];
+  function settle() {
+    const done = waiting;
+    waiting = [];
+    for (const resolve of done) resolve();
+  }
+
+  /** The place and the road at a pixel of the canvas. */
+  async function pick(/** @type {number} */ x, /** @type {number} */ y) {
+    const text = await view.pick(x, y);
+    return /** @type {import("./corniche-map.js").Pick | null} */ (JSON.parse(text));
+  }
+
+  let picks = 0;
+  async function pickByHand(/** @type {number} */ x, /** @type {number} */ y, /** @type {boolean} */ always) {
+    const turn = (picks += 1);
+    let found;
+    try {
+      found = await pick(x, y);
+    } catch (error) {
+      if (!isOver) tell("warn", failureOf(error).message);
+      return;
+    }
+    if (isOver || turn !== picks) return;
+    const isWanted = emit("pick", found, true) && from.showCard();
+    if (isWanted && found && (found.road || always)) layout.place.show(found);
+    else layout.place.hide();
+  }
+
+  const panel = makePanel({ set: setByHand, command: from.command, goTo, hasLink: from.hashName() !== null }, about, () => from.command("panel"));
+  layout.over.prepend(panel.element);
+  ends.push(() => panel.element.remove());
+  const wake = () => loop.wake();
+  const input = { view: () => view, wake };
+  const pointers = watchPointers(canvas, {
+    ...input,
+    clicked: (x, y) => void pickByHand(x, y, false),
+    asked: (x, y) => void pickByHand(x, y, true),
+  });
+  ends.push(pointers.end);
+  ends.push(watchKeys(canvas, { ...input, command: from.command }));
+  loop = makeLoop(canvas, draw);
+  ends.push(loop.stop, () => clearTimeout(moveTimer));
+  ends.push(watchSize(canvas, (...size) => {
+    view?.resize(...size);
+    // Drawn before the page is painted, or the map would flicker while it is resized.
+    loop.now();
+  }));
+  layout.credit(about.attribution);
+  show();
+
+  const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hashName: from.hashName });
+  const session = {
+    end, set, setByHand, command, lookAt, goTo, actions, panel: panel.element, tell, wake,
+    about: () => about,
+    settings: () => settings,
+    report: () => report,
+    pick: (/** @type {number} */ x, /** @type {number} */ y) => {
+      const scale = canvas.width / canvas.getBoundingClientRect().width;
+      return pick(x * scale, y * scale);
+    },
+    pickMiddle: () => void pickByHand(canvas.width / 2, canvas.height / 2, true),
+    readPixels: async () => ({ width: canvas.width, height: canvas.height, data: await view.read_pixels() }),
+    zoom(/** @type {number} */ steps) {
+      view.wheel(steps, canvas.width / 2, canvas.height / 2, now());
+      wake();
+    },
+    settled: () => new Promise((/** @type {(value?: any) => void} */ resolve) => {
+      waiting.push(resolve);
+      wake();
+    }),
+  };
+  return session;
+}

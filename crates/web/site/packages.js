@@ -1,0 +1,10 @@
+// The packages that lie beside the page: packages.json, made by `corniche serve`.
+
+/** A list of { name, src }, with addresses that are complete; empty where there is no list. */
+export async function packages() {
+  const address = new URL("packages.json", import.meta.url);
+  const answer = await fetch(address).catch(() => null);
+  if (!answer?.ok) return [];
+  const list = await answer.json().catch(() => []);
+  return list.map(({ name, src }) => ({ name, src: new URL(src, address).href }));
+}

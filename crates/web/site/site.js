@@ -1,0 +1,53 @@
+// The page of the viewer: ?src=ADDRESS names the package; without it, those beside the page are offered, or a file is taken.
+import { packages } from "./packages.js";
+
+const map = document.getElementById("map");
+const chooser = document.getElementById("chooser");
+const said = document.getElementById("said");
+const drop = document.getElementById("drop");
+
+function show(src, title) {
+  chooser.hidden = true;
+  map.hidden = false;
+  document.title = `${title} – Corniche`;
+  map.src = src;
+}
+
+const nameOf = (src) => decodeURIComponent(new URL(src, location.href).pathname.split("/").pop()).replace(/\.pmtiles$/, "") || src;
+
+/** A file of this computer: a blob's address answers range requests as a server does. */
+function showFile(file) {
+  if (file) show(`${URL.createObjectURL(file)}#${encodeURIComponent(file.name)}`, file.name.replace(/\.pmtiles$/, ""));
+}
+
+async function begin() {
+  const src = new URLSearchParams(location.search).get("src");
+  if (src) return show(src, nameOf(src));
+  const known = await packages();
+  if (known.length === 1) return show(known[0].src, known[0].name);
+  said.textContent = known.length > 1 ? "Choose a map." : "No map lies beside this page. Name one in its address, ?src=ADDRESS, or open a file.";
+  document.getElementById("list").append(...known.map(({ name, src }) => {
+    const item = document.createElement("li");
+    const link = document.createElement("a");
+    link.href = `?src=${encodeURIComponent(src)}`;
+    link.textContent = name;
+    item.append(link);
+    return item;
+  }));
+}
+
+document.getElementById("file").addEventListener("change", (event) => showFile(event.target.files[0]));
+const hasFile = (event) => event.dataTransfer?.types.includes("Files");
+addEventListener("dragover", (event) => {
+  if (!hasFile(event)) return;
+  event.preventDefault();
+  drop.hidden = false;
+});
+addEventListener("dragleave", (event) => { if (!event.relatedTarget) drop.hidden = true; });
+addEventListener("drop", (event) => {
+  drop.hidden = true;
+  if (!hasFile(event)) return;
+  event.preventDefault();
+  showFile(event.dataTransfer.files[0]);
+});
+void begin();

@@ -1,0 +1,142 @@
+// Failures are told in words in the place of the map: never a blank canvas, never a panic.
+import assert from "node:assert/strict";
+import path from "node:path";
+import { test } from "node:test";
+import { rendered, colours } from "./rendering.mjs";
+import { addMap, ask, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
+import { FAILURES, keepDevices } from "./failing.mjs";
+import { PNG } from "pngjs";
+
+/** A page with a map that fails so. */
+async function failing(browser, server, other, failure, options = {}) {
+  server.behave();
+  server.state.policy = failure.policy ?? "";
+  for (const [name, what] of Object.entries(failure.replaced ?? {})) server.state.replaced.set(name, what);
+  const page = await openPage(browser, server, "/blank.html", { width: 700, height: 500, before: failure.before, ...options });
+  const opened = await addMap(page, { src: failure.src.replace("OTHER", other.origin), samples: "1", ...failure.attributes }, { height: `${options.height ?? 500}px` });
+  return { page, opened };
+}
+
+export function tests({ browser, server, other, packages, corniche, pictures }) {
+  for (const failure of FAILURES) {
+    test(`told in words: ${failure.name}`, async () => {
+      const { page, opened } = await failing(browser, server, other, failure);
+      assert.ok(opened.error, "it must not open");
+      assert.ok([failure.kind].flat().includes(opened.error.kind), `${opened.error.kind}: ${opened.error.message}`);
+      const alert = page.locator("corniche-map [role=alert]");
+      assert.ok(await alert.isVisible());
+      const said = await alert.textContent();
+      assert.ok(said.includes(opened.error.message) && opened.error.message.length > 15, said);
+      assert.ok(said.includes(opened.error.advice) && opened.error.advice.length > 10, `advice: ${opened.error.advice}`);
+      assert.doesNotMatch(said, /undefined|\[object|panicked|unreachable|RuntimeError/, said);
+      assert.ok(await page.locator("corniche-map").getByRole("button", { name: "Try again" }).isVisible());
+      assert.equal(page.workers().length, 0, "no worker is left");
+      assert.deepEqual(page.faults.errors, []);
+      const panics = page.faults.console.filter((text) => /panicked/.test(text));
+      assert.deepEqual(panics, []);
+      for (const colorScheme of ["light", "dark"]) {
+        await page.emulateMedia({ colorScheme });
+        await page.screenshot({ path: path.join(pictures, `failure-${failure.name.replace(/\W+/g, "-")}-${colorScheme}.png`) });
+      }
+      await page.end();
+      server.behave();
+    });
+  }
+
+  test("a failure that is gone: Try again opens the map", async () => {
+    const failure = FAILURES.find(({ name }) => name === "no module");
+    const { page } = await failing(browser, server, other, failure);
+    server.behave();
+    await page.locator("corniche-map").getByRole("button", { name: "Try again" }).click();
+    await page.waitForFunction(() => document.querySelector("corniche-map").about !== null);
+    await settled(page);
+    assert.ok(colours(await pixelsOf(page)) > 100);
+    await page.end();
+  });
+
+  test("without WebGPU, a picture beside the package is shown, with its credit", async () => {
+    const failure = FAILURES[0];
+    const png = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "700x500"]);
+    const replaced = { "/packages/pass.png": { bytes: PNG.sync.write(png), type: "image/png" } };
+    for (const [attributes, address] of [[{}, "/packages/pass.png"], [{ still: "/still.png" }, "/still.png"]]) {
+      const { page, opened } = await failing(browser, server, other, { ...failure, attributes, replaced: { ...replaced, "/still.png": replaced["/packages/pass.png"] } });
+      assert.equal(opened.error.kind, "no-webgpu");
+      await page.locator("corniche-map img.still").waitFor({ state: "visible" });
+      assert.ok((await page.locator("corniche-map img.still").getAttribute("src")).endsWith(address));
+      assert.match(await page.locator("corniche-map .still-credit").textContent(), /OpenStreetMap contributors/);
+      assert.ok(await page.locator("corniche-map .still-credit").isVisible());
+      await page.screenshot({ path: path.join(pictures, "failure-no-WebGPU-with-a-picture.png") });
+      await page.end();
+    }
+    server.behave();
+  });
+
+  test("a device that is lost is replaced, and the map is where it was", async () => {
+    server.behave();
+    const page = await openMap(browser, server, { "look-at": "9.51,46.91,4000,30,50", "map-style": "dark" }, { width: 500, height: 400, before: keepDevices });
+    await ask(page, (map) => map.lookAt({ lon: 9.52, lat: 46.9, distance: 2500 }, { jump: true }));
+    await settled(page);
+    const before = await ask(page, (map) => map.camera);
+    const again = ask(page, (map) => new Promise((resolve) => map.addEventListener("ready", () => resolve(true), { once: true })));
+    await page.evaluate(() => {
+      window.devices.at(-1).destroy();
+      const map = document.querySelector("corniche-map");
+      map.command("north-up");
+    });
+    assert.ok(await again);
+    await settled(page);
+    const after = await ask(page, (map) => map.camera);
+    for (const part of ["lon", "lat"]) assert.ok(Math.abs(after[part] - before[part]) < 1e-3, `${JSON.stringify(after)} ${JSON.stringify(before)}`);
+    assert.equal(await ask(page, (map) => map.settings.style), "dark");
+    assert.ok(colours(await pixelsOf(page)) > 50);
+    assert.match(await page.locator("corniche-map .notices").textContent(), /device was lost/);
+    // Lost again and again, the element gives up and says so.
+    for (let loss = 0; loss < 3; loss += 1) {
+      const next = ask(page, (map) => new Promise((resolve) => {
+        map.addEventListener("ready", () => resolve("ready"), { once: true });
+        map.addEventListener("error", (event) => resolve(event.detail.kind), { once: true });
+      }));
+      await page.evaluate(() => {
+        window.devices.at(-1).destroy();
+        document.querySelector("corniche-map").command("north-up");
+      });
+      const what = await next;
+      if (what !== "ready") {
+        assert.equal(what, "device-lost");
+        assert.equal(loss, 2);
+      }
+      await page.waitForTimeout(200);
+    }
+    assert.ok(await page.locator("corniche-map [role=alert]").isVisible());
+    await page.screenshot({ path: path.join(pictures, "failure-device-lost.png") });
+    await page.end();
+  });
+
+  test("full graphics memory is told", async () => {
+    server.behave();
+    const page = await openMap(browser, server, {}, { width: 500, height: 400, before: keepDevices });
+    const failed = ask(page, (map) => new Promise((resolve) => map.addEventListener("error", (event) => resolve(event.detail), { once: true })));
+    await page.evaluate(() => {
+      const event = new GPUUncapturedErrorEvent("uncapturederror", { error: new GPUOutOfMemoryError("no memory for a buffer") });
+      window.devices.at(-1).dispatchEvent(event);
+      document.querySelector("corniche-map").command("north-up");
+    });
+    const { kind, message } = await failed;
+    assert.equal(kind, "out-of-memory", message);
+    await page.screenshot({ path: path.join(pictures, "failure-out-of-memory.png") });
+    await page.end();
+  });
+
+  test("a host that fails later is told in a notice, and the map stays", async () => {
+    server.behave();
+    const page = await openMap(browser, server, { "look-at": "9.51,46.91,9000,30,50" }, { width: 500, height: 400 });
+    server.state.replaced.set("/packages/pass.pmtiles", { bytes: null, status: 404 });
+    await ask(page, (map) => map.lookAt({ lon: 9.53, lat: 46.93, distance: 700 }, { jump: true }));
+    await page.locator("corniche-map .notice.warn").first().waitFor({ timeout: 20_000 });
+    assert.match(await page.locator("corniche-map .notice.warn").first().textContent(), /no such file|404/);
+    assert.ok(colours(await pixelsOf(page)) > 20, "what was there is still shown");
+    await page.screenshot({ path: path.join(pictures, "failure-later.png") });
+    await page.end();
+    server.behave();
+  });
+}

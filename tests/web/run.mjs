@@ -1,0 +1,35 @@
+// All tests of the page in a real browser.
+//
+//   node run.mjs SITE PACKAGES CORNICHE PICTURES
+//
+// SITE is the folder made by scripts/web, PACKAGES holds pass.pmtiles and others, CORNICHE is the program, PICTURES a folder for pictures of the page.
+// node --test-reporter=spec --test-name-pattern=PATTERN run.mjs … runs some of them.
+import fs from "node:fs";
+import path from "node:path";
+import { after, describe } from "node:test";
+import { startChromium } from "./browser.mjs";
+import { startServer } from "./server.mjs";
+
+const [site, packages, corniche, pictures] = process.argv.slice(2).map((name) => path.resolve(name));
+if (!pictures) {
+  console.error("usage: node run.mjs SITE PACKAGES CORNICHE PICTURES");
+  process.exit(2);
+}
+const browser = await startChromium();
+if (!browser) process.exit(0);
+fs.mkdirSync(pictures, { recursive: true });
+const server = await startServer({ site, packages });
+const other = await startServer({ site, packages });
+
+/** What tests share. `other` is another host. */
+const world = { browser, server, other, site, packages, corniche, pictures, package: path.join(packages, "pass.pmtiles") };
+const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "embedding", "failures", "access", "pictures"];
+const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
+describe("the page of the browser viewer", () => {
+  for (const { tests } of parts) tests(world);
+  after(async () => {
+    await browser.close();
+    server.close();
+    other.close();
+  });
+});

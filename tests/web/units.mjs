@@ -1,0 +1,65 @@
+// Parts that need no browser: texts of cameras, lengths, wheels, names of pictures.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { after, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+export function tests({ site }) {
+  // Node takes files that end in .js for modules only where a package.json says so.
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
+  for (const name of fs.readdirSync(site).filter((name) => name.endsWith(".js"))) fs.copyFileSync(path.join(site, name), path.join(folder, name));
+  fs.writeFileSync(path.join(folder, "package.json"), '{ "type": "module" }');
+  after(() => fs.rmSync(folder, { recursive: true }));
+  const load = (name) => import(pathToFileURL(path.join(folder, name)).href);
+
+  test("a camera in an address is read as it was written", async () => {
+    const { placeOf, textOf, placeInHash, hashWith } = await load("hash.js");
+    const place = { lon: 9.521234, lat: 47.141, distance: 6000, heading: -30.5, pitch: 60 };
+    assert.deepEqual(placeOf(textOf(place)), place);
+    const above = { lon: 9.5, lat: 47.1, heading: 12, pitch: 0, above: true, pixel_m: 2.5 };
+    assert.deepEqual(placeOf(textOf(above)), above);
+    assert.deepEqual(placeOf("9.5, 47"), { lon: 9.5, lat: 47 });
+    for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,up", "9.5,47,1e9", null]) assert.equal(placeOf(wrong), null, String(wrong));
+    assert.deepEqual(placeInHash("#part&b=9.5,47&a=8,46", "a"), { lon: 8, lat: 46 });
+    assert.equal(placeInHash("#9.5,47", "a"), null);
+    assert.equal(hashWith("#part&a=8,46", "a", place), `#part&a=${textOf(place)}`);
+    assert.equal(hashWith("#9,47", "", place), `#${textOf(place)}`);
+    assert.equal(hashWith("#contents", "", place), `#contents&${textOf(place)}`);
+  });
+
+  test("lengths of the scale are round and no longer than asked", async () => {
+    const { roundLength, lengthText } = await load("scalebar.js");
+    for (const [most, length] of [[1, 1], [1.99, 1], [2, 2], [4.9, 2], [5, 5], [999, 500], [1000, 1000], [0.3, 0.2]]) assert.ok(Math.abs(roundLength(most) - length) < 1e-9, `${most}`);
+    assert.deepEqual([lengthText(2000), lengthText(500), lengthText(0.2), lengthText(1)], ["2 km", "500 m", "20 cm", "1 m"]);
+  });
+
+  test("a wheel's movement is in notches, whatever its unit", async () => {
+    globalThis.WheelEvent ??= { DOM_DELTA_PIXEL: 0, DOM_DELTA_LINE: 1, DOM_DELTA_PAGE: 2 };
+    const { notchesOf } = await load("pointers.js");
+    const notches = (event) => notchesOf({ deltaX: 0, deltaMode: 0, ctrlKey: false, ...event });
+    assert.equal(notches({ deltaY: -100 }), 1);
+    assert.equal(notches({ deltaY: 3, deltaMode: 1 }), -1);
+    assert.equal(notches({ deltaY: -1, deltaMode: 2 }), 1);
+    assert.equal(notches({ deltaY: 0, deltaX: -100 }), 1, "Shift turns a wheel sideways");
+    assert.equal(notches({ deltaY: -9000 }), 5, "never more than five at once");
+    // A pinch to twice the size has a delta of 100 ln 2 in all, and three notches halve the distance.
+    const pinch = 100 * Math.LN2;
+    assert.ok(Math.abs(2 * notches({ deltaY: -pinch / 2, ctrlKey: true }) - 3) < 1e-9);
+    assert.equal(notches({ deltaY: -100, ctrlKey: true }), 1, "Ctrl and the wheel of a mouse");
+  });
+
+  test("settings come from attributes, and what is no value is left out", async () => {
+    const { settingsOf, changeOf, controlsOf } = await load("attributes.js");
+    const element = (attributes) => ({ getAttribute: (name) => attributes[name] ?? null });
+    assert.deepEqual(settingsOf(element({ roads: "sv", "map-style": "dark", exaggeration: "2", "error-px": "x", areas: "off", wireframe: "", photo: "off" })),
+      { roads: "sv", style: "dark", exaggeration: 2, areas: false, wireframe: true, photo: 0 });
+    assert.equal(changeOf("samples", null), null);
+    assert.equal(changeOf("samples", " "), null);
+    assert.deepEqual(changeOf("photo", "style"), { photo: null });
+    assert.deepEqual([...controlsOf("none")], []);
+    assert.deepEqual([...controlsOf("zoom  compass other")], ["zoom", "compass"]);
+    assert.ok(controlsOf(null).has("panel") && controlsOf("").has("card"));
+  });
+}
