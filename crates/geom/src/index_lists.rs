@@ -1,3 +1,5 @@
+use serde::{Deserialize, Serialize};
+
 /// Lists of indices, one list for each place: triangles by the cells of a grid, half-edges by their vertex.
 ///
 /// ```text
@@ -8,7 +10,7 @@
 ///
 /// Two flat arrays take 4 bytes for each place and for each entry, and are allocated once, with their final lengths: the
 /// entries are counted first, then filled in.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct IndexLists {
     /// The list of place p is `indices[starts[p]..starts[p + 1]]`.
     starts: Vec<u32>,

@@ -1,9 +1,11 @@
+use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 use crate::MAX_LEVEL;
 
 /// A tile of the quadtree, printed `z/x/y`: level, column from the west, row from the north.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "(u8, u32, u32)", into = "(u8, u32, u32)")]
 pub struct TileId {
     z: u8,
     x: u32,
@@ -35,6 +37,20 @@ pub enum TileIdError {
         /// What was given.
         text: String,
     },
+}
+
+impl TryFrom<(u8, u32, u32)> for TileId {
+    type Error = TileIdError;
+
+    fn try_from((z, x, y): (u8, u32, u32)) -> Result<Self, TileIdError> {
+        Self::new(z, x, y)
+    }
+}
+
+impl From<TileId> for (u8, u32, u32) {
+    fn from(id: TileId) -> Self {
+        (id.z, id.x, id.y)
+    }
 }
 
 impl TileId {

@@ -1,3 +1,4 @@
+use serde::{Deserialize, Serialize};
 use std::{
     fmt,
     num::{NonZeroU8, NonZeroU32},
@@ -8,8 +9,23 @@ use corniche_geom::Polyline;
 /// Functional road class, 0 (motorway) to 7 (least), and 8 for other roads (paths, steps, cycleways).
 ///
 /// Lower is more important. Source: OpenLR White Paper v1.5 names 0 to 7; TomTom's products add 8.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "u8", into = "u8")]
 pub struct FunctionalRoadClass(u8);
+
+impl TryFrom<u8> for FunctionalRoadClass {
+    type Error = String;
+
+    fn try_from(number: u8) -> Result<Self, String> {
+        Self::new(number).ok_or_else(|| format!("there is no functional road class {number}"))
+    }
+}
+
+impl From<FunctionalRoadClass> for u8 {
+    fn from(class: FunctionalRoadClass) -> Self {
+        class.number()
+    }
+}
 
 impl FunctionalRoadClass {
     /// How many classes there are.
@@ -104,7 +120,7 @@ listed! {
 }
 
 /// What the tags of a road say of its width.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 pub enum OwnWidth {
     /// Nothing.
     #[default]

@@ -18,6 +18,7 @@
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
+#[cfg(feature = "annotations")]
 mod annotations;
 pub mod camera;
 mod class_scale;
@@ -31,9 +32,9 @@ mod lon_lat;
 mod options;
 pub mod pick;
 pub mod range;
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod render;
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod replay;
 mod scene;
 pub mod stream;
@@ -56,6 +57,7 @@ pub mod for_tests {
     };
 }
 
+#[cfg(feature = "annotations")]
 pub use annotations::{
     Legend, LegendArea, LegendRoad, bar_length, bar_length_m, draw_attribution, draw_legend,
 };
@@ -64,8 +66,8 @@ pub use frame_view::{FrameView, Wireframe};
 pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
 pub use viewpoint::{CameraRequest, OffGround, SightedGround};

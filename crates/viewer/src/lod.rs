@@ -10,6 +10,7 @@
 //!
 //! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TILE_CELLS, TileId};
@@ -23,7 +24,7 @@ use crate::{
 };
 
 /// What is known of a tile's ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GroundSummary {
     /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
     pub geometric_error_m: f64,

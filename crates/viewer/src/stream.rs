@@ -65,6 +65,8 @@ pub struct Plan {
     pub cancel: Vec<TileId>,
     /// Tiles to load, most urgent first.
     pub load: Vec<TileId>,
+    /// Tiles that are being loaded and are not wanted any more. Who can stop that tells [`Streamer::abandoned`]; else they arrive.
+    pub unwanted: Vec<TileId>,
     /// How many tiles this view needs next that are not resident yet; the tiles beneath them are not counted.
     pub missing: usize,
 }
@@ -105,6 +107,11 @@ impl Streamer {
         if self.loading.remove(&id) {
             self.waiting.insert(id, facts);
         }
+    }
+
+    /// A tile of [`Plan::unwanted`] is not loaded any more and will not arrive.
+    pub fn abandoned(&mut self, id: TileId) {
+        self.loading.remove(&id);
     }
 
     /// How many bytes of tiles are on the graphics card.
@@ -251,6 +258,7 @@ impl Streamer {
         for id in &plan.cancel {
             self.waiting.remove(id);
         }
+        plan.unwanted = self.loading.difference(&wanted).copied().collect();
         // Tiles that wait because there is no room for them must not become more and more.
         let room = self.budget.tiles_in_flight.saturating_sub(self.waiting.len());
         let coming = coming.iter().take(room);

@@ -2,20 +2,15 @@
 //! `app/frame.rs`.
 
 mod adapter;
-mod camera_control;
-mod camera_limits;
 mod captures;
 mod draw_input;
 mod drawing;
 mod first_settings;
-mod first_view;
 mod frame;
 mod frame_pace;
-mod ground_probe;
 mod shown_package;
 mod shown_view;
 mod style_list;
-mod typed_place;
 
 pub(crate) use self::{
     frame::FrameInput,
@@ -25,29 +20,33 @@ pub(crate) use self::{
 
 use std::path::PathBuf;
 
+use corniche_live::{
+    CameraControl, GroundProbe, ShownGround, TileLoader, Tiles,
+    controls::{Button, Input, Modifiers, Navigator},
+    first_view, limits, place_in_world,
+};
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::flight::{Pose, WorkingCrs};
+use corniche_viewer::{
+    SightedGround,
+    flight::{Pose, WorkingCrs},
+};
 use egui::{Rect, pos2};
 use glam::DVec2;
 
 use self::{
-    adapter::AdapterState, camera_control::CameraControl, camera_limits::limits,
-    captures::Captures, drawing::Drawing, first_settings::first_settings, first_view::first_view,
-    frame_pace::FramePace, ground_probe::GroundProbe, style_list::StyleList,
-    typed_place::place_in_world,
+    adapter::AdapterState, captures::Captures, drawing::Drawing, first_settings::first_settings,
+    frame_pace::FramePace, style_list::StyleList,
 };
 use crate::{
     ClockS, CommandOf, NotSaved, WindowError, WindowRequest,
     canvas::Canvas,
     command::{Command, DrawingCommand},
-    controls::{Button, Input, Modifiers, Navigator},
     formatting,
     notices::Notices,
+    panel,
     save_files::SaveFiles,
     settings::{Refinement, Settings},
     shots::Shots,
-    tile_loader::TileLoader,
-    tiles::{ShownGround, Tiles},
     trace::Trace,
 };
 
@@ -112,13 +111,19 @@ impl App {
         pixels_per_point: f32,
     ) -> Result<Self, WindowError> {
         let exaggeration = request.exaggeration;
+        let panel_px = panel::first_width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
+        let sighted = SightedGround {
+            extent: package.extent(),
+            heights_m: package.height_range_m(),
+            at_place_m: place_height_m,
+        };
         let home = first_view(
             request.camera,
-            &package,
-            place_height_m,
-            exaggeration,
+            package.manifest(),
+            sighted,
+            package.vertical_scale(exaggeration),
             size_px,
-            pixels_per_point,
+            panel_px as u32,
         )?;
         let limits = limits(package.manifest());
         let graphics = AdapterState::of(canvas);

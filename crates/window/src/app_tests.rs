@@ -5,6 +5,10 @@ use std::{
 };
 
 use corniche_geom::TileId;
+use corniche_live::{
+    LoaderThreads,
+    polled_loader::{PolledLoader, late_package, polled},
+};
 use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, RoadMethod, RoadOptions,
@@ -14,13 +18,7 @@ use corniche_viewer::{
 };
 
 use super::*;
-use crate::{
-    Inertia, NamedStyle,
-    canvas::tests::canvas,
-    platform::LoaderThreads,
-    save_files::tests::NoFiles,
-    tile_loader::tests::{PolledLoader, late_package, polled},
-};
+use crate::{Inertia, NamedStyle, canvas::tests::canvas, save_files::tests::NoFiles};
 
 const SIZE_PX: [u32; 2] = [640, 480];
 
@@ -98,7 +96,7 @@ fn drawn_at_rest(
 #[test]
 fn a_window_on_tiles_that_nothing_waits_for_draws_what_one_on_a_file_draws() {
     let Some(mut first) = canvas() else { return };
-    let late = late_package();
+    let late = late_package(corniche_testing::package::written());
     let root = polled(late.load(TileId::ROOT)).unwrap();
     let loader = Box::new(PolledLoader::new(&late));
     let found = drawn_at_rest(&mut first, late, &root, loader);

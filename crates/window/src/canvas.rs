@@ -4,14 +4,12 @@
 mod scene;
 mod snapshot;
 
-use std::collections::BTreeMap;
-
 use corniche_geom::TileId;
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions,
     gpu::{
-        DrawTile, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, Targets,
-        TileBuffers,
+        Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, ResidentTiles,
+        Targets,
     },
     tiles::{AreaVolumes, LineLayer, TileGeometry, TileLayer},
 };
@@ -30,7 +28,7 @@ pub(crate) struct Canvas {
     ui: egui_wgpu::Renderer,
     format: wgpu::TextureFormat,
     renderer: Renderer,
-    tiles: BTreeMap<TileId, TileBuffers>,
+    tiles: ResidentTiles,
     /// One for each method that is shown.
     maps: Vec<Map>,
     difference: Option<(TextureId, Picture)>,
@@ -59,7 +57,7 @@ impl Canvas {
             renderer: Renderer::new(&gpu),
             format,
             gpu,
-            tiles: BTreeMap::new(),
+            tiles: ResidentTiles::default(),
             maps: Vec::new(),
             difference: None,
             shown: None,
@@ -74,20 +72,12 @@ impl Canvas {
 
     /// Removes tiles and uploads others.
     pub(crate) fn change(&mut self, evict: &[TileId], upload: &[TileGeometry]) {
-        for id in evict {
-            self.tiles.remove(id);
-        }
-        for tile in upload {
-            let above = tile.id.parent().and_then(|parent| self.tiles.get(&parent));
-            let above = above.map(TileBuffers::slopes);
-            let buffers = TileBuffers::new(&self.gpu, tile, above);
-            self.tiles.insert(tile.id, buffers);
-        }
+        self.tiles.change(&self.gpu, evict, upload);
     }
 
     /// Replaces the lines and areas that a person draws on a tile.
     pub(crate) fn replace_drawn(&mut self, id: TileId, lines: &TileLayer, areas: &AreaVolumes) {
-        if let Some(tile) = self.tiles.get_mut(&id) {
+        if let Some(tile) = self.tiles.get_mut(id) {
             tile.replace_lines(&self.gpu, LineLayer::Drawn, lines);
             tile.replace_drawn_areas(&self.gpu, areas);
         }
@@ -158,14 +148,7 @@ impl Canvas {
             latitude_deg: scene.latitude_deg,
             wireframe: scene.wireframe,
         };
-        let tiles: Vec<DrawTile<'_>> = scene
-            .drawn
-            .iter()
-            .filter_map(|drawn| {
-                let buffers = self.tiles.get(&drawn.id)?;
-                Some(DrawTile { buffers, skirt_depth_m: drawn.skirt_depth_m })
-            })
-            .collect();
+        let tiles = self.tiles.draw_list(&scene.drawn);
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
             self.counts.segments += tile.road_segments(&view);

@@ -1,10 +1,9 @@
 //! A window on a package: what moves the camera, what is shown beside the map.
 //!
 //! ```text
-//!  system ──► platform ──► app ── inputs ──► controls ──► camera ──► tiles ──► canvas ──► surface
-//!                           ▲                                          │         ▲
-//!                           └───────── panel, overlay ◄── content      ▼         │
-//!                                                                   loader ── decoded tiles
+//!  system ──► platform ──► app ── inputs ──► corniche-live: camera, tiles ──► canvas ──► surface
+//!                           ▲
+//!                           └───────── panel, overlay ◄── content
 //! ```
 //!
 //! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere.
@@ -17,9 +16,7 @@
 
 mod app;
 mod canvas;
-mod clicks;
 mod command;
-mod controls;
 mod drawing;
 mod error;
 mod formatting;
@@ -30,17 +27,14 @@ mod outcome;
 mod overlay;
 mod panel;
 mod platform;
-mod recorder;
 mod request;
 mod save_files;
 mod settings;
 mod shots;
-mod tile_loader;
-mod tiles;
 mod trace;
 mod window_content;
 
-pub use controls::Inertia;
+pub use corniche_live::controls::Inertia;
 pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};

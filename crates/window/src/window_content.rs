@@ -1,5 +1,6 @@
 //! What a frame shows beside the map: values that go from the app to the panel and the overlay.
 
+use corniche_live::{GroundPoint, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
     RoadMethod,
@@ -9,16 +10,7 @@ use corniche_viewer::{
 
 use corniche_styles::Rgb;
 
-use crate::{controls::Mode, frame_times::FrameTimes, notices::Notice};
-
-/// A place on the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct GroundPoint {
-    /// Longitude and latitude, WGS84.
-    pub(crate) lon_lat_deg: [f64; 2],
-    /// x and y in the working CRS, true height.
-    pub(crate) at_m: [f64; 3],
-}
+use crate::{frame_times::FrameTimes, notices::Notice};
 
 /// What a package may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

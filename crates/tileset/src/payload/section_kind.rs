@@ -2,6 +2,8 @@
 
 use std::ops::BitOr;
 
+use serde::{Deserialize, Serialize};
+
 /// Declares the kinds, so that the list of all kinds has every kind.
 macro_rules! kinds {
     ($($kind:ident = $number:literal, $name:literal;)+) => {
@@ -55,7 +57,7 @@ pub(crate) const GEO: RoadKinds = RoadKinds { planes: Kind::RoadsGeo, coded: Kin
 pub(crate) const SV: RoadKinds = RoadKinds { planes: Kind::RoadsSv, coded: Kind::CodedSv };
 
 /// Which sections of a payload to decode; combine them with `|`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sections(u16);
 
 impl Sections {

@@ -67,6 +67,7 @@ mod picture;
 mod pipeline;
 mod read_back;
 mod renderer;
+mod resident_tiles;
 mod road_instances;
 mod shared_bindings;
 mod slope_chain;
@@ -85,6 +86,7 @@ pub use self::{
     picture::{MAX_SAMPLES_PER_SIDE, Picture},
     read_back::ReadBack,
     renderer::Renderer,
+    resident_tiles::ResidentTiles,
     slope_chain::SlopeChain,
     targets::Targets,
     tile_buffers::{DrawTile, TileBuffers, tile_bytes},

@@ -63,6 +63,7 @@ impl Picture {
     ///
     /// # Errors
     /// When the device is lost or could not draw.
+    #[cfg(feature = "annotations")]
     pub fn read_image(&self, gpu: &Gpu) -> Result<image::RgbaImage, ReadBackError> {
         let [width, height] = self.size_px;
         // Four bytes for each pixel, so there is always an image.

@@ -14,6 +14,7 @@
 mod border_strips;
 mod plan_mesh;
 
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use corniche_areas::{AreaClass, AreaObject};
@@ -45,7 +46,7 @@ pub struct BadArea {
 }
 
 /// A wall of a volume: upright over a segment of the outline, with the inside on the left.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AreaWall {
     /// Metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],
@@ -56,7 +57,7 @@ pub struct AreaWall {
 }
 
 /// A corner of the caps of a volume, at the bottom and at the top.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AreaCorner {
     /// Metres from the tile's reference point, east and north.
     pub place_in_tile: [f32; 2],
@@ -65,7 +66,7 @@ pub struct AreaCorner {
 }
 
 /// The volumes of one class.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassVolumes {
     /// The class.
     pub class: AreaClass,
@@ -80,7 +81,7 @@ pub struct ClassVolumes {
 }
 
 /// All volumes of a tile, by class.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AreaVolumes {
     /// Walls.
     pub walls: Vec<AreaWall>,

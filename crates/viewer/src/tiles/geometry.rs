@@ -3,6 +3,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
+use serde::{Deserialize, Serialize};
 
 use super::{
     AreaVolumes, BadArea, BadRoad, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
@@ -13,7 +14,7 @@ use super::{
 use crate::lod::GroundSummary;
 
 /// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference point.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TileGeometry {
     /// Which tile.
     pub id: TileId,
@@ -46,7 +47,7 @@ pub struct TileGeometry {
 }
 
 /// A way with a width of its own that some style may cap.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct WideWay {
     /// OSM's id of the way.
     pub(crate) way_id: i64,
@@ -54,6 +55,14 @@ pub(crate) struct WideWay {
     pub(crate) class: FunctionalRoadClass,
     /// What its tags say.
     pub(crate) own_width: OwnWidth,
+}
+
+/// A decoded tile did not come whole from where it was decoded.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a decoded tile did not come whole: {reason}")]
+pub struct TransferError {
+    /// What was wrong with it.
+    pub reason: String,
 }
 
 /// The wide ways of some lines, each once.
@@ -204,6 +213,29 @@ impl TileGeometry {
             self.lines.set(layer, lay(lines, &ground, methods));
         }
         self
+    }
+
+    /// The tile as bytes for another instance of this program, of the same version: a worker of a page decodes tiles, and the page draws
+    /// them.
+    ///
+    /// # Errors
+    /// When memory runs out.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, TransferError> {
+        bincode::serde::encode_to_vec(self, bincode::config::legacy())
+            .map_err(|error| TransferError { reason: error.to_string() })
+    }
+
+    /// The tile of [`TileGeometry::to_bytes`].
+    ///
+    /// # Errors
+    /// When the bytes are not whole.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, TransferError> {
+        let failed = |reason: String| TransferError { reason };
+        match bincode::serde::decode_from_slice(bytes, bincode::config::legacy()) {
+            Ok((tile, read)) if read == bytes.len() => Ok(tile),
+            Ok(_) => Err(failed("there are bytes after it".to_owned())),
+            Err(error) => Err(failed(error.to_string())),
+        }
     }
 
     /// The same tile without its roads, lines, areas, slopes and photo: enough for rays and heights.

@@ -1,10 +1,11 @@
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
+use serde::{Deserialize, Serialize};
 
 use super::triangle_grid::TriangleGrid;
 
 /// A vertex of the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GroundVertex {
     /// Metres from the tile's reference point; z is true height, before exaggeration.
     pub(crate) position_in_tile: [f32; 3],
@@ -19,7 +20,7 @@ pub(crate) struct GroundVertex {
 /// get the same curtain, as a wall: no crack is there, but the data ends.
 ///
 /// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
     pub(crate) vertices: Vec<GroundVertex>,

@@ -10,6 +10,7 @@ mod overlays;
 
 use corniche_geom::LatticePoint;
 use corniche_tileset::BoundaryRecord;
+use serde::{Deserialize, Serialize};
 
 pub(crate) use self::lay::{TileGround, lay};
 pub use self::overlays::Overlays;
@@ -49,7 +50,7 @@ impl From<BoundaryRecord> for LayerLine {
 }
 
 /// What a tile has of one layer, ready to be uploaded: nothing of a method that is not wanted.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TileLayer {
     /// As geometry (GEO). The place of a road's class is that of the line's style.
     pub segments: RoadSegments,
@@ -75,7 +76,7 @@ impl TileLayer {
 }
 
 /// What a tile has of all layers.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LineLayers([TileLayer; LineLayer::ALL.len()]);
 
 impl LineLayers {

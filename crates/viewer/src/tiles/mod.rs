@@ -6,6 +6,7 @@
 //! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
 pub(crate) mod areas;
+mod decoder;
 mod drawn_area;
 mod geometry;
 mod ground_mesh;
@@ -29,8 +30,9 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
+    decoder::TileDecoder,
     drawn_area::DrawnArea,
-    geometry::TileGeometry,
+    geometry::{TileGeometry, TransferError},
     line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,
     package::PackageTiles,

@@ -40,14 +40,10 @@ impl PackageSource {
 }
 
 impl PackageSource {
-    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos, areas or boundaries
-    /// where the style hides them.
+    /// See [`TileDecoder::for_look`](super::TileDecoder::for_look).
     #[must_use]
     pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
-        let tiles = self.0.for_method(method);
-        let tiles = if style.photo > 0.0 { tiles } else { tiles.without_photos() };
-        let tiles = if style.has_areas() { tiles } else { tiles.without_areas() };
-        Self(if style.has_boundaries() { tiles } else { tiles.without_boundaries() })
+        Self(self.0.for_look(method, style))
     }
 }
 

@@ -1,10 +1,11 @@
 use corniche_tileset::Photo;
+use serde::{Deserialize, Serialize};
 
 /// The photo of a tile, ready to be uploaded: four sizes, each half as large as the one before.
 ///
 /// More sizes are not needed: a tile whose texels are more than eight times too fine is replaced by a coarser one. And in more the
 /// border, of eight texels, would not reach around the tile any more.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoImage {
     /// Texels along a side, border included.
     pub(crate) side: u32,

@@ -1,12 +1,13 @@
 use corniche_geom::{Cell, TILE_NODES};
 use corniche_tileset::Relief;
 use half::f16;
+use serde::{Deserialize, Serialize};
 
 /// The slopes of the ground at all nodes of a tile, as texels: rise in metres per metre east and north, row 0 in the north.
 ///
 /// Slopes and not normals, so that a stretched ground needs one product; both are mixed along a straight line between nodes. Half
 /// precision is exact to a 2048th of the slope.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShadingSlopes {
     /// Bits of half-precision numbers.
     texels: Vec<[u16; 2]>,

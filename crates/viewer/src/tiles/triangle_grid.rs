@@ -1,6 +1,7 @@
 use std::ops::RangeInclusive;
 
 use corniche_geom::IndexLists;
+use serde::{Deserialize, Serialize};
 
 /// Cells along each side of a grid.
 const SIDE: usize = 32;
@@ -13,7 +14,7 @@ const SLACK: f64 = 4e-6;
 ///
 /// Takes 4 KiB a tile, and 4 bytes for each cell that the box around a triangle touches: some 8 bytes a triangle where
 /// they are smaller than cells, and at most 4 KiB a triangle where they are as large as the tile.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TriangleGrid {
     /// West and south of the surface.
     min: [f64; 2],

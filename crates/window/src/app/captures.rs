@@ -2,6 +2,7 @@
 
 use std::{collections::VecDeque, path::PathBuf};
 
+use corniche_live::Recorder;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     draw_attribution,
@@ -14,7 +15,6 @@ use crate::{
     NotSaved, WindowError,
     canvas::{Canvas, Snapshot},
     command::Shot,
-    recorder::Recorder,
     shots::Shots,
 };
 

@@ -1,17 +1,19 @@
 //! What mouse and keys mean for the lines that a person draws, and what the panel is told of them.
 
+use corniche_live::{
+    CameraControl, ShownGround, Tiles,
+    controls::{Button, Input, KnownGround as _, Modifiers},
+};
 use corniche_tileset::Manifest;
 use corniche_viewer::camera::Camera;
 use glam::{DVec2, DVec3};
 
-use super::{App, CameraControl, Drawing, ShownPackage, ground};
+use super::{App, Drawing, ShownPackage, ground};
 use crate::{
     command::DrawingCommand,
-    controls::{Button, Input, KnownGround as _, Modifiers},
     drawing::Point,
     formatting,
     settings::Settings,
-    tiles::{ShownGround, Tiles},
     window_content::{DrawingContent, Handle},
 };
 

@@ -3,14 +3,13 @@
 use std::{path::PathBuf, sync::Arc};
 
 use corniche_geom::TileId;
+use corniche_live::{Tiles, controls::Modifiers};
 use corniche_tileset::Manifest;
 
 use crate::{
     ClockS, DrawnLine, NotSaved, SaveDrawing,
     canvas::Canvas,
-    controls::Modifiers,
     drawing::{Document, LaidLines, Line, Point, Tool},
-    tiles::Tiles,
 };
 
 /// The drawing of the window.

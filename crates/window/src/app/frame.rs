@@ -3,6 +3,7 @@
 //! In this order: tiles that have arrived, time, choice of tiles, map, panel. A change made in the panel is seen in the next
 //! frame, which the panel asks for.
 
+use corniche_live::Changes;
 use corniche_styles::Rgb;
 use corniche_viewer::{
     camera::Camera,
@@ -19,7 +20,6 @@ use crate::{
     formatting,
     panel::{self, Answer},
     settings::{Refinement, Settings},
-    tiles::Changes,
     trace::TraceLine,
     window_content::{Has, WindowContent},
 };

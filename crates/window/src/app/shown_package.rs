@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use corniche_geom::TileId;
+use corniche_live::MAX_PITCH_DEG;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     gpu::tile_bytes,
@@ -8,7 +9,6 @@ use corniche_viewer::{
     tiles::{MapExtent, MapPackage, TileCatalog, TileGeometry},
 };
 
-use super::camera_limits::MAX_PITCH_DEG;
 use crate::{WindowError, WindowRequest};
 
 /// Checks what can be checked before any tile is loaded.
@@ -23,7 +23,7 @@ pub(crate) fn check(request: &WindowRequest, catalog: &dyn TileCatalog) -> Resul
     Ok(())
 }
 
-/// A package that can be shown. It knows which tiles there are; a [`TileLoader`](crate::tile_loader::TileLoader) loads them.
+/// A package that can be shown. It knows which tiles there are; a [`TileLoader`](corniche_live::TileLoader) loads them.
 pub(crate) struct ShownPackage {
     package: Arc<dyn MapPackage>,
     height_range_m: [f64; 2],

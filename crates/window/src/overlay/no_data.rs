@@ -1,7 +1,9 @@
 use egui::{CornerRadius, FontId, Rect, Stroke, Ui, vec2};
 
 use super::palette::{AMBER, CHALK, MARGIN, SLATE};
-use crate::{controls::Mode, window_content::WindowContent};
+use corniche_live::controls::Mode;
+
+use crate::window_content::WindowContent;
 
 /// What is said where the middle of the map has no ground.
 pub(crate) const WORDS: &str = "no data here; R returns to the first view";

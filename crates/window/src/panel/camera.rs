@@ -1,6 +1,8 @@
 use egui::{Key, TextEdit, Ui};
 
-use crate::{command::Command, controls::Mode, settings::Settings, window_content::WindowContent};
+use corniche_live::controls::Mode;
+
+use crate::{command::Command, settings::Settings, window_content::WindowContent};
 
 /// The section that moves the camera: buttons, and a place to go to.
 pub(crate) fn show(

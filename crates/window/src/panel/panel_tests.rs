@@ -1,3 +1,4 @@
+use corniche_live::{GroundPoint, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
     RoadMethod,
@@ -9,11 +10,9 @@ use egui::{Event, PointerButton, RawInput, Shape, TextureId, vec2};
 
 use super::*;
 use crate::{
-    controls::Mode,
     frame_times::FrameTimes,
     notices::Notice,
     settings::{Compare, usual},
-    window_content::GroundPoint,
 };
 
 #[path = "golden_tests.rs"]

@@ -1,8 +1,8 @@
+use corniche_live::controls::Mode;
 use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, FontId, Label, RichText, Ui};
 
 use crate::{
-    controls::Mode,
     formatting,
     settings::{Compare, Settings},
     window_content::WindowContent,

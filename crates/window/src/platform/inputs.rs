@@ -1,5 +1,6 @@
 //! Events of the window system, translated into inputs and commands of the app.
 
+use corniche_live::controls::{Button, Input, Key, KeyState, Modifiers};
 use glam::DVec2;
 use winit::{
     event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent},
@@ -9,7 +10,6 @@ use winit::{
 use crate::{
     app::App,
     command::{Command, DrawingCommand, Shot},
-    controls::{Button, Input, Key, KeyState, Modifiers},
 };
 
 /// Scrolling by this much on a touchpad counts as a notch of a wheel.

@@ -11,14 +11,13 @@ mod event_loop;
 mod files;
 mod first_tiles;
 mod inputs;
-mod loader;
 mod open_window;
 mod screen;
 mod shell;
 mod watch;
 
 #[cfg(test)]
-pub(crate) use self::{files::FileWriter, loader::LoaderThreads};
+pub(crate) use self::files::FileWriter;
 pub use self::{
     shell::run,
     watch::{Watched, watch},

@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
+use corniche_live::LoaderThreads;
 use winit::{
     event::WindowEvent,
     event_loop::{ActiveEventLoop, EventLoopProxy},
@@ -13,7 +14,6 @@ use super::{
     files::FileWriter,
     first_tiles::OpenedPackage,
     inputs::{self, EndKey, Inputs},
-    loader::LoaderThreads,
     screen::{Acquired, Screen},
 };
 use crate::{

@@ -1,13 +1,14 @@
 //! Where the dashes of tunnels and lines are.
 
 use corniche_geom::Bounds;
+use serde::{Deserialize, Serialize};
 
 /// Lengths are counted in whole lengths of this many metres, so that f32 is precise enough between them. A power of two, as the
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
 
 /// Where dashes are on a segment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DashPlace {
     /// How far along the line the segment's start is, working metres.
     start_m: f32,

@@ -1,10 +1,11 @@
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use serde::{Deserialize, Serialize};
 
 use super::{super::PlanScale, GroundLine, PlanLine, RoadLook};
 
 /// A side of a tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Side {
     West,
     East,
@@ -13,7 +14,7 @@ pub(crate) enum Side {
 }
 
 /// Where a road meets the border of its tile.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RoadEnd {
     /// OSM's id of the way.
     pub(crate) way_id: i64,

@@ -1,3 +1,4 @@
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use corniche_roads::FunctionalRoadClass;
@@ -10,7 +11,7 @@ pub(crate) trait Classed {
 }
 
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RoadList<T> {
     pieces: Vec<T>,
     ranges: [Range<u32>; FunctionalRoadClass::COUNT],

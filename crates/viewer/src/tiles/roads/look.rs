@@ -1,7 +1,8 @@
 use corniche_roads::{Form, RoadAttributes, Structure};
+use serde::{Deserialize, Serialize};
 
 /// What a road is, as far as it changes how it is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RoadLook {
     /// As its class is.
     #[default]

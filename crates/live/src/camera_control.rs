@@ -1,0 +1,197 @@
+//! What a person does with mouse and keys, made into a camera for each frame.
+
+use corniche_viewer::{camera::Camera, flight::Pose};
+use glam::DVec2;
+
+use crate::{
+    clicks::{Click, Clicks},
+    controls::{Button, Inertia, Input, KnownGround, Mode, Modifiers, Navigator, View},
+};
+
+/// Tiles are loaded in advance for where the camera will be after this time.
+const AHEAD_S: f64 = 0.5;
+
+/// The camera and what moves it.
+pub struct CameraControl {
+    navigator: Navigator,
+    clicks: Clicks,
+    is_dragging: bool,
+    pixels_per_point: f64,
+    /// Time and view of the last frame.
+    last_view: Option<(f64, View)>,
+    /// When the camera moved last.
+    moved_s: f64,
+}
+
+impl CameraControl {
+    /// Moves what `navigator` moves, on a screen with so many pixels to a point.
+    #[must_use]
+    pub fn new(navigator: Navigator, pixels_per_point: f32) -> Self {
+        Self {
+            navigator,
+            clicks: Clicks::default(),
+            is_dragging: false,
+            pixels_per_point: f64::from(pixels_per_point),
+            last_view: None,
+            moved_s: f64::NEG_INFINITY,
+        }
+    }
+
+    /// A button of the mouse goes down on the map.
+    pub fn press(
+        &mut self,
+        button: Button,
+        at_px: DVec2,
+        modifiers: Modifiers,
+        now_s: f64,
+        ground: &dyn KnownGround,
+    ) {
+        let click = match button {
+            Button::Left => self.clicks.press(self.in_points(at_px), now_s),
+            _ => Click::Single,
+        };
+        let input = if click == Click::Double {
+            Input::DoubleClick { at_px, modifiers }
+        } else {
+            self.is_dragging = true;
+            Input::Press { button, at_px, modifiers }
+        };
+        self.input(&input, now_s, ground);
+    }
+
+    /// The same for a press that is never the second of a double click.
+    pub fn press_once(
+        &mut self,
+        button: Button,
+        at_px: DVec2,
+        modifiers: Modifiers,
+        now_s: f64,
+        ground: &dyn KnownGround,
+    ) {
+        self.is_dragging = true;
+        self.input(&Input::Press { button, at_px, modifiers }, now_s, ground);
+    }
+
+    /// Any other input.
+    pub fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
+        match input {
+            Input::Move { at_px } => self.clicks.move_to(self.in_points(*at_px)),
+            Input::Release { button } => {
+                self.is_dragging = false;
+                if *button == Button::Left {
+                    self.clicks.release();
+                }
+            }
+            Input::LetGo => {
+                self.is_dragging = false;
+                self.clicks.let_go();
+            }
+            _ => {}
+        }
+        self.navigator.handle(input, now_s, ground);
+    }
+
+    /// See [`Navigator::jump_to`].
+    pub fn jump_to(&mut self, view: View) {
+        self.navigator.jump_to(view);
+    }
+
+    /// See [`Navigator::travel_to`].
+    pub fn travel_to(&mut self, view: View, now_s: f64) {
+        self.navigator.travel_to(view, now_s);
+    }
+
+    /// See [`Navigator::set_inertia`].
+    pub fn set_inertia(&mut self, inertia: Inertia) {
+        self.navigator.set_inertia(inertia);
+    }
+
+    /// Pixels to a point of the screen, as in the last frame.
+    pub fn pixels_per_point(&self) -> f64 {
+        self.pixels_per_point
+    }
+
+    fn in_points(&self, at_px: DVec2) -> DVec2 {
+        at_px / self.pixels_per_point
+    }
+
+    /// Moves the camera for a frame in a window of this size.
+    pub fn advance(
+        &mut self,
+        now_s: f64,
+        size_px: [u32; 2],
+        pixels_per_point: f32,
+        ground: &dyn KnownGround,
+    ) -> Camera {
+        self.pixels_per_point = f64::from(pixels_per_point);
+        self.navigator.resize(size_px);
+        self.navigator.set_pixels_per_point(self.pixels_per_point);
+        self.navigator.advance(now_s, ground);
+        self.navigator.camera()
+    }
+
+    /// Where the camera will be soon if it moves on as it did since the last frame; `None` where it did not move. To be
+    /// called once for each frame.
+    pub fn look_ahead(&mut self, now_s: f64, size_px: [u32; 2]) -> Option<Camera> {
+        let view = self.view();
+        let ahead = self.last_view.and_then(|(last_s, last)| {
+            let passed_s = now_s - last_s;
+            let way = view.eye_in_world - last.eye_in_world;
+            let is_moving = passed_s > 0.0 && passed_s < AHEAD_S && way.length() > 0.0;
+            is_moving.then(|| {
+                let eye_in_world = view.eye_in_world + way * (AHEAD_S / passed_s);
+                View { eye_in_world, ..view }.camera(size_px)
+            })
+        });
+        if self.last_view.is_some_and(|(_, last)| last != view) {
+            self.moved_s = now_s;
+        }
+        self.last_view = Some((now_s, view));
+        ahead
+    }
+
+    /// All heights become `factor` times what they were; `ground` is the ground before that.
+    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
+        self.navigator.rescale_heights(factor, ground);
+    }
+
+    /// How long ago the camera moved last.
+    pub fn at_rest_s(&self, now_s: f64) -> f64 {
+        now_s - self.moved_s
+    }
+
+    /// Whether the camera goes on moving without any input.
+    pub fn is_moving(&self) -> bool {
+        self.navigator.is_moving()
+    }
+
+    /// Whether a button of the mouse is held down that was pressed on the map.
+    pub fn is_dragging(&self) -> bool {
+        self.is_dragging
+    }
+
+    /// Map mode or fly mode.
+    pub fn mode(&self) -> Mode {
+        self.navigator.mode()
+    }
+
+    /// What is seen now.
+    pub fn view(&self) -> View {
+        self.navigator.view()
+    }
+
+    /// Width and height of the window in the last frame, pixels.
+    pub fn size_px(&self) -> [u32; 2] {
+        self.navigator.camera().size_px()
+    }
+
+    /// The camera as flights have it: with its true height.
+    pub fn pose(&self, vertical_scale: f64) -> Pose {
+        let View { eye_in_world: eye, orientation, .. } = self.view();
+        Pose { eye_m: [eye.x, eye.y, eye.z / vertical_scale], orientation }
+    }
+}
+
+#[cfg(test)]
+#[path = "camera_control_tests.rs"]
+mod tests;

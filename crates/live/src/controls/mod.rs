@@ -1,0 +1,41 @@
+//! What moves the camera: `MapLibre`'s controls and a fly mode, as pure functions of inputs and time.
+//!
+//! ```text
+//!  left drag                pan; the ground grabbed stays under the cursor
+//!  right drag, Ctrl + left  turn (sideways) and tilt (up, down) about the middle of the picture
+//!  middle drag              turn and tilt about the ground grabbed
+//!  wheel                    zoom at the cursor; in fly mode: speed
+//!  double click             zoom in at the cursor; with Shift out
+//!  arrows                   pan; with Shift turn and tilt
+//!  + −                      zoom by a level; with Shift by two
+//!  two fingers              zoom (apart, together) and turn; tilt (both up or down)
+//!  W A S D, Q E             fly mode: ahead, left, back, right, down, up; with Shift fast
+//! ```
+//!
+//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and two fingers zoom and turn at once from the first
+//! movement on. A notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
+//! zoom by whole levels from where the camera is, not to the next whole level: no level is special here. A double click acts
+//! when the button goes down for the second time. The largest tilt is 85°, in `MapLibre` usually 60°. What a drag or a zoom
+//! keeps under the cursor is a point of the terrain. `MapLibre` has nothing on the middle button.
+//!
+//! Nothing here knows a window, a tile or a clock: times are arguments, and heights come from a [`KnownGround`]. All positions
+//! are in world space: the working CRS, heights times the vertical scale.
+
+mod bounded_view;
+mod fingers;
+mod flying;
+mod gesture;
+mod input;
+mod navigator;
+mod options;
+mod pending;
+mod sight;
+mod travel;
+mod view;
+
+pub use self::{
+    input::{Button, Input, Key, KeyState, Modifiers},
+    navigator::Navigator,
+    options::{Inertia, Limits, Mode},
+    view::{KnownGround, View},
+};

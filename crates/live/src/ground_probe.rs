@@ -1,0 +1,74 @@
+//! The ground under the cursor and the scale in the middle of the picture, found by rays into the scene.
+
+use corniche_geom::CoordinateTable;
+use corniche_viewer::camera::Camera;
+use glam::DVec2;
+
+use crate::controls::KnownGround;
+
+/// A place on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundPoint {
+    /// Longitude and latitude, WGS84.
+    pub lon_lat_deg: [f64; 2],
+    /// x and y in the working CRS, true height.
+    pub at_m: [f64; 3],
+}
+
+/// What rays into the scene found. It is kept while neither the scene nor the cursor changes.
+#[derive(Default)]
+pub struct GroundProbe {
+    cursor_px: Option<DVec2>,
+    /// The ground under the cursor, and the side of a pixel there in world metres.
+    cursor: Option<(GroundPoint, f64)>,
+    middle_pixel_m: Option<f64>,
+}
+
+impl GroundProbe {
+    /// Looks again at what may have changed. `is_new` says that the scene has.
+    pub fn look(
+        &mut self,
+        camera: &Camera,
+        cursor_px: Option<DVec2>,
+        is_new: bool,
+        ground: &dyn KnownGround,
+        vertical_scale: f64,
+        coordinates: &CoordinateTable,
+    ) {
+        let pixel_m = |at_px: DVec2| {
+            let hit = ground.hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))?;
+            let (_, depth_m) = camera.project(hit)?;
+            Some((hit, camera.pixel_at_depth_m(depth_m)))
+        };
+        if is_new {
+            let [width, height] = camera.size_px().map(f64::from);
+            self.middle_pixel_m =
+                pixel_m(DVec2::new(width, height) / 2.0).map(|(_, pixel_m)| pixel_m);
+        }
+        if is_new || self.cursor_px != cursor_px {
+            self.cursor = cursor_px.and_then(pixel_m).map(|(hit, pixel_m)| {
+                let point = GroundPoint {
+                    lon_lat_deg: coordinates.wgs84_from_working([hit.x, hit.y]),
+                    at_m: [hit.x, hit.y, hit.z / vertical_scale],
+                };
+                (point, pixel_m)
+            });
+            self.cursor_px = cursor_px;
+        }
+    }
+
+    /// The ground under the cursor.
+    pub fn cursor(&self) -> Option<GroundPoint> {
+        self.cursor.map(|(point, _)| point)
+    }
+
+    /// Side of a pixel on the ground under the cursor, world metres.
+    pub fn cursor_pixel_m(&self) -> Option<f64> {
+        self.cursor.map(|(_, pixel_m)| pixel_m)
+    }
+
+    /// Side of a pixel on the ground in the middle of the window, world metres.
+    pub fn middle_pixel_m(&self) -> Option<f64> {
+        self.middle_pixel_m
+    }
+}

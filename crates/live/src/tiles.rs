@@ -1,0 +1,234 @@
+//! The tiles of the window: chosen by the streamer, loaded by a [`TileLoader`]. Their ground is kept for rays and heights.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
+
+use corniche_geom::TileId;
+use corniche_viewer::{
+    camera::Camera,
+    gpu::tile_bytes,
+    lod::{Drawn, Quality},
+    pick,
+    stream::{Plan, StreamBudget, Streamer, TileFacts},
+    tiles::{TileCatalog, TileGeometry, TileLines},
+};
+use glam::DVec3;
+
+use crate::{controls::KnownGround, tile_loader::TileLoader};
+
+/// All tiles, from the request to the drawing.
+pub struct Tiles {
+    catalog: Arc<dyn TileCatalog>,
+    quantum_m: f64,
+    loader: Box<dyn TileLoader>,
+    budget: StreamBudget,
+    streamer: Streamer,
+    /// Tiles that are decoded and not yet on the graphics card.
+    waiting: BTreeMap<TileId, TileGeometry>,
+    /// The ground of the tiles that are on the graphics card.
+    resident: BTreeMap<TileId, TileGeometry>,
+    drawn: Vec<Drawn>,
+    missing: usize,
+    loading: BTreeSet<TileId>,
+    is_full: bool,
+    /// Whether [`Tiles::take_first_time_full`] has returned true.
+    was_full: bool,
+}
+
+/// What a frame has to do on the graphics card, in this order.
+#[derive(Default)]
+pub struct Changes {
+    /// Tiles to remove.
+    pub evict: Vec<TileId>,
+    /// Tiles to upload, and then to hand to [`Tiles::keep_ground`].
+    pub upload: Vec<TileGeometry>,
+    /// Whether tiles were requested, uploaded or removed: then the next frame may have more to do.
+    pub is_under_way: bool,
+}
+
+impl Tiles {
+    /// Nothing loaded yet. `quantum_m` is the package's height step.
+    pub fn new(
+        catalog: Arc<dyn TileCatalog>,
+        quantum_m: f64,
+        loader: Box<dyn TileLoader>,
+        budget: StreamBudget,
+    ) -> Self {
+        Self {
+            catalog,
+            quantum_m,
+            loader,
+            budget,
+            streamer: Streamer::new(budget),
+            waiting: BTreeMap::new(),
+            resident: BTreeMap::new(),
+            drawn: Vec::new(),
+            missing: 0,
+            loading: BTreeSet::new(),
+            is_full: false,
+            was_full: false,
+        }
+    }
+
+    /// Takes the tiles that have arrived. Returns messages about those that cannot be had.
+    ///
+    /// Such a tile counts as one without ground: finer tiles beneath it are shown where there are any, and else a hole.
+    pub fn take_arrivals(&mut self) -> Vec<String> {
+        let mut defects = Vec::new();
+        for loaded in self.loader.arrivals() {
+            if !self.loading.remove(&loaded.id) {
+                // It was requested before the device was lost, and again after that; this is the second answer.
+                continue;
+            }
+            let tile = loaded.tile.unwrap_or_else(|error| {
+                let cause = std::error::Error::source(&error).map(ToString::to_string);
+                defects.push(format!("{error}: {}", cause.unwrap_or_default()));
+                let (frame, lines) = (self.catalog.frame(), TileLines::default());
+                TileGeometry::assemble(loaded.id, None, &lines, frame, self.quantum_m)
+            });
+            let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
+            self.streamer.arrived(loaded.id, facts);
+            self.waiting.insert(loaded.id, tile);
+        }
+        defects
+    }
+
+    /// Chooses what is drawn, kept and loaded.
+    pub fn choose(&mut self, camera: &Camera, ahead: Option<&Camera>, quality: Quality) -> Changes {
+        let plan = self.streamer.plan(self.catalog.as_ref(), camera, ahead, quality);
+        let Plan { evict, upload, drawn, cancel, load, missing, unwanted } = plan;
+        for id in &evict {
+            self.resident.remove(id);
+        }
+        let mut uploaded = Vec::with_capacity(upload.len());
+        for id in upload {
+            uploaded.extend(self.waiting.remove(&id));
+        }
+        for id in &cancel {
+            self.waiting.remove(id);
+        }
+        for id in self.loader.abandon(&unwanted) {
+            self.streamer.abandoned(id);
+            self.loading.remove(&id);
+        }
+        self.loader.request(&load);
+        self.loading.extend(&load);
+        self.drawn = drawn;
+        self.missing = missing;
+        let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
+        // Tiles wait for room that no other tile gives up, and nothing is being loaded.
+        self.is_full = missing > 0 && !is_under_way && self.loading.is_empty();
+        Changes { evict, upload: uploaded, is_under_way }
+    }
+
+    /// Keeps the ground of tiles that were uploaded, for rays and heights. Their roads, which are most of a tile in a town,
+    /// are dropped: they are needed on the graphics card only.
+    pub fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
+        for tile in uploaded {
+            self.resident.insert(tile.id, tile.without_roads());
+        }
+    }
+
+    /// The ground of the tiles that are on the graphics card.
+    pub fn resident(&self) -> impl Iterator<Item = &TileGeometry> {
+        self.resident.values()
+    }
+
+    /// Everything on the graphics card is lost: all tiles are requested again.
+    pub fn begin_again(&mut self) {
+        self.loader.forget();
+        self.loading.clear();
+        self.streamer = Streamer::new(self.budget);
+        self.waiting.clear();
+        self.resident.clear();
+        self.drawn.clear();
+        self.is_full = false;
+    }
+
+    /// Tiles that are drawn.
+    pub fn drawn(&self) -> &[Drawn] {
+        &self.drawn
+    }
+
+    /// Tiles that the view needs and that are not on the graphics card yet.
+    pub fn missing(&self) -> usize {
+        self.missing
+    }
+
+    /// Tiles being loaded.
+    pub fn loading(&self) -> usize {
+        self.loading.len()
+    }
+
+    /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
+    /// was asked.
+    pub fn is_full(&self) -> bool {
+        self.is_full
+    }
+
+    /// Whether [`Tiles::is_full`] holds for the first time since the window opened: true once.
+    pub fn take_first_time_full(&mut self) -> bool {
+        self.is_full && !std::mem::replace(&mut self.was_full, true)
+    }
+
+    /// Bytes on the graphics card, and how many there may be.
+    pub fn bytes_of_budget(&self) -> [u64; 2] {
+        [self.streamer.resident_bytes(), self.budget.gpu_bytes]
+    }
+
+    /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
+    ///
+    /// `height_range_m` are the true heights between which all of it lies.
+    pub fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
+        ShownGround { tiles: self, vertical_scale, height_range_m }
+    }
+}
+
+/// The ground as the camera's controls see it, in world heights: true heights times `vertical_scale`.
+pub struct ShownGround<'a> {
+    tiles: &'a Tiles,
+    vertical_scale: f64,
+    height_range_m: [f64; 2],
+}
+
+impl KnownGround for ShownGround<'_> {
+    fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3> {
+        let drawn = self.tiles.drawn.iter().filter_map(|drawn| self.tiles.resident.get(&drawn.id));
+        pick::ground_at(drawn, self.vertical_scale, eye_in_world, ray_in_world)
+            .map(|hit| hit.at_in_world)
+    }
+
+    fn height(&self, at: [f64; 2]) -> Option<f64> {
+        let mut found = None;
+        let mut next = self.tiles.resident.get(&TileId::ROOT);
+        while let Some(tile) = next {
+            found = tile.ground_height_m(at).or(found);
+            // On a border the place is in two children, at the same height.
+            next = tile
+                .id
+                .children()
+                .filter_map(|child| self.tiles.resident.get(&child))
+                .find(|child| holds(child, at));
+        }
+        found.map(|height_m| height_m * self.vertical_scale)
+    }
+
+    fn base_height(&self) -> f64 {
+        let [lowest_m, highest_m] = self.height_range_m;
+        f64::midpoint(lowest_m, highest_m) * self.vertical_scale
+    }
+
+    fn heights(&self) -> [f64; 2] {
+        self.height_range_m.map(|height_m| height_m * self.vertical_scale)
+    }
+}
+
+fn holds(tile: &TileGeometry, at: [f64; 2]) -> bool {
+    (0..2).all(|axis| (at[axis] - tile.reference_m[axis]).abs() <= tile.size_m[axis] / 2.0)
+}
+
+#[cfg(test)]
+#[path = "tiles_tests.rs"]
+mod tests;

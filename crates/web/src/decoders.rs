@@ -1,0 +1,158 @@
+//! The page's side of the workers that decode tiles.
+
+use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
+
+use corniche_geom::TileId;
+use corniche_viewer::tiles::{LoadTileError, TileGeometry};
+use futures_channel::oneshot;
+use js_sys::{Array, Object, Reflect, Uint8Array};
+use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
+
+use crate::{host::Host, problem::thrown};
+
+/// Jobs that workers have.
+#[derive(Default)]
+struct Jobs {
+    last: u32,
+    under_way: BTreeMap<u32, Job>,
+}
+
+struct Job {
+    host: Host,
+    worker: u32,
+    answer: oneshot::Sender<Result<Uint8Array, String>>,
+}
+
+thread_local! {
+    /// Of all maps of the page.
+    static JOBS: RefCell<Jobs> = RefCell::default();
+}
+
+/// The workers of one map.
+pub(crate) struct Decoders {
+    host: Host,
+    /// How many jobs each worker has.
+    loads: Rc<RefCell<Vec<u32>>>,
+}
+
+impl Decoders {
+    /// Tells the workers which package their tiles are of.
+    pub(crate) fn new(host: Host, manifest: &str) -> Self {
+        let workers = host.workers().max(1);
+        for worker in 0..workers {
+            let message = object(&[("manifest", manifest.into())]);
+            host.post(worker, &message, &Array::new());
+        }
+        Self { host, loads: Rc::new(RefCell::new(vec![0; workers as usize])) }
+    }
+
+    /// Has a tile decoded. `decoder` is what is read of it, as JSON of a [`TileDecoder`](corniche_viewer::tiles::TileDecoder).
+    ///
+    /// # Errors
+    /// When it is damaged, or its worker failed.
+    pub(crate) async fn decode(
+        &self,
+        payload: Option<Vec<u8>>,
+        id: TileId,
+        decoder: &str,
+    ) -> Result<TileGeometry, LoadTileError> {
+        let failed = |reason: String| LoadTileError { id, source: reason.into() };
+        let (answer, got) = oneshot::channel();
+        let worker = self.least_busy();
+        let job = JOBS.with_borrow_mut(|jobs| {
+            jobs.last = jobs.last.wrapping_add(1);
+            jobs.under_way.insert(jobs.last, Job { host: self.host.clone(), worker, answer });
+            jobs.last
+        });
+        let transfer = Array::new();
+        let payload = payload.map_or(JsValue::NULL, |bytes| {
+            let bytes = Uint8Array::from(&bytes[..]);
+            transfer.push(&bytes.buffer());
+            bytes.into()
+        });
+        let (z, x, y) = id.into();
+        let message = object(&[
+            ("job", job.into()),
+            ("decoder", decoder.into()),
+            ("z", z.into()),
+            ("x", x.into()),
+            ("y", y.into()),
+            ("payload", payload),
+        ]);
+        let busy = Busy::new(&self.loads, worker);
+        self.host.post(worker, &message, &transfer);
+        let got = got.await;
+        drop(busy);
+        let bytes = got.unwrap_or_else(|_| Err("the map was closed".to_owned())).map_err(failed)?;
+        TileGeometry::from_bytes(&bytes.to_vec()).map_err(|error| failed(error.to_string()))
+    }
+
+    fn least_busy(&self) -> u32 {
+        let loads = self.loads.borrow();
+        (0..loads.len()).min_by_key(|worker| loads[*worker]).unwrap_or(0) as u32
+    }
+}
+
+/// A job counts as long as somebody waits for it.
+struct Busy {
+    loads: Rc<RefCell<Vec<u32>>>,
+    worker: u32,
+}
+
+impl Busy {
+    fn new(loads: &Rc<RefCell<Vec<u32>>>, worker: u32) -> Self {
+        loads.borrow_mut()[worker as usize] += 1;
+        Self { loads: Rc::clone(loads), worker }
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        self.loads.borrow_mut()[self.worker as usize] -= 1;
+    }
+}
+
+/// Takes the answer of a worker: every message that a worker posts is handed to this.
+#[wasm_bindgen]
+pub fn decoded(message: &JsValue) {
+    let field = |name: &str| Reflect::get(message, &name.into()).unwrap_or(JsValue::UNDEFINED);
+    let Some(number) = field("job").as_f64() else { return };
+    let Some(job) = JOBS.with_borrow_mut(|jobs| jobs.under_way.remove(&(number as u32))) else {
+        return;
+    };
+    let answer = match field("tile").dyn_into::<Uint8Array>() {
+        Ok(tile) => Ok(tile),
+        Err(_) => Err(field("error").as_string().unwrap_or_else(|| thrown(message))),
+    };
+    // Sending fails when nobody waits any more.
+    let _ = job.answer.send(answer);
+}
+
+/// A worker of a map failed for good: what it was to decode is told as failed.
+#[wasm_bindgen]
+pub fn worker_failed(host: &Host, worker: u32, why: &str) {
+    let failed: Vec<Job> = JOBS.with_borrow_mut(|jobs| {
+        let is_lost =
+            |job: &Job| job.worker == worker && Object::is(job.host.as_ref(), host.as_ref());
+        let lost: Vec<u32> = jobs
+            .under_way
+            .iter()
+            .filter(|(_, job)| is_lost(job))
+            .map(|(number, _)| *number)
+            .collect();
+        lost.iter().filter_map(|number| jobs.under_way.remove(number)).collect()
+    });
+    for job in failed {
+        let _ = job.answer.send(Err(format!("a worker failed: {why}")));
+    }
+}
+
+/// An object with these fields.
+pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
+    let object = Object::new();
+    for (name, value) in fields {
+        // Setting a field of an object of one's own cannot fail.
+        let _ = Reflect::set(&object, &(*name).into(), value);
+    }
+    object.into()
+}

@@ -1,0 +1,200 @@
+//! One range of a file on a web server, by the browser's `fetch`.
+
+use js_sys::{ArrayBuffer, Function, Promise, Reflect, Uint8Array};
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::JsFuture;
+use web_sys::{AbortSignal, Headers, RequestCache, RequestInit, Response};
+
+use crate::problem::{Problem, thrown};
+
+/// Bytes that a server sent, and what it said of the file.
+pub(crate) struct Answer {
+    pub(crate) bytes: Vec<u8>,
+    /// Length of the whole file.
+    pub(crate) file_bytes: u64,
+    pub(crate) etag: Option<String>,
+}
+
+/// The text for a server that must be set up otherwise.
+const EXPOSE: &str = "Let the server send `Access-Control-Allow-Origin` and `Access-Control-Expose-Headers: Content-Range, ETag, Content-Encoding`.";
+const RANGES: &str =
+    "Put the package on a server that knows range requests, or use `corniche serve`.";
+
+/// Asks for the bytes from `first` to `last`; fewer come only where the file ends.
+///
+/// # Errors
+/// When they do not come, or something else comes.
+pub(crate) async fn range(
+    address: &str,
+    [first, last]: [u64; 2],
+    signal: &AbortSignal,
+) -> Result<Answer, Problem> {
+    let response = match request(address, Some([first, last]), Some(signal)).await {
+        Ok(response) => response,
+        Err(error) => return Err(unreachable(address, &error).await),
+    };
+    let header = |name: &str| response.headers().get(name).ok().flatten();
+    let status = response.status();
+    match status {
+        206 => {}
+        200 => {
+            drop_body(&response);
+            return Err(Problem::new(
+                "no-ranges",
+                "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.",
+                RANGES,
+            ));
+        }
+        404 | 410 => {
+            return Err(Problem::new(
+                "not-found",
+                format!("The server has no such file ({status})."),
+                "Check the address of the package.",
+            ));
+        }
+        401 | 403 => {
+            let advice = "Check the address, and whether the file is public.";
+            return Err(Problem::new(
+                "not-found",
+                format!("The server refuses access ({status})."),
+                advice,
+            ));
+        }
+        416 => {
+            return Err(Problem::new(
+                "changed",
+                "The file on the server is shorter than it was, or empty.",
+                "Open the map again; fetch or build the package again if that does not help.",
+            ));
+        }
+        _ => {
+            return Err(Problem::new(
+                "network",
+                format!("The server answers {status} {}.", response.status_text()),
+                "Try again later.",
+            ));
+        }
+    }
+    if let Some(encoding) = header("content-encoding").filter(|encoding| encoding != "identity") {
+        drop_body(&response);
+        return Err(compressed(&encoding));
+    }
+    let Some(told) = header("content-range") else {
+        drop_body(&response);
+        return Err(Problem::new(
+            "cors",
+            "The page must not see which bytes the server sends (Content-Range).",
+            EXPOSE,
+        ));
+    };
+    let Some(file_bytes) = file_bytes_of(&told, first) else {
+        drop_body(&response);
+        return Err(Problem::new(
+            "no-ranges",
+            format!("The server sends other bytes than asked for: {told}."),
+            RANGES,
+        ));
+    };
+    let cut_off = |what: &str| {
+        Problem::new(
+            "network",
+            format!("The answer of the server was cut off: {what}."),
+            "Try again later.",
+        )
+    };
+    let body = async { JsFuture::from(response.array_buffer()?).await };
+    let body: JsValue = body.await.map_err(|error| cut_off(&thrown(&error)))?.into();
+    let bytes = Uint8Array::new(&body.unchecked_into::<ArrayBuffer>()).to_vec();
+    let asked = (last + 1).min(file_bytes).saturating_sub(first);
+    if bytes.len() as u64 != asked {
+        return Err(cut_off(&format!("it has {} bytes of {asked}", bytes.len())));
+    }
+    Ok(Answer { bytes, file_bytes, etag: header("etag") })
+}
+
+/// The length of the file, from `bytes FIRST-LAST/LENGTH`; `None` if the range begins elsewhere.
+fn file_bytes_of(content_range: &str, first: u64) -> Option<u64> {
+    let (range, total) = content_range.strip_prefix("bytes ")?.split_once('/')?;
+    let begins: u64 = range.split_once('-')?.0.trim().parse().ok()?;
+    (begins == first).then(|| total.trim().parse().ok()).flatten()
+}
+
+fn compressed(encoding: &str) -> Problem {
+    Problem::new(
+        "compressed",
+        format!(
+            "The server compresses the package on its way ({encoding}), so that its ranges are not those of the file."
+        ),
+        "Switch compression off for this file on the server, for instance by naming it .pmtiles.bin, or use `corniche serve`.",
+    )
+}
+
+/// Why a request found no answer: the browser tells no page, so it is found out by asking otherwise.
+async fn unreachable(address: &str, error: &JsValue) -> Problem {
+    if let Ok(response) = request(address, None, None).await {
+        let encoding = response.headers().get("content-encoding").ok().flatten();
+        drop_body(&response);
+        if let Some(encoding) = encoding {
+            return compressed(&encoding);
+        }
+        let message = format!(
+            "The server breaks off when a part of the file is asked for ({}).",
+            thrown(error)
+        );
+        return Problem::new("no-ranges", message, RANGES);
+    }
+    if opaque(address).await {
+        let message = "The server does not allow pages of other hosts to read the file (CORS).";
+        return Problem::new("cors", message, EXPOSE);
+    }
+    Problem::new(
+        "network",
+        format!("The server cannot be reached ({}).", thrown(error)),
+        "Check the address and the connection, and try again.",
+    )
+}
+
+/// Whether a server answers at all, whatever it allows.
+async fn opaque(address: &str) -> bool {
+    let init = RequestInit::new();
+    init.set_mode(web_sys::RequestMode::NoCors);
+    init.set_method("HEAD");
+    init.set_cache(RequestCache::NoStore);
+    fetch(address, &init).await.is_ok()
+}
+
+async fn request(
+    address: &str,
+    range: Option<[u64; 2]>,
+    signal: Option<&AbortSignal>,
+) -> Result<Response, JsValue> {
+    let init = RequestInit::new();
+    let headers = Headers::new()?;
+    if let Some([first, last]) = range {
+        headers.set("Range", &format!("bytes={first}-{last}"))?;
+    } else {
+        init.set_method("HEAD");
+    }
+    init.set_headers(&headers);
+    init.set_signal(signal);
+    // The map keeps what it needs; browsers' caches serialise the ranges of an address.
+    init.set_cache(RequestCache::NoStore);
+    fetch(address, &init).await
+}
+
+/// By the global function, which pages and workers both have.
+async fn fetch(address: &str, init: &RequestInit) -> Result<Response, JsValue> {
+    let global = js_sys::global();
+    let fetch: Function = Reflect::get(&global, &"fetch".into())?.unchecked_into();
+    let promise: Promise = fetch.call2(&global, &address.into(), init)?.unchecked_into();
+    let response: JsValue = JsFuture::from(promise).await?.into();
+    Ok(response.unchecked_into())
+}
+
+/// Stops the download of what is not wanted.
+fn drop_body(response: &Response) {
+    if let Some(body) = response.body() {
+        // It fails only if the body is read elsewhere.
+        let _ = body.cancel();
+    }
+}

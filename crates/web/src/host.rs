@@ -1,0 +1,23 @@
+//! What the page does for a map.
+
+use js_sys::Array;
+use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
+
+#[wasm_bindgen]
+extern "C" {
+    /// The page's side of a map. `wake()` asks for a frame, `post(worker, message, transfer)` hands a message to a worker, `workers` is their number.
+    #[derive(Clone)]
+    pub type Host;
+
+    /// A frame is wanted.
+    #[wasm_bindgen(method)]
+    pub fn wake(this: &Host);
+
+    /// Hands a message to a worker.
+    #[wasm_bindgen(method)]
+    pub fn post(this: &Host, worker: u32, message: &JsValue, transfer: &Array);
+
+    /// How many workers there are.
+    #[wasm_bindgen(method, getter)]
+    pub fn workers(this: &Host) -> u32;
+}

@@ -1,0 +1,52 @@
+//! A map in a page of a browser, drawn by the same renderer as `render` and `view`.
+//!
+//! ```text
+//!  page (JavaScript) ── pointers, keys, settings ──► MapView ──► corniche-live, corniche-viewer ──► canvas
+//!                                                      │  ▲
+//!                                      ranges (fetch) ─┘  └─ decoded tiles ◄── workers: the same module, `work`
+//! ```
+//!
+//! [`MapView`](view::MapView) is a map on a canvas. It draws when the page calls `frame`, and asks for frames through the page's `Host`. Bytes
+//! come by range requests ([`source`]), tiles are decoded by the page's workers ([`worker`]), each an instance of this module; no memory is
+//! shared, so that any static host will do. What fails is told as a [`Problem`](problem::Problem): a kind for programs, a message and advice for people.
+//!
+//! This crate never computes geometry, and has no controls of its own but what a page can say.
+
+mod merging;
+mod settings;
+
+#[cfg(target_arch = "wasm32")]
+mod canvas;
+#[cfg(target_arch = "wasm32")]
+mod decoders;
+#[cfg(target_arch = "wasm32")]
+mod fetch;
+#[cfg(target_arch = "wasm32")]
+mod first_tiles;
+#[cfg(target_arch = "wasm32")]
+mod flights;
+#[cfg(target_arch = "wasm32")]
+mod host;
+#[cfg(target_arch = "wasm32")]
+mod loader;
+#[cfg(target_arch = "wasm32")]
+mod pick;
+#[cfg(target_arch = "wasm32")]
+mod place;
+#[cfg(target_arch = "wasm32")]
+mod problem;
+#[cfg(target_arch = "wasm32")]
+mod report;
+#[cfg(target_arch = "wasm32")]
+mod source;
+#[cfg(target_arch = "wasm32")]
+mod view;
+#[cfg(target_arch = "wasm32")]
+mod worker;
+
+/// Called when the module is loaded, in the page and in each worker.
+#[cfg(target_arch = "wasm32")]
+#[wasm_bindgen::prelude::wasm_bindgen(start)]
+pub fn start() {
+    console_error_panic_hook::set_once();
+}

@@ -1,0 +1,277 @@
+//! A package on a web server, by range requests, with a cache of its own.
+
+use std::{
+    cell::{Cell, RefCell},
+    collections::BTreeMap,
+    rc::Rc,
+};
+
+use corniche_tileset::{ByteSource, SourceError};
+use futures_channel::oneshot;
+use wasm_bindgen_futures::spawn_local;
+use web_sys::AbortController;
+
+use crate::{fetch::range, merging::merged, problem::Problem};
+
+/// What the first request asks for: the tables of most packages, and the first tiles.
+const HEAD_BYTES: u64 = 64 << 10;
+/// What is kept of what was read.
+const CACHE_BYTES: usize = 64 << 20;
+/// What failed on its way is asked for again so often.
+const TRIES: u32 = 3;
+
+/// What was asked of the server so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Traffic {
+    pub(crate) requests: u32,
+    pub(crate) bytes: u64,
+}
+
+/// A package on a web server. Clones share what they have read.
+#[derive(Clone)]
+pub(crate) struct WebSource(Rc<Shared>);
+
+struct Shared {
+    address: String,
+    file_bytes: u64,
+    etag: Option<String>,
+    cache: RefCell<Cache>,
+    waiting: RefCell<Vec<Waiting>>,
+    traffic: Cell<Traffic>,
+    /// The last thing that went wrong: errors of reading have no kind.
+    problem: RefCell<Option<Problem>>,
+}
+
+/// A range that was asked for and is not under way yet.
+struct Waiting {
+    offset: u64,
+    length: u64,
+    answer: oneshot::Sender<Result<Vec<u8>, Problem>>,
+    ticket: Rc<Ticket>,
+}
+
+/// What one who waits holds. When it is dropped, nobody waits for this range any more.
+#[derive(Default)]
+struct Ticket(RefCell<Option<Rc<Request>>>);
+
+/// A request under way, for one range or several.
+struct Request {
+    /// How many wait for it.
+    wanted: Cell<usize>,
+    controller: RefCell<Option<AbortController>>,
+}
+
+/// Leaves when the future that waits is dropped, answered or not.
+struct Leaving(Rc<Ticket>);
+
+impl Drop for Leaving {
+    fn drop(&mut self) {
+        let Some(request) = self.0.0.take() else { return };
+        request.wanted.set(request.wanted.get().saturating_sub(1));
+        if request.wanted.get() == 0
+            && let Some(controller) = request.controller.take()
+        {
+            controller.abort();
+        }
+    }
+}
+
+/// Ranges that were read, by their first byte.
+#[derive(Default)]
+struct Cache {
+    ranges: BTreeMap<u64, (Rc<[u8]>, u64)>,
+    bytes: usize,
+    clock: u64,
+}
+
+impl Cache {
+    fn get(&mut self, offset: u64, length: usize) -> Option<Vec<u8>> {
+        self.clock += 1;
+        let (from, (bytes, used)) = self.ranges.range_mut(..=offset).next_back()?;
+        let at = usize::try_from(offset - from).ok()?;
+        let found = bytes.get(at..at.checked_add(length)?)?.to_vec();
+        *used = self.clock;
+        Some(found)
+    }
+
+    fn put(&mut self, offset: u64, bytes: Rc<[u8]>) {
+        self.clock += 1;
+        self.bytes += bytes.len();
+        if let Some((old, _)) = self.ranges.insert(offset, (bytes, self.clock)) {
+            self.bytes -= old.len();
+        }
+        while self.bytes > CACHE_BYTES && self.ranges.len() > 1 {
+            let Some(oldest) =
+                self.ranges.iter().min_by_key(|(_, (_, used))| *used).map(|(at, _)| *at)
+            else {
+                return;
+            };
+            if let Some((old, _)) = self.ranges.remove(&oldest) {
+                self.bytes -= old.len();
+            }
+        }
+    }
+}
+
+impl WebSource {
+    /// Asks for the beginning of the file.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub(crate) async fn open(address: &str) -> Result<Self, Problem> {
+        let mut tries = 0;
+        let head = loop {
+            tries += 1;
+            let controller = controller()?;
+            match range(address, [0, HEAD_BYTES - 1], &controller.signal()).await {
+                Err(problem) if problem.kind == "network" && tries < TRIES => {}
+                head => break head?,
+            }
+        };
+        let traffic = Traffic { requests: tries, bytes: head.bytes.len() as u64 };
+        let mut cache = Cache::default();
+        cache.put(0, head.bytes.into());
+        Ok(Self(Rc::new(Shared {
+            address: address.to_owned(),
+            file_bytes: head.file_bytes,
+            etag: head.etag,
+            cache: RefCell::new(cache),
+            waiting: RefCell::default(),
+            traffic: Cell::new(traffic),
+            problem: RefCell::default(),
+        })))
+    }
+
+    /// What was asked of the server so far.
+    pub(crate) fn traffic(&self) -> Traffic {
+        self.0.traffic.get()
+    }
+
+    /// Length of the file.
+    pub(crate) fn file_bytes(&self) -> u64 {
+        self.0.file_bytes
+    }
+
+    /// The last thing that went wrong, once.
+    pub(crate) fn take_problem(&self) -> Option<Problem> {
+        self.0.problem.take()
+    }
+}
+
+fn controller() -> Result<AbortController, Problem> {
+    AbortController::new().map_err(|_| {
+        Problem::new("other", "This browser cannot stop requests.", "Update the browser.")
+    })
+}
+
+impl Shared {
+    /// Asks for everything that was asked for since.
+    fn send(self: &Rc<Self>) {
+        let waiting = self.waiting.take();
+        let ranges: Vec<[u64; 2]> = waiting.iter().map(|one| [one.offset, one.length]).collect();
+        let mut waiting: Vec<Option<Waiting>> = waiting.into_iter().map(Some).collect();
+        for group in merged(&ranges) {
+            let group: Vec<Waiting> =
+                group.into_iter().filter_map(|place| waiting[place].take()).collect();
+            let shared = Rc::clone(self);
+            spawn_local(async move { shared.fetch(group).await });
+        }
+    }
+
+    /// Fetches a group of ranges as one, and answers each.
+    async fn fetch(&self, mut group: Vec<Waiting>) {
+        // Who waited for some may have left since.
+        group.retain(|one| !one.answer.is_canceled());
+        let Some(first) = group.iter().map(|one| one.offset).min() else { return };
+        let end = group.iter().map(|one| one.offset + one.length).max().unwrap_or(first);
+        let request =
+            Rc::new(Request { wanted: Cell::new(group.len()), controller: RefCell::default() });
+        for one in &group {
+            one.ticket.0.replace(Some(Rc::clone(&request)));
+        }
+        let got = self.tried([first, end - 1], &request).await;
+        let bytes: Result<Rc<[u8]>, Problem> = got.map(Into::into);
+        match &bytes {
+            Ok(bytes) => self.cache.borrow_mut().put(first, Rc::clone(bytes)),
+            Err(problem) if request.wanted.get() > 0 => {
+                self.problem.replace(Some(problem.clone()));
+            }
+            Err(_) => {}
+        }
+        for one in group {
+            let part = bytes.as_ref().map_err(Clone::clone).map(|bytes| {
+                let at = (one.offset - first) as usize;
+                bytes[at..at + one.length as usize].to_vec()
+            });
+            // Sending fails when nobody waits any more.
+            let _ = one.answer.send(part);
+        }
+    }
+
+    /// The bytes from `first` to `last`, asked for again where they were lost on their way.
+    async fn tried(&self, [first, last]: [u64; 2], request: &Request) -> Result<Vec<u8>, Problem> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let controller = controller()?;
+            let signal = controller.signal();
+            request.controller.replace(Some(controller));
+            let answer = range(&self.address, [first, last], &signal).await;
+            request.controller.take();
+            let mut traffic = self.traffic.get();
+            traffic.requests += 1;
+            traffic.bytes += answer.as_ref().map_or(0, |answer| answer.bytes.len() as u64);
+            self.traffic.set(traffic);
+            match answer {
+                Err(problem)
+                    if problem.kind == "network" && tries < TRIES && request.wanted.get() > 0 => {}
+                Err(problem) => return Err(problem),
+                Ok(answer) if answer.file_bytes != self.file_bytes || answer.etag != self.etag => {
+                    return Err(Problem::new(
+                        "changed",
+                        "The file on the server is another one than when the map was opened.",
+                        "Open the map again.",
+                    ));
+                }
+                Ok(answer) => return Ok(answer.bytes),
+            }
+        }
+    }
+}
+
+impl ByteSource for WebSource {
+    async fn length(&self) -> Result<u64, SourceError> {
+        Ok(self.0.file_bytes)
+    }
+
+    async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+        let shared = &self.0;
+        if length == 0 {
+            return Ok(Vec::new());
+        }
+        if let Some(found) = shared.cache.borrow_mut().get(offset, length) {
+            return Ok(found);
+        }
+        let (answer, got) = oneshot::channel();
+        let ticket = Rc::new(Ticket::default());
+        let is_first = shared.waiting.borrow().is_empty();
+        let waiting = Waiting { offset, length: length as u64, answer, ticket: Rc::clone(&ticket) };
+        shared.waiting.borrow_mut().push(waiting);
+        if is_first {
+            let shared = Rc::clone(shared);
+            // A microtask later: what is asked for in the same turn has come by then.
+            spawn_local(async move { shared.send() });
+        }
+        let leaving = Leaving(ticket);
+        let got = got.await;
+        drop(leaving);
+        let dropped = || Err(Problem::new("other", "the request was dropped", ""));
+        got.unwrap_or_else(|_| dropped()).map_err(|problem| SourceError {
+            name: shared.address.clone(),
+            offset,
+            length,
+            reason: problem.message,
+            may_pass: problem.kind == "network",
+        })
+    }
+}

@@ -1,0 +1,148 @@
+//! Opening a map: a device, the first bytes, the first tiles.
+
+use std::{rc::Rc, sync::Arc};
+
+use corniche_geom::TileId;
+use corniche_live::{
+    CameraControl, GroundProbe, Tiles,
+    controls::{Inertia, Navigator},
+    first_view, limits,
+};
+use corniche_presets::class_labels;
+use corniche_tileset::{OpenError, Package};
+use corniche_viewer::{
+    CameraRequest, SightedGround, range,
+    stream::StreamBudget,
+    tiles::{MapPackage as _, PackageTiles, TileCatalog},
+};
+use futures_util::future::join;
+use web_sys::HtmlCanvasElement;
+
+use super::{MapView, clamped, decoder_of, json};
+use crate::{
+    canvas::PageCanvas,
+    decoders::Decoders,
+    first_tiles::{first_tiles, off_ground},
+    flights::Flights,
+    host::Host,
+    loader::{PageLoader, Tileset},
+    place::{Place, view_of},
+    problem::Problem,
+    settings::Settings,
+    source::WebSource,
+};
+
+/// What may be done in a frame and kept, unless the page says otherwise.
+const BUDGET: StreamBudget =
+    StreamBudget { tiles_in_flight: 12, upload_bytes_per_frame: 4 << 20, gpu_bytes: 512 << 20 };
+
+/// What a page may say when it opens a map.
+#[derive(Debug, Clone, Default, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Options {
+    /// Those that are not the usual ones.
+    settings: Option<serde_json::Value>,
+    /// Where to look; without it, where the roads are.
+    view: Option<Place>,
+    /// Pixels at the right that are covered by a panel.
+    covered_px: u32,
+    /// Bytes of tiles on the graphics card.
+    gpu_bytes: Option<u64>,
+    /// Width and height of the canvas, pixels.
+    size_px: Option<[u32; 2]>,
+    /// Pixels to a point of the screen.
+    pixels_per_point: Option<f64>,
+}
+
+#[expect(
+    clippy::arc_with_non_send_sync,
+    reason = "the tiles of the native viewer are shared between threads; a page has one"
+)]
+fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
+    Arc::new(package)
+}
+
+/// Opens a package and finds the first view.
+///
+/// # Errors
+/// When there is nothing to draw with, or nothing to show.
+pub(crate) async fn open(
+    canvas: HtmlCanvasElement,
+    address: String,
+    options: &str,
+    host: Host,
+) -> Result<MapView, Problem> {
+    let wrong = |why: String| Problem::new("other", why, "Correct the page.");
+    let options: Options = serde_json::from_str(if options.is_empty() { "{}" } else { options })
+        .map_err(|error| wrong(format!("options: {error}")))?;
+    let settings = match &options.settings {
+        Some(changes) => Settings::default().changed_by(&changes.to_string()).map_err(wrong)?,
+        None => Settings::default(),
+    };
+    let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
+    range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
+    let style = settings.look().map_err(wrong)?;
+    let decoder = decoder_of(&settings, &style);
+    let size_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
+
+    // The device and the first bytes are waited for at the same time.
+    let (page_canvas, source) = join(PageCanvas::new(canvas), WebSource::open(&address)).await;
+    let page_canvas = page_canvas?;
+    let source = source?;
+    let told = |error: &OpenError| Problem::opening(error, source.take_problem());
+    let package = Package::open(source.clone()).await.map_err(|error| told(&error))?;
+    let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
+    if !package.exists(TileId::ROOT) {
+        return Err(Problem::new(
+            "no-ground",
+            "The package has no tiles.",
+            "Build it from a DEM that has heights.",
+        ));
+    }
+    let manifest = package.manifest();
+    let decoders = Decoders::new(host.clone(), &json(manifest));
+    let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
+    let first = first_tiles(&tileset, request, &decoder).await?;
+    let SightedGround { heights_m, .. } = first.ground;
+    let scale = settings.exaggeration * manifest.point_scale;
+    let size_px = clamped(size_px, page_canvas.gpu().max_side_px());
+    let home = match request {
+        CameraRequest::FromAbove { .. } => {
+            let camera = request
+                .camera(manifest, first.ground, scale, size_px)
+                .map_err(|error| off_ground(&error))?;
+            view_of(request, &camera, manifest, heights_m.map(|height_m| height_m * scale))
+        }
+        _ => first_view(request, manifest, first.ground, scale, size_px, options.covered_px)
+            .map_err(|error| off_ground(&error))?,
+    };
+    let inertia = if settings.inertia { Inertia::On } else { Inertia::Off };
+    let navigator = Navigator::new(home, limits(manifest), size_px, inertia);
+    let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
+    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
+    let budget =
+        StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
+    let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
+    let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
+    let labels = class_labels(&manifest.settings.frc_table);
+    Ok(MapView {
+        address,
+        canvas: page_canvas,
+        loader,
+        tiles,
+        camera: CameraControl::new(navigator, pixels_per_point as f32),
+        settings,
+        style,
+        labels,
+        height_range_m: heights_m,
+        size_px,
+        pixels_per_point,
+        probe: GroundProbe::default(),
+        cursor_px: None,
+        flights: Flights::default(),
+        notices: Vec::new(),
+        is_hurried: false,
+        is_beginning_again: false,
+        tileset,
+    })
+}

@@ -1,0 +1,45 @@
+# Sourced by scripts/web and scripts/test-web: a compiler for WebAssembly, and a folder with packages of npm.
+# shellcheck shell=bash
+
+WASM=wasm32-unknown-unknown
+
+# Sets `web_cargo` to the command that builds for browsers. rustup's standard library is taken where there is one or it can be added, else Debian's
+# compiler for browsers, which builds its own from source. Fails, and says why, where neither can be had.
+find_web_cargo() {
+    if [ -d "$(rustc --print sysroot)/lib/rustlib/$WASM" ] || { command -v rustup >/dev/null && rustup target add "$WASM" >&2; }; then
+        web_cargo=(cargo build --locked --target "$WASM")
+        return 0
+    fi
+    if ! (install_missing missing_for_debian_web); then
+        say "neither rustup's standard library for $WASM nor Debian's rustc-web can be installed here"
+        return 1
+    fi
+    # Building the standard library is not stable yet; this is how Debian's compiler is told to do it all the same.
+    web_cargo=(env RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=wasm-ld
+        /usr/bin/cargo build --locked --target "$WASM" -Zbuild-std=std,panic_abort)
+}
+
+missing_for_debian_web() {
+    /usr/bin/rustc --version 2>/dev/null | grep -q 1.9 || echo rustc-web
+    [ -x /usr/bin/cargo ] || echo cargo-web
+    [ -d /usr/lib/rustlib/src ] || [ -d /usr/src/rustc-web ] || echo rust-web-src
+    command -v wasm-ld >/dev/null || echo lld
+}
+
+missing_for_node() {
+    command -v node >/dev/null || echo nodejs
+    command -v npm >/dev/null || echo npm
+}
+
+# npm_folder FOLDER PACKAGE.json: a folder with the packages that a file names, made once. Fails, and says so, where there are none to be had.
+npm_folder() {
+    local folder=$1 wanted new
+    wanted=$2
+    (install_missing missing_for_node) || return 1
+    mkdir -p "$folder"
+    new=$(cat "$wanted")
+    if [ "$(cat "$folder/made-of" 2>/dev/null)" = "$new" ]; then return 0; fi
+    cp "$wanted" "$folder/package.json"
+    (cd "$folder" && npm install --ignore-scripts --no-audit --no-fund --loglevel=error --engine-strict=false) >&2 || return 1
+    printf '%s\n' "$new" >"$folder/made-of"
+}
