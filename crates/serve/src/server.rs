@@ -27,7 +27,7 @@ const ASKS_EVERY: Duration = Duration::from_millis(100);
 /// What answers that were begun may take when the server is stopped.
 const ENDS_WITHIN: Duration = Duration::from_secs(2);
 /// What a client may take to say what it wants; also how long a connection stays open on which nothing is said.
-const REQUEST_WITHIN: Duration = Duration::from_secs(60);
+const REQUEST_WITHIN: Duration = Duration::from_mins(1);
 /// Connections at once; more wait. A browser opens six.
 const MOST_CONNECTIONS: usize = 256;
 /// Threads that answer; files are read by others.
