@@ -15,7 +15,6 @@ use std::{
 /// Names the folder. A path that is not absolute begins at the root of the repository.
 const FOLDER: &str = "CORNICHE_PAGE";
 
-#[expect(clippy::print_stdout, reason = "so a build script talks to cargo")]
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-env-changed={FOLDER}");
     println!("cargo::rerun-if-changed=build.rs");

@@ -427,7 +427,12 @@ fn a_site_is_the_same_files_for_another_server() {
     assert_eq!((replaced.code, replaced.err.as_str()), (0, ""));
     assert_eq!(names(&site.join("packages")), ["Zürich 50 %.pmtiles"]);
     // Nothing is replaced that is no such folder, nor one with what is read.
-    for (target, used) in [(&page, &page), (&place.at("page/examples"), &page), (&site, &site)] {
+    for (target, used) in [
+        (&page, &page),
+        (&place.at("page/examples"), &page),
+        (&place.at("page/new"), &page),
+        (&site, &site),
+    ] {
         let words = ["serve", text(&spaced), "--page", text(used), "--site", text(target), "-O"];
         let refused = corniche(words);
         assert_eq!(refused.code, 2, "{}: {}", target.display(), refused.err);

@@ -13,6 +13,7 @@ use std::{
     sync::Arc,
 };
 
+use corniche_pipeline::folder_of;
 use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
 
 use self::{
@@ -39,6 +40,7 @@ fn write_site(
     page: &[PageFile],
     packages: &[Shown],
 ) -> Result<ExitCode, Failure> {
+    refuse_inside_page(folder, args.page.as_deref())?;
     let files = packages.iter().map(|package| package.file.as_path());
     let used: Vec<&Path> = files.chain(args.page.as_deref()).collect();
     let size = site::write(folder, existing_of(args.overwrite), page, packages, &used)?;
@@ -50,6 +52,20 @@ fn write_site(
         bytes(size),
     ));
     Ok(ExitCode::Done)
+}
+
+/// Refuses a site in the folder of the page, where the next one would take it for a part of the page.
+fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), Failure> {
+    let place = |path: &Path| path.canonicalize().ok();
+    let parent = place(folder_of(site));
+    match (parent, page.and_then(place)) {
+        (Some(parent), Some(page)) if parent.starts_with(&page) => Err(Failure::unusable(format!(
+            "cannot write {}: it would be in the folder of the page, {}; give a folder beside it",
+            site.display(),
+            page.display()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<ExitCode, Failure> {
