@@ -88,9 +88,7 @@ impl Serving {
         let mut said = String::new();
         let mut out = BufReader::new(child.stdout.take().unwrap());
         out.read_line(&mut said).unwrap();
-        if said.is_empty() {
-            panic!("it does not start: {}", ended(&mut child).err);
-        }
+        assert!(!said.is_empty(), "it does not start: {}", ended(&mut child).err);
         let url = said.trim_end().to_owned();
         assert!(url.starts_with("http://") && url.ends_with('/'), "{said:?}");
         Self { child, url }

@@ -113,8 +113,9 @@ fn exchange(address: SocketAddr, request: &str) -> Answer {
 
 impl Running {
     fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)]) -> Answer {
-        let lines: String =
+        let lines: Vec<String> =
             headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+        let lines = lines.concat();
         let host = if headers.iter().any(|(name, _)| *name == "Host") {
             String::new()
         } else {
