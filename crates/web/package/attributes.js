@@ -43,7 +43,7 @@ export function changeOf(/** @type {string} */ attribute, /** @type {string | nu
   return known && value !== undefined ? { [known[2]]: value } : null;
 }
 
-const GROUPS = ["panel", "compass", "zoom", "status", "card"];
+const GROUPS = ["panel", "compass", "zoom", "status", "card", "notices"];
 
 /** The groups of controls named by the attribute `controls`: all without it, none with "none". */
 export function controlsOf(/** @type {string | null} */ text) {

@@ -101,6 +101,7 @@ export function makeLayout(shadow, map) {
       compassGroup.hidden = !shown.has("compass");
       zoom.hidden = !shown.has("zoom");
       facts.hidden = !shown.has("status");
+      notices.element.hidden = !shown.has("notices");
     },
     fail(/** @type {HTMLElement | null} */ element) {
       failed?.remove();
