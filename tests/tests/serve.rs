@@ -326,7 +326,7 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
     fs::create_dir(&no_page).unwrap();
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
-    let lines: [(&[&str], i32, &[&str]); 8] = [
+    let lines: [(&[&str], i32, &[&str]); 10] = [
         (&[&package, "--page", &page, "--port", &port], 1, &[&port, "in use by another program"]),
         (&[&package, "--page", &page, "--address", "192.0.2.7"], 2, &["no address 192.0.2.7"]),
         (
@@ -342,6 +342,12 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
             &["on a web server already", "?src="],
         ),
         (&["--page", &page], 2, &["PACKAGE"]),
+        (
+            &[&package, "--page", &page, "--site", "s3://maps/alps"],
+            2,
+            &["s3://maps/alps", "address"],
+        ),
+        (&[&package, "--page", &page, "--site", text(&other)], 2, &["other.pmtiles: it is a file"]),
         (&[&package, "--site", "x", "--port", "0"], 2, &["--site", "--port"]),
     ];
     for (words, code, said) in lines {
@@ -350,6 +356,27 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
         assert!(ran.out.is_empty(), "{words:?}: {}", ran.out);
         assert!(said.iter().all(|said| ran.err.contains(said)), "{words:?}: {}", ran.err);
     }
+}
+
+/// Neither is waited for: nobody writes to the pipe.
+#[test]
+#[cfg(unix)]
+fn pipes_and_links_are_refused() {
+    let place = Place::new();
+    let pipe = place.at("pipe");
+    let made = Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let page = place.at("page");
+    let ran = corniche(["serve", text(&pipe), "--page", text(&page)]);
+    assert!(ran.code == 2 && ran.err.contains("pipe"), "{}", ran.err);
+    // A package that becomes one while it is served is gone.
+    let serving = place.serve(&[&place.package()], &[]);
+    fs::remove_file(place.package()).unwrap();
+    fs::rename(&pipe, place.package()).unwrap();
+    assert_eq!(serving.get("/packages/pass.pmtiles").status, 404);
+    std::os::unix::fs::symlink(place.at("page/.secret"), page.join("link.txt")).unwrap();
+    let ran = corniche(["serve", text(&place.package()), "--page", text(&page)]);
+    assert!(ran.code == 2 && ran.err.contains("link.txt is neither"), "{}", ran.err);
 }
 
 /// The program has a page of its own, or says how to get one.

@@ -14,7 +14,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     folder_output::FolderOutput,
-    interrupt,
+    interrupt, names,
     output::{Existing, failed},
 };
 
@@ -29,6 +29,7 @@ pub(crate) fn write(
     packages: &[Shown],
     used: &[&Path],
 ) -> Result<u64, Failure> {
+    names::refuse_what_is_no_file(target)?;
     let output = FolderOutput::create(target, existing, used)?;
     let not_written = |error: io::Error| failed(target, &error);
     for file in page {
