@@ -5,13 +5,19 @@ use std::fs;
 use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
-const MAY_USE: [(&str, &[&str]); 21] = [
+const MAY_USE: [(&str, &[&str]); 24] = [
     (
         "cli",
-        &["window", "viewer", "pipeline", "presets", "export", "matching", "overlay", "remote"],
+        &[
+            "window", "viewer", "pipeline", "presets", "export", "matching", "overlay", "remote",
+            "serve",
+        ],
     ),
+    ("serve", &[]),
     ("remote", &["tileset"]),
-    ("window", &["viewer"]),
+    ("window", &["live"]),
+    ("web", &["live", "presets"]),
+    ("live", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
     ("export", &["tileset", "dem", "store", "styles"]),

@@ -38,6 +38,7 @@ mod profile;
 mod progress;
 mod render;
 mod report_files;
+mod serve;
 mod settings;
 mod styles;
 mod table;
@@ -129,6 +130,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::View(args) => view::run(&args),
+        Command::Serve(args) => serve::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),
     }

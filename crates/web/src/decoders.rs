@@ -36,11 +36,11 @@ pub(crate) struct Decoders {
 }
 
 impl Decoders {
-    /// Tells the workers which package their tiles are of.
-    pub(crate) fn new(host: Host, manifest: &str) -> Self {
+    /// Tells the workers which package their tiles are of: its metadata.
+    pub(crate) fn new(host: Host, metadata: &[u8]) -> Self {
         let workers = host.workers().max(1);
         for worker in 0..workers {
-            let message = object(&[("manifest", manifest.into())]);
+            let message = object(&[("metadata", Uint8Array::from(metadata).into())]);
             host.post(worker, &message, &Array::new());
         }
         Self { host, loads: Rc::new(RefCell::new(vec![0; workers as usize])) }

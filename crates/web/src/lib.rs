@@ -18,7 +18,7 @@ mod settings;
 #[cfg(target_arch = "wasm32")]
 mod canvas;
 #[cfg(target_arch = "wasm32")]
-mod decoders;
+pub mod decoders;
 #[cfg(target_arch = "wasm32")]
 mod fetch;
 #[cfg(target_arch = "wasm32")]
@@ -26,7 +26,7 @@ mod first_tiles;
 #[cfg(target_arch = "wasm32")]
 mod flights;
 #[cfg(target_arch = "wasm32")]
-mod host;
+pub mod host;
 #[cfg(target_arch = "wasm32")]
 mod loader;
 #[cfg(target_arch = "wasm32")]
@@ -40,9 +40,9 @@ mod report;
 #[cfg(target_arch = "wasm32")]
 mod source;
 #[cfg(target_arch = "wasm32")]
-mod view;
+pub mod view;
 #[cfg(target_arch = "wasm32")]
-mod worker;
+pub mod worker;
 
 /// Called when the module is loaded, in the page and in each worker.
 #[cfg(target_arch = "wasm32")]

@@ -101,12 +101,14 @@ impl Settings {
     /// In words, when the text is no such object or a value is out of its range.
     pub(crate) fn changed_by(&self, changes: &str) -> Result<Self, String> {
         let failed = |error: serde_json::Error| format!("settings: {error}");
-        let changes: Map<String, Value> = serde_json::from_str(changes).map_err(failed)?;
-        let Value::Object(mut all) = serde_json::to_value(self).map_err(failed)? else {
-            return Err("settings: this is no object".to_owned());
+        // By way of text and of one kind of reader, which keeps the module of the page small.
+        let read = |text: &str| {
+            serde_json::from_slice::<Map<String, Value>>(text.as_bytes()).map_err(failed)
         };
-        all.extend(changes);
-        let changed: Self = serde_json::from_value(Value::Object(all)).map_err(failed)?;
+        let mut all = read(&serde_json::to_string(self).map_err(failed)?)?;
+        all.extend(read(changes)?);
+        let all = serde_json::to_vec(&all).map_err(failed)?;
+        let changed: Self = serde_json::from_slice(&all).map_err(failed)?;
         changed.check()?;
         Ok(changed)
     }

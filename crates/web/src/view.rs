@@ -384,8 +384,8 @@ impl MapView {
     }
 
     fn go(&mut self, place: &str, now_s: f64, jump: bool) -> Result<(), String> {
-        let place: Place =
-            serde_json::from_str(place).map_err(|error| format!("the place: {error}"))?;
+        let place: Place = serde_json::from_slice(place.as_bytes())
+            .map_err(|error| format!("the place: {error}"))?;
         let request = place.request();
         range::check_camera(request).map_err(|error| error.to_string())?;
         let manifest = self.tileset.package.manifest();

@@ -15,13 +15,14 @@ thread_local! {
     static MANIFEST: RefCell<Option<Manifest>> = RefCell::default();
 }
 
-/// Does what a message asks for: `{manifest}` says which package tiles are of, `{job, decoder, z, x, y, payload}` has one decoded. Returns the
+/// Does what a message asks for: `{metadata}` says which package tiles are of, `{job, decoder, z, x, y, payload}` has one decoded. Returns the
 /// answer to post, whose field `tile` is to be transferred; `undefined` where there is none.
 #[wasm_bindgen]
 pub fn work(message: &JsValue) -> JsValue {
     let field = |name: &str| Reflect::get(message, &name.into()).unwrap_or(JsValue::UNDEFINED);
-    if let Some(text) = field("manifest").as_string() {
-        MANIFEST.set(serde_json::from_str(&text).ok());
+    if let Ok(metadata) = field("metadata").dyn_into::<Uint8Array>() {
+        // The page has read the same bytes, so they are a manifest.
+        MANIFEST.set(Manifest::in_metadata(&metadata.to_vec()).ok());
         return JsValue::UNDEFINED;
     }
     let answer = match tile(&field) {
@@ -36,7 +37,8 @@ fn tile(field: &dyn Fn(&str) -> JsValue) -> Result<Vec<u8>, String> {
     let id = TileId::new(number("z") as u8, number("x") as u32, number("y") as u32)
         .map_err(|error| error.to_string())?;
     let decoder = field("decoder").as_string().unwrap_or_default();
-    let decoder: TileDecoder = serde_json::from_str(&decoder).map_err(|error| error.to_string())?;
+    let decoder: TileDecoder =
+        serde_json::from_slice(decoder.as_bytes()).map_err(|error| error.to_string())?;
     let payload = field("payload").dyn_into::<Uint8Array>().ok().map(|bytes| bytes.to_vec());
     MANIFEST.with_borrow(|manifest| {
         let manifest = manifest.as_ref().ok_or("the worker knows no package")?;

@@ -12,6 +12,7 @@ mod overlay;
 mod part;
 mod profile;
 mod reading;
+mod serve;
 mod shell;
 mod values;
 mod view;
@@ -40,6 +41,7 @@ pub(crate) use overlay::{OverlayArg, styled as with_overlays};
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
+pub(crate) use serve::ServeArgs;
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
@@ -137,6 +139,8 @@ pub(crate) enum Command {
     Fly(FlyArgs),
     /// Open a window on a package
     View(ViewArgs),
+    /// Show packages in web browsers: a small web server with a page, or the files for one
+    Serve(ServeArgs),
     /// Print a script that completes this command's names and options in a shell
     Completions(CompletionsArgs),
     /// Write manual pages, one for the program and one for each command
@@ -162,6 +166,7 @@ impl Command {
             Self::Render(_) => "render",
             Self::Fly(_) => "fly",
             Self::View(_) => "view",
+            Self::Serve(_) => "serve",
             Self::Completions(_) => "completions",
             Self::Man(_) => "man",
         }

@@ -51,6 +51,8 @@ pub struct Navigator {
     glide_m_per_s: DVec3,
     pending: Pending,
     travel: Option<Travel>,
+    /// The view that was asked for last. It is shown as it was asked for, until something moves it: so it is the picture that `render` draws.
+    placed: Option<View>,
     /// The last view in map mode that showed some of the data; `None` where there is none to go back to.
     sighted: Option<View>,
     flying: Flying,
@@ -76,6 +78,7 @@ impl Navigator {
             glide_m_per_s: DVec3::ZERO,
             pending: Pending::default(),
             travel: None,
+            placed: Some(home),
             sighted: None,
             flying: Flying::default(),
             now_s: 0.0,
@@ -185,7 +188,7 @@ impl Navigator {
             Input::ToggleFly => self.toggle_fly(),
             Input::ToggleAbove => self.toggle_above(ground),
         }
-        self.seen.settle(ground);
+        self.settle(ground);
         self.keep_data_in_view(ground);
         // A camera that was moving already has yet to move for the time since the last step. A key that is held down
         // repeats itself, and its repetitions must not take that time away.
@@ -223,8 +226,18 @@ impl Navigator {
             };
             self.do_pending(share, ground);
         }
-        self.seen.settle(ground);
+        self.settle(ground);
         self.keep_data_in_view(ground);
+    }
+
+    /// Brings the eye back within its limits, and adapts the focus where the view was moved.
+    fn settle(&mut self, ground: &dyn KnownGround) {
+        let was = self.seen.view;
+        self.seen.settle(ground);
+        let is_where_it_was = self.seen.view.eye_in_world == was.eye_in_world;
+        if self.placed == Some(was) && is_where_it_was {
+            self.seen.view = was;
+        }
     }
 
     /// In map mode, undoes a movement after which none of the data would be seen. A flight and the way to another view may
@@ -255,6 +268,7 @@ impl Navigator {
         self.gesture = None;
         self.fingers = None;
         self.sighted = None;
+        self.placed = Some(view);
         self.seen.view = view;
     }
 
@@ -266,6 +280,7 @@ impl Navigator {
         if view.from_above.is_none() {
             self.seen.view = self.seen.view.in_perspective();
         }
+        self.placed = Some(view);
         self.travel = Some(Travel::begin(self.seen.view, view, now_s));
     }
 

@@ -78,6 +78,15 @@ impl<S: ByteSource> Package<S> {
         &self.manifest
     }
 
+    /// The metadata in which the manifest is, as JSON: another instance of this program reads it with [`Manifest::in_metadata`]. It is read from the
+    /// file again.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub async fn metadata(&self) -> Result<Vec<u8>, OpenError> {
+        read_metadata(&self.source, &self.header).await
+    }
+
     /// What the file says for PMTiles tools. It is read from the file again.
     ///
     /// # Errors
@@ -225,6 +234,16 @@ async fn read_span(source: &impl ByteSource, span: Span) -> Result<Vec<u8>, Sour
 async fn read_metadata(source: &impl ByteSource, header: &Header) -> Result<Vec<u8>, OpenError> {
     directory::gunzip(&read_span(source, header.metadata).await?, MAX_METADATA_BYTES)
         .ok_or(OpenError::Damaged { what: "the metadata" })
+}
+
+impl Manifest {
+    /// The manifest in the [metadata](Package::metadata) of a package.
+    ///
+    /// # Errors
+    /// When there is none, or one of another version, or it makes no sense.
+    pub fn in_metadata(metadata: &[u8]) -> Result<Self, OpenError> {
+        parse_manifest(metadata)
+    }
 }
 
 fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {

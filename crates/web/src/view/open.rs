@@ -18,7 +18,7 @@ use corniche_viewer::{
 use futures_util::future::join;
 use web_sys::HtmlCanvasElement;
 
-use super::{MapView, clamped, decoder_of, json};
+use super::{MapView, clamped, decoder_of};
 use crate::{
     canvas::PageCanvas,
     decoders::Decoders,
@@ -73,8 +73,9 @@ pub(crate) async fn open(
     host: Host,
 ) -> Result<MapView, Problem> {
     let wrong = |why: String| Problem::new("other", why, "Correct the page.");
-    let options: Options = serde_json::from_str(if options.is_empty() { "{}" } else { options })
-        .map_err(|error| wrong(format!("options: {error}")))?;
+    let options: Options =
+        serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
+            .map_err(|error| wrong(format!("options: {error}")))?;
     let settings = match &options.settings {
         Some(changes) => Settings::default().changed_by(&changes.to_string()).map_err(wrong)?,
         None => Settings::default(),
@@ -91,6 +92,7 @@ pub(crate) async fn open(
     let source = source?;
     let told = |error: &OpenError| Problem::opening(error, source.take_problem());
     let package = Package::open(source.clone()).await.map_err(|error| told(&error))?;
+    let metadata = package.metadata().await.map_err(|error| told(&error))?;
     let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
     if !package.exists(TileId::ROOT) {
         return Err(Problem::new(
@@ -100,7 +102,7 @@ pub(crate) async fn open(
         ));
     }
     let manifest = package.manifest();
-    let decoders = Decoders::new(host.clone(), &json(manifest));
+    let decoders = Decoders::new(host.clone(), &metadata);
     let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
     let first = first_tiles(&tileset, request, &decoder).await?;
     let SightedGround { heights_m, .. } = first.ground;

@@ -1,0 +1,191 @@
+//! From a request to an answer.
+
+use std::{fs, io, path::Path, time::UNIX_EPOCH};
+
+use bytes::Bytes;
+use hyper::{
+    HeaderMap, Method, Request, Response, StatusCode, Version,
+    header::{
+        ACCEPT_RANGES, ACCESS_CONTROL_ALLOW_HEADERS, ACCESS_CONTROL_ALLOW_METHODS,
+        ACCESS_CONTROL_ALLOW_ORIGIN, ACCESS_CONTROL_EXPOSE_HEADERS, ACCESS_CONTROL_MAX_AGE, ALLOW,
+        CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_TYPE, ETAG, HOST, HeaderName,
+        HeaderValue, X_CONTENT_TYPE_OPTIONS,
+    },
+};
+use tokio::fs::File;
+
+use crate::{
+    body::{Body, of_bytes, of_file},
+    conditions::Wanted,
+    host::Hosts,
+    media_type::media_type,
+    refusal::{METHODS, Refusal},
+    routes::{Content, Readers, Route, Routes},
+};
+
+/// What is served, and to whom.
+#[derive(Debug)]
+pub(crate) struct Site {
+    pub(crate) routes: Routes,
+    pub(crate) hosts: Hosts,
+}
+
+impl Site {
+    /// The answer to a request, whose body is not looked at.
+    pub(crate) async fn answer<B>(&self, request: &Request<B>) -> Response<Body> {
+        if let Err(refusal) = self.check_host(request) {
+            return finished(refusal.answer(), Readers::OwnPages);
+        }
+        let Some((path, route)) = self.routes.find(request.uri().path()) else {
+            // A page that names a file wrongly is told so, wherever it comes from.
+            return finished(Refusal::Unknown.answer(), Readers::AnyPage);
+        };
+        let answered = match *request.method() {
+            Method::GET | Method::HEAD => send(request, path, route).await,
+            Method::OPTIONS => Ok(methods(route.readers)),
+            _ => Err(Refusal::Method),
+        };
+        finished(answered.unwrap_or_else(|refusal| refusal.answer()), route.readers)
+    }
+
+    fn check_host<B>(&self, request: &Request<B>) -> Result<(), Refusal> {
+        let named = request.headers().get_all(HOST);
+        if named.iter().next().is_none() && request.version() == Version::HTTP_11 {
+            return Err(Refusal::NoHost);
+        }
+        // A whole address may stand in place of a path, and then counts.
+        let in_address = request.uri().authority().map(|authority| Ok(authority.as_str()));
+        let hosts = named.iter().map(HeaderValue::to_str).chain(in_address);
+        for host in hosts {
+            if !host.is_ok_and(|host| self.hosts.allow(host)) {
+                return Err(Refusal::OtherHost);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What all answers have.
+fn finished(mut answer: Response<Body>, readers: Readers) -> Response<Body> {
+    let headers = answer.headers_mut();
+    headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    // A browser may keep what it gets, and asks each time whether it is still so.
+    headers.insert(CACHE_CONTROL, HeaderValue::from_static("no-cache"));
+    if readers == Readers::AnyPage {
+        headers.insert(ACCESS_CONTROL_ALLOW_ORIGIN, HeaderValue::from_static("*"));
+        let readable = "ETag, Content-Range, Content-Length, Accept-Ranges";
+        headers.insert(ACCESS_CONTROL_EXPOSE_HEADERS, HeaderValue::from_static(readable));
+    }
+    answer
+}
+
+/// What can be asked: the answer to a browser that asks before a page of another server may ask.
+fn methods(readers: Readers) -> Response<Body> {
+    let mut answer = Response::new(of_bytes(Bytes::new()));
+    *answer.status_mut() = StatusCode::NO_CONTENT;
+    let headers = answer.headers_mut();
+    headers.insert(ALLOW, HeaderValue::from_static(METHODS));
+    if readers == Readers::AnyPage {
+        let conditions = "Range, If-Range, If-Match, If-None-Match";
+        headers.insert(ACCESS_CONTROL_ALLOW_METHODS, HeaderValue::from_static(METHODS));
+        headers.insert(ACCESS_CONTROL_ALLOW_HEADERS, HeaderValue::from_static(conditions));
+        headers.insert(ACCESS_CONTROL_MAX_AGE, HeaderValue::from_static("86400"));
+    }
+    answer
+}
+
+/// A file as it is now.
+struct Opened {
+    length_bytes: u64,
+    tag: String,
+    source: Source,
+}
+
+enum Source {
+    Memory(Bytes),
+    Disk(File),
+}
+
+async fn send<B>(
+    request: &Request<B>,
+    path: &str,
+    route: &Route,
+) -> Result<Response<Body>, Refusal> {
+    let unreadable = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => Refusal::Gone { path: path.to_owned() },
+        _ => Refusal::Unreadable { path: path.to_owned(), reason: error.to_string() },
+    };
+    let Opened { length_bytes, tag, source } = open(route).await.map_err(unreadable)?;
+    let wanted = Wanted::of(request.method(), request.headers(), length_bytes, &tag);
+    let mut headers = HeaderMap::new();
+    let mut set = |name: HeaderName, value: &str| {
+        // Numbers and our own tags are always such values.
+        if let Ok(value) = value.parse() {
+            headers.insert(name, value);
+        }
+    };
+    set(ETAG, &tag);
+    set(ACCEPT_RANGES, "bytes");
+    let (status, range) = match wanted {
+        Wanted::Changed => return Err(Refusal::Changed),
+        Wanted::NoSuchBytes => return Err(Refusal::NoSuchBytes { length_bytes }),
+        Wanted::Unchanged => (StatusCode::NOT_MODIFIED, None),
+        Wanted::Whole => (StatusCode::OK, length_bytes.checked_sub(1).map(|last| 0..=last)),
+        Wanted::Part(range) => {
+            set(CONTENT_RANGE, &format!("bytes {}-{}/{length_bytes}", range.start(), range.end()));
+            (StatusCode::PARTIAL_CONTENT, Some(range))
+        }
+    };
+    if status != StatusCode::NOT_MODIFIED {
+        set(CONTENT_TYPE, media_type(path));
+        let sent = range.as_ref().map_or(0, |range| range.end() - range.start() + 1);
+        set(CONTENT_LENGTH, &sent.to_string());
+    }
+    let body = match (range, source) {
+        (Some(range), source) if *request.method() == Method::GET => match source {
+            Source::Memory(bytes) => {
+                of_bytes(bytes.slice(*range.start() as usize..=*range.end() as usize))
+            }
+            Source::Disk(file) => of_file(file, &range).await.map_err(unreadable)?,
+        },
+        _ => of_bytes(Bytes::new()),
+    };
+    let mut answer = Response::new(body);
+    *answer.status_mut() = status;
+    *answer.headers_mut() = headers;
+    Ok(answer)
+}
+
+async fn open(route: &Route) -> io::Result<Opened> {
+    match &route.content {
+        Content::Memory(bytes) => Ok(Opened {
+            length_bytes: bytes.len() as u64,
+            tag: route.tag_in_memory.clone(),
+            source: Source::Memory(bytes.clone()),
+        }),
+        Content::Disk(path) => {
+            let path = path.clone();
+            tokio::task::spawn_blocking(move || open_on_disk(&path))
+                .await
+                .map_err(io::Error::other)?
+        }
+    }
+}
+
+/// Opens a file; length and tag are those of what was opened, whatever is at its path by then.
+fn open_on_disk(path: &Path) -> io::Result<Opened> {
+    // Opening a pipe would wait for someone who writes to it.
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::ErrorKind::NotFound.into());
+    }
+    let file = fs::File::open(path)?;
+    let found = file.metadata()?;
+    let length_bytes = found.len();
+    // Times before 1970 are told apart, too.
+    let (sign, since) = match found.modified()?.duration_since(UNIX_EPOCH) {
+        Ok(since) => ("", since),
+        Err(before) => ("-", before.duration()),
+    };
+    let tag = format!("\"{length_bytes:x}-{sign}{:x}\"", since.as_nanos());
+    Ok(Opened { length_bytes, tag, source: Source::Disk(File::from_std(file)) })
+}

@@ -1,0 +1,31 @@
+//! What an answer sends.
+
+use std::{io, ops::RangeInclusive};
+
+use bytes::Bytes;
+use futures_util::TryStreamExt as _;
+use http_body_util::{BodyExt as _, Full, StreamBody, combinators::UnsyncBoxBody};
+use hyper::body::Frame;
+use tokio::{
+    fs::File,
+    io::{AsyncReadExt as _, AsyncSeekExt as _, SeekFrom},
+};
+use tokio_util::io::ReaderStream;
+
+/// What an answer sends.
+pub(crate) type Body = UnsyncBoxBody<Bytes, io::Error>;
+
+/// How much of a file is read at once.
+const CHUNK_BYTES: usize = 256 * 1024;
+
+pub(crate) fn of_bytes(bytes: impl Into<Bytes>) -> Body {
+    Full::new(bytes.into()).map_err(|never| match never {}).boxed_unsync()
+}
+
+/// These bytes of a file. If it ends before them the connection is closed, which tells the client that bytes are missing.
+pub(crate) async fn of_file(mut file: File, range: &RangeInclusive<u64>) -> io::Result<Body> {
+    file.seek(SeekFrom::Start(*range.start())).await?;
+    let part = file.take(range.end() - range.start() + 1);
+    let chunks = ReaderStream::with_capacity(part, CHUNK_BYTES).map_ok(Frame::data);
+    Ok(StreamBody::new(chunks).boxed_unsync())
+}

@@ -1,0 +1,76 @@
+//! The table of what is served.
+
+use std::{collections::BTreeMap, fmt::Write as _, path::PathBuf};
+
+use bytes::Bytes;
+use percent_encoding::percent_decode_str;
+use sha2::{Digest as _, Sha256};
+
+/// Where the bytes of a file come from.
+#[derive(Debug, Clone)]
+pub enum Content {
+    /// They are known.
+    Memory(Bytes),
+    /// They are on disk, and may change or go.
+    Disk(PathBuf),
+}
+
+/// Which pages may read a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Readers {
+    /// Those of any server: `Access-Control-Allow-Origin: *`.
+    AnyPage,
+    /// Those of this server.
+    OwnPages,
+}
+
+/// What is served at one path.
+#[derive(Debug, Clone)]
+pub(crate) struct Route {
+    pub(crate) content: Content,
+    pub(crate) readers: Readers,
+    /// The `ETag` of what is in memory.
+    pub(crate) tag_in_memory: String,
+}
+
+/// What is served, by path. A path has no slash at its beginning: `examples/fly.html`.
+#[derive(Debug, Clone, Default)]
+pub struct Routes {
+    by_path: BTreeMap<String, Route>,
+}
+
+impl Routes {
+    /// Adds a file. One that was added at the same path before is replaced.
+    pub fn add(&mut self, path: impl Into<String>, content: Content, readers: Readers) {
+        let tag_in_memory = match &content {
+            Content::Memory(bytes) => tag_of(bytes),
+            Content::Disk(_) => String::new(),
+        };
+        self.by_path.insert(path.into(), Route { content, readers, tag_in_memory });
+    }
+
+    /// What is served at the path of an address, with the path as it is in the table. A folder's own path means its `index.html`.
+    pub(crate) fn find(&self, path_of_address: &str) -> Option<(&str, &Route)> {
+        let path = percent_decode_str(path_of_address.strip_prefix('/')?).decode_utf8().ok()?;
+        let named = if path.is_empty() || path.ends_with('/') {
+            self.by_path.get_key_value(&format!("{path}index.html"))
+        } else {
+            self.by_path.get_key_value(path.as_ref())
+        };
+        named.map(|(path, route)| (path.as_str(), route))
+    }
+}
+
+/// Half of a hash of the bytes, in quotes.
+fn tag_of(bytes: &[u8]) -> String {
+    let mut tag = String::from("\"");
+    for byte in &Sha256::digest(bytes)[..16] {
+        let _ = write!(tag, "{byte:02x}");
+    }
+    tag.push('"');
+    tag
+}
+
+#[cfg(test)]
+#[path = "routes_tests.rs"]
+mod tests;

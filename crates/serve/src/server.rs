@@ -1,0 +1,167 @@
+//! Connections and the time they may take.
+
+use std::{
+    convert::Infallible,
+    io,
+    net::{SocketAddr, TcpListener, ToSocketAddrs as _},
+    sync::Arc,
+    time::Duration,
+};
+
+use hyper::{Request, body::Incoming, server::conn::http1, service::service_fn};
+use hyper_util::{
+    rt::{TokioIo, TokioTimer},
+    server::graceful::GracefulShutdown,
+};
+use tokio::{
+    net::TcpStream,
+    runtime::Builder,
+    sync::{OwnedSemaphorePermit, Semaphore},
+    time::{sleep, timeout},
+};
+
+use crate::{ServeError, answer::Site, host::Hosts, routes::Routes};
+
+/// How often it is asked whether to stop.
+const ASKS_EVERY: Duration = Duration::from_millis(100);
+/// What answers that were begun may take when the server is stopped.
+const ENDS_WITHIN: Duration = Duration::from_secs(2);
+/// What a client may take to say what it wants; also how long a connection stays open on which nothing is said.
+const REQUEST_WITHIN: Duration = Duration::from_mins(1);
+/// Connections at once; more wait. A browser opens six.
+const MOST_CONNECTIONS: usize = 256;
+/// Threads that answer; files are read by others.
+const THREADS: usize = 2;
+
+/// What was asked and answered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answered {
+    /// `GET`, `HEAD` and so on.
+    pub method: String,
+    /// The path of the address.
+    pub path: String,
+    /// The `Range` header.
+    pub range: Option<String>,
+    /// The status of the answer, such as 206.
+    pub status: u16,
+}
+
+/// What whoever started a server has to do with it while it runs.
+pub struct Watch<'a> {
+    /// Asked every tenth of a second: whether to stop.
+    pub is_stopped: &'a dyn Fn() -> bool,
+    /// Told of every answer, from other threads.
+    pub observer: Arc<dyn Fn(&Answered) + Send + Sync>,
+}
+
+/// A server that listens, and answers when [`Server::serve`] is called.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+    address: SocketAddr,
+    hosts: Hosts,
+}
+
+impl Server {
+    /// Listens at a port of an address or name of this machine; port 0 is any that is free.
+    ///
+    /// # Errors
+    /// [`ServeError`], when the address is none of this machine or the port is in use.
+    pub fn bind(host: &str, port: u16) -> Result<Self, ServeError> {
+        let bare = host.strip_prefix('[').and_then(|host| host.strip_suffix(']')).unwrap_or(host);
+        let no_address = |source| ServeError::NoAddress { host: host.to_owned(), source };
+        let found: Vec<SocketAddr> = (bare, port).to_socket_addrs().map_err(no_address)?.collect();
+        let listen = |source: io::Error| match source.kind() {
+            io::ErrorKind::AddrInUse => ServeError::InUse { host: host.to_owned(), port },
+            io::ErrorKind::AddrNotAvailable => no_address(source),
+            _ => ServeError::Listen { host: host.to_owned(), port, source },
+        };
+        let listener = TcpListener::bind(&found[..]).map_err(listen)?;
+        let address = listener.local_addr().map_err(listen)?;
+        listener.set_nonblocking(true).map_err(listen)?;
+        Ok(Self { listener, address, hosts: Hosts::of(bare, address) })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Answers requests until it is stopped. Answers that were begun then may still end, for two seconds.
+    ///
+    /// # Errors
+    /// [`ServeError::Start`].
+    pub fn serve(self, routes: Routes, watch: &Watch<'_>) -> Result<(), ServeError> {
+        let Self { listener, address, hosts } = self;
+        let start = |source| ServeError::Start { address, source };
+        let runtime = Builder::new_multi_thread()
+            .worker_threads(THREADS)
+            .thread_name("serve")
+            .enable_all()
+            .build()
+            .map_err(start)?;
+        let site = Arc::new(Site { routes, hosts });
+        runtime.block_on(accept(listener, site, watch)).map_err(start)?;
+        // A read that hangs must not keep the program.
+        runtime.shutdown_background();
+        Ok(())
+    }
+}
+
+async fn accept(listener: TcpListener, site: Arc<Site>, watch: &Watch<'_>) -> io::Result<()> {
+    let listener = tokio::net::TcpListener::from_std(listener)?;
+    let graceful = GracefulShutdown::new();
+    let free = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    while !(watch.is_stopped)() {
+        let Ok(Ok(permit)) = timeout(ASKS_EVERY, Arc::clone(&free).acquire_owned()).await else {
+            continue;
+        };
+        match timeout(ASKS_EVERY, listener.accept()).await {
+            Ok(Ok((stream, _))) => begin(stream, permit, &site, watch, &graceful),
+            // Too many open files, or a client that is gone already: neither ends the server.
+            Ok(Err(_)) => sleep(ASKS_EVERY).await,
+            Err(_) => {}
+        }
+    }
+    drop(listener);
+    let _ = timeout(ENDS_WITHIN, graceful.shutdown()).await;
+    Ok(())
+}
+
+/// Answers what is asked on a connection.
+fn begin(
+    stream: TcpStream,
+    permit: OwnedSemaphorePermit,
+    site: &Arc<Site>,
+    watch: &Watch<'_>,
+    graceful: &GracefulShutdown,
+) {
+    // Without it small answers may wait for each other.
+    let _ = stream.set_nodelay(true);
+    let (site, observer) = (Arc::clone(site), Arc::clone(&watch.observer));
+    let service = service_fn(move |request: Request<Incoming>| {
+        let (site, observer) = (Arc::clone(&site), Arc::clone(&observer));
+        async move {
+            let answer = site.answer(&request).await;
+            let range = request.headers().get(hyper::header::RANGE);
+            observer(&Answered {
+                method: request.method().to_string(),
+                path: request.uri().path().to_owned(),
+                range: range.and_then(|range| range.to_str().ok()).map(str::to_owned),
+                status: answer.status().as_u16(),
+            });
+            Ok::<_, Infallible>(answer)
+        }
+    });
+    let connection = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(REQUEST_WITHIN)
+        .serve_connection(TokioIo::new(stream), service);
+    let connection = graceful.watch(connection);
+    tokio::spawn(async move {
+        // A client that goes away is no concern of ours.
+        let _ = connection.await;
+        drop(permit);
+    });
+}

@@ -1,0 +1,454 @@
+//! The server on a real socket: what it sends, to whom, and what it refuses.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    collections::BTreeMap,
+    fs::{self, File},
+    io::{Read as _, Write as _},
+    net::{SocketAddr, TcpListener, TcpStream},
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant, UNIX_EPOCH},
+};
+
+use bytes::Bytes;
+use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
+use tempfile::TempDir;
+
+const PAGE: &str = "<!doctype html><title>A map</title>";
+
+/// More than is read at once.
+const PACKAGE_BYTES: usize = 700_001;
+
+struct Running {
+    address: SocketAddr,
+    package: PathBuf,
+    bytes: Vec<u8>,
+    answered: Arc<Mutex<Vec<Answered>>>,
+    is_stopped: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    _folder: TempDir,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.is_stopped.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn start() -> Running {
+    start_at("127.0.0.1")
+}
+
+/// A server with a page, an example and a package.
+fn start_at(host: &str) -> Running {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("any name.pmtiles");
+    let bytes: Vec<u8> = (0..PACKAGE_BYTES).map(|k| (k * 31 % 251) as u8).collect();
+    fs::write(&package, &bytes).unwrap();
+    let mut routes = Routes::default();
+    let of = |text: &'static str| Content::Memory(Bytes::from_static(text.as_bytes()));
+    routes.add("index.html", of(PAGE), Readers::AnyPage);
+    routes.add("corniche-map.js", of("export {};"), Readers::AnyPage);
+    routes.add("corniche_web_bg.wasm", of("\0asm"), Readers::AnyPage);
+    routes.add("empty.css", of(""), Readers::AnyPage);
+    routes.add("examples/fly.html", of(PAGE), Readers::AnyPage);
+    routes.add("packages.json", of("[]"), Readers::OwnPages);
+    routes.add("packages/a b.pmtiles", Content::Disk(package.clone()), Readers::AnyPage);
+    let server = Server::bind(host, 0).unwrap();
+    let address = server.address();
+    let is_stopped = Arc::new(AtomicBool::new(false));
+    let answered = Arc::new(Mutex::new(Vec::new()));
+    let (stop, log) = (Arc::clone(&is_stopped), Arc::clone(&answered));
+    let thread = thread::spawn(move || {
+        let is_stopped = || stop.load(Ordering::SeqCst);
+        let observer = Arc::new(move |one: &Answered| log.lock().unwrap().push(one.clone()));
+        server.serve(routes, &Watch { is_stopped: &is_stopped, observer }).unwrap();
+    });
+    Running { address, package, bytes, answered, is_stopped, thread: Some(thread), _folder: folder }
+}
+
+#[derive(Debug)]
+struct Answer {
+    status: u16,
+    headers: BTreeMap<String, String>,
+    body: Vec<u8>,
+}
+
+impl Answer {
+    fn header(&self, name: &str) -> &str {
+        self.headers.get(name).map_or("", String::as_str)
+    }
+
+    fn text(&self) -> String {
+        String::from_utf8(self.body.clone()).unwrap()
+    }
+}
+
+/// Sends these bytes and reads to the end of the connection.
+fn exchange(address: SocketAddr, request: &str) -> Answer {
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    let end = answer.windows(4).position(|four| four == b"\r\n\r\n").expect("a head");
+    let head = String::from_utf8(answer[..end].to_vec()).unwrap();
+    let mut lines = head.split("\r\n");
+    let status = lines.next().unwrap().split(' ').nth(1).unwrap().parse().unwrap();
+    let headers = lines
+        .map(|line| line.split_once(": ").unwrap())
+        .map(|(name, value)| (name.to_lowercase(), value.to_owned()))
+        .collect();
+    Answer { status, headers, body: answer[end + 4..].to_vec() }
+}
+
+impl Running {
+    fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)]) -> Answer {
+        let lines: Vec<String> =
+            headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+        let lines = lines.concat();
+        let host = if headers.iter().any(|(name, _)| *name == "Host") {
+            String::new()
+        } else {
+            format!("Host: {}\r\n", self.address)
+        };
+        let request = format!("{method} {path} HTTP/1.1\r\n{host}{lines}Connection: close\r\n\r\n");
+        exchange(self.address, &request)
+    }
+
+    fn get(&self, path: &str, headers: &[(&str, &str)]) -> Answer {
+        self.ask("GET", path, headers)
+    }
+}
+
+const PACKAGE: &str = "/packages/a%20b.pmtiles";
+
+#[test]
+fn files_are_sent_as_they_are_with_what_they_are() {
+    let server = start();
+    for (path, kind, text) in [
+        ("/", "text/html; charset=utf-8", PAGE),
+        ("/index.html?src=packages/a.pmtiles", "text/html; charset=utf-8", PAGE),
+        ("/examples/fly.html", "text/html; charset=utf-8", PAGE),
+        ("/corniche-map.js", "text/javascript; charset=utf-8", "export {};"),
+        ("/corniche_web_bg.wasm", "application/wasm", "\0asm"),
+        ("/packages.json", "application/json", "[]"),
+        ("/empty.css", "text/css; charset=utf-8", ""),
+    ] {
+        let answer = server.get(path, &[]);
+        assert_eq!((answer.status, answer.text().as_str()), (200, text), "{path}");
+        assert_eq!(answer.header("content-type"), kind, "{path}");
+        assert_eq!(answer.header("content-length"), text.len().to_string(), "{path}");
+        assert_eq!(answer.header("cache-control"), "no-cache", "{path}");
+        assert_eq!(answer.header("x-content-type-options"), "nosniff", "{path}");
+        let head = server.ask("HEAD", path, &[]);
+        assert_eq!((head.status, head.body.len()), (200, 0), "{path}");
+        for name in ["content-type", "content-length", "etag"] {
+            assert_eq!(head.header(name), answer.header(name), "{path}");
+        }
+        let again = server.get(path, &[("If-None-Match", answer.header("etag"))]);
+        assert_eq!((again.status, again.body.len()), (304, 0), "{path}");
+        assert_eq!(again.header("etag"), answer.header("etag"), "{path}");
+    }
+    let answer = server.get(PACKAGE, &[("Accept-Encoding", "gzip, br")]);
+    assert_eq!(answer.status, 200);
+    assert!(answer.body == server.bytes, "the whole package");
+    assert_eq!(answer.header("content-type"), "application/vnd.pmtiles");
+    assert_eq!(answer.header("accept-ranges"), "bytes");
+    assert!(!answer.headers.contains_key("content-encoding"), "{:?}", answer.headers);
+}
+
+#[test]
+fn ranges_have_the_bytes_of_the_file() {
+    let server = start();
+    let last = PACKAGE_BYTES - 1;
+    for (range, first, end) in [
+        ("bytes=0-0".to_owned(), 0, 1),
+        ("bytes=100-65635".to_owned(), 100, 65_636),
+        ("bytes=262143-600000".to_owned(), 262_143, 600_001),
+        ("bytes=699000-".to_owned(), 699_000, PACKAGE_BYTES),
+        (format!("bytes={last}-{}", last + 900), last, PACKAGE_BYTES),
+        ("bytes=-11".to_owned(), PACKAGE_BYTES - 11, PACKAGE_BYTES),
+    ] {
+        let answer = server.get(PACKAGE, &[("Range", &range)]);
+        assert_eq!(answer.status, 206, "{range}");
+        assert!(answer.body == server.bytes[first..end], "{range}");
+        let said = format!("bytes {first}-{}/{PACKAGE_BYTES}", end - 1);
+        assert_eq!(answer.header("content-range"), said, "{range}");
+        assert_eq!(answer.header("content-length"), (end - first).to_string(), "{range}");
+    }
+    // What is in memory has ranges, too.
+    let answer = server.get("/index.html", &[("Range", "bytes=2-8")]);
+    assert_eq!((answer.status, answer.text().as_str()), (206, "doctype"));
+    for range in [format!("bytes={PACKAGE_BYTES}-"), "bytes=-0".to_owned(), "bytes=7-3".to_owned()]
+    {
+        let answer = server.get(PACKAGE, &[("Range", &range)]);
+        assert_eq!(answer.status, 416, "{range}");
+        assert_eq!(answer.header("content-range"), format!("bytes */{PACKAGE_BYTES}"), "{range}");
+        assert!(answer.text().contains(&format!("it has {PACKAGE_BYTES}")), "{}", answer.text());
+        assert_eq!(answer.header("access-control-allow-origin"), "*", "{range}");
+    }
+    assert_eq!(server.get("/empty.css", &[("Range", "bytes=0-")]).status, 416);
+    let head = server.ask("HEAD", PACKAGE, &[("Range", "bytes=2-8")]);
+    assert_eq!((head.status, head.header("content-length")), (200, "700001"));
+}
+
+/// Some answers come on one connection, and each ends where it must.
+#[test]
+fn a_connection_serves_several_requests() {
+    let server = start();
+    let host = server.address;
+    let one = |range: &str, more: &str| {
+        format!("GET {PACKAGE} HTTP/1.1\r\nHost: {host}\r\nRange: bytes={range}\r\n{more}\r\n")
+    };
+    let request =
+        one("5-9", "") + &one("90-", "If-None-Match: *\r\n") + &one("7-9", "Connection: close\r\n");
+    let first = exchange(host, &request);
+    assert_eq!(first.body[..5], server.bytes[5..10]);
+    let rest = String::from_utf8_lossy(&first.body[5..]).into_owned();
+    assert!(rest.starts_with("HTTP/1.1 304 "), "{rest}");
+    assert_eq!(rest.matches("HTTP/1.1 206 ").count(), 1, "{rest}");
+    assert_eq!(first.body[first.body.len() - 3..], server.bytes[7..10]);
+}
+
+/// A new version has a new tag, so that whoever reads the old one by ranges learns of it.
+#[test]
+fn a_file_that_changes_gets_another_tag_and_one_that_goes_is_missed() {
+    let mut server = start();
+    let before = server.get(PACKAGE, &[("Range", "bytes=0-9")]);
+    let tag = before.header("etag").to_owned();
+    assert!(tag.starts_with('"') && tag.ends_with('"'), "a strong tag: {tag}");
+    let if_range = |server: &Running| {
+        server.get(PACKAGE, &[("Range", "bytes=0-9"), ("If-Range", &tag)]).status
+    };
+    assert_eq!(if_range(&server), 206);
+    // The same length, a nanosecond later than before.
+    server.bytes.reverse();
+    let modified = fs::metadata(&server.package).unwrap().modified().unwrap();
+    fs::write(&server.package, &server.bytes).unwrap();
+    let later = modified + Duration::from_nanos(1);
+    File::options().write(true).open(&server.package).unwrap().set_modified(later).unwrap();
+    let after = server.get(PACKAGE, &[("Range", "bytes=0-9")]);
+    assert_ne!(after.header("etag"), tag);
+    assert!(after.body == server.bytes[..10], "it is the new version");
+    assert_eq!(if_range(&server), 200, "all of the new version");
+    assert_eq!(server.get(PACKAGE, &[("If-Match", &tag)]).status, 412);
+    // Before the year in which times begin.
+    let early = UNIX_EPOCH - Duration::from_secs(9);
+    File::options().write(true).open(&server.package).unwrap().set_modified(early).unwrap();
+    assert_eq!(server.get(PACKAGE, &[]).status, 200);
+    fs::remove_file(&server.package).unwrap();
+    for path in [PACKAGE, "/packages/other.pmtiles"] {
+        let answer = server.get(path, &[("Range", "bytes=0-9")]);
+        assert_eq!(
+            (answer.status, answer.header("access-control-allow-origin")),
+            (404, "*"),
+            "{path}"
+        );
+    }
+    let gone = server.get(PACKAGE, &[]).text();
+    assert!(gone.contains("packages/a b.pmtiles was there") && gone.contains("gone"), "{gone}");
+    assert!(!gone.contains("any name"), "where it lies is nobody's business: {gone}");
+    // A folder in its place is no file.
+    fs::create_dir(&server.package).unwrap();
+    assert_eq!(server.get(PACKAGE, &[]).status, 404);
+}
+
+/// A file that becomes shorter while it is sent: the client sees that bytes are missing.
+#[test]
+fn a_file_that_shrinks_under_an_answer_ends_the_connection() {
+    let server = start();
+    // Far more than the buffers of both sides hold.
+    let length: u64 = 64 << 20;
+    let file = File::options().write(true).open(&server.package).unwrap();
+    file.set_len(length).unwrap();
+    let mut stream = TcpStream::connect(server.address).unwrap();
+    write!(
+        stream,
+        "GET {PACKAGE} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+        server.address
+    )
+    .unwrap();
+    let mut start = [0; 1000];
+    stream.read_exact(&mut start).unwrap();
+    let head = String::from_utf8_lossy(&start).into_owned();
+    assert!(head.contains(&format!("content-length: {length}\r\n")), "{head}");
+    file.set_len(1 << 20).unwrap();
+    let mut rest = Vec::new();
+    // The end may come as one of the connection or as a reset.
+    let _ = stream.read_to_end(&mut rest);
+    assert!((rest.len() as u64) < length - 1000, "all bytes came: {}", rest.len());
+    assert_eq!(server.get("/", &[]).status, 200, "the server goes on");
+}
+
+#[test]
+fn nothing_else_is_served() {
+    let server = start();
+    for path in [
+        "/packages/",
+        "/packages",
+        "/examples/",
+        "/any%20name.pmtiles",
+        "/packages/../packages.json",
+        "/../../../../etc/passwd",
+        "/%2e%2e/%2e%2e/%2e%2e/etc/passwd",
+        "/packages/%2e%2e%2fpackages.json",
+        "//etc/passwd",
+        "/index.html/",
+        "/index.html%00.png",
+    ] {
+        let answer = server.get(path, &[]);
+        assert_eq!(answer.status, 404, "{path}");
+        assert!(
+            answer.text().contains("Nothing is served at this path"),
+            "{path}: {}",
+            answer.text()
+        );
+        assert_eq!(answer.header("content-type"), "text/plain; charset=utf-8", "{path}");
+    }
+    for method in ["POST", "PUT", "DELETE", "PATCH", "TRACE", "PROPFIND"] {
+        let answer = server.ask(method, "/index.html", &[]);
+        assert_eq!(
+            (answer.status, answer.header("allow")),
+            (405, "GET, HEAD, OPTIONS"),
+            "{method}"
+        );
+        assert!(answer.text().contains("only reads files"), "{method}: {}", answer.text());
+    }
+    assert_eq!(exchange(server.address, "no HTTP\r\n\r\n").status, 400);
+}
+
+#[test]
+fn pages_of_other_servers_may_read_packages_and_not_the_list_of_them() {
+    let server = start();
+    let origin = ("Origin", "https://maps.example");
+    let readable = "ETag, Content-Range, Content-Length, Accept-Ranges";
+    for path in [PACKAGE, "/corniche-map.js"] {
+        for headers in [vec![origin], vec![origin, ("Range", "bytes=0-3")]] {
+            let answer = server.get(path, &headers);
+            assert_eq!(answer.header("access-control-allow-origin"), "*", "{path}");
+            assert_eq!(answer.header("access-control-expose-headers"), readable, "{path}");
+        }
+        let asked = [
+            origin,
+            ("Access-Control-Request-Method", "GET"),
+            ("Access-Control-Request-Headers", "range,if-match"),
+        ];
+        let answer = server.ask("OPTIONS", path, &asked);
+        assert_eq!((answer.status, answer.body.len()), (204, 0), "{path}");
+        assert_eq!(answer.header("access-control-allow-origin"), "*", "{path}");
+        assert_eq!(answer.header("access-control-allow-methods"), "GET, HEAD, OPTIONS", "{path}");
+        let allowed = answer.header("access-control-allow-headers").to_lowercase();
+        for name in ["range", "if-range", "if-match", "if-none-match"] {
+            assert!(allowed.split(", ").any(|allowed| allowed == name), "{path}: {allowed}");
+        }
+    }
+    for method in ["GET", "OPTIONS"] {
+        let answer = server.ask(method, "/packages.json", &[origin]);
+        let told: Vec<&String> =
+            answer.headers.keys().filter(|name| name.starts_with("access-")).collect();
+        assert!(told.is_empty(), "{method}: {told:?}");
+    }
+}
+
+/// A page whose name was made to lead here must not be taken for one of this server.
+#[test]
+fn other_names_than_its_own_are_refused_on_the_loopback() {
+    let server = start();
+    let port = server.address.port();
+    for host in [format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")]
+    {
+        assert_eq!(server.get("/", &[("Host", &host)]).status, 200, "{host}");
+    }
+    for path in ["/", "/packages.json", PACKAGE, "/nothing"] {
+        let answer = server.get(path, &[("Host", "evil.example")]);
+        assert_eq!(answer.status, 403, "{path}");
+        assert!(answer.text().contains("for another name"), "{path}: {}", answer.text());
+        assert!(!answer.text().contains("evil"), "{}", answer.text());
+        assert!(!answer.headers.contains_key("access-control-allow-origin"), "{path}");
+    }
+    let in_address = format!(
+        "GET http://evil.example/ HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+        server.address
+    );
+    assert_eq!(exchange(server.address, &in_address).status, 403);
+    let two = format!(
+        "GET / HTTP/1.1\r\nHost: {}\r\nHost: evil.example\r\nConnection: close\r\n\r\n",
+        server.address
+    );
+    assert_eq!(exchange(server.address, &two).status, 403);
+    assert_eq!(exchange(server.address, "GET / HTTP/1.1\r\nConnection: close\r\n\r\n").status, 400);
+    // Old clients, which no browser is, name no host.
+    assert_eq!(exchange(server.address, "GET / HTTP/1.0\r\n\r\n").status, 200);
+}
+
+#[test]
+fn a_server_of_the_network_answers_to_any_name() {
+    let server = start_at("0.0.0.0");
+    let local = SocketAddr::from(([127, 0, 0, 1], server.address.port()));
+    let request = "GET / HTTP/1.1\r\nHost: maps.example\r\nConnection: close\r\n\r\n";
+    assert_eq!(exchange(local, request).status, 200);
+}
+
+#[test]
+fn a_port_in_use_and_a_strange_address_are_told() {
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let in_use = Server::bind("127.0.0.1", port).unwrap_err();
+    assert!(matches!(in_use, ServeError::InUse { .. }), "{in_use}");
+    assert!(in_use.to_string().contains(&port.to_string()), "{in_use}");
+    // Addresses of a net that is kept for documentation.
+    for host in ["192.0.2.7", "nowhere.invalid", ""] {
+        let refused = Server::bind(host, 0).unwrap_err();
+        assert!(matches!(refused, ServeError::NoAddress { .. }), "{host}: {refused}");
+    }
+    // As in an address of the web.
+    match Server::bind("[::1]", 0) {
+        Ok(server) => assert!(server.address().is_ipv6()),
+        // Without IPv6.
+        Err(refused) => assert!(
+            matches!(refused, ServeError::NoAddress { .. } | ServeError::Listen { .. }),
+            "{refused}"
+        ),
+    }
+}
+
+/// It stops although a client holds a connection, and lets go of its port.
+#[test]
+fn it_stops_when_it_is_told() {
+    let server = start();
+    let mut idle = TcpStream::connect(server.address).unwrap();
+    write!(idle, "GET / HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).unwrap();
+    let mut begin = [0; 12];
+    idle.read_exact(&mut begin).unwrap();
+    assert_eq!(&begin, b"HTTP/1.1 200");
+    let (address, begun) = (server.address, Instant::now());
+    drop(server);
+    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+    assert!(TcpStream::connect(address).is_err(), "nobody listens any more");
+}
+
+#[test]
+fn every_answer_is_told() {
+    let server = start();
+    server.get(PACKAGE, &[("Range", "bytes=0-3")]);
+    server.get("/nothing", &[]);
+    let told = |method: &str, path: &str, range: Option<&str>, status| Answered {
+        method: method.to_owned(),
+        path: path.to_owned(),
+        range: range.map(str::to_owned),
+        status,
+    };
+    let expected =
+        [told("GET", PACKAGE, Some("bytes=0-3"), 206), told("GET", "/nothing", None, 404)];
+    assert_eq!(server.answered.lock().unwrap()[..], expected);
+}
