@@ -62,9 +62,12 @@ export function tests({ browser, server, packages, corniche }) {
         });
         await ask(page, (map) => map.command("reset"));
         await settled(page);
-        await ask(page, (map, flight) => map.play(flight), recorded);
-        await page.waitForFunction(() => !document.querySelector("corniche-map").report.is_playing);
-        await settled(page);
+        // Twice: where the flight ends, the height of the ground beneath the eye, by which haze is set, must be known exactly.
+        for (let time = 0; time < 2; time += 1) {
+          await ask(page, (map, flight) => map.play(flight), recorded);
+          await page.waitForFunction(() => !document.querySelector("corniche-map").report.is_playing);
+          await settled(page);
+        }
         check(`${name} ${roads}, in perspective, after a flight`, await pixelsOf(page), flown(corniche, fileOf(name), recorded, size));
         await page.end();
       });
