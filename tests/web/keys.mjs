@@ -77,7 +77,7 @@ export function tests({ browser, server }) {
       assert.ok(isVisible, `${seen.at(-1)} shows that it has the focus`);
     }
     assert.ok(await page.evaluate(() => document.activeElement.id === "after"), "Tab leaves the map");
-    for (const name of [/^canvas Map/, /Panel/, /North up/, /Zoom in/, /Zoom out/, /Mouse, touch and keys/, /Go to/, /Fly/, /From above/, /First view/, /Copy link/, /Save picture/, /Record a flight/, /Play a flight/, /Hide the panel/, /summary Advanced/]) {
+    for (const name of [/^canvas Map/, /Panel/, /North up/, /Zoom in/, /Zoom out/, /Mouse, touch and keys/, /Go to/, /Fly/, /From above/, /First view/, /Copy link/, /Save picture/, /Record flight/, /Play flight/, /Hide the panel/, /summary Advanced/]) {
       assert.ok(seen.some((one) => name.test(one)), `${name} is not reached: ${seen.join("; ")}`);
     }
     await page.locator("corniche-map canvas").focus();

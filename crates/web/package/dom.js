@@ -41,6 +41,12 @@ export function setText(/** @type {Element} */ element, /** @type {string} */ te
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** A text as a sentence: messages of the library begin small and have no full stop. */
+export function sentence(/** @type {string} */ text) {
+  const whole = text.trim();
+  return whole.charAt(0).toUpperCase() + whole.slice(1) + (/[.!?…]$/.test(whole) ? "" : ".");
+}
+
 /** Offers data as a file to keep. */
 export function download(/** @type {Blob} */ data, /** @type {string} */ name) {
   const address = URL.createObjectURL(data);

@@ -1,6 +1,6 @@
 // The custom element: attributes, properties, methods and events around an opened package.
 import { SETTINGS, changeOf, controlsOf, settingsOf } from "./attributes.js";
-import { failureOf } from "./engine.js";
+import { Failure, failureOf } from "./engine.js";
 import { makeFailure } from "./failures.js";
 import { hashWith, placeInHash, placeOf } from "./hash.js";
 import { makeLayout } from "./layout.js";
@@ -13,7 +13,7 @@ const REOPEN_WITHIN_MS = 60_000;
 const NARROW = 560;
 const WIDE = 720;
 /** Points of the screen that the panel covers, with the space beside it. */
-const PANEL = 298;
+const PANEL = 314;
 const USUAL_CREDIT = "© OpenStreetMap contributors";
 
 /** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
@@ -53,7 +53,9 @@ export class CornicheMap extends HTMLElement {
     window.addEventListener("hashchange", () => this.#followHash(), { signal });
     // Escape closes what is open, wherever the focus is in the map.
     this.shadowRoot?.addEventListener("keydown", (event) => {
-      if (/** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && this.#act("close")) event.preventDefault();
+      // An open dialog is closed by the browser.
+      const isEscape = /** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && !this.#layout.dialog.open;
+      if (isEscape && this.#act("close")) event.preventDefault();
     }, { signal });
     matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session?.set(this.#motion()), { signal });
     this.#label();
@@ -263,7 +265,9 @@ export class CornicheMap extends HTMLElement {
     if (Object.keys(late).length > 0) session.set(late);
     layout.opening(false);
     this.#showPanel(this.#opensPanel());
-    this.#emit("ready", this.about);
+    // With the first frame, the camera is known.
+    session.draw();
+    if (this.#session === session) this.#emit("ready", this.about);
   }
 
   #close() {
@@ -286,9 +290,9 @@ export class CornicheMap extends HTMLElement {
     this.#close();
     const now = performance.now();
     this.#lost = this.#lost.filter((at) => now - at < REOPEN_WITHIN_MS);
-    if (failure.kind !== "device-lost" || this.#lost.length >= REOPEN_TIMES) {
-      this.#fail(failure);
-      return;
+    if (failure.kind !== "device-lost") return this.#fail(failure);
+    if (this.#lost.length >= REOPEN_TIMES) {
+      return this.#fail(new Failure("device-lost", "The graphics device was lost again and again.", "Close other programs and pages that use the graphics card, and try again."));
     }
     const last = this.#lost.at(-1) ?? -Infinity;
     this.#lost.push(now);

@@ -1,5 +1,5 @@
 // Failures in words, in the place of the map; a still picture of the package where there is one.
-import { make } from "./dom.js";
+import { make, sentence } from "./dom.js";
 import { icons } from "./icons.js";
 
 /** @type {Record<string, string>} */
@@ -56,11 +56,11 @@ function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} *
 export function makeFailure(failure, about) {
   const image = make("img", { class: "still", alt: "A picture of the map", hidden: true });
   if (WITH_PICTURE.has(failure.kind)) tryStills(image, stillsOf(about.still, about.src));
-  const credit = make("p", { class: "still-credit" }, about.credit);
+  const credit = make("p", { class: "still-credit pill" }, about.credit);
   const card = make("div", { class: "card failure", role: "alert" },
     make("h2", {}, icons.warning(), HEADINGS[failure.kind] ?? HEADINGS.other),
-    make("p", {}, failure.message),
-    failure.advice ? make("p", { class: "advice" }, failure.advice) : null,
+    make("p", {}, sentence(failure.message)),
+    failure.advice ? make("p", { class: "advice" }, sentence(failure.advice)) : null,
     about.src && !about.src.startsWith("blob:") ? make("p", { class: "address" }, about.src) : null,
     make("button", { type: "button", class: "plain", onclick: about.again }, "Try again"));
   return make("div", { class: "failed", "data-kind": failure.kind }, image, credit, card);

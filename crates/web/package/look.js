@@ -60,7 +60,7 @@ svg { inline-size: 1.25rem; block-size: 1.25rem; flex: none; fill: none; stroke:
 .compass .needle path:first-child { fill: #d0392b; }
 .compass .needle path:last-child { fill: light-dark(#8a949d, #cfd6dc); }
 
-.panel { grid-area: panel; inline-size: 18rem; display: flex; flex-direction: column; align-self: start; max-block-size: 100%; min-block-size: 0; }
+.panel { grid-area: panel; inline-size: 19rem; display: flex; flex-direction: column; align-self: start; max-block-size: 100%; min-block-size: 0; }
 .panel > .scroll { padding-block-end: 0.4rem; }
 header { display: flex; align-items: center; justify-content: space-between; gap: 0.5rem; padding: 0.35rem 0.35rem 0.35rem 0.9rem; }
 h2 { font-size: 1rem; font-weight: 650; margin: 0; overflow-wrap: anywhere; }
@@ -97,7 +97,7 @@ option { background: light-dark(#fff, #22282e); }
 .wrong { grid-column: 1 / -1; margin: 0; color: var(--alarm); }
 .wrong:empty { display: none; }
 .actions { display: grid; grid-template-columns: 1fr 1fr; gap: 0.4rem; }
-.action { justify-content: flex-start; border: 1px solid var(--line); padding-inline: 0.55rem; text-align: start; line-height: 1.15; }
+.action { justify-content: flex-start; border: 1px solid var(--line); padding-inline: 0.5rem; gap: 0.4rem; text-align: start; line-height: 1.15; font-size: 0.8125rem; }
 .record svg { color: var(--alarm); fill: currentColor; }
 .record[aria-pressed="true"] { background: var(--alarm); color: light-dark(#fff, #2a0d09); }
 .record[aria-pressed="true"] svg { color: inherit; }
@@ -136,7 +136,7 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .divider span:first-child { right: 20px; }
 .divider span:last-child { left: 20px; }
 
-dialog { border: 0; padding: 0; inline-size: min(36rem, calc(100vw - 2rem)); max-block-size: min(40rem, calc(100dvh - 2rem)); color: inherit; overflow: hidden; }
+dialog { border: 0; padding: 0; inline-size: min(36rem, calc(100vw - 2rem)); max-block-size: min(46rem, calc(100dvh - 2rem)); color: inherit; overflow: hidden; }
 dialog[open] { display: flex; flex-direction: column; }
 dialog.card { background: light-dark(#fff, #1b2025); }
 dialog::backdrop { background: rgb(0 0 0 / 40%); }
@@ -162,8 +162,8 @@ dialog dt { color: inherit; font-weight: 600; }
   .panel { inline-size: auto; align-self: stretch; margin: 0 -0.5rem -0.5rem; border-end-start-radius: 0; border-end-end-radius: 0; padding-block-end: env(safe-area-inset-bottom); max-block-size: 58cqh; }
   .over:has(.panel:not([hidden])) .place-card, .over:has(.panel:not([hidden])) .help-button { display: none; }
   .status .camera { display: none; }
-  .bar { flex-wrap: wrap; }
-  .credit { max-inline-size: 75%; }
+  .facts { flex: none; }
+  .credit { max-inline-size: none; }
   .place-card { inline-size: 100%; }
 }
 @container map (width <= 560px) or (height <= 340px) { .status { display: none; } }

@@ -1,5 +1,5 @@
 // Notices: what went well disappears by itself, warnings stay until they are dismissed.
-import { make } from "./dom.js";
+import { make, sentence } from "./dom.js";
 import { icons } from "./icons.js";
 
 const TOLD_MS = 5000;
@@ -12,9 +12,13 @@ export function makeNotices() {
     element,
     /** @param {"warn" | "tell"} kind @param {string} text */
     add(kind, text) {
-      const same = [...element.children].find((one) => one.firstChild?.textContent === text);
+      // Messages that differ only in numbers, as those of many tiles do, are one: the last of them, and how many there were.
+      const key = text.replace(/\d+/g, "0");
+      const same = /** @type {any} */ ([...element.children].find((one) => /** @type {any} */ (one).dataset.key === key));
+      const times = same ? Number(same.dataset.times) + 1 : 1;
       same?.remove();
-      const notice = make("div", { class: `notice card ${kind}` }, make("span", {}, text),
+      const notice = make("div", { class: `notice card ${kind}`, "data-key": key, "data-times": String(times) },
+        make("span", {}, sentence(text), times > 1 ? ` (${times} times)` : null),
         make("button", { type: "button", class: "icon", "aria-label": "Dismiss", onclick: () => notice.remove() }, icons.close()));
       element.append(notice);
       if (kind === "tell") setTimeout(() => notice.remove(), TOLD_MS);

@@ -67,7 +67,7 @@ export function makePanel(map, about, close) {
   };
   const legend = makeLegend(set);
   const figures = makeFigures();
-  const record = action(icons.record(), "Record a flight", () => map.command("record"));
+  const record = action(icons.record(), "Record flight", () => map.command("record"));
   record.classList.add("record");
   const fly = action(icons.fly(), "Fly", () => map.command("toggle-fly"));
   const above = action(icons.above(), "From above", () => map.command("toggle-above"));
@@ -94,7 +94,7 @@ export function makePanel(map, about, close) {
           map.hasLink ? action(icons.link(), "Copy link", () => map.command("link")) : null,
           action(icons.picture(), "Save picture", () => map.command("picture")),
           record,
-          action(icons.play(), "Play a flight", () => map.command("play")))),
+          action(icons.play(), "Play flight", () => map.command("play")))),
       section("Advanced", false,
         use(select(set, "outline", "Outlines", [["style", "As the style"], ["none", "None"], ["3", "3 × 3"], ["5", "5 × 5"]])),
         use(slider(set, "error_px", "Ground error", { min: -1, max: 4, step: 0.5, text: (value) => `${+(2 ** value).toFixed(1)} px`, of: (settings) => Math.log2(settings.error_px), change: (value) => 2 ** value })),
@@ -117,7 +117,7 @@ export function makePanel(map, about, close) {
       above.setAttribute("aria-pressed", String(Boolean(report.view?.above)));
       const isRecording = report.recording_s !== null;
       record.setAttribute("aria-pressed", String(isRecording));
-      setText(record.querySelector("span"), isRecording ? `Stop, ${report.recording_s?.toFixed(0)} s` : "Record a flight");
+      setText(record.querySelector("span"), isRecording ? `Stop, ${report.recording_s?.toFixed(0)} s` : "Record flight");
       if (!element.querySelector("details:last-of-type")?.open) return;
       figures.show({
         Tiles: `${report.tiles.drawn} drawn, ${report.tiles.loading} loading`,

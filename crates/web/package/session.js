@@ -247,8 +247,9 @@ export async function openSession(from) {
   show();
 
   const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hashName: from.hashName });
+  if (about.is_software) tell("tell", "No graphics card was found: the processor draws");
   const session = {
-    end, set, setByHand, command, lookAt, goTo, actions, panel: panel.element, tell, wake,
+    end, set, setByHand, command, lookAt, goTo, actions, panel: panel.element, tell, wake, draw: loop.now,
     about: () => about,
     settings: () => settings,
     report: () => report,
