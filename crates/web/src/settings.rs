@@ -42,6 +42,10 @@ pub(crate) enum Edge {
 /// Everything that a page can change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "they are boxes to tick, independent of each other"
+)]
 pub(crate) struct Settings {
     pub(crate) roads: Roads,
     pub(crate) compare: Compare,

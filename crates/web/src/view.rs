@@ -17,6 +17,7 @@ use corniche_tileset::{FORMAT_VERSION, Manifest};
 use corniche_viewer::{
     SightedGround,
     flight::Pose,
+    lod::Fineness,
     range,
     tiles::{MapExtent, MapPackage as _, TileDecoder},
 };
@@ -71,13 +72,16 @@ pub struct MapView {
 #[wasm_bindgen]
 impl MapView {
     /// Opens a package by its address. `options` is JSON. Rejects with a problem: `{kind, message, advice}`.
+    ///
+    /// # Errors
+    /// When there is nothing to draw with, or nothing to show.
     pub async fn open(
         canvas: HtmlCanvasElement,
         src: String,
         options: String,
         host: Host,
     ) -> Result<MapView, JsValue> {
-        open::open(canvas, src, &options, host).await.map_err(JsValue::from)
+        Box::pin(open::open(canvas, src, &options, host)).await.map_err(JsValue::from)
     }
 
     /// The canvas has this size in pixels of the screen now.
@@ -87,6 +91,9 @@ impl MapView {
     }
 
     /// Moves, loads and draws. Returns a report as JSON.
+    ///
+    /// # Errors
+    /// When the device is lost or cannot draw: a problem.
     pub fn frame(&mut self, now_s: f64) -> Result<String, JsValue> {
         let report = self.next_frame(now_s)?;
         Ok(json(&report))
@@ -452,6 +459,14 @@ fn decoder_of(settings: &Settings, style: &Style) -> String {
         Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(style),
     };
     json(&decoder)
+}
+
+/// How fine the ground is to be.
+fn fineness_of(settings: &Settings) -> Fineness {
+    Fineness {
+        screen_space_error_px: settings.error_px,
+        cell_px: settings.cell_px.unwrap_or(f64::INFINITY),
+    }
 }
 
 /// A size that the adapter can draw with one sample a pixel.

@@ -11,19 +11,22 @@ use corniche_live::{
 use corniche_presets::class_labels;
 use corniche_tileset::{OpenError, Package};
 use corniche_viewer::{
-    CameraRequest, SightedGround, range,
+    CameraRequest, SightedGround,
+    lod::Quality,
+    range,
     stream::StreamBudget,
     tiles::{MapPackage as _, PackageTiles, TileCatalog},
 };
 use futures_util::future::join;
 use web_sys::HtmlCanvasElement;
 
-use super::{MapView, clamped, decoder_of};
+use super::{MapView, clamped, decoder_of, fineness_of};
 use crate::{
     canvas::PageCanvas,
     decoders::Decoders,
     first_tiles::{first_tiles, off_ground},
     flights::Flights,
+    foresight::foreseen,
     host::Host,
     loader::{PageLoader, Tileset},
     place::{Place, view_of},
@@ -118,10 +121,20 @@ pub(crate) async fn open(
         _ => first_view(request, manifest, first.ground, scale, size_px, options.covered_px)
             .map_err(|error| off_ground(&error))?,
     };
+    let fineness = fineness_of(&settings);
+    let roads = settings.road_options();
+    let quality = Quality::of_package(manifest, fineness, &style, roads, settings.exaggeration);
+    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
+    loader.foresee(&foreseen(
+        package.as_ref(),
+        manifest,
+        heights_m,
+        &home.camera(size_px),
+        quality,
+    ));
     let inertia = if settings.inertia { Inertia::On } else { Inertia::Off };
     let navigator = Navigator::new(home, limits(manifest), size_px, inertia);
     let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
-    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
     let budget =
         StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
     let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
