@@ -43,3 +43,9 @@ npm_folder() {
     (cd "$folder" && npm install --ignore-scripts --no-audit --no-fund --loglevel=error --engine-strict=false) >&2 || return 1
     printf '%s\n' "$new" >"$folder/made-of"
 }
+
+missing_for_page_tests() {
+    command -v chromium >/dev/null || echo chromium
+    # Both draw: the page in Chromium, and the program to compare with.
+    has_library libvulkan.so.1 || echo libvulkan1
+}

@@ -4,7 +4,7 @@ import path from "node:path";
 import { test } from "node:test";
 import { rendered, colours } from "./rendering.mjs";
 import { addMap, ask, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
-import { FAILURES, keepDevices } from "./failing.mjs";
+import { FAILURES, LATER, keepDevices } from "./failing.mjs";
 import { PNG } from "pngjs";
 
 /** A page with a map that fails so. */
@@ -40,6 +40,21 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       }
       await page.end();
       server.behave();
+    });
+  }
+
+  for (const failure of LATER) {
+    test(`told in a notice: ${failure.name}`, async () => {
+      const { page, opened } = await failing(browser, server, other, failure);
+      assert.ok(opened.ready, JSON.stringify(opened.error));
+      const notice = page.locator("corniche-map .notice.warn").first();
+      await notice.waitFor();
+      assert.match(await notice.textContent(), failure.says);
+      assert.ok((await page.locator("corniche-map .notice").count()) <= 4, "not one for each tile");
+      assert.ok(await page.locator("corniche-map .credit").isVisible());
+      assert.deepEqual(page.faults.errors, []);
+      await page.screenshot({ path: path.join(pictures, `notice-${failure.name.replace(/\W+/g, "-")}.png`) });
+      await page.end();
     });
   }
 
@@ -83,13 +98,13 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       const map = document.querySelector("corniche-map");
       map.command("north-up");
     });
+    await page.locator("corniche-map .notice").filter({ hasText: "device was lost" }).waitFor();
     assert.ok(await again);
     await settled(page);
     const after = await ask(page, (map) => map.camera);
     for (const part of ["lon", "lat"]) assert.ok(Math.abs(after[part] - before[part]) < 1e-3, `${JSON.stringify(after)} ${JSON.stringify(before)}`);
     assert.equal(await ask(page, (map) => map.settings.style), "dark");
     assert.ok(colours(await pixelsOf(page)) > 50);
-    assert.match(await page.locator("corniche-map .notices").textContent(), /device was lost/);
     // Lost again and again, the element gives up and says so.
     for (let loss = 0; loss < 3; loss += 1) {
       const next = ask(page, (map) => new Promise((resolve) => {

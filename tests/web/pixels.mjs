@@ -1,78 +1,93 @@
-// Pixels of the page are those of `corniche render` on the same driver.
+// Pixels of the page are those of the native program on the same driver: of `render` where a view was asked for, and of a flight's frames after a flight. (A
+// view that was asked for has its haze by the distance to the place looked at; once it moves, by the height of the eye, as flights do.)
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { ask, openMap, pixelsOf, settled } from "./browser.mjs";
-import { difference, hasDriver, rendered } from "./rendering.mjs";
+import { difference, flown, hasDriver, rendered } from "./rendering.mjs";
 
-const SIZE = [640, 400];
-const VIEWS = { pass: [9.51, 46.91, 4000, 30, 60], liechtenstein: [9.521, 47.141, 5000, 60, 65] };
-const usual = [9, 46, 5000, 0, 60];
+const SIZE = { width: 640, height: 400 };
+/** Where to look in perspective: a share of the package's extent, and distance, heading and pitch. */
+const VIEW = { share: [0.52, 0.55], distance: 4000, heading: 30, pitch: 60 };
 
 export function tests({ browser, server, packages, corniche }) {
   const names = fs.readdirSync(packages).filter((name) => name.endsWith(".pmtiles")).map((name) => name.slice(0, -".pmtiles".length)).sort();
   const skip = hasDriver() ? false : "Chromium's Vulkan driver is not where it is with Debian: set CHROMIUM_DRIVER";
+  const fileOf = (name) => path.join(packages, `${name}.pmtiles`);
 
-  function compare(name, picture, options, what) {
-    const size = `${picture.width}x${picture.height}`;
-    const native = rendered(corniche, path.join(packages, `${name}.pmtiles`), ["--size", size, ...options]);
+  function check(what, picture, native) {
     assert.deepEqual([picture.width, picture.height], [native.width, native.height]);
     const { compared, bytes } = difference(picture, native);
     console.log(`# ${what}: ${bytes} of ${4 * compared} bytes differ`);
-    assert.equal(bytes, 0, `${what}: bytes that differ from render`);
+    assert.equal(bytes, 0, `${what}: bytes that differ`);
+  }
+
+  /** From above, as far away as the whole package is seen or half of it. */
+  async function checkFromAbove(page, name, what, options, pixels) {
+    const [west, south, east, north] = await ask(page, (map) => map.about.bounds);
+    const [lon, lat] = [(west + east) / 2, (south + north) / 2];
+    const pixel_m = +(((north - south) * 111_000) / pixels).toFixed(2);
+    await ask(page, (map, place) => map.lookAt(place, { jump: true }), { lon, lat, above: true, pixel_m, heading: 20 });
+    await settled(page);
+    const picture = await pixelsOf(page);
+    const size = `${picture.width}x${picture.height}`;
+    check(what, picture, rendered(corniche, fileOf(name), ["--size", size, "--ortho", "--look-at", `${lon},${lat}`, "--pixel", `${pixel_m}`, "--heading", "20", ...options]));
   }
 
   for (const name of names) {
     for (const roads of ["geo", "sv"]) {
-      test(`${name}, ${roads}: the whole package and a view equal render`, { skip }, async () => {
+      test(`${name}, ${roads}: pixels equal those of the native program`, { skip }, async () => {
         server.behave();
-        const page = await openMap(browser, server, { src: `/packages/${name}.pmtiles`, controls: "none", roads, samples: "2" }, { width: SIZE[0], height: SIZE[1] });
-        compare(name, await pixelsOf(page), ["--roads", roads], `${name} ${roads} whole`);
-        const [lon, lat, distance, heading, pitch] = VIEWS[name] ?? usual;
-        if (VIEWS[name]) {
-          // Opened there: a view that is reached by moving may have other tiles and is compared below.
-          const near = await openMap(browser, server, { src: `/packages/${name}.pmtiles`, controls: "none", roads, samples: "2", "look-at": [lon, lat, distance, heading, pitch].join() }, { width: SIZE[0], height: SIZE[1] });
-          compare(name, await pixelsOf(near), ["--roads", roads, "--look-at", `${lon},${lat}`, "--distance", `${distance}`, "--heading", `${heading}`, "--pitch", `${pitch}`], `${name} ${roads} near`);
-          await near.end();
+        const page = await openMap(browser, server, { src: `/packages/${name}.pmtiles`, controls: "none", roads, samples: "2" }, SIZE);
+        const size = ["--size", `${SIZE.width}x${SIZE.height}`, "--roads", roads];
+        check(`${name} ${roads}, first view`, await pixelsOf(page), rendered(corniche, fileOf(name), size));
+        await checkFromAbove(page, name, `${name} ${roads}, whole, from above`, ["--roads", roads], 300);
+        await checkFromAbove(page, name, `${name} ${roads}, near, from above`, ["--roads", roads], 2000);
+        // In perspective: after a flight that ends at rest.
+        const [west, south, east, north] = await ask(page, (map) => map.about.bounds);
+        const { share: [u, v], ...view } = VIEW;
+        const place = { lon: west + (east - west) * u, lat: south + (north - south) * v, ...view };
+        // Twice: only where the map has been is the height of its ground known exactly.
+        for (let time = 0; time < 2; time += 1) {
+          await ask(page, (map, place) => map.lookAt(place, { jump: true }), place);
+          await settled(page);
         }
+        const there = ["--look-at", `${place.lon},${place.lat}`, "--distance", `${view.distance}`, "--heading", `${view.heading}`, "--pitch", `${view.pitch}`];
+        check(`${name} ${roads}, a place in perspective`, await pixelsOf(page), rendered(corniche, fileOf(name), [...size, ...there]));
+        const recorded = await ask(page, async (map) => {
+          map.startRecording();
+          await new Promise((done) => setTimeout(done, 100));
+          return map.stopRecording();
+        });
+        await ask(page, (map) => map.command("reset"));
+        await settled(page);
+        // Twice: where the flight ends, the height of the ground beneath the eye, by which haze is set, must be known exactly.
+        for (let time = 0; time < 2; time += 1) {
+          await ask(page, (map, flight) => map.play(flight), recorded);
+          await page.waitForFunction(() => !document.querySelector("corniche-map").report.is_playing);
+          await settled(page);
+        }
+        check(`${name} ${roads}, in perspective, after a flight`, await pixelsOf(page), flown(corniche, fileOf(name), recorded, size));
         await page.end();
       });
     }
   }
 
-  test("after a flight to a place, the picture is that of render", { skip }, async () => {
-    const page = await openMap(browser, server, { controls: "none", samples: "1" }, { width: SIZE[0], height: SIZE[1] });
-    const [lon, lat, distance, heading, pitch] = VIEWS.pass;
-    await ask(page, (map, place) => map.lookAt(place), { lon, lat, distance, heading, pitch });
-    await settled(page);
-    // Where the flight ends, the ground may be known more coarsely than `render` knows it: the place is looked at again.
-    await ask(page, (map, place) => map.lookAt(place, { jump: true }), { lon, lat, distance, heading, pitch });
-    await settled(page);
-    const options = ["--roads", "geo", "--supersampling", "1", "--look-at", `${lon},${lat}`, "--distance", `${distance}`, "--heading", `${heading}`, "--pitch", `${pitch}`];
-    compare("pass", await pixelsOf(page), options, "after a flight");
-    await page.end();
-  });
-
-  test("after resizing, and at two pixels a point, the picture is that of render", { skip }, async () => {
+  test("after resizing, and at two pixels a point, pixels equal those of the native program", { skip }, async () => {
+    server.behave();
     const page = await openMap(browser, server, { controls: "none", samples: "1" }, { width: 500, height: 500, size: { width: "300px", height: "200px" }, deviceScaleFactor: 2 });
-    const first = await pixelsOf(page);
-    assert.deepEqual([first.width, first.height], [600, 400]);
-    compare("pass", first, ["--roads", "geo", "--supersampling", "1"], "two pixels a point");
+    const sizeOf = () => ask(page, async (map) => { const { width, height } = await map.readPixels(); return [width, height]; });
+    assert.deepEqual(await sizeOf(), [600, 400]);
+    const options = ["--roads", "geo", "--supersampling", "1"];
+    await checkFromAbove(page, "pass", "two pixels a point", options, 900);
     await ask(page, async (map) => {
-      map.style.width = "400px";
-      map.style.height = "250px";
+      Object.assign(map.style, { width: "401px", height: "250px" });
       await new Promise((done) => setTimeout(done, 300));
-      map.command("reset");
     });
     await settled(page);
-    const { camera, size } = await ask(page, async (map) => ({ camera: map.camera, size: [(await map.readPixels()).width, (await map.readPixels()).height] }));
-    assert.deepEqual(size, [800, 500]);
-    await ask(page, (map, place) => map.lookAt(place, { jump: true }), camera);
-    await settled(page);
-    const { lon, lat, height, distance, heading, pitch } = await ask(page, (map) => map.camera);
-    const options = ["--roads", "geo", "--supersampling", "1", "--look-at", `${lon},${lat}`, "--distance", `${distance}`, "--heading", `${heading}`, "--pitch", `${pitch}`];
-    compare("pass", await pixelsOf(page), height === undefined ? options : [...options, "--height", `${height}`], "after resizing");
+    assert.deepEqual(await sizeOf(), [802, 500]);
+    await checkFromAbove(page, "pass", "after resizing", options, 1200);
     await page.end();
   });
 }

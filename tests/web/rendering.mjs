@@ -11,13 +11,28 @@ const CREDITS = { width: 300, height: 30 };
 
 export const hasDriver = () => fs.existsSync(DRIVER);
 
-export function rendered(corniche, file, options) {
-  const out = path.join(fs.mkdtempSync(path.join(os.tmpdir(), "corniche-")), "map.png");
+/** What a program draws in a folder that is removed afterwards; `file` is the picture in it. */
+function drawn(corniche, work, file) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
   const env = { ...process.env, VK_DRIVER_FILES: DRIVER, VK_ICD_FILENAMES: DRIVER };
-  execFileSync(corniche, ["render", file, "-o", out, "--quiet", ...options], { env, stdio: ["ignore", "ignore", "pipe"] });
-  const png = PNG.sync.read(fs.readFileSync(out));
-  fs.rmSync(path.dirname(out), { recursive: true });
-  return png;
+  try {
+    execFileSync(corniche, work(folder), { env, stdio: ["ignore", "ignore", "pipe"] });
+    return PNG.sync.read(fs.readFileSync(path.join(folder, file)));
+  } finally {
+    fs.rmSync(folder, { recursive: true });
+  }
+}
+
+/** The picture that `render` draws. */
+export const rendered = (corniche, file, options) => drawn(corniche, (folder) => ["render", file, "-o", path.join(folder, "map.png"), "--quiet", ...options], "map.png");
+
+/** The last frame of a flight, given as TOML. */
+export function flown(corniche, file, flight, options) {
+  const roads = options[options.indexOf("--roads") + 1];
+  return drawn(corniche, (folder) => {
+    fs.writeFileSync(path.join(folder, "flight.toml"), flight);
+    return ["fly", file, "-o", path.join(folder, "flight.csv"), "--path", path.join(folder, "flight.toml"), "--frames", "4", "--png", path.join(folder, "frames"), "--quiet", ...options];
+  }, path.join("frames", `lod-${roads}-00003.png`));
 }
 
 /** How many pixels are compared, and how many bytes of them differ. */

@@ -1,8 +1,9 @@
 // All tests of the page in a real browser.
 //
-//   node run.mjs SITE PACKAGES CORNICHE PICTURES
+//   node run.mjs SITE PACKAGES CORNICHE PICTURES SOURCES
 //
-// SITE is the folder made by scripts/web, PACKAGES holds pass.pmtiles and others, CORNICHE is the program, PICTURES a folder for pictures of the page.
+// SITE is the folder made by scripts/web, PACKAGES holds pass.pmtiles and others, CORNICHE is the program, PICTURES a folder for pictures of the page,
+// SOURCES the folder of the element's modules.
 // node --test-reporter=spec --test-name-pattern=PATTERN run.mjs … runs some of them.
 import fs from "node:fs";
 import path from "node:path";
@@ -10,9 +11,9 @@ import { after, describe } from "node:test";
 import { startChromium } from "./browser.mjs";
 import { startServer } from "./server.mjs";
 
-const [site, packages, corniche, pictures] = process.argv.slice(2).map((name) => path.resolve(name));
-if (!pictures) {
-  console.error("usage: node run.mjs SITE PACKAGES CORNICHE PICTURES");
+const [site, packages, corniche, pictures, sources] = process.argv.slice(2).map((name) => path.resolve(name));
+if (!sources) {
+  console.error("usage: node run.mjs SITE PACKAGES CORNICHE PICTURES SOURCES");
   process.exit(2);
 }
 const browser = await startChromium();
@@ -22,7 +23,7 @@ const server = await startServer({ site, packages });
 const other = await startServer({ site, packages });
 
 /** What tests share. `other` is another host. */
-const world = { browser, server, other, site, packages, corniche, pictures, package: path.join(packages, "pass.pmtiles") };
+const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
 const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "embedding", "failures", "access", "pictures"];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
 describe("the page of the browser viewer", () => {

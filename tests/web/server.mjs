@@ -10,6 +10,9 @@ const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="
 <style>body { margin: 0; background: light-dark(#fff, #111); }</style><main></main>
 <script type="module" src="/corniche-map.js"></script></html>`;
 
+/** Headers without those that let pages of other hosts read. */
+const bare = (head) => Object.fromEntries(Object.entries(head).filter(([name]) => !name.startsWith("Access-Control")));
+
 /** How a host under /as/HOW/ misbehaves. `range` is the range asked for, `null` where none was. */
 const WAYS = {
   missing: (answer) => answer.writeHead(404).end("no"),
@@ -25,10 +28,7 @@ const WAYS = {
   },
   changed: (answer, { part, head, count }) => answer.writeHead(206, { ...head, ETag: `"${count}"` }).end(part),
   unexposed: (answer, { part, head }) => answer.writeHead(206, { ...head, "Access-Control-Expose-Headers": "" }).end(part),
-  "no-cors"(answer, { part, head }) {
-    const bare = Object.fromEntries(Object.entries(head).filter(([name]) => !name.startsWith("Access-Control")));
-    answer.writeHead(206, bare).end(part);
-  },
+  "no-cors": (answer, { part, head }) => answer.writeHead(206, bare(head)).end(part),
 };
 
 /** Files that are no good packages, made of one that is. */
@@ -104,7 +104,11 @@ export async function startServer({ site, packages }) {
       free = Math.max(free, now) + part.length / state.bytes_per_ms;
       await new Promise((done) => setTimeout(done, free - now));
     }
-    if (request.method === "HEAD") return answer.writeHead(200, { ...head, "Content-Length": bytes.length }).end();
+    if (request.method === "HEAD") {
+      if (way === WAYS.gzip) head["Content-Encoding"] = "gzip";
+      const told = way === WAYS["no-cors"] ? bare(head) : head;
+      return answer.writeHead(200, { ...told, "Content-Length": bytes.length }).end();
+    }
     if (way) return way(answer, { bytes, part, head, range, count: (count += 1) });
     answer.writeHead(code, { ...head, "Content-Length": part.length }).end(part);
   });

@@ -6,10 +6,10 @@ import path from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-export function tests({ site }) {
+export function tests({ sources }) {
   // Node takes files that end in .js for modules only where a package.json says so.
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
-  for (const name of fs.readdirSync(site).filter((name) => name.endsWith(".js"))) fs.copyFileSync(path.join(site, name), path.join(folder, name));
+  for (const name of fs.readdirSync(sources).filter((name) => name.endsWith(".js"))) fs.copyFileSync(path.join(sources, name), path.join(folder, name));
   fs.writeFileSync(path.join(folder, "package.json"), '{ "type": "module" }');
   after(() => fs.rmSync(folder, { recursive: true }));
   const load = (name) => import(pathToFileURL(path.join(folder, name)).href);

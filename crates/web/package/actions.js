@@ -19,13 +19,18 @@ export function makeActions(map) {
     return pictureOf(rgba, width, height, about.attribution, width / (canvas.getBoundingClientRect().width || width));
   }
 
-  /** Starts a recording, or ends it and returns the flight. */
-  function record() {
-    if (map.report()?.recording_s === null || map.report() === null) {
-      view.command("start-recording", now());
-      return "";
-    }
-    return view.command("stop-recording", now());
+  const isRecording = () => (map.report()?.recording_s ?? null) !== null;
+
+  function startRecording() {
+    if (!isRecording()) view.command("start-recording", now());
+    map.wake();
+  }
+
+  /** Ends the recording; the flight as text, "" where there is none. */
+  function stopRecording() {
+    const flight = view.command("stop-recording", now());
+    map.wake();
+    return flight;
   }
 
   function play(/** @type {string} */ flight) {
@@ -48,8 +53,14 @@ export function makeActions(map) {
       tell("tell", "The picture was saved.");
     },
     async record() {
-      const flight = record();
-      if (flight === "") return tell("tell", "The flight of the camera is recorded.");
+      if (!isRecording()) {
+        startRecording();
+        // From above there are no flights; the view says so itself.
+        if (!map.report()?.view?.above) tell("tell", "The flight of the camera is recorded.");
+        return;
+      }
+      const flight = stopRecording();
+      if (flight === "") return;
       download(new Blob([flight], { type: "application/toml" }), `${fileName(about.name)}-flight.toml`);
       tell("tell", "The flight was saved.");
     },
@@ -71,5 +82,5 @@ export function makeActions(map) {
       }
     },
   };
-  return { picture, record, play, link, byHand };
+  return { picture, startRecording, stopRecording, play, link, byHand };
 }

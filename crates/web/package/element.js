@@ -146,14 +146,12 @@ export class CornicheMap extends HTMLElement {
   }
 
   startRecording() {
-    const { actions, report } = this.#need();
-    if (report()?.recording_s == null) actions.record();
+    this.#need().actions.startRecording();
   }
 
   /** Ends the recording and returns the flight as TOML. */
   stopRecording() {
-    const { actions, report } = this.#need();
-    return report()?.recording_s == null ? "" : actions.record();
+    return this.#need().actions.stopRecording();
   }
 
   /** Flies a recorded flight. @param {string} flight */

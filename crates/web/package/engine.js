@@ -14,10 +14,13 @@ export class Failure extends Error {
   }
 }
 
+/** A text without what only programmers read: errors of the browser come with the place in the script where they arose. */
+const plain = (/** @type {unknown} */ text) => String(text ?? "").replace(/JsValue\((?:\w*Error: )?([^\n)]*)[^)]*\)/g, "$1");
+
 /** Whatever was thrown, as a failure. */
 export function failureOf(/** @type {any} */ error) {
   if (error instanceof Failure) return error;
-  if (error && typeof error === "object" && typeof error.kind === "string") return new Failure(error.kind, String(error.message ?? ""), String(error.advice ?? ""));
+  if (error && typeof error === "object" && typeof error.kind === "string") return new Failure(error.kind, plain(error.message), String(error.advice ?? ""));
   if (error instanceof WebAssembly.RuntimeError) return new Failure("other", `The renderer stopped: ${error.message}`, "Load the page again. If it happens again, please report it.");
   return new Failure("other", error instanceof Error ? error.message : String(error));
 }
