@@ -14,6 +14,7 @@
 
 mod merging;
 mod settings;
+mod tables;
 
 #[cfg(target_arch = "wasm32")]
 mod canvas;

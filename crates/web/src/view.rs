@@ -12,7 +12,7 @@ use corniche_live::{
     place_in_world,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Rgb, RoadStyle, Style, style_preset_names};
+use corniche_styles::{Rgb, RoadStyle, Style};
 use corniche_tileset::{FORMAT_VERSION, Manifest};
 use corniche_viewer::{
     SightedGround,
@@ -37,6 +37,7 @@ use crate::{
     problem::Problem,
     report::{About, ClassEntry, GroundPlace, Has, Notice, Pick},
     settings::{Compare, Settings},
+    tables,
 };
 
 /// A place is picked at most so far beside a road, points of the screen.
@@ -183,7 +184,7 @@ impl MapView {
     }
 
     /// Does what a button of the page asks for: `north-up`, `reset`, `toggle-fly`, `toggle-above`, `start-recording`, `stop-recording`. The last
-    /// returns the flight as TOML, others an empty text.
+    /// returns the flight as JSON with the fields of its TOML, others an empty text.
     pub fn command(&mut self, name: &str, now_s: f64) -> String {
         self.flights.stop_playing();
         match name {
@@ -207,7 +208,7 @@ impl MapView {
         String::new()
     }
 
-    /// Plays a flight; returns an empty text, or why not.
+    /// Plays a flight, JSON with the fields of its TOML; returns an empty text, or why not.
     pub fn play(&mut self, flight: &str, now_s: f64) -> String {
         let played = self.flights.play(flight, now_s, self.tileset.package.manifest());
         played.err().unwrap_or_default()
@@ -375,7 +376,7 @@ impl MapView {
             heights: self.height_range_m,
             tiles: manifest.levels.iter().map(|level| level.tiles).sum(),
             levels: manifest.levels.len(),
-            styles: style_preset_names().collect(),
+            styles: tables::style_names(),
             classes: self.labels.iter().zip(&self.style.roads).map(entry).collect(),
             has: Has {
                 photo: manifest.settings.photo.is_some(),

@@ -8,7 +8,6 @@ use corniche_live::{
     controls::{Inertia, Navigator},
     first_view, limits,
 };
-use corniche_presets::class_labels;
 use corniche_tileset::{OpenError, Package};
 use corniche_viewer::{
     CameraRequest, SightedGround,
@@ -33,6 +32,7 @@ use crate::{
     problem::Problem,
     settings::Settings,
     source::WebSource,
+    tables,
 };
 
 /// What may be done in a frame and kept, unless the page says otherwise.
@@ -139,7 +139,7 @@ pub(crate) async fn open(
         StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
     let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
     let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
-    let labels = class_labels(&manifest.settings.frc_table);
+    let labels = tables::class_labels(&manifest.settings.frc_table);
     Ok(MapView {
         address,
         canvas: page_canvas,
