@@ -38,7 +38,7 @@ mod damage;
 
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
-pub use areas::{AreasSection, encode_areas, with_areas};
+pub use areas::{AreasSection, area_part_sizes, encode_areas, with_areas};
 #[cfg(feature = "write")]
 pub use boundaries::{BoundariesSection, encode_boundaries, with_boundaries};
 pub use boundaries::{BoundaryRecord, decode_boundaries};

@@ -6,33 +6,69 @@ use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, Planes, unzigzag};
 
+/// The columns of numbers that a section is made of.
+pub(crate) struct Columns<'a> {
+    step: i64,
+    count: usize,
+    pub(crate) classes: Planes<'a>,
+    pub(crate) objects: Planes<'a>,
+    pub(crate) name_bytes: Planes<'a>,
+    pub(crate) polygons: Planes<'a>,
+    pub(crate) names: &'a [u8],
+    pub(crate) rings: Planes<'a>,
+    pub(crate) points: Planes<'a>,
+    pub(crate) steps: [Planes<'a>; 2],
+    pub(crate) beside: [Planes<'a>; 2],
+}
+
+impl<'a> Columns<'a> {
+    /// Takes a section apart.
+    pub(crate) fn read(bytes: &'a [u8]) -> Result<Self, Damage> {
+        let cursor = &mut Cursor::new(bytes);
+        let step =
+            i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
+        let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
+        let count = cursor.bounded(MAX_AREAS, "number of areas")?;
+        let [classes, objects, name_bytes, polygons] = [
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+        ];
+        let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
+        let names = cursor.take(length)?;
+        let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
+        let rings = cursor.planes(polygons_count)?;
+        let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
+        let points = cursor.planes(rings_count)?;
+        let points_count = total(points, 3, MAX_POINTS, "number of points")?;
+        let steps = [cursor.planes(points_count)?, cursor.planes(points_count)?];
+        let beside = [cursor.planes(points_count)?, cursor.planes(points_count)?];
+        cursor.finish()?;
+        let columns = Self {
+            step,
+            count,
+            classes,
+            objects,
+            name_bytes,
+            polygons,
+            names,
+            rings,
+            points,
+            steps,
+            beside,
+        };
+        Ok(columns)
+    }
+}
+
 /// Reads the section's bytes. All points lie in `bounds`.
 pub(crate) fn decode(bytes: &[u8], bounds: LatticeBounds) -> Result<Vec<AreaRecord>, Damage> {
-    let cursor = &mut Cursor::new(bytes);
-    let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-    let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
-    let count = cursor.bounded(MAX_AREAS, "number of areas")?;
-    let [classes, objects, name_bytes, polygons] = [
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-    ];
-    let mut names = cursor.clone();
-    let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
-    cursor.take(length)?;
-    let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
-    let rings = cursor.planes(polygons_count)?;
-    let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
-    let points = cursor.planes(rings_count)?;
-    let points_count = total(points, 3, MAX_POINTS, "number of points")?;
-    let [east, north, beside_east, beside_north] = [
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-    ];
-    cursor.finish()?;
+    let columns = Columns::read(bytes)?;
+    let Columns { step, count, classes, objects, name_bytes, polygons, .. } = columns;
+    let Columns { names, rings, points, steps, beside, .. } = columns;
+    let ([east, north], [beside_east, beside_north]) = (steps, beside);
+    let mut names = Cursor::new(names);
     let from = |corner: i64| corner.div_euclid(step);
     let mut east =
         Places { steps: east.iter(), beside: beside_east.iter(), step, last: from(bounds.min.u) };

@@ -6,7 +6,7 @@ use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
-use crate::payload::number_codes::{put_planes, put_varint, zigzag};
+use crate::payload::number_codes::{Planes, put_planes, put_varint, zigzag};
 use crate::payload::section_kind::Kind;
 
 /// A tile's areas as the section of a payload.
@@ -75,6 +75,32 @@ pub fn encode_areas(
         put_planes(&mut bytes, column);
     }
     Ok(Some(AreasSection { bytes }))
+}
+
+/// How many bytes the parts of a payload's areas take, each compressed by itself: numbers of areas, rings and points; ids; names; steps from point to
+/// point; what is left of points beside the coarse lattice. All 0 without areas. For measurements.
+///
+/// # Errors
+/// When the bytes are not a payload of tile `id`, or the section is damaged.
+pub fn area_part_sizes(payload: &[u8], id: TileId) -> Result<[usize; 5], DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let inside = failed(Kind::Areas.name());
+    let sections = envelope::open(payload, id).map_err(failed("header"))?;
+    let Some(section) = envelope::section(&sections, Kind::Areas).map_err(inside)? else {
+        return Ok([0; 5]);
+    };
+    let columns = decode::Columns::read(&section).map_err(inside)?;
+    let decode::Columns { classes, name_bytes, polygons, rings, points, .. } = columns;
+    let bytes =
+        |planes: &[Planes<'_>]| planes.iter().flat_map(|one| one.bytes()).copied().collect();
+    let parts: [Vec<u8>; 5] = [
+        bytes(&[classes, name_bytes, polygons, rings, points]),
+        bytes(&[columns.objects]),
+        columns.names.to_vec(),
+        bytes(&columns.steps),
+        bytes(&columns.beside),
+    ];
+    Ok(parts.map(|part| envelope::compressed_size(&part)))
 }
 
 fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {
