@@ -32,6 +32,7 @@ mod points;
 mod range_coder;
 mod route_guess;
 mod source_grid;
+mod turned_steps;
 mod work_limit;
 
 mod damage;
