@@ -55,6 +55,24 @@ fn photos_come_back_within_their_loss_and_coverage_exactly() {
     }
 }
 
+/// JPEG's example tables, as older packages have them, give the same texels from more bytes.
+#[test]
+fn tables_of_the_pictures_own_change_no_texel() {
+    let written = photo(1, |_, _| false);
+    let rgb: Vec<u8> =
+        written.rgba.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
+    let mut older = vec![1, 1];
+    coverage::encode(written.rgba.chunks_exact(4).map(|_| true), &mut older);
+    let mut encoder = jpeg_encoder::Encoder::new(&mut older, 80);
+    encoder.set_sampling_factor(jpeg_encoder::SamplingFactor::F_1_1);
+    let side = written.side() as u16;
+    encoder.encode(&rgb, side, side, jpeg_encoder::ColorType::Rgb).unwrap();
+    let now = section_of(&written, 80);
+    assert!(now.bytes().len() < older.len());
+    let read = |section: &[u8]| decode_photo(&payload(section), id()).unwrap().unwrap();
+    assert!(read(&older) == read(now.bytes()));
+}
+
 #[test]
 fn no_texel_no_section() {
     assert_eq!(encode_photo(id(), &photo(0, |_, _| true), 80).unwrap(), None);

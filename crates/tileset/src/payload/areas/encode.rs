@@ -64,6 +64,23 @@ pub fn encode_areas(
     let bounds = frame.tile_lattice_bounds(tile);
     let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
     check(areas, &bounds, step).map_err(refused)?;
+    Ok(Some(section(areas, bounds, step, coded_places(areas, bounds, step))))
+}
+
+/// The areas with their points in planes, as kind 8 has them.
+#[cfg(test)]
+pub(crate) fn in_planes(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> AreasSection {
+    section(areas, bounds, step, None)
+}
+
+/// `coded`: all points, else they are written in planes.
+fn section(
+    areas: &[AreaRecord],
+    bounds: LatticeBounds,
+    step: i64,
+    coded: Option<Vec<u8>>,
+) -> AreasSection {
+    let is_coded = coded.is_some();
     let mut columns = Columns::default();
     for area in areas {
         columns.push_area(area);
@@ -77,16 +94,14 @@ pub fn encode_areas(
     bytes.extend(&columns.names);
     put_planes(&mut bytes, &columns.rings);
     put_planes(&mut bytes, &columns.points);
-    let is_coded = if let Some(coded) = coded_places(areas, bounds, step) {
+    if let Some(coded) = coded {
         bytes.extend(coded);
-        true
     } else {
         for column in &columns.places(&bounds, step) {
             put_planes(&mut bytes, column);
         }
-        false
-    };
-    Ok(Some(AreasSection { is_coded, bytes }))
+    }
+    AreasSection { is_coded, bytes }
 }
 
 /// All points as range-coded bits; `None` where one has no code: a step of 2^32 or more.
