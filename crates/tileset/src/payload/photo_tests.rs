@@ -100,7 +100,8 @@ fn hostile_sections_are_refused_within_limits() {
     let good = section_of(&photo(0, |column, _| column < 8), 80).bytes().to_vec();
     assert!(decode_photo(&payload(&good), id()).unwrap().is_some());
     // Every cut, and a flipped byte at every place of the head.
-    for length in (0..good.len()).step_by(97).chain(0..8) {
+    let last_scan = good.windows(2).rposition(|two| two == [0xff, 0xda]).unwrap();
+    for length in (0..good.len()).step_by(97).chain(0..8).chain([last_scan, good.len() - 2]) {
         assert!(decode_photo(&payload(&good[..length]), id()).is_err(), "{length} bytes");
     }
     assert_eq!(damage(&[2, 0]), Damage::Invalid { what: "an unknown coding of colours" });
