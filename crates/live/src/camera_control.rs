@@ -107,6 +107,7 @@ impl CameraControl {
     }
 
     /// Pixels to a point of the screen, as in the last frame.
+    #[must_use]
     pub fn pixels_per_point(&self) -> f64 {
         self.pixels_per_point
     }
@@ -156,36 +157,43 @@ impl CameraControl {
     }
 
     /// How long ago the camera moved last.
+    #[must_use]
     pub fn at_rest_s(&self, now_s: f64) -> f64 {
         now_s - self.moved_s
     }
 
     /// Whether the camera goes on moving without any input.
+    #[must_use]
     pub fn is_moving(&self) -> bool {
         self.navigator.is_moving()
     }
 
     /// Whether a button of the mouse is held down that was pressed on the map.
+    #[must_use]
     pub fn is_dragging(&self) -> bool {
         self.is_dragging
     }
 
     /// Map mode or fly mode.
+    #[must_use]
     pub fn mode(&self) -> Mode {
         self.navigator.mode()
     }
 
     /// What is seen now.
+    #[must_use]
     pub fn view(&self) -> View {
         self.navigator.view()
     }
 
     /// Width and height of the window in the last frame, pixels.
+    #[must_use]
     pub fn size_px(&self) -> [u32; 2] {
         self.navigator.camera().size_px()
     }
 
     /// The camera as flights have it: with its true height.
+    #[must_use]
     pub fn pose(&self, vertical_scale: f64) -> Pose {
         let View { eye_in_world: eye, orientation, .. } = self.view();
         Pose { eye_m: [eye.x, eye.y, eye.z / vertical_scale], orientation }

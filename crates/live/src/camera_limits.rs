@@ -7,6 +7,7 @@ use crate::controls::Limits;
 pub const MAX_PITCH_DEG: f64 = 85.0;
 
 /// How far the camera may go over the package of this manifest.
+#[must_use]
 pub fn limits(manifest: &Manifest) -> Limits {
     Limits {
         data: manifest.data_bounds,

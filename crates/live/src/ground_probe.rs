@@ -58,16 +58,19 @@ impl GroundProbe {
     }
 
     /// The ground under the cursor.
+    #[must_use]
     pub fn cursor(&self) -> Option<GroundPoint> {
         self.cursor.map(|(point, _)| point)
     }
 
     /// Side of a pixel on the ground under the cursor, world metres.
+    #[must_use]
     pub fn cursor_pixel_m(&self) -> Option<f64> {
         self.cursor.map(|(_, pixel_m)| pixel_m)
     }
 
     /// Side of a pixel on the ground in the middle of the window, world metres.
+    #[must_use]
     pub fn middle_pixel_m(&self) -> Option<f64> {
         self.middle_pixel_m
     }

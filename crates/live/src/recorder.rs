@@ -15,12 +15,14 @@ pub struct Recorder {
 
 impl Recorder {
     /// Begins a recording.
+    #[must_use]
     pub fn new(now_s: f64, pose: Pose) -> Self {
         let first = Keyframe { time_s: 0.0, pose };
         Self { begun_s: now_s, keyframes: vec![first], last: first }
     }
 
     /// For how long it has been going on.
+    #[must_use]
     pub fn duration_s(&self, now_s: f64) -> f64 {
         now_s - self.begun_s
     }

@@ -148,22 +148,26 @@ impl Tiles {
     }
 
     /// Tiles that are drawn.
+    #[must_use]
     pub fn drawn(&self) -> &[Drawn] {
         &self.drawn
     }
 
     /// Tiles that the view needs and that are not on the graphics card yet.
+    #[must_use]
     pub fn missing(&self) -> usize {
         self.missing
     }
 
     /// Tiles being loaded.
+    #[must_use]
     pub fn loading(&self) -> usize {
         self.loading.len()
     }
 
     /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
     /// was asked.
+    #[must_use]
     pub fn is_full(&self) -> bool {
         self.is_full
     }
@@ -174,6 +178,7 @@ impl Tiles {
     }
 
     /// Bytes on the graphics card, and how many there may be.
+    #[must_use]
     pub fn bytes_of_budget(&self) -> [u64; 2] {
         [self.streamer.resident_bytes(), self.budget.gpu_bytes]
     }
@@ -181,6 +186,7 @@ impl Tiles {
     /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
     ///
     /// `height_range_m` are the true heights between which all of it lies.
+    #[must_use]
     pub fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
         ShownGround { tiles: self, vertical_scale, height_range_m }
     }

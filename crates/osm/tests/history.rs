@@ -150,6 +150,96 @@ fn dense_nodes_are_looked_at_too() {
     check(&[plain_header(), blobs].concat(), Err("it holds node 2 in versions 1 and 2"));
 }
 
+/// Eight blobs of two nodes each, 1 to 16, then a way along all of them. The nodes' blobs are read after the way: that all before it are nodes
+/// is found by looking at some of them, here at number 0, 4, 6, 7 and 8, and not at the others.
+fn nodes_then_way() -> Vec<Block> {
+    let nodes = (0..8).map(|blob| {
+        let mut block = Block::new();
+        block
+            .dense(&[1, 2].map(|k| (2 * blob + k, 470_000_000, 90_000_000 + 200 * blob + 100 * k)));
+        block
+    });
+    let mut block = Block::new();
+    block.track(5, &(1..=16).collect::<Vec<_>>());
+    nodes.chain([block]).collect()
+}
+
+fn of_blocks(blocks: &[Block]) -> Vec<u8> {
+    let blobs = blocks.iter().map(|block| raw(b"OSMData", &block.bytes()));
+    [plain_header()].into_iter().chain(blobs).collect::<Vec<_>>().concat()
+}
+
+/// A relation in a group of its own.
+fn relation(id: i64, info: &[u8]) -> Vec<u8> {
+    field(4, &[number(1, id), field(4, info)].concat())
+}
+
+#[test]
+fn a_deleted_object_among_nodes_that_are_read_last_marks_a_history() {
+    let deleted = info(Some(2), Some(false));
+    for blob in 0..8 {
+        let mut blocks = nodes_then_way();
+        let place = [number(8, 0), number(9, 0)].concat();
+        let node = [number(1, 40), field(4, &deleted), place].concat();
+        blocks[blob].groups.push(field(1, &node));
+        check(&of_blocks(&blocks), Err("it marks node 20 as deleted"));
+
+        let mut blocks = nodes_then_way();
+        blocks[blob].groups.push(relation(9, &deleted));
+        check(&of_blocks(&blocks), Err("it marks relation 9 as deleted"));
+
+        let mut blocks = nodes_then_way();
+        let mut block = Block::new();
+        way(&mut block, 6, "track", Some(deleted.clone()));
+        blocks.insert(blob, block);
+        check(&of_blocks(&blocks), Err("it marks way 6 as deleted"));
+    }
+}
+
+/// One version ends the nodes that are read last, the other is in the blob with the way, which is read first.
+#[test]
+fn versions_on_both_sides_of_where_reading_begins_are_a_history() {
+    let node = |version| {
+        let place = [number(8, 0), number(9, 0)].concat();
+        field(1, &[number(1, 40), field(4, &info(Some(version), None)), place].concat())
+    };
+    let of = |versions: [i64; 2]| {
+        let mut blocks = nodes_then_way();
+        blocks[7].groups.push(node(versions[0]));
+        blocks[8].groups.insert(0, node(versions[1]));
+        of_blocks(&blocks)
+    };
+    check(&of([1, 2]), Err("it holds node 20 in versions 1 and 2"));
+    check(&of([2, 2]), Ok(0));
+}
+
+#[test]
+fn relations_among_nodes_that_are_read_last_change_nothing() {
+    let expected = read_bytes(&of_blocks(&nodes_then_way())).unwrap();
+    assert_eq!((expected.roads.len(), expected.summary.nodes_seen), (1, 16));
+    let known = info(Some(3), Some(true));
+    for blob in 0..8 {
+        // In a blob of nodes, and in one of its own.
+        let mut beside = nodes_then_way();
+        beside[blob].groups.push(relation(9, &known));
+        let mut alone = nodes_then_way();
+        let mut block = Block::new();
+        block.groups.push(relation(9, &known));
+        alone.insert(blob, block);
+        for blocks in [beside, alone] {
+            assert_eq!(read_bytes(&of_blocks(&blocks)).unwrap(), expected, "blob {blob}");
+        }
+        // A way behind the relation is a road, and the nodes of both are found.
+        let mut with_way = nodes_then_way();
+        with_way[blob].groups.push(relation(9, &known));
+        with_way[blob].track(4, &[3, 14]);
+        let found = read_bytes(&of_blocks(&with_way)).unwrap();
+        let ids: Vec<i64> = found.roads.iter().map(|road| road.way_id).collect();
+        assert_eq!((ids, found.defects, found.summary.nodes_seen), (vec![4, 5], vec![], 16));
+        assert_eq!(found.roads[1].line, expected.roads[0].line);
+    }
+}
+
 proptest! {
     /// In a file sorted by id, however it is cut into blocks, two versions of a way never go unseen, and nothing else is
     /// taken for them.

@@ -1,11 +1,12 @@
 //! How areas look.
 
 use corniche_areas::AreaClass;
+use serde::{Deserialize, Serialize};
 
 use crate::Rgb;
 
 /// How the areas of one class are drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AreaStyle {
     /// Colour.
     pub color: Rgb,

@@ -1,4 +1,5 @@
 use crate::StyleError;
+use serde::{Deserialize, Serialize};
 
 /// A pattern of dashes and gaps that repeats along a line.
 ///
@@ -12,7 +13,7 @@ use crate::StyleError;
 /// two each time, so that on the picture a pattern has at least the length asked for, and less than twice that.
 ///
 /// A pattern may also say how wide the line is along it, as a texture with one row: [`Dash::textured`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Dash {
     /// Where the first dash, the first gap and the second dash end, as shares of the pattern.
     ends: [f32; 3],

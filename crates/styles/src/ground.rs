@@ -1,6 +1,7 @@
 //! How the ground looks: its colours by height, and the light on it.
 
 use crate::{Rgb, climate};
+use serde::{Deserialize, Serialize};
 
 /// A stop of the height tint: a height in the unit of [`TintHeights`], and the colour there.
 pub type TintStop = (f32, Rgb);
@@ -9,7 +10,7 @@ pub type TintStop = (f32, Rgb);
 pub const MOST_TINT_STOPS: usize = 12;
 
 /// What the heights of a tint's stops mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TintHeights {
     /// Shares of the package's range of heights, 0 to 1.
     Shares,
@@ -20,7 +21,7 @@ pub enum TintHeights {
 }
 
 /// Colours of the ground by its height.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tint {
     /// What the heights of the stops mean.
     pub heights: TintHeights,
@@ -64,7 +65,7 @@ impl Tint {
 /// Shading follows the rules of Imhof, *Cartographic Relief Presentation* (1965; English edition 1982), chapters 9 and 10:
 /// light from the upper left that turns where a slope runs along it, darker steep slopes, colours of the shadow that are
 /// not grey, and less contrast in valleys.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Light {
     /// Compass direction the light comes from.
     pub azimuth_deg: f64,

@@ -1,11 +1,12 @@
 //! How lines beside the roads are drawn: boundaries, and lines of people's own files.
 
 use corniche_roads::FunctionalRoadClass;
+use serde::{Deserialize, Serialize};
 
 use crate::{Dash, Rgb};
 
 /// How lines of one kind are drawn: everywhere equally wide on the picture, over the roads.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LineStyle {
     /// Its colour.
     pub color: Rgb,

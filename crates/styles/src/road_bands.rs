@@ -1,4 +1,5 @@
 use crate::{Rgb, StyleError};
+use serde::{Deserialize, Serialize};
 
 /// Stripes along a road, one upon the other, each narrower than the one below: from the road's whole width to its middle.
 ///
@@ -10,14 +11,14 @@ use crate::{Rgb, StyleError};
 /// ```
 ///
 /// It has at least one band and at most [`RoadBands::MOST`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RoadBands {
     bands: [RoadBand; Self::MOST],
     count: usize,
 }
 
 /// One of the [`RoadBands`] of a road.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RoadBand {
     /// Share of the road's width.
     pub width_share: f32,

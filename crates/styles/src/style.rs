@@ -2,11 +2,12 @@
 
 use corniche_areas::AreaClass;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use serde::{Deserialize, Serialize};
 
 use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBand, RoadBands, Tint, TintHeights};
 
 /// How the roads of one class are drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RoadStyle {
     /// Width on the ground near the eye.
     pub width_m: f32,
@@ -39,7 +40,7 @@ impl RoadStyle {
 /// Up to `threshold_m` a road has its true width. Beyond, the width is multiplied by
 /// `(distance / threshold_m) ^ exponent`. With exponent 0, roads become smaller with distance like everything else; with 1,
 /// they keep their width in pixels. In between, far roads remain visible and still look far.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WidthScaling {
     /// Distance from the eye up to which widths are true.
     pub threshold_m: f32,
@@ -59,7 +60,7 @@ impl WidthScaling {
 }
 
 /// Roads are drawn by their own tags, where they have some.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OwnWidths {
     /// Width of one lane: roads with `lanes` and without `width` are so many times as wide. `None`: `lanes` are not looked at.
     pub lane_m: Option<f32>,
@@ -84,7 +85,7 @@ impl OwnWidths {
 }
 
 /// How the map looks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Style {
     /// By class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],

@@ -56,7 +56,7 @@ pub use payload::{
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, BoundariesSection, EncodedTile, PayloadContext, PhotoSection, encode,
-    encode_areas, encode_boundaries, encode_photo, encode_with_ground_of, photo_section,
+    AreasSection, BoundariesSection, EncodedTile, PayloadContext, PhotoSection, area_part_sizes,
+    encode, encode_areas, encode_boundaries, encode_photo, encode_with_ground_of, photo_section,
     terrain_part_sizes, with_areas, with_boundaries, with_photo,
 };

@@ -32,13 +32,14 @@ mod points;
 mod range_coder;
 mod route_guess;
 mod source_grid;
+mod turned_steps;
 mod work_limit;
 
 mod damage;
 
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
-pub use areas::{AreasSection, encode_areas, with_areas};
+pub use areas::{AreasSection, area_part_sizes, encode_areas, with_areas};
 #[cfg(feature = "write")]
 pub use boundaries::{BoundariesSection, encode_boundaries, with_boundaries};
 pub use boundaries::{BoundaryRecord, decode_boundaries};

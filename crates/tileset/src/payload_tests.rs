@@ -283,7 +283,7 @@ fn lines_on_the_grid_of_osm_are_coded_and_come_back() {
         let encoded = encode(&payload, &context).unwrap();
         let sections = super::envelope::open(&encoded.bytes, id()).unwrap();
         for roads in [super::section_kind::GEO, super::section_kind::SV] {
-            let found = super::envelope::road_section(&sections, roads).unwrap();
+            let found = super::envelope::section_of_two(&sections, roads).unwrap();
             assert_eq!(found.unwrap().1, is_coded);
         }
         assert_eq!(read(&encoded.bytes, Sections::ALL).as_ref(), Ok(&payload));

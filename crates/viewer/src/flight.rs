@@ -30,7 +30,7 @@ pub use self::{
     error::FlightError,
     keyframe::{Keyframe, Pose},
     path::Flight,
-    text::WorkingCrs,
+    text::{FlightRecord, WorkingCrs},
 };
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
 // What the buttons and keys do besides moving the camera: flights, pictures, links.
+import { flightRecord, flightText } from "./flights.js";
 import { askForFile, download } from "./dom.js";
 import { hashWith } from "./hash.js";
 import { pictureOf } from "./picture.js";
@@ -28,13 +29,19 @@ export function makeActions(map) {
 
   /** Ends the recording; the flight as text, "" where there is none. */
   function stopRecording() {
-    const flight = view.command("stop-recording", now());
+    const flight = flightText(view.command("stop-recording", now()));
     map.wake();
     return flight;
   }
 
   function play(/** @type {string} */ flight) {
-    const why = view.play(flight, now());
+    let record;
+    try {
+      record = flightRecord(flight);
+    } catch (error) {
+      return `this is no flight: ${/** @type {Error} */ (error).message.split("\n")[0]}`;
+    }
+    const why = view.play(record, now());
     map.wake();
     return why;
   }

@@ -103,7 +103,7 @@ pub(crate) async fn range(
         )
     };
     let body = async { JsFuture::from(response.array_buffer()?).await };
-    let body: JsValue = body.await.map_err(|error| cut_off(&thrown(&error)))?.into();
+    let body = body.await.map_err(|error| cut_off(&thrown(&error)))?;
     let bytes = Uint8Array::new(&body.unchecked_into::<ArrayBuffer>()).to_vec();
     let asked = (last + 1).min(file_bytes).saturating_sub(first);
     if bytes.len() as u64 != asked {
@@ -187,7 +187,7 @@ async fn fetch(address: &str, init: &RequestInit) -> Result<Response, JsValue> {
     let global = js_sys::global();
     let fetch: Function = Reflect::get(&global, &"fetch".into())?.unchecked_into();
     let promise: Promise = fetch.call2(&global, &address.into(), init)?.unchecked_into();
-    let response: JsValue = JsFuture::from(promise).await?.into();
+    let response = JsFuture::from(promise).await?;
     Ok(response.unchecked_into())
 }
 

@@ -4,7 +4,7 @@ use corniche_live::{Recorder, controls::View};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     eye_height,
-    flight::{Flight, Pose, WorkingCrs},
+    flight::{Flight, FlightRecord, Pose, WorkingCrs},
 };
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ impl Flights {
         self.recorder = Some(Recorder::new(now_s, pose));
     }
 
-    /// Ends the recording; the flight as TOML.
+    /// Ends the recording; the flight as JSON, with the fields of its TOML.
     ///
     /// # Errors
     /// In words, when nothing was recorded.
@@ -31,7 +31,8 @@ impl Flights {
     ) -> Result<String, String> {
         let recorder = self.recorder.take().ok_or("no flight is being recorded")?;
         let flight = recorder.finish(now_s).map_err(|error| error.to_string())?;
-        flight.to_text(WorkingCrs::of(manifest)).map_err(|error| error.to_string())
+        serde_json::to_string(&flight.record(WorkingCrs::of(manifest)))
+            .map_err(|error| error.to_string())
     }
 
     /// For how long a flight has been recorded.
@@ -56,7 +57,9 @@ impl Flights {
         now_s: f64,
         manifest: &Manifest,
     ) -> Result<(), String> {
-        let flight = Flight::parse(text, WorkingCrs::of(manifest), &manifest.coordinates);
+        let record: FlightRecord = serde_json::from_slice(text.as_bytes())
+            .map_err(|error| format!("this is no flight: {error}"))?;
+        let flight = Flight::of_record(&record, WorkingCrs::of(manifest), &manifest.coordinates);
         self.playing = Some((flight.map_err(|error| error.to_string())?, now_s));
         Ok(())
     }

@@ -14,6 +14,7 @@
 
 mod merging;
 mod settings;
+mod tables;
 
 #[cfg(target_arch = "wasm32")]
 mod canvas;
@@ -25,6 +26,8 @@ mod fetch;
 mod first_tiles;
 #[cfg(target_arch = "wasm32")]
 mod flights;
+#[cfg(target_arch = "wasm32")]
+mod foresight;
 #[cfg(target_arch = "wasm32")]
 pub mod host;
 #[cfg(target_arch = "wasm32")]

@@ -35,9 +35,16 @@ impl Tileset {
 #[derive(Default)]
 struct State {
     arrived: Vec<Loaded>,
-    under_way: BTreeMap<TileId, AbortHandle>,
+    under_way: BTreeMap<TileId, Load>,
     /// Tiles that are there before they are asked for: those of the first view.
     ready: BTreeMap<TileId, TileGeometry>,
+}
+
+/// A tile under way.
+struct Load {
+    handle: AbortHandle,
+    /// Whether it was asked for, and not only foreseen.
+    is_asked: bool,
 }
 
 /// The loader of a map.
@@ -72,9 +79,60 @@ impl PageLoader {
         let is_other = *self.decoder.borrow() != decoder;
         if is_other {
             self.decoder.replace(decoder);
-            self.state.borrow_mut().ready.clear();
+            let mut state = self.state.borrow_mut();
+            state.ready.clear();
+            state.stop();
         }
         is_other
+    }
+
+    /// Loads tiles that will be asked for soon.
+    pub(crate) fn foresee(&self, ids: &[TileId]) {
+        for id in ids {
+            self.begin(*id, false);
+        }
+    }
+
+    /// Begins to load a tile, if it is neither there nor under way.
+    fn begin(&self, id: TileId, is_asked: bool) {
+        let mut state = self.state.borrow_mut();
+        if let Some(load) = state.under_way.get_mut(&id) {
+            load.is_asked |= is_asked;
+            return;
+        }
+        if state.ready.contains_key(&id) {
+            return;
+        }
+        let (tiles, decoder) = (Rc::clone(&self.tiles), self.decoder.borrow().clone());
+        let (load, handle) = abortable(async move { tiles.load(id, &decoder).await });
+        state.under_way.insert(id, Load { handle, is_asked });
+        let (state, host) = (Rc::clone(&self.state), self.host.clone());
+        spawn_local(async move {
+            let Ok(tile) = load.await else { return };
+            let mut state = state.borrow_mut();
+            let is_asked = state.under_way.remove(&id).is_some_and(|load| load.is_asked);
+            match tile {
+                tile if is_asked => state.arrived.push(Loaded { id, tile }),
+                Ok(tile) => {
+                    state.ready.insert(id, tile);
+                }
+                // Who asks for it will be told.
+                Err(_) => {}
+            }
+            drop(state);
+            if is_asked {
+                host.wake();
+            }
+        });
+    }
+}
+
+impl State {
+    /// Stops all that is under way.
+    fn stop(&mut self) {
+        for load in std::mem::take(&mut self.under_way).into_values() {
+            load.handle.abort();
+        }
     }
 }
 
@@ -87,26 +145,13 @@ impl TileLoader for PageLoader {
                 self.host.wake();
                 continue;
             }
-            let (tiles, decoder) = (Rc::clone(&self.tiles), self.decoder.borrow().clone());
-            let (load, handle) = abortable(async move { tiles.load(id, &decoder).await });
-            self.state.borrow_mut().under_way.insert(id, handle);
-            let (state, host) = (Rc::clone(&self.state), self.host.clone());
-            spawn_local(async move {
-                let Ok(tile) = load.await else { return };
-                let mut state = state.borrow_mut();
-                state.under_way.remove(&id);
-                state.arrived.push(Loaded { id, tile });
-                drop(state);
-                host.wake();
-            });
+            self.begin(id, true);
         }
     }
 
     fn forget(&mut self) {
         let mut state = self.state.borrow_mut();
-        for handle in std::mem::take(&mut state.under_way).into_values() {
-            handle.abort();
-        }
+        state.stop();
         state.arrived.clear();
     }
 
@@ -114,8 +159,8 @@ impl TileLoader for PageLoader {
         let mut state = self.state.borrow_mut();
         let mut dropped = Vec::new();
         for id in ids {
-            if let Some(handle) = state.under_way.remove(id) {
-                handle.abort();
+            if let Some(load) = state.under_way.remove(id) {
+                load.handle.abort();
                 dropped.push(*id);
             }
         }

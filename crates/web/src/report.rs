@@ -114,7 +114,7 @@ pub(crate) struct About {
     pub(crate) heights: [f64; 2],
     pub(crate) tiles: u64,
     pub(crate) levels: usize,
-    pub(crate) styles: Vec<&'static str>,
+    pub(crate) styles: Vec<String>,
     pub(crate) classes: Vec<ClassEntry>,
     pub(crate) has: Has,
     pub(crate) adapter: String,

@@ -1,10 +1,12 @@
 //! What a page can change of a map, as JSON.
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Style, parse_style, style_preset};
+use corniche_styles::Style;
 use corniche_viewer::{ClassSet, Outline, RoadMethod, RoadOptions, Wireframe, range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+
+use crate::tables;
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,6 +44,10 @@ pub(crate) enum Edge {
 /// Everything that a page can change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "they are boxes to tick, independent of each other"
+)]
 pub(crate) struct Settings {
     pub(crate) roads: Roads,
     pub(crate) compare: Compare,
@@ -133,11 +139,10 @@ impl Settings {
     /// # Errors
     /// In words, when there is no such style.
     pub(crate) fn look(&self) -> Result<Style, String> {
-        let text = style_preset(&self.style).ok_or_else(|| {
-            let names: Vec<&str> = corniche_styles::style_preset_names().collect();
-            format!("there is no style {:?}; there are {}", self.style, names.join(", "))
+        let mut style = tables::style(&self.style).ok_or_else(|| {
+            let names = tables::style_names().join(", ");
+            format!("there is no style {:?}; there are {names}", self.style)
         })?;
-        let mut style = parse_style(text).map_err(|error| error.to_string())?;
         style.photo = self.photo.unwrap_or(style.photo);
         if !self.areas {
             style = style.without_areas();

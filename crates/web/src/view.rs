@@ -12,11 +12,12 @@ use corniche_live::{
     place_in_world,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Rgb, RoadStyle, Style, style_preset_names};
+use corniche_styles::{Rgb, RoadStyle, Style};
 use corniche_tileset::{FORMAT_VERSION, Manifest};
 use corniche_viewer::{
     SightedGround,
     flight::Pose,
+    lod::Fineness,
     range,
     tiles::{MapExtent, MapPackage as _, TileDecoder},
 };
@@ -36,6 +37,7 @@ use crate::{
     problem::Problem,
     report::{About, ClassEntry, GroundPlace, Has, Notice, Pick},
     settings::{Compare, Settings},
+    tables,
 };
 
 /// A place is picked at most so far beside a road, points of the screen.
@@ -71,13 +73,16 @@ pub struct MapView {
 #[wasm_bindgen]
 impl MapView {
     /// Opens a package by its address. `options` is JSON. Rejects with a problem: `{kind, message, advice}`.
+    ///
+    /// # Errors
+    /// When there is nothing to draw with, or nothing to show.
     pub async fn open(
         canvas: HtmlCanvasElement,
         src: String,
         options: String,
         host: Host,
     ) -> Result<MapView, JsValue> {
-        open::open(canvas, src, &options, host).await.map_err(JsValue::from)
+        Box::pin(open::open(canvas, src, &options, host)).await.map_err(JsValue::from)
     }
 
     /// The canvas has this size in pixels of the screen now.
@@ -87,6 +92,9 @@ impl MapView {
     }
 
     /// Moves, loads and draws. Returns a report as JSON.
+    ///
+    /// # Errors
+    /// When the device is lost or cannot draw: a problem.
     pub fn frame(&mut self, now_s: f64) -> Result<String, JsValue> {
         let report = self.next_frame(now_s)?;
         Ok(json(&report))
@@ -176,7 +184,7 @@ impl MapView {
     }
 
     /// Does what a button of the page asks for: `north-up`, `reset`, `toggle-fly`, `toggle-above`, `start-recording`, `stop-recording`. The last
-    /// returns the flight as TOML, others an empty text.
+    /// returns the flight as JSON with the fields of its TOML, others an empty text.
     pub fn command(&mut self, name: &str, now_s: f64) -> String {
         self.flights.stop_playing();
         match name {
@@ -200,7 +208,7 @@ impl MapView {
         String::new()
     }
 
-    /// Plays a flight; returns an empty text, or why not.
+    /// Plays a flight, JSON with the fields of its TOML; returns an empty text, or why not.
     pub fn play(&mut self, flight: &str, now_s: f64) -> String {
         let played = self.flights.play(flight, now_s, self.tileset.package.manifest());
         played.err().unwrap_or_default()
@@ -368,7 +376,7 @@ impl MapView {
             heights: self.height_range_m,
             tiles: manifest.levels.iter().map(|level| level.tiles).sum(),
             levels: manifest.levels.len(),
-            styles: style_preset_names().collect(),
+            styles: tables::style_names(),
             classes: self.labels.iter().zip(&self.style.roads).map(entry).collect(),
             has: Has {
                 photo: manifest.settings.photo.is_some(),
@@ -452,6 +460,14 @@ fn decoder_of(settings: &Settings, style: &Style) -> String {
         Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(style),
     };
     json(&decoder)
+}
+
+/// How fine the ground is to be.
+fn fineness_of(settings: &Settings) -> Fineness {
+    Fineness {
+        screen_space_error_px: settings.error_px,
+        cell_px: settings.cell_px.unwrap_or(f64::INFINITY),
+    }
 }
 
 /// A size that the adapter can draw with one sample a pixel.

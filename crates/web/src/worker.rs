@@ -18,6 +18,7 @@ thread_local! {
 /// Does what a message asks for: `{metadata}` says which package tiles are of, `{job, decoder, z, x, y, payload}` has one decoded. Returns the
 /// answer to post, whose field `tile` is to be transferred; `undefined` where there is none.
 #[wasm_bindgen]
+#[must_use]
 pub fn work(message: &JsValue) -> JsValue {
     let field = |name: &str| Reflect::get(message, &name.into()).unwrap_or(JsValue::UNDEFINED);
     if let Ok(metadata) = field("metadata").dyn_into::<Uint8Array>() {

@@ -13,6 +13,7 @@ pub struct Limits {
 
 impl Limits {
     /// The largest distance at which something can be grabbed, and the largest height of the eye over the ground.
+    #[must_use]
     pub fn far_m(&self) -> f64 {
         4.0 * self.data.width().max(self.data.height()).max(100.0)
     }

@@ -1,20 +1,21 @@
 //! The areas of a tile: parts of water, forest and so on that lie in it, read and written apart from the rest of the payload, as most
 //! readers do not want them.
 
+mod coded_rings;
 mod decode;
 #[cfg(feature = "write")]
 mod encode;
 mod record;
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{Frame, LatticeBounds, TileId};
 
-use crate::payload::damage::DecodeError;
-use crate::payload::envelope;
-use crate::payload::section_kind::Kind;
+use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::envelope::{self, StoredSection};
+use crate::payload::section_kind::{AREAS, Kind};
 
-pub(crate) use decode::decode;
+use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{AreasSection, encode_areas, with_areas};
+pub use encode::{AreasSection, area_part_sizes, encode_areas, with_areas};
 pub use record::{AreaRecord, AreaRings};
 
 /// Reads the areas of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
@@ -30,10 +31,17 @@ pub fn decode_areas(
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let sections = envelope::open(bytes, id).map_err(failed("header"))?;
     let inside = failed(Kind::Areas.name());
-    let section = envelope::section(&sections, Kind::Areas).map_err(inside)?;
-    let bounds = frame.tile_lattice_bounds(id);
-    let areas = section.map(|section| decode(&section, bounds)).transpose();
-    Ok(areas.map_err(inside)?.unwrap_or_default())
+    decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside)
+}
+
+/// The areas of these sections of a payload.
+pub(crate) fn decode_in(
+    sections: &[StoredSection<'_>],
+    bounds: LatticeBounds,
+) -> Result<Vec<AreaRecord>, Damage> {
+    let section = envelope::section_of_two(sections, AREAS)?;
+    let areas = section.map(|(bytes, is_coded)| decode(&bytes, is_coded, bounds)).transpose()?;
+    Ok(areas.unwrap_or_default())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@ use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint, NodeIndex};
 use proptest::prelude::*;
 
+use super::encode::in_planes;
 use super::*;
 use crate::payload::damage::Damage;
 use crate::payload::envelope::Content;
@@ -49,29 +50,44 @@ fn forest() -> AreaRecord {
     }
 }
 
-/// A payload with nothing but this section.
+/// A payload with nothing but this section of kind 8.
 fn payload(section: &[u8]) -> Vec<u8> {
-    envelope::seal(id(), &[(Kind::Areas, Content::Raw(section.to_vec()))]).unwrap().0
+    payload_of(Kind::Areas, section)
+}
+
+fn payload_of(kind: Kind, section: &[u8]) -> Vec<u8> {
+    envelope::seal(id(), &[(kind, Content::Raw(section.to_vec()))]).unwrap().0
 }
 
 fn encoded(areas: &[AreaRecord], step: i64) -> Vec<u8> {
-    let section = encode_areas(id(), &frame(), step, areas).unwrap().unwrap();
+    with(encode_areas(id(), &frame(), step, areas).unwrap().unwrap())
+}
+
+fn with(section: AreasSection) -> Vec<u8> {
     let empty = envelope::seal(id(), &[]).unwrap().0;
     let (bytes, size) = with_areas(&empty, id(), section).unwrap();
     assert!(size.raw > 0 && size.stored > 0);
     bytes
 }
 
-fn raw(areas: &[AreaRecord], step: i64) -> Vec<u8> {
-    let bytes = encoded(areas, step);
-    envelope::section(&envelope::open(&bytes, id()).unwrap(), Kind::Areas).unwrap().unwrap()
+/// The section of kind 8, then that of kind 12.
+fn raw(areas: &[AreaRecord], step: i64) -> [(Kind, Vec<u8>); 2] {
+    let of = |kind: Kind, bytes: &[u8]| {
+        let sections = envelope::open(bytes, id()).unwrap();
+        (kind, envelope::section(&sections, kind).unwrap().unwrap())
+    };
+    let planes = with(in_planes(areas, bounds(), step));
+    [of(Kind::Areas, &planes), of(Kind::CodedAreas, &encoded(areas, step))]
 }
 
 #[test]
 fn areas_come_back_whatever_the_spacing() {
     for step in [1, 2, 64, 100, 1 << 30] {
         let areas = [lake(), forest()];
-        assert_eq!(decode_areas(&encoded(&areas, step), id(), &frame()).unwrap(), areas, "{step}");
+        for (kind, section) in raw(&areas, step) {
+            let bytes = payload_of(kind, &section);
+            assert_eq!(decode_areas(&bytes, id(), &frame()).unwrap(), areas, "{step}, {kind:?}");
+        }
     }
     assert_eq!(encode_areas(id(), &frame(), 1, &[]).unwrap(), None);
     let empty = envelope::seal(id(), &[]).unwrap().0;
@@ -92,7 +108,9 @@ fn points_on_the_coarse_lattice_take_less() {
     let mut area = forest();
     area.polygons[0].rings[0] = ring;
     let areas = [area];
-    assert!(3 * raw(&areas, 1024).len() < 2 * raw(&areas, 1).len());
+    for ((_, coarse), (kind, fine)) in raw(&areas, 1024).into_iter().zip(raw(&areas, 1)) {
+        assert!(3 * coarse.len() < 2 * fine.len(), "{kind:?}");
+    }
 }
 
 #[test]
@@ -111,15 +129,67 @@ fn what_no_reader_takes_is_not_written() {
     let bytes = encoded(&[lake()], 1);
     let again = encode_areas(id(), &frame(), 1, &[lake()]).unwrap().unwrap();
     assert!(with_areas(&bytes, id(), again).is_err(), "twice");
+    let in_planes = in_planes(&[lake()], bounds(), 1);
+    assert!(with_areas(&bytes, id(), in_planes.clone()).is_err(), "in both kinds");
+    let again = encode_areas(id(), &frame(), 1, &[lake()]).unwrap().unwrap();
+    assert!(with_areas(&with(in_planes), id(), again).is_err(), "in both kinds");
 }
 
 #[test]
 fn every_shorter_section_is_refused() {
-    let raw = raw(&[lake(), forest()], 64);
-    for length in 0..raw.len() {
-        assert!(decode_areas(&payload(&raw[..length]), id(), &frame()).is_err(), "{length}");
+    for (kind, raw) in raw(&[lake(), forest()], 64) {
+        let is_refused =
+            |bytes: &[u8]| decode_areas(&payload_of(kind, bytes), id(), &frame()).is_err();
+        for length in 0..raw.len() {
+            assert!(is_refused(&raw[..length]), "{kind:?} {length}");
+        }
+        assert!(is_refused(&[&raw[..], &[0]].concat()), "{kind:?}");
     }
-    assert!(decode_areas(&payload(&[&raw[..], &[0]].concat()), id(), &frame()).is_err());
+}
+
+/// Half of its points are those of the first, backwards, around the first's beginning, too.
+#[test]
+fn a_border_that_two_areas_share_is_coded_once() {
+    let corner = bounds().min;
+    let at = |[u, v]: [i64; 2]| LatticePoint::new(corner.u + u, corner.v + v);
+    let noise = |n: i64| (n * 7919) % 331;
+    let shared: Vec<_> = (0..200).map(|n| at([4000 + noise(n), 100 + 40 * n])).collect();
+    let west: Vec<_> = (0..200).rev().map(|n| at([100 + noise(n + 1), 100 + 40 * n])).collect();
+    let east: Vec<_> = (0..200).map(|n| at([7000 + noise(n + 2), 100 + 40 * n])).collect();
+    let area = |ring: Vec<LatticePoint>| AreaRecord {
+        polygons: vec![AreaRings { rings: vec![ring] }],
+        ..forest()
+    };
+    // The ring begins in the middle of what is shared.
+    let mut first = [&shared[..], &west].concat();
+    first.rotate_left(100);
+    let back: Vec<_> = shared.iter().rev().copied().collect();
+    let apart = [area(first.clone()), area(east.clone())];
+    let beside = [area(first), area([&back[..], &east].concat())];
+    let [_, (_, of_apart)] = raw(&apart, 1);
+    let [_, (kind, of_beside)] = raw(&beside, 1);
+    assert!(of_beside.len() < of_apart.len() + 20, "{} {}", of_beside.len(), of_apart.len());
+    assert_eq!(decode_areas(&payload_of(kind, &of_beside), id(), &frame()).unwrap(), beside);
+}
+
+#[test]
+fn two_sections_of_areas_are_refused() {
+    let sections = raw(&[lake()], 1).map(|(kind, section)| (kind, Content::Raw(section)));
+    let bytes = envelope::seal(id(), &sections).unwrap().0;
+    let what = "two sections for the same objects";
+    assert_eq!(decode_areas(&bytes, id(), &frame()).unwrap_err().damage, Damage::Invalid { what });
+}
+
+#[test]
+fn a_section_in_a_store_comes_back() {
+    for section in [
+        encode_areas(id(), &frame(), 8, &[lake()]).unwrap().unwrap(),
+        in_planes(&[lake()], bounds(), 8),
+    ] {
+        let again = AreasSection::from_bytes(section.clone().into_bytes());
+        assert_eq!(again, section);
+        assert_eq!(again.decode(id(), &frame()).unwrap(), [lake()]);
+    }
 }
 
 #[test]
@@ -178,13 +248,31 @@ proptest! {
     /// Any bytes give areas in the tile or an error.
     #[test]
     fn any_bytes_are_areas_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..200), cut in 0_usize..100, by in any::<u8>()) {
-        let _either = decode_areas(&payload(&bytes), id(), &frame());
-        let mut real = raw(&[lake(), forest()], 64);
-        let at = cut % real.len();
-        real[at] = by;
-        for area in decode_areas(&payload(&real), id(), &frame()).unwrap_or_default() {
-            let points = area.polygons.iter().flat_map(|part| &part.rings).flatten();
-            prop_assert!(points.into_iter().all(|&point| bounds().contains(point)));
+        for (kind, mut real) in raw(&[lake(), forest()], 64) {
+            let _either = decode_areas(&payload_of(kind, &bytes), id(), &frame());
+            let at = cut % real.len();
+            real[at] = by;
+            for area in decode_areas(&payload_of(kind, &real), id(), &frame()).unwrap_or_default() {
+                let points = area.polygons.iter().flat_map(|part| &part.rings).flatten();
+                prop_assert!(points.into_iter().all(|&point| bounds().contains(point)));
+            }
+        }
+    }
+
+    /// Rings of a few places, so that they share points and borders in every way, also with themselves, on and beside the coarse lattice.
+    #[test]
+    fn rings_that_share_points_come_back(
+        rings in prop::collection::vec(prop::collection::vec((0_i64..4, 0_i64..4), 3..12), 1..9),
+        step in 1_i64..5000,
+    ) {
+        let corner = bounds().min;
+        let point = |(u, v)| LatticePoint::new(corner.u + 1000 * u, corner.v + 997 * v);
+        let areas: Vec<_> = rings.into_iter().map(|ring| {
+            let rings = vec![ring.into_iter().map(point).collect()];
+            AreaRecord { polygons: vec![AreaRings { rings }], ..forest() }
+        }).collect();
+        for (kind, section) in raw(&areas, step) {
+            prop_assert_eq!(&decode_areas(&payload_of(kind, &section), id(), &frame()).unwrap(), &areas);
         }
     }
 }

@@ -1,15 +1,4 @@
 //! Lines of a class as range-coded bits: their heads and points, in both road sections.
-//!
-//! A road goes on in about the direction it had, so a step from one point to the next is turned and mirrored until the step before it
-//! points between east and north-east:
-//!
-//! ```text
-//!        across                    p is the step before, in the first octant; the next step is coded as
-//!          │      ⋰ ╱ q            how far it goes along (mostly on, sometimes back), and then how far
-//!          │   ⋰ ╱ ╱               across, on which side: both in contexts of the length and the slope of p.
-//!          │⋰  ╱╱──── p
-//!          └──────────── along
-//! ```
 
 use std::collections::HashMap;
 
@@ -24,13 +13,8 @@ use crate::payload::points::{FAR, is_near};
 use crate::payload::range_coder::Writer;
 use crate::payload::range_coder::{Bits, Model, Reader};
 use crate::payload::source_grid::SourceGrid;
+use crate::payload::turned_steps::{StepCoder, length};
 
-/// Binary digits of a step, from 0 to 32 and more: what is above counts as 32.
-const LENGTHS: usize = 33;
-/// Fourths of the slope of the step before, and none before.
-const SLOPES: usize = 5;
-/// Lengths of a step along that contexts of the step across tell apart.
-const ALONG_LENGTHS: usize = 20;
 /// Points of the grid are within so many steps from 0: more than once around the earth.
 const REACH: i64 = 1 << 33;
 
@@ -43,10 +27,7 @@ pub(crate) struct LineCoder<'f> {
     counts: Magnitudes<1, 1>,
     flags: [Model; 2],
     starts: [Magnitudes<1, 1>; 2],
-    along: Magnitudes<LENGTHS, SLOPES>,
-    across: Magnitudes<{ ALONG_LENGTHS * SLOPES }, LENGTHS>,
-    goes_back: [[Model; 4]; SLOPES],
-    is_across_south: [[[Model; 7]; 2]; SLOPES],
+    steps: StepCoder,
     is_off_grid: Model,
     off_grid: [Magnitudes<1, 1>; 2],
     is_known: [[Model; 2]; 3],
@@ -63,11 +44,6 @@ pub(crate) struct LineCoder<'f> {
     before: Option<[i64; 2]>,
 }
 
-/// Binary digits of a number.
-fn length(number: i64) -> usize {
-    (u64::BITS - number.unsigned_abs().leading_zeros()) as usize
-}
-
 const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
 
 impl<'f> LineCoder<'f> {
@@ -81,10 +57,7 @@ impl<'f> LineCoder<'f> {
             counts: Magnitudes::new(),
             flags: [Model::NEW; 2],
             starts: [Magnitudes::new(), Magnitudes::new()],
-            along: Magnitudes::new(),
-            across: Magnitudes::new(),
-            goes_back: [[Model::NEW; 4]; SLOPES],
-            is_across_south: [[[Model::NEW; 7]; 2]; SLOPES],
+            steps: StepCoder::new(),
             is_off_grid: Model::NEW,
             off_grid: [Magnitudes::new(), Magnitudes::new()],
             is_known: [[Model::NEW; 2]; 3],
@@ -164,7 +137,7 @@ impl<'f> LineCoder<'f> {
             let [east, north] = &mut self.starts;
             [east.code(bits, [0; 2], step[0]), north.code(bits, [0; 2], step[1])]
         } else {
-            let step = self.code_step(bits, step);
+            let step = self.steps.code(bits, self.before, step);
             self.before = Some(step).filter(|&step| step != [0; 2]);
             step
         };
@@ -185,40 +158,6 @@ impl<'f> LineCoder<'f> {
         };
         let point = LatticePoint::new(on_grid.u + off[0], on_grid.v + off[1]);
         if is_near(point, self.corner) { Ok(point) } else { Err(FAR) }
-    }
-
-    fn code_step<B: Bits>(&mut self, bits: &mut B, step: [i64; 2]) -> [i64; 2] {
-        let before = self.before.unwrap_or_default();
-        let [west, south] = before.map(|step| step < 0);
-        let is_steep = before[1].abs() > before[0].abs();
-        let mirror = |[x, y]: [i64; 2]| {
-            [if west { x.wrapping_neg() } else { x }, if south { y.wrapping_neg() } else { y }]
-        };
-        let swap = |[x, y]: [i64; 2]| if is_steep { [y, x] } else { [x, y] };
-        let [long, short] = swap(before.map(i64::abs));
-        let long_length = length(long);
-        let slope = if long == 0 { 0 } else { 1 + (4 * short / long).min(3) as usize };
-        let [along, across] = swap(mirror(step));
-
-        let along_size =
-            self.along.code_magnitude(bits, [long_length, slope], along.unsigned_abs()) as i64;
-        let along_length = length(along_size);
-        let across_contexts = [along_length.min(ALONG_LENGTHS - 1) * SLOPES + slope, long_length];
-        let across_size =
-            self.across.code_magnitude(bits, across_contexts, across.unsigned_abs()) as i64;
-        let mut goes_back = 0;
-        if along_size != 0 {
-            let size = (along_length + 2).saturating_sub(long_length).min(3);
-            goes_back = bits.bit(&mut self.goes_back[slope][size], u32::from(along < 0));
-        }
-        let mut is_across_south = 0;
-        if across_size != 0 {
-            let size = (length(across_size) + 3).saturating_sub(along_length).min(6);
-            let model = &mut self.is_across_south[slope][goes_back as usize][size];
-            is_across_south = bits.bit(model, u32::from(across < 0));
-        }
-        let signed = |size: i64, is_negative: u32| if is_negative == 1 { -size } else { size };
-        mirror(swap([signed(along_size, goes_back), signed(across_size, is_across_south)]))
     }
 
     /// Reads head and `points` of the next line, which take the `room` that the section has left; calls `after_each` after each point, with its

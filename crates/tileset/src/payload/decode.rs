@@ -4,7 +4,7 @@ use corniche_tin::Surface;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
-use crate::payload::section_kind::{GEO, Kind, RoadKinds, SV, Sections};
+use crate::payload::section_kind::{GEO, Kind, SV, Sections, TwoKinds};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
 use crate::payload::{
     areas, attributes, boundaries, envelope, road_tags, roads_geo, roads_sv, terrain,
@@ -42,11 +42,11 @@ pub fn decode(
         }
         envelope::section(&sections, kind).map_err(inside(kind))
     };
-    let read_roads = |roads: RoadKinds, section: Sections| {
+    let read_roads = |roads: TwoKinds, section: Sections| {
         if !wanted.contains(section) {
             return Ok(None);
         }
-        let found = envelope::road_section(&sections, roads).map_err(inside(roads.planes))?;
+        let found = envelope::section_of_two(&sections, roads).map_err(inside(roads.planes))?;
         Ok(found.map(|(bytes, is_coded)| (bytes, is_coded.then_some(frame))))
     };
     let roads_geo = read_roads(GEO, Sections::ROADS_GEO)?;
@@ -82,10 +82,9 @@ pub fn decode(
     }
     // The picture itself is decoded for those who ask for it.
     let _checked = read(Kind::Photo, Sections::PHOTO)?;
-    let _checked = read(Kind::Areas, Sections::AREAS)?
-        .map(|bytes| areas::decode(&bytes, frame.tile_lattice_bounds(id)))
-        .transpose()
-        .map_err(inside(Kind::Areas))?;
+    if wanted.contains(Sections::AREAS) {
+        areas::decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside(Kind::Areas))?;
+    }
     let _checked = read(Kind::Boundaries, Sections::BOUNDARIES)?
         .map(|bytes| boundaries::decode(&bytes))
         .transpose()

@@ -6,7 +6,7 @@ use crate::manifest::Manifest;
 use crate::payload::context::Context;
 use crate::payload::damage::EncodeError;
 use crate::payload::envelope::{Content, SectionSize, StoredSection};
-use crate::payload::section_kind::{GEO, Kind, RoadKinds, SV};
+use crate::payload::section_kind::{GEO, Kind, SV, TwoKinds};
 use crate::payload::sizes::PayloadSizes;
 use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::TilePayload;
@@ -180,7 +180,7 @@ type Encoded = Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str
 
 /// A section of roads as range-coded bits, if its points lie on OSM's grid and all its numbers have codes; else as planes for zstd.
 fn coded_or_raw<'f>(
-    kinds: RoadKinds,
+    kinds: TwoKinds,
     encode: impl Fn(Option<SourceGrid<'f>>) -> Encoded,
     context: &'f PayloadContext,
     points: impl Iterator<Item = LatticePoint>,

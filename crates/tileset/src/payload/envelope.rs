@@ -10,7 +10,7 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use crate::limits::MAX_SECTION_BYTES;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{Kind, RoadKinds};
+use crate::payload::section_kind::{Kind, TwoKinds};
 
 /// First bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
@@ -134,13 +134,13 @@ pub(crate) fn section(
     }
 }
 
-/// The same of the roads of a tile, and whether their lines are range-coded bits: a section of one of two kinds.
-pub(crate) fn road_section(
+/// The same of roads or areas, and whether their points are range-coded bits: a section of one of two kinds.
+pub(crate) fn section_of_two(
     sections: &[StoredSection<'_>],
-    roads: RoadKinds,
+    kinds: TwoKinds,
 ) -> Result<Option<(Vec<u8>, bool)>, Damage> {
-    match (section(sections, roads.planes)?, section(sections, roads.coded)?) {
-        (Some(_), Some(_)) => Err(Damage::Invalid { what: "two sections for the same roads" }),
+    match (section(sections, kinds.planes)?, section(sections, kinds.coded)?) {
+        (Some(_), Some(_)) => Err(Damage::Invalid { what: "two sections for the same objects" }),
         (Some(planes), None) => Ok(Some((planes, false))),
         (None, coded) => Ok(coded.map(|coded| (coded, true))),
     }
@@ -307,6 +307,13 @@ pub(crate) fn seal(
     table.extend(crc32fast::hash(&table).to_le_bytes());
     table.extend(body);
     Ok((table, sizes))
+}
+
+/// How many bytes `raw` takes as the content of a section. For measurements.
+#[cfg(feature = "write")]
+pub(crate) fn compressed_size(raw: &[u8]) -> usize {
+    let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL);
+    compressed.map_or(raw.len(), |compressed| compressed.len().min(raw.len()))
 }
 
 /// Fails if readers would refuse a section for its size.

@@ -166,6 +166,12 @@ impl<'a> Reader<'a> {
         reader
     }
 
+    /// Bytes taken so far; some of them may belong to bits that were not asked for yet.
+    #[cfg(feature = "write")]
+    pub(crate) fn taken(&self) -> usize {
+        self.taken
+    }
+
     /// Whether more was read than there is. A string that was written whole is never read beyond its end.
     pub(crate) fn is_past_end(&self) -> bool {
         self.taken > self.bytes.len()

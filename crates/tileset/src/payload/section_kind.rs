@@ -40,11 +40,12 @@ kinds! {
     Boundaries = 9, "boundaries section";
     CodedGeo = 10, "GEO roads section";
     CodedSv = 11, "SV roads section";
+    CodedAreas = 12, "areas section";
 }
 
-/// The two kinds of section that roads of a method can be in.
+/// The two kinds of section that roads of a method, or areas, can be in.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RoadKinds {
+pub(crate) struct TwoKinds {
     /// Numbers in planes.
     pub(crate) planes: Kind,
     /// Range-coded bits.
@@ -52,9 +53,11 @@ pub(crate) struct RoadKinds {
 }
 
 /// Centre-lines on the TIN.
-pub(crate) const GEO: RoadKinds = RoadKinds { planes: Kind::RoadsGeo, coded: Kind::CodedGeo };
+pub(crate) const GEO: TwoKinds = TwoKinds { planes: Kind::RoadsGeo, coded: Kind::CodedGeo };
 /// Plan lines for shadow volumes.
-pub(crate) const SV: RoadKinds = RoadKinds { planes: Kind::RoadsSv, coded: Kind::CodedSv };
+pub(crate) const SV: TwoKinds = TwoKinds { planes: Kind::RoadsSv, coded: Kind::CodedSv };
+/// Areas.
+pub(crate) const AREAS: TwoKinds = TwoKinds { planes: Kind::Areas, coded: Kind::CodedAreas };
 
 /// Which sections of a payload to decode; combine them with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,7 +79,7 @@ impl Sections {
     /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
     pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
-    pub const AREAS: Self = Self::of(Kind::Areas);
+    pub const AREAS: Self = Self::of(Kind::Areas).and(Self::of(Kind::CodedAreas));
     /// Boundaries. [`decode`](crate::decode) checks them; [`decode_boundaries`](crate::decode_boundaries) gives them.
     pub const BOUNDARIES: Self = Self::of(Kind::Boundaries);
     /// Everything, checksums of sections of unknown kinds included.

@@ -6,7 +6,7 @@ use corniche_roads::FunctionalRoadClass;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::SectionSize;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{GEO, Kind, RoadKinds, SV};
+use crate::payload::section_kind::{GEO, Kind, SV, TwoKinds};
 use crate::payload::source_grid::GRID_BYTES;
 use crate::payload::{class_table, envelope};
 
@@ -44,9 +44,9 @@ pub struct PayloadSizes {
 pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let sections = envelope::open(bytes, id).map_err(failed("header"))?;
-    let class_bytes = |roads: RoadKinds| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
+    let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
         let mut sizes = [0; FunctionalRoadClass::COUNT];
-        if let Some((raw, is_coded)) = envelope::road_section(&sections, roads)? {
+        if let Some((raw, is_coded)) = envelope::section_of_two(&sections, roads)? {
             let mut cursor = Cursor::new(&raw);
             cursor.take(if is_coded { GRID_BYTES } else { 0 })?;
             for (class, _, bytes) in class_table::decode(&mut cursor)? {
@@ -55,7 +55,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         }
         Ok(sizes)
     };
-    let of_classes = |roads: RoadKinds| class_bytes(roads).map_err(failed(roads.planes.name()));
+    let of_classes = |roads: TwoKinds| class_bytes(roads).map_err(failed(roads.planes.name()));
     let size = |kind| envelope::size(&sections, kind);
     Ok(PayloadSizes {
         terrain: size(Kind::Terrain),
@@ -65,7 +65,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
         photo: size(Kind::Photo),
-        areas: size(Kind::Areas),
+        areas: size(Kind::Areas).or(size(Kind::CodedAreas)),
         boundaries: size(Kind::Boundaries),
         geo_class_bytes: of_classes(GEO)?,
         sv_class_bytes: of_classes(SV)?,

@@ -119,7 +119,7 @@ fn coded_cases() -> Vec<Case> {
                 Section::plain(SV, sv_lines(2, 3)),
                 Section::plain(CODED_SV, coded_section([0.5; 2], 1, &[0; 40])),
             ]),
-            "two sections for the same roads",
+            "two sections for the same objects",
         ),
     ]
 }

@@ -37,12 +37,27 @@ impl Flight {
         working: WorkingCrs<'_>,
         coordinates: &CoordinateTable,
     ) -> Result<Self, FlightError> {
-        let file: FlightFile = toml::from_str(text)
+        let record = toml::from_str(text)
             .map_err(|error| FlightError::Syntax { message: error.to_string() })?;
-        if let Some(flight) = file.crs.filter(|known| known != working.crs)
+        Self::of_record(&record, working, coordinates)
+    }
+
+    /// As [`Self::parse`], of a text that was read already.
+    ///
+    /// # Errors
+    /// When it has impossible values, or is for a package in another CRS.
+    pub fn of_record(
+        file: &FlightRecord,
+        working: WorkingCrs<'_>,
+        coordinates: &CoordinateTable,
+    ) -> Result<Self, FlightError> {
+        if let Some(flight) = file.crs.as_ref().filter(|known| *known != working.crs)
             && file.keyframe.iter().any(|record| record.x_m.is_some())
         {
-            return Err(FlightError::OtherCrs { flight, package: working.crs.to_owned() });
+            return Err(FlightError::OtherCrs {
+                flight: flight.clone(),
+                package: working.crs.to_owned(),
+            });
         }
         let factors = file.metres_per_unit.unwrap_or(working.metres_per_unit);
         if factors.iter().any(|factor| !factor.is_normal()) {
@@ -64,6 +79,13 @@ impl Flight {
     /// # Errors
     /// Never for a flight that this crate made; the function that writes TOML returns a `Result`.
     pub fn to_text(&self, working: WorkingCrs<'_>) -> Result<String, FlightError> {
+        toml::to_string(&self.record(working))
+            .map_err(|error| FlightError::Syntax { message: error.to_string() })
+    }
+
+    /// What is in the text of this flight, in the working metres of a package.
+    #[must_use]
+    pub fn record(&self, working: WorkingCrs<'_>) -> FlightRecord {
         let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
             let [x, y, height_m] = pose.eye_m;
             KeyframeRecord {
@@ -77,18 +99,18 @@ impl Flight {
                 pitch_deg: pose.orientation.pitch_deg,
             }
         });
-        let file = FlightFile {
+        FlightRecord {
             crs: Some(working.crs.to_owned()),
             metres_per_unit: Some(working.metres_per_unit),
             keyframe: keyframe.collect(),
-        };
-        toml::to_string(&file).map_err(|error| FlightError::Syntax { message: error.to_string() })
+        }
     }
 }
 
-#[derive(Serialize, Deserialize)]
+/// What the text of a flight says, as it is described at the top of [`flight`](crate::flight).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FlightFile {
+pub struct FlightRecord {
     #[serde(skip_serializing_if = "Option::is_none")]
     crs: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -96,7 +118,7 @@ struct FlightFile {
     keyframe: Vec<KeyframeRecord>,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeyframeRecord {
     time_s: f64,

@@ -1,13 +1,9 @@
 //! What a frame does: tiles that have arrived, time, choice of tiles, drawing, and what the page is told.
 
 use corniche_live::{controls::Mode, request_of_view};
-use corniche_viewer::{
-    camera::Camera,
-    lod::{Fineness, Quality},
-    tiles::MapPackage as _,
-};
+use corniche_viewer::{camera::Camera, lod::Quality, tiles::MapPackage as _};
 
-use super::{HURRY_S, MapView, ground};
+use super::{HURRY_S, MapView, fineness_of, ground};
 use crate::{
     canvas::Scene,
     flights::view_of_pose,
@@ -93,10 +89,7 @@ impl MapView {
     /// Chooses tiles and brings them to the graphics card; tells whether the next frame may have more of this to do.
     fn change_tiles(&mut self, camera: &Camera, now_s: f64) -> bool {
         let ahead = self.camera.look_ahead(now_s, camera.size_px());
-        let fineness = Fineness {
-            screen_space_error_px: self.settings.error_px,
-            cell_px: self.settings.cell_px.unwrap_or(f64::INFINITY),
-        };
+        let fineness = fineness_of(&self.settings);
         let manifest = self.tileset.package.manifest();
         let roads = self.settings.road_options();
         let quality =

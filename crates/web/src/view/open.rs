@@ -8,28 +8,31 @@ use corniche_live::{
     controls::{Inertia, Navigator},
     first_view, limits,
 };
-use corniche_presets::class_labels;
 use corniche_tileset::{OpenError, Package};
 use corniche_viewer::{
-    CameraRequest, SightedGround, range,
+    CameraRequest, SightedGround,
+    lod::Quality,
+    range,
     stream::StreamBudget,
     tiles::{MapPackage as _, PackageTiles, TileCatalog},
 };
 use futures_util::future::join;
 use web_sys::HtmlCanvasElement;
 
-use super::{MapView, clamped, decoder_of};
+use super::{MapView, clamped, decoder_of, fineness_of};
 use crate::{
     canvas::PageCanvas,
     decoders::Decoders,
     first_tiles::{first_tiles, off_ground},
     flights::Flights,
+    foresight::foreseen,
     host::Host,
     loader::{PageLoader, Tileset},
     place::{Place, view_of},
     problem::Problem,
     settings::Settings,
     source::WebSource,
+    tables,
 };
 
 /// What may be done in a frame and kept, unless the page says otherwise.
@@ -118,15 +121,25 @@ pub(crate) async fn open(
         _ => first_view(request, manifest, first.ground, scale, size_px, options.covered_px)
             .map_err(|error| off_ground(&error))?,
     };
+    let fineness = fineness_of(&settings);
+    let roads = settings.road_options();
+    let quality = Quality::of_package(manifest, fineness, &style, roads, settings.exaggeration);
+    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
+    loader.foresee(&foreseen(
+        package.as_ref(),
+        manifest,
+        heights_m,
+        &home.camera(size_px),
+        quality,
+    ));
     let inertia = if settings.inertia { Inertia::On } else { Inertia::Off };
     let navigator = Navigator::new(home, limits(manifest), size_px, inertia);
     let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
-    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
     let budget =
         StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
     let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
     let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
-    let labels = class_labels(&manifest.settings.frc_table);
+    let labels = tables::class_labels(&manifest.settings.frc_table);
     Ok(MapView {
         address,
         canvas: page_canvas,

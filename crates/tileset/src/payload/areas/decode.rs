@@ -1,58 +1,112 @@
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint};
 
+use super::coded_rings::RingCoder;
 use super::record::{AreaRecord, AreaRings};
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, Planes, unzigzag};
+use crate::payload::range_coder::Reader;
 
-/// Reads the section's bytes. All points lie in `bounds`.
-pub(crate) fn decode(bytes: &[u8], bounds: LatticeBounds) -> Result<Vec<AreaRecord>, Damage> {
-    let cursor = &mut Cursor::new(bytes);
-    let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-    let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
-    let count = cursor.bounded(MAX_AREAS, "number of areas")?;
-    let [classes, objects, name_bytes, polygons] = [
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-        cursor.planes(count)?,
-    ];
-    let mut names = cursor.clone();
-    let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
-    cursor.take(length)?;
-    let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
-    let rings = cursor.planes(polygons_count)?;
-    let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
-    let points = cursor.planes(rings_count)?;
-    let points_count = total(points, 3, MAX_POINTS, "number of points")?;
-    let [east, north, beside_east, beside_north] = [
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-        cursor.planes(points_count)?,
-    ];
-    cursor.finish()?;
-    let from = |corner: i64| corner.div_euclid(step);
-    let mut east =
-        Places { steps: east.iter(), beside: beside_east.iter(), step, last: from(bounds.min.u) };
-    let mut north =
-        Places { steps: north.iter(), beside: beside_north.iter(), step, last: from(bounds.min.v) };
-    let (mut rings, mut points) = (rings.iter(), points.iter());
-    let mut areas = Vec::with_capacity(count);
-    let mut id = 0_i64;
-    let heads = classes.iter().zip(objects.iter()).zip(name_bytes.iter()).zip(polygons.iter());
-    for (((class, object), name_bytes), polygons) in heads {
-        let number = u8::try_from(class >> 1).ok().and_then(AreaClass::from_number);
-        let class_of = number.ok_or(Damage::Invalid { what: "a class of areas" })?;
-        id = id.wrapping_add(unzigzag(object));
-        let name = str::from_utf8(names.take(name_bytes as usize)?)
-            .map_err(|_| Damage::Invalid { what: "a name that is no UTF-8" })?;
-        let mut parts = Vec::new();
-        for _ in 0..=polygons {
-            let mut of_part = Vec::new();
-            for _ in 0..=rings.next().unwrap_or_default() {
-                let points = points.next().unwrap_or_default() + 3;
+/// The columns of numbers that a section is made of, and its points.
+pub(crate) struct Columns<'a> {
+    step: i64,
+    count: usize,
+    pub(crate) classes: Planes<'a>,
+    pub(crate) objects: Planes<'a>,
+    pub(crate) name_bytes: Planes<'a>,
+    pub(crate) polygons: Planes<'a>,
+    pub(crate) names: &'a [u8],
+    pub(crate) rings: Planes<'a>,
+    pub(crate) points: Planes<'a>,
+    pub(crate) places: PlacesOfSection<'a>,
+}
+
+/// The points of a section.
+pub(crate) enum PlacesOfSection<'a> {
+    /// East and north: steps on the coarse lattice, and what is left beside it.
+    Planes { steps: [Planes<'a>; 2], beside: [Planes<'a>; 2] },
+    /// Range-coded bits.
+    Coded(&'a [u8]),
+}
+
+impl<'a> Columns<'a> {
+    /// Takes a section apart.
+    pub(crate) fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
+        let cursor = &mut Cursor::new(bytes);
+        let step =
+            i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
+        let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
+        let count = cursor.bounded(MAX_AREAS, "number of areas")?;
+        let [classes, objects, name_bytes, polygons] = [
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+            cursor.planes(count)?,
+        ];
+        let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
+        let names = cursor.take(length)?;
+        let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
+        let rings = cursor.planes(polygons_count)?;
+        let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
+        let points = cursor.planes(rings_count)?;
+        let points_count = total(points, 3, MAX_POINTS, "number of points")?;
+        let places = if is_coded {
+            PlacesOfSection::Coded(cursor.take(cursor.left())?)
+        } else {
+            let steps = [cursor.planes(points_count)?, cursor.planes(points_count)?];
+            let beside = [cursor.planes(points_count)?, cursor.planes(points_count)?];
+            PlacesOfSection::Planes { steps, beside }
+        };
+        cursor.finish()?;
+        let columns = Self {
+            step,
+            count,
+            classes,
+            objects,
+            name_bytes,
+            polygons,
+            names,
+            rings,
+            points,
+            places,
+        };
+        Ok(columns)
+    }
+}
+
+/// Reads the section's bytes; `is_coded`: its points are range-coded bits. All points lie in `bounds`.
+pub(crate) fn decode(
+    bytes: &[u8],
+    is_coded: bool,
+    bounds: LatticeBounds,
+) -> Result<Vec<AreaRecord>, Damage> {
+    let columns = Columns::read(bytes, is_coded)?;
+    let step = columns.step;
+    match columns.places {
+        PlacesOfSection::Coded(bits) => {
+            let mut bits = Reader::new(bits);
+            let mut coder = RingCoder::new(bounds, step);
+            let areas = columns.areas(|count| {
+                let mut ring = Vec::new();
+                for _ in 0..count {
+                    bits.check_end()?;
+                    ring.push(coder.code_point(&mut bits, None)?);
+                }
+                coder.end_ring();
+                Ok(ring)
+            })?;
+            bits.finish()?;
+            Ok(areas)
+        }
+        PlacesOfSection::Planes { steps, beside } => {
+            let [mut east, mut north] = [0, 1].map(|axis| Places {
+                steps: steps[axis].iter(),
+                beside: beside[axis].iter(),
+                step,
+                last: [bounds.min.u, bounds.min.v][axis].div_euclid(step),
+            });
+            columns.areas(|count| {
                 let point = |_| {
                     let point = LatticePoint::new(east.next()?, north.next()?);
                     let is_inside = bounds.contains(point);
@@ -60,18 +114,47 @@ pub(crate) fn decode(bytes: &[u8], bounds: LatticeBounds) -> Result<Vec<AreaReco
                         .then_some(point)
                         .ok_or(Damage::Invalid { what: "a point outside the tile" })
                 };
-                of_part.push((0..points).map(point).collect::<Result<_, _>>()?);
-            }
-            parts.push(AreaRings { rings: of_part });
+                (0..count).map(point).collect()
+            })
         }
-        areas.push(AreaRecord {
-            object: if class & 1 == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
-            class: class_of,
-            name: name.to_owned(),
-            polygons: parts,
-        });
     }
-    Ok(areas)
+}
+
+impl Columns<'_> {
+    /// The areas, whose rings `ring` reads one after another, each with so many points.
+    fn areas(
+        &self,
+        mut ring: impl FnMut(u64) -> Result<Vec<LatticePoint>, Damage>,
+    ) -> Result<Vec<AreaRecord>, Damage> {
+        let Self { classes, objects, name_bytes, polygons, .. } = self;
+        let mut names = Cursor::new(self.names);
+        let (mut rings, mut points) = (self.rings.iter(), self.points.iter());
+        let mut areas = Vec::with_capacity(self.count);
+        let mut id = 0_i64;
+        let heads = classes.iter().zip(objects.iter()).zip(name_bytes.iter()).zip(polygons.iter());
+        for (((class, object), name_bytes), polygons) in heads {
+            let number = u8::try_from(class >> 1).ok().and_then(AreaClass::from_number);
+            let class_of = number.ok_or(Damage::Invalid { what: "a class of areas" })?;
+            id = id.wrapping_add(unzigzag(object));
+            let name = str::from_utf8(names.take(name_bytes as usize)?)
+                .map_err(|_| Damage::Invalid { what: "a name that is no UTF-8" })?;
+            let mut parts = Vec::new();
+            for _ in 0..=polygons {
+                let mut of_part = Vec::new();
+                for _ in 0..=rings.next().unwrap_or_default() {
+                    of_part.push(ring(points.next().unwrap_or_default() + 3)?);
+                }
+                parts.push(AreaRings { rings: of_part });
+            }
+            areas.push(AreaRecord {
+                object: if class & 1 == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
+                class: class_of,
+                name: name.to_owned(),
+                polygons: parts,
+            });
+        }
+        Ok(areas)
+    }
 }
 
 /// No coarse lattice is wider than a tile of 2^40 steps.

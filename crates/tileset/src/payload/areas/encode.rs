@@ -1,25 +1,29 @@
 use corniche_areas::AreaObject;
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 
-use super::decode;
+use super::coded_rings::RingCoder;
+use super::decode::{self, PlacesOfSection};
 use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
-use crate::payload::number_codes::{put_planes, put_varint, zigzag};
-use crate::payload::section_kind::Kind;
+use crate::payload::number_codes::{Planes, put_planes, put_varint, zigzag};
+use crate::payload::range_coder::Writer;
+use crate::payload::section_kind::{AREAS, Kind};
 
 /// A tile's areas as the section of a payload.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AreasSection {
+    /// Whether its points are range-coded bits.
+    is_coded: bool,
     bytes: Vec<u8>,
 }
 
 impl AreasSection {
-    /// Its bytes.
+    /// What [`AreasSection::from_bytes`] takes: which of the two kinds of section it is, then its bytes.
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
-        self.bytes
+        [vec![u8::from(self.is_coded)], self.bytes].concat()
     }
 
     /// The areas that it holds.
@@ -28,13 +32,16 @@ impl AreasSection {
     /// When the bytes are damaged.
     pub fn decode(&self, tile: TileId, frame: &Frame) -> Result<Vec<AreaRecord>, DecodeError> {
         let failed = |damage| DecodeError { tile, part: Kind::Areas.name(), damage };
-        decode::decode(&self.bytes, frame.tile_lattice_bounds(tile)).map_err(failed)
+        let bounds = frame.tile_lattice_bounds(tile);
+        decode::decode(&self.bytes, self.is_coded, bounds).map_err(failed)
     }
 
     /// The section with these bytes, which [`AreasSection::into_bytes`] gave.
     #[must_use]
-    pub fn from_bytes(bytes: Vec<u8>) -> Self {
-        Self { bytes }
+    pub fn from_bytes(mut bytes: Vec<u8>) -> Self {
+        let is_coded = bytes.first() == Some(&1);
+        bytes.drain(..bytes.len().min(1));
+        Self { is_coded, bytes }
     }
 }
 
@@ -57,6 +64,23 @@ pub fn encode_areas(
     let bounds = frame.tile_lattice_bounds(tile);
     let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
     check(areas, &bounds, step).map_err(refused)?;
+    Ok(Some(section(areas, bounds, step, coded_places(areas, bounds, step))))
+}
+
+/// The areas with their points in planes, as kind 8 has them.
+#[cfg(test)]
+pub(crate) fn in_planes(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> AreasSection {
+    section(areas, bounds, step, None)
+}
+
+/// `coded`: all points, else they are written in planes.
+fn section(
+    areas: &[AreaRecord],
+    bounds: LatticeBounds,
+    step: i64,
+    coded: Option<Vec<u8>>,
+) -> AreasSection {
+    let is_coded = coded.is_some();
     let mut columns = Columns::default();
     for area in areas {
         columns.push_area(area);
@@ -70,11 +94,60 @@ pub fn encode_areas(
     bytes.extend(&columns.names);
     put_planes(&mut bytes, &columns.rings);
     put_planes(&mut bytes, &columns.points);
-    let places = columns.places(&bounds, step);
-    for column in &places {
-        put_planes(&mut bytes, column);
+    if let Some(coded) = coded {
+        bytes.extend(coded);
+    } else {
+        for column in &columns.places(&bounds, step) {
+            put_planes(&mut bytes, column);
+        }
     }
-    Ok(Some(AreasSection { bytes }))
+    AreasSection { is_coded, bytes }
+}
+
+/// All points as range-coded bits; `None` where one has no code: a step of 2^32 or more.
+fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Option<Vec<u8>> {
+    let mut coder = RingCoder::new(bounds, step);
+    let mut bits = Writer::new(Vec::new());
+    for ring in areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings) {
+        for &point in ring {
+            if coder.code_point(&mut bits, Some(point)) != Ok(point) {
+                return None;
+            }
+        }
+        coder.end_ring();
+    }
+    Some(bits.finish())
+}
+
+/// How many bytes the parts of a payload's areas take, each compressed by itself: numbers of areas, rings and points; ids; names; steps from point to
+/// point, or all points where they are range-coded bits; what is left of points beside the coarse lattice. All 0 without areas. For measurements.
+///
+/// # Errors
+/// When the bytes are not a payload of tile `id`, or the section is damaged.
+pub fn area_part_sizes(payload: &[u8], id: TileId) -> Result<[usize; 5], DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let inside = failed(Kind::Areas.name());
+    let sections = envelope::open(payload, id).map_err(failed("header"))?;
+    let section = envelope::section_of_two(&sections, AREAS).map_err(inside)?;
+    let Some((section, is_coded)) = section else {
+        return Ok([0; 5]);
+    };
+    let columns = decode::Columns::read(&section, is_coded).map_err(inside)?;
+    let decode::Columns { classes, name_bytes, polygons, rings, points, .. } = columns;
+    let bytes =
+        |planes: &[Planes<'_>]| planes.iter().flat_map(|one| one.bytes()).copied().collect();
+    let (steps, beside) = match columns.places {
+        PlacesOfSection::Planes { steps, beside } => (bytes(&steps), bytes(&beside)),
+        PlacesOfSection::Coded(bits) => (bits.to_vec(), Vec::new()),
+    };
+    let parts: [Vec<u8>; 5] = [
+        bytes(&[classes, name_bytes, polygons, rings, points]),
+        bytes(&[columns.objects]),
+        columns.names.to_vec(),
+        steps,
+        beside,
+    ];
+    Ok(parts.map(|part| envelope::compressed_size(&part)))
 }
 
 fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {
@@ -160,6 +233,8 @@ impl Columns {
     }
 }
 
+const ALREADY: &str = "beside other areas";
+
 /// A payload with areas more; all its other sections stay as they are. Returns the size of the new section, too.
 ///
 /// # Errors
@@ -169,7 +244,15 @@ pub fn with_areas(
     tile: TileId,
     areas: AreasSection,
 ) -> Result<(Vec<u8>, SectionSize), EncodeError> {
-    let section = (Kind::Areas, Content::Raw(areas.bytes));
-    let (bytes, sizes) = envelope::with_section(payload, tile, section, "beside other areas")?;
+    let [kind, other] =
+        if areas.is_coded { [AREAS.coded, AREAS.planes] } else { [AREAS.planes, AREAS.coded] };
+    let has_other = envelope::open(payload, tile)
+        .is_ok_and(|sections| envelope::find(&sections, other).is_some());
+    if has_other {
+        let section = Kind::Areas.name();
+        return Err(EncodeError::Unencodable { tile, section, what: ALREADY });
+    }
+    let section = (kind, Content::Raw(areas.bytes));
+    let (bytes, sizes) = envelope::with_section(payload, tile, section, ALREADY)?;
     Ok((bytes, sizes.last().copied().unwrap_or_default()))
 }

@@ -14,6 +14,9 @@ use crate::payload::number_codes::Cursor;
 /// How the colours are coded: JPEG.
 pub(crate) const JPEG: u8 = 1;
 
+/// JPEG's last marker.
+const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
+
 /// The photo of a section's bytes.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
     let mut cursor = Cursor::new(bytes);
@@ -45,6 +48,10 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
 /// Decodes a JPEG of three colours and known size.
 fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>, Damage> {
     const NOT_FITTING: Damage = Damage::Invalid { what: "a picture of another size or kind" };
+    // A picture may have a scan for each colour, and the decoder does not miss one that was cut off.
+    if !jpeg.ends_with(&END_OF_IMAGE) {
+        return Err(Damage::TooShort);
+    }
     let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
     let options = DecoderOptions::default()
         .set_strict_mode(true)

@@ -71,6 +71,8 @@ pub fn encode_photo(
     let side = photo.side();
     let mut encoder = Encoder::new(&mut bytes, quality);
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    // Tables of the picture's own; the pixels stay the same.
+    encoder.set_optimized_huffman_tables(true);
     // A side is at most 4112.
     let encoded = encoder.encode(&filled(photo), side as u16, side as u16, ColorType::Rgb);
     encoded.map_err(|error| EncodeError::Compress {

@@ -1,0 +1,128 @@
+//! What the sections of packages are made of: bytes of each kind, then of the parts of relief, photos and areas.
+//!
+//! ```sh
+//! cargo run --release -p corniche-tileset --features write --example section_bytes -- A.pmtiles B.pmtiles
+//! ```
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
+use std::{env, error::Error, path::Path};
+
+use corniche_tileset::{
+    FilePackage, PayloadContext, PayloadSizes, Sections, area_part_sizes, decode, payload_sizes,
+    photo_section,
+};
+
+/// Parts in the order of [`corniche_tileset::Relief::part_sizes`].
+const RELIEF_PARTS: [&str; 10] =
+    ["head", "gaps", "water", "smooth", "division 5", "4", "3", "2", "1 (finest)", "border"];
+/// Parts in the order of [`area_part_sizes`].
+const AREA_PARTS: [&str; 5] = ["numbers", "ids", "names", "steps", "beside the lattice"];
+const PHOTO_PARTS: [&str; 3] = ["coverage", "heads and tables", "coded blocks"];
+
+/// Bytes of a package.
+#[derive(Default)]
+struct Sums {
+    sections: [u64; 9],
+    relief: [u64; RELIEF_PARTS.len()],
+    areas: [u64; AREA_PARTS.len()],
+    photo: [u64; PHOTO_PARTS.len()],
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    for file in env::args().skip(1) {
+        let package = FilePackage::open(Path::new(&file))?;
+        let PayloadContext { frame, quantum_m, .. } = PayloadContext::of(package.manifest());
+        let mut sums = Sums::default();
+        for id in package.tile_ids()? {
+            let Some(payload) = package.tile(id)? else { continue };
+            add(&mut sums.sections, stored(&payload_sizes(&payload, id)?));
+            let tile = decode(&payload, id, &frame, quantum_m, Sections::RELIEF)?;
+            if let Some(relief) = &tile.relief {
+                add(&mut sums.relief, relief.part_sizes().map(|bytes| bytes as u64));
+            }
+            add(&mut sums.areas, area_part_sizes(&payload, id)?.map(|bytes| bytes as u64));
+            if let Some(photo) = photo_section(&payload, id)? {
+                add(&mut sums.photo, photo_parts(photo.bytes()).map(|bytes| bytes as u64));
+            }
+        }
+        let whole = std::fs::metadata(&file)?.len();
+        println!("\n{file}: {whole} bytes\n");
+        let names = [
+            "terrain",
+            "GEO",
+            "SV",
+            "attributes",
+            "road tags",
+            "relief",
+            "photo",
+            "areas",
+            "boundaries",
+        ];
+        table("sections", &names, &sums.sections, whole);
+        table("relief", &RELIEF_PARTS, &sums.relief, whole);
+        table("areas, each part compressed by itself", &AREA_PARTS, &sums.areas, whole);
+        table("photo", &PHOTO_PARTS, &sums.photo, whole);
+    }
+    Ok(())
+}
+
+fn stored(sizes: &PayloadSizes) -> [u64; 9] {
+    [
+        sizes.terrain,
+        sizes.roads_geo,
+        sizes.roads_sv,
+        sizes.attributes,
+        sizes.road_tags,
+        sizes.relief,
+        sizes.photo,
+        sizes.areas,
+        sizes.boundaries,
+    ]
+    .map(|size| size.stored)
+}
+
+/// What is before the JPEG picture, its markers with their content, and what its scans hold.
+fn photo_parts(section: &[u8]) -> [usize; 3] {
+    let begin = section.windows(2).position(|two| two == [0xff, 0xd8]).unwrap_or(section.len());
+    let (mut at, mut heads) = (begin, 0);
+    let jpeg_end = section.len();
+    while at + 4 <= jpeg_end {
+        let marker = section[at + 1];
+        // A restart or an escaped 255 is part of a scan.
+        let is_marker = section[at] == 0xff && !matches!(marker, 0 | 0xd0..=0xd7 | 0xff);
+        let has_length = !matches!(marker, 0xd8 | 0xd9);
+        let length = match (is_marker, has_length) {
+            (false, _) => 0,
+            (true, false) => 2,
+            (true, true) => 2 + usize::from(section[at + 2]) * 256 + usize::from(section[at + 3]),
+        };
+        heads += length;
+        at += length.max(1);
+    }
+    [begin, heads, jpeg_end - begin - heads]
+}
+
+fn add<const N: usize>(sums: &mut [u64; N], bytes: [u64; N]) {
+    for (sum, bytes) in sums.iter_mut().zip(bytes) {
+        *sum += bytes;
+    }
+}
+
+/// Prints the parts that have bytes.
+fn table(title: &str, names: &[&str], bytes: &[u64], whole: u64) {
+    let all: u64 = bytes.iter().sum();
+    if all == 0 {
+        return;
+    }
+    println!("| {title} | bytes | of these | of the package |");
+    println!("|---|--:|--:|--:|");
+    let share = |bytes: u64, of: u64| 100.0 * bytes as f64 / of as f64;
+    for (name, &bytes) in names.iter().zip(bytes).filter(|(_, bytes)| **bytes > 0) {
+        println!(
+            "| {name} | {bytes} | {:.1} % | {:.1} % |",
+            share(bytes, all),
+            share(bytes, whole)
+        );
+    }
+    println!("| all | {all} | | {:.1} % |\n", share(all, whole));
+}

@@ -1,0 +1,37 @@
+//! Styles and labels that come with the program, as the build script has read them.
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Style;
+use serde::de::DeserializeOwned;
+
+const STYLES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/styles.bin"));
+#[cfg(any(test, target_arch = "wasm32"))]
+const LABELS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/labels.bin"));
+
+/// A table of named values; the build script wrote it.
+fn table<T: DeserializeOwned>(bytes: &[u8]) -> Vec<(String, T)> {
+    let read = bincode::serde::decode_from_slice(bytes, bincode::config::legacy());
+    read.map(|(table, _)| table).unwrap_or_default()
+}
+
+/// The names of the styles, the default one first.
+pub(crate) fn style_names() -> Vec<String> {
+    table::<Style>(STYLES).into_iter().map(|(name, _)| name).collect()
+}
+
+/// The style of this name.
+pub(crate) fn style(name: &str) -> Option<Style> {
+    table(STYLES).into_iter().find(|(known, _)| known == name).map(|(_, style)| style)
+}
+
+/// What the roads of each class are called, 0 first, with the FRC table of this name.
+#[cfg(any(test, target_arch = "wasm32"))]
+pub(crate) fn class_labels(frc_table: &str) -> [String; FunctionalRoadClass::COUNT] {
+    let known = table::<Vec<String>>(LABELS).into_iter().find(|(name, _)| name == frc_table);
+    let known = known.and_then(|(_, labels)| labels.try_into().ok());
+    known.unwrap_or_else(|| std::array::from_fn(|class| format!("class {class}")))
+}
+
+#[cfg(test)]
+#[path = "tables_tests.rs"]
+mod tests;
