@@ -188,6 +188,7 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     const compiler = path.join(here, "node_modules", "typescript", "bin", "tsc");
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
     for (const name of fs.readdirSync(sources).filter((name) => /\.(js|d\.ts)$/.test(name))) fs.copyFileSync(path.join(sources, name), path.join(folder, name));
+    fs.symlinkSync(path.join(here, "node_modules"), path.join(folder, "node_modules"));
     // The glue is made by a program, and its types are not those of the element.
     fs.writeFileSync(path.join(folder, "corniche_web.d.ts"), "export default function init(options: object): Promise<any>;\nexport const MapView: any;\n");
     fs.writeFileSync(path.join(folder, "use.ts"), `import { CornicheMap, type Pick } from "./corniche-map.js";
