@@ -12,15 +12,21 @@ async function checkPage(page, what) {
   for (const colorScheme of ["light", "dark"]) {
     await page.emulateMedia({ colorScheme });
     const { violations, passes } = await page.evaluate(() => window.axe.run());
-    const told = violations.filter(({ impact }) => impact === "serious" || impact === "critical")
-      .map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target.flat().join(" ")} ${failureSummary}`).join("; ")}`);
+    const told = violations
+      .filter(({ impact }) => impact === "serious" || impact === "critical")
+      .map(
+        ({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target.flat().join(" ")} ${failureSummary}`).join("; ")}`,
+      );
     assert.deepEqual(told, [], `${what}, ${colorScheme}`);
     assert.ok(passes.length > 10, "axe looked at the page");
   }
 }
 
 export function tests({ browser, server }) {
-  for (const [name, options] of [["desktop", { width: 1280, height: 800 }], ["phone", { width: 390, height: 844, hasTouch: true, isMobile: true }]]) {
+  for (const [name, options] of [
+    ["desktop", { width: 1280, height: 800 }],
+    ["phone", { width: 390, height: 844, hasTouch: true, isMobile: true }],
+  ]) {
     test(`axe-core finds nothing serious: ${name}`, async () => {
       server.behave();
       const page = await openMap(browser, server, { hash: "", label: "Map of a pass" }, options);
@@ -30,7 +36,10 @@ export function tests({ browser, server }) {
         for (const details of shadowRoot.querySelectorAll("details")) details.open = true;
       });
       await checkPage(page, "with the panel open");
-      await ask(page, (map) => { map.settings = { compare: "split" }; map.shadowRoot.querySelector("[aria-label='Hide the panel']").click(); });
+      await ask(page, (map) => {
+        map.settings = { compare: "split" };
+        map.shadowRoot.querySelector("[aria-label='Hide the panel']").click();
+      });
       await checkPage(page, "with the divider, without the panel");
       await page.locator("corniche-map canvas").focus();
       await page.keyboard.press("Enter");
@@ -59,10 +68,12 @@ export function tests({ browser, server }) {
       const { shadowRoot } = map;
       if (shadowRoot.querySelector(".panel").hidden) shadowRoot.querySelector("[aria-label=Panel]").click();
       for (const details of shadowRoot.querySelectorAll("details")) details.open = true;
-      return [...shadowRoot.querySelectorAll("button, select, summary, input[type=text], input[type=range], label.check, .row span")].filter((one) => {
-        const box = one.getBoundingClientRect();
-        return box.height > 0 && box.height < 40;
-      }).map((one) => `${one.className || one.tagName} ${one.textContent.slice(0, 20)} ${one.getBoundingClientRect().height}`);
+      return [...shadowRoot.querySelectorAll("button, select, summary, input[type=text], input[type=range], label.check, .row span")]
+        .filter((one) => {
+          const box = one.getBoundingClientRect();
+          return box.height > 0 && box.height < 40;
+        })
+        .map((one) => `${one.className || one.tagName} ${one.textContent.slice(0, 20)} ${one.getBoundingClientRect().height}`);
     });
     assert.deepEqual(small, []);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);

@@ -3,8 +3,19 @@ import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
 const FLAGS = [
-  "--no-sandbox", "--enable-unsafe-webgpu", "--ignore-gpu-blocklist", "--use-webgpu-adapter=swiftshader", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-  "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run", "--disable-quic",
+  "--no-sandbox",
+  "--enable-unsafe-webgpu",
+  "--ignore-gpu-blocklist",
+  "--use-webgpu-adapter=swiftshader",
+  "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader",
+  "--enable-features=Vulkan",
+  "--use-vulkan=swiftshader",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+  "--no-first-run",
+  "--disable-quic",
 ];
 
 /** The browser, or `null` where it does not start; then it is said why. */
@@ -28,7 +39,9 @@ export async function openPage(browser, server, address, { width = 800, height =
     if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(server.origin)) faults.foreign.push(request.url());
   });
   page.on("pageerror", (error) => faults.errors.push(String(error)));
-  page.on("console", (message) => { if (message.type() === "error") faults.console.push(message.text()); });
+  page.on("console", (message) => {
+    if (message.type() === "error") faults.console.push(message.text());
+  });
   if (before) await page.addInitScript(before);
   await page.goto(`${server.origin}${address}`);
   return Object.assign(page, { faults, end: () => made.close() });
@@ -42,22 +55,29 @@ export function checkFaults(page) {
 
 /** Puts a map into the page and waits until it is open or has failed. Returns { ready } or { error }. */
 export function addMap(page, attributes, { width = "100%", height = "600px" } = {}) {
-  return page.evaluate(([attributes, width, height]) => {
-    const map = document.createElement("corniche-map");
-    for (const [name, value] of Object.entries(attributes)) map.setAttribute(name, value);
-    Object.assign(map.style, { width, height });
-    document.querySelector("main").append(map);
-    return new Promise((resolve) => {
-      map.addEventListener("ready", (event) => resolve({ ready: event.detail }), { once: true });
-      map.addEventListener("error", (event) => resolve({ error: event.detail }), { once: true });
-    });
-  }, [attributes, width, height]);
+  return page.evaluate(
+    ([attributes, width, height]) => {
+      const map = document.createElement("corniche-map");
+      for (const [name, value] of Object.entries(attributes)) map.setAttribute(name, value);
+      Object.assign(map.style, { width, height });
+      document.querySelector("main").append(map);
+      return new Promise((resolve) => {
+        map.addEventListener("ready", (event) => resolve({ ready: event.detail }), { once: true });
+        map.addEventListener("error", (event) => resolve({ error: event.detail }), { once: true });
+      });
+    },
+    [attributes, width, height],
+  );
 }
 
 /** A page with one map, all tiles of its view there. */
 export async function openMap(browser, server, attributes, options = {}) {
   const page = await openPage(browser, server, "/blank.html", options);
-  const opened = await addMap(page, { src: "/packages/pass.pmtiles", samples: "1", ...attributes }, options.size ?? { height: `${options.height ?? 600}px` });
+  const opened = await addMap(
+    page,
+    { src: "/packages/pass.pmtiles", samples: "1", ...attributes },
+    options.size ?? { height: `${options.height ?? 600}px` },
+  );
   assert.ok(opened.ready, `the map did not open: ${JSON.stringify(opened.error)}`);
   await settled(page);
   return page;
@@ -66,7 +86,11 @@ export async function openMap(browser, server, attributes, options = {}) {
 export const settled = (page) => page.evaluate(() => document.querySelector("corniche-map").settled());
 
 /** Asks the map of the page. */
-export const ask = (page, of, argument) => page.evaluate(([of, argument]) => new Function("map", "argument", `return (${of})(map, argument)`)(document.querySelector("corniche-map"), argument), [of.toString(), argument]);
+export const ask = (page, of, argument) =>
+  page.evaluate(
+    ([of, argument]) => new Function("map", "argument", `return (${of})(map, argument)`)(document.querySelector("corniche-map"), argument),
+    [of.toString(), argument],
+  );
 
 /** The pixels shown, as { width, height, data }. */
 export async function pixelsOf(page) {
@@ -83,5 +107,10 @@ export async function pixelsOf(page) {
 export async function touches(page) {
   const client = await page.context().newCDPSession(page);
   const send = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-  return { down: (...points) => send("touchStart", points), move: (...points) => send("touchMove", points), up: () => send("touchEnd", []), left: (...points) => send("touchEnd", points) };
+  return {
+    down: (...points) => send("touchStart", points),
+    move: (...points) => send("touchMove", points),
+    up: () => send("touchEnd", []),
+    left: (...points) => send("touchEnd", points),
+  };
 }

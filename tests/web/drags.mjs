@@ -32,13 +32,23 @@ async function checkKept(page, what, at, ground) {
 }
 
 /** A map without inertia: nothing glides after a drag, so that places can be compared. */
-const still = (browser, server, more = {}, options = {}) => openMap(browser, server, { ...VIEW, inertia: "off", controls: "none", ...more }, options);
+const still = (browser, server, more = {}, options = {}) =>
+  openMap(browser, server, { ...VIEW, inertia: "off", controls: "none", ...more }, options);
 
 export function tests({ browser, server }) {
   test("a left drag keeps the ground under the pointer", async () => {
     server.behave();
     const page = await still(browser, server);
-    for (const [from, to] of [[[400, 380], [250, 300]], [[300, 300], [520, 450]]]) {
+    for (const [from, to] of [
+      [
+        [400, 380],
+        [250, 300],
+      ],
+      [
+        [300, 300],
+        [520, 450],
+      ],
+    ]) {
       const ground = await pickAt(page, from);
       const before = await ask(page, (map) => map.camera);
       await page.mouse.move(...from);
@@ -116,7 +126,10 @@ export function tests({ browser, server }) {
   test("two fingers pinch and turn, and the ground between them stays", async () => {
     const page = await still(browser, server, { "look-at": "9.51,46.91,4000,30,20" }, { hasTouch: true });
     const finger = await touches(page);
-    const places = [[300, 300], [500, 300]];
+    const places = [
+      [300, 300],
+      [500, 300],
+    ];
     const middle = [400, 300];
     const ground = await pickAt(page, middle);
     const before = await ask(page, (map) => map.camera);
@@ -124,7 +137,10 @@ export function tests({ browser, server }) {
     await finger.down(...places);
     let now = places;
     for (let step = 1; step <= 8; step += 1) {
-      now = [[300 - 5 * step, 300 + 3 * step], [500 + 5 * step, 300 - 3 * step]];
+      now = [
+        [300 - 5 * step, 300 + 3 * step],
+        [500 + 5 * step, 300 - 3 * step],
+      ];
       await finger.move(...now);
     }
     await checkKept(page, "between two fingers", middle, ground);
@@ -162,7 +178,10 @@ export function tests({ browser, server }) {
     const page = await still(browser, server, {}, { hasTouch: true });
     const finger = await touches(page);
     const before = await ask(page, (map) => map.camera);
-    for (const at of [[400, 350], [412, 358]]) {
+    for (const at of [
+      [400, 350],
+      [412, 358],
+    ]) {
       await finger.down(at);
       await finger.up();
       await page.waitForTimeout(60);

@@ -11,10 +11,15 @@ import { PNG } from "pngjs";
 import { addMap, ask, checkFaults, openMap, openPage, settled } from "./browser.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
-const ready = (page, count = 1) => page.waitForFunction((count) => {
-  const maps = [...document.querySelectorAll("corniche-map")];
-  return maps.length >= count && maps.every((map) => map.report?.is_settled);
-}, count, { timeout: 120_000 });
+const ready = (page, count = 1) =>
+  page.waitForFunction(
+    (count) => {
+      const maps = [...document.querySelectorAll("corniche-map")];
+      return maps.length >= count && maps.every((map) => map.report?.is_settled);
+    },
+    count,
+    { timeout: 120_000 },
+  );
 
 export function tests({ browser, server, other, site, sources, package: file }) {
   test("two maps of a page have nothing in common but the program", async () => {
@@ -25,12 +30,22 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await ready(page, 2);
     await page.evaluate(async () => {
       const [a, b] = document.querySelectorAll("corniche-map");
-      for (const [map, distance] of [[a, 3000], [b, 5000]]) map.lookAt({ lon: 9.51, lat: 46.91, distance }, { jump: true });
+      for (const [map, distance] of [
+        [a, 3000],
+        [b, 5000],
+      ])
+        map.lookAt({ lon: 9.51, lat: 46.91, distance }, { jump: true });
     });
     await page.waitForFunction(() => /a=9\.51,.*b=9\.51,/.test(location.hash));
-    const [hash, settings] = await page.evaluate(() => [location.hash, [...document.querySelectorAll("corniche-map")].map((map) => [map.settings.style, map.settings.roads])]);
+    const [hash, settings] = await page.evaluate(() => [
+      location.hash,
+      [...document.querySelectorAll("corniche-map")].map((map) => [map.settings.style, map.settings.roads]),
+    ]);
     assert.match(hash, /a=9\.51,46\.91\d*,30\d\d,.*&b=9\.51,46\.91\d*,50\d\d,/);
-    assert.deepEqual(settings, [["dark", "geo"], ["road-atlas", "sv"]]);
+    assert.deepEqual(settings, [
+      ["dark", "geo"],
+      ["road-atlas", "sv"],
+    ]);
     assert.equal(server.state.requests.filter(({ path }) => path.endsWith(".wasm")).length, 1, "the module is fetched once");
     assert.deepEqual(await page.evaluate(() => Object.keys(window).filter((name) => /corniche/i.test(name))), [], "nothing global");
     checkFaults(page);
@@ -42,11 +57,17 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await ready(page);
     assert.match(await page.title(), /pass/);
     checkFaults(page);
-    server.state.replaced.set("/packages.json", { bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"}]'), type: "application/json" });
+    server.state.replaced.set("/packages.json", {
+      bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"}]'),
+      type: "application/json",
+    });
     await page.goto(`${server.origin}/`);
     await ready(page);
     assert.match(await page.title(), /Pass/);
-    server.state.replaced.set("/packages.json", { bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"},{"name":"Other","src":"packages/other.pmtiles"}]'), type: "application/json" });
+    server.state.replaced.set("/packages.json", {
+      bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"},{"name":"Other","src":"packages/other.pmtiles"}]'),
+      type: "application/json",
+    });
     await page.goto(`${server.origin}/`);
     await page.getByRole("link", { name: "Pass" }).click();
     await ready(page);
@@ -64,7 +85,10 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await page.locator("#file").setInputFiles(file);
     await ready(page);
     assert.equal(await ask(page, (map) => map.about.name), "pass");
-    assert.ok(server.state.requests.every(({ path }) => !path.endsWith(".pmtiles")), "the file goes nowhere");
+    assert.ok(
+      server.state.requests.every(({ path }) => !path.endsWith(".pmtiles")),
+      "the file goes nowhere",
+    );
     checkFaults(page);
     await page.end();
   });
@@ -74,13 +98,21 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     const page = await openPage(browser, server, "/blank.html", { width: 400, height: 300 });
     const opened = await addMap(page, { src: `${other.origin}/packages/pass.pmtiles`, samples: "1" });
     assert.ok(opened.ready, JSON.stringify(opened));
-    assert.ok(page.faults.foreign.every((address) => address === `${other.origin}/packages/pass.pmtiles`), "and nothing else is asked for");
+    assert.ok(
+      page.faults.foreign.every((address) => address === `${other.origin}/packages/pass.pmtiles`),
+      "and nothing else is asked for",
+    );
     await page.end();
   });
 
   test("the element works from another host, workers too", async () => {
     other.behave();
-    server.state.replaced.set("/foreign.html", { bytes: Buffer.from(`<!doctype html><link rel="icon" href="data:,"><main></main><script type="module" src="${other.origin}/corniche-map.js"></script>`), type: "text/html" });
+    server.state.replaced.set("/foreign.html", {
+      bytes: Buffer.from(
+        `<!doctype html><link rel="icon" href="data:,"><main></main><script type="module" src="${other.origin}/corniche-map.js"></script>`,
+      ),
+      type: "text/html",
+    });
     const foreign = await openPage(browser, server, "/foreign.html", { width: 400, height: 300 });
     const opened = await addMap(foreign, { src: `${server.origin}/packages/pass.pmtiles`, samples: "1" });
     assert.ok(opened.ready, JSON.stringify(opened));
@@ -91,8 +123,14 @@ export function tests({ browser, server, other, site, sources, package: file }) 
   });
 
   test("a strict security policy is enough", async () => {
-    server.state.policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; img-src 'self' data: blob:; style-src 'self'";
-    server.state.replaced.set("/strict.html", { bytes: Buffer.from('<!doctype html><link rel="icon" href="data:,"><main></main><script type="module" src="corniche-map.js"></script>'), type: "text/html" });
+    server.state.policy =
+      "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; img-src 'self' data: blob:; style-src 'self'";
+    server.state.replaced.set("/strict.html", {
+      bytes: Buffer.from(
+        '<!doctype html><link rel="icon" href="data:,"><main></main><script type="module" src="corniche-map.js"></script>',
+      ),
+      type: "text/html",
+    });
     const page = await openPage(browser, server, "/strict.html", { width: 400, height: 300 });
     const opened = await addMap(page, { src: "/packages/pass.pmtiles", samples: "1" });
     assert.ok(opened.ready, JSON.stringify(opened));
@@ -104,8 +142,16 @@ export function tests({ browser, server, other, site, sources, package: file }) 
   });
 
   test("examples open without a fault", async () => {
-    server.state.replaced.set("/packages.json", { bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"}]'), type: "application/json" });
-    for (const [name, maps] of [["two-maps", 2], ["events", 1], ["attributes", 1], ["maplibre", 1]]) {
+    server.state.replaced.set("/packages.json", {
+      bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"}]'),
+      type: "application/json",
+    });
+    for (const [name, maps] of [
+      ["two-maps", 2],
+      ["events", 1],
+      ["attributes", 1],
+      ["maplibre", 1],
+    ]) {
       const page = await openPage(browser, server, `/examples/${name}.html`, { width: 800, height: 700 });
       await ready(page, maps);
       if (name === "events") {
@@ -117,7 +163,9 @@ export function tests({ browser, server, other, site, sources, package: file }) 
         await page.waitForFunction(() => document.querySelector("corniche-map").settings.style === "dark");
       }
       if (name === "two-maps") {
-        await page.evaluate(() => document.querySelector("corniche-map").lookAt({ lon: 9.51, lat: 46.91, distance: 3000, heading: 20, pitch: 40 }, { jump: true }));
+        await page.evaluate(() =>
+          document.querySelector("corniche-map").lookAt({ lon: 9.51, lat: 46.91, distance: 3000, heading: 20, pitch: 40 }, { jump: true }),
+        );
         await page.waitForFunction(() => Math.abs(document.querySelectorAll("corniche-map")[1].camera.distance - 3000) < 30);
       }
       checkFaults(page);
@@ -135,11 +183,15 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     assert.equal(saved.suggestedFilename(), "pass.png");
     const png = PNG.sync.read(fs.readFileSync(await saved.path()));
     assert.deepEqual([png.width, png.height], [800, 500]);
-    const { data } = await ask(page, async (map) => { const { data } = await map.readPixels(); return { data: [...data.subarray(0, 400)] }; });
+    const { data } = await ask(page, async (map) => {
+      const { data } = await map.readPixels();
+      return { data: [...data.subarray(0, 400)] };
+    });
     assert.deepEqual([...png.data.subarray(0, 400)], data, "the pixels of the map");
     // In the corner the map shows through credits: light, with dark letters.
     let dark = 0;
-    for (let y = png.height - 18; y < png.height - 2; y += 1) for (let x = png.width - 150; x < png.width; x += 1) if (png.data[4 * (y * png.width + x)] < 90) dark += 1;
+    for (let y = png.height - 18; y < png.height - 2; y += 1)
+      for (let x = png.width - 150; x < png.width; x += 1) if (png.data[4 * (y * png.width + x)] < 90) dark += 1;
     assert.ok(dark > 60, `${dark} dark pixels of letters`);
     await page.end();
   });
@@ -168,15 +220,30 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await page.waitForFunction(() => document.querySelector("corniche-map").report.is_playing === false, null, { timeout: 30_000 });
     await settled(page);
     const played = await ask(page, (map) => map.camera);
-    assert.ok(Math.abs(played.lon - after.lon) < 1e-4 && Math.abs(played.lat - after.lat) < 1e-4, `${JSON.stringify(played)} ${JSON.stringify(after)}`);
-    const why = await ask(page, (map) => { try { map.play("no flight"); return ""; } catch (error) { return error.message; } });
+    assert.ok(
+      Math.abs(played.lon - after.lon) < 1e-4 && Math.abs(played.lat - after.lat) < 1e-4,
+      `${JSON.stringify(played)} ${JSON.stringify(after)}`,
+    );
+    const why = await ask(page, (map) => {
+      try {
+        map.play("no flight");
+        return "";
+      } catch (error) {
+        return error.message;
+      }
+    });
     assert.ok(why.length > 5);
     checkFaults(page);
     await page.end();
   });
 
   test("a link to the view is copied", async () => {
-    const page = await openMap(browser, server, { hash: "", "look-at": "9.51,46.91,4000,10,50" }, { width: 500, height: 400, permissions: ["clipboard-read", "clipboard-write"] });
+    const page = await openMap(
+      browser,
+      server,
+      { hash: "", "look-at": "9.51,46.91,4000,10,50" },
+      { width: 500, height: 400, permissions: ["clipboard-read", "clipboard-write"] },
+    );
     await page.locator("corniche-map canvas").focus();
     await page.keyboard.press("v");
     await page.locator("corniche-map .notice").filter({ hasText: "copied" }).waitFor();
@@ -187,11 +254,17 @@ export function tests({ browser, server, other, site, sources, package: file }) 
   test("the types fit the code, and a page's use of them", () => {
     const compiler = path.join(here, "node_modules", "typescript", "bin", "tsc");
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
-    for (const name of fs.readdirSync(sources).filter((name) => /\.(js|d\.ts)$/.test(name))) fs.copyFileSync(path.join(sources, name), path.join(folder, name));
+    for (const name of fs.readdirSync(sources).filter((name) => /\.(js|d\.ts)$/.test(name)))
+      fs.copyFileSync(path.join(sources, name), path.join(folder, name));
     fs.symlinkSync(path.join(here, "node_modules"), path.join(folder, "node_modules"));
     // The glue is made by a program, and its types are not those of the element.
-    fs.writeFileSync(path.join(folder, "corniche_web.d.ts"), "export default function init(options: object): Promise<any>;\nexport const MapView: any;\n");
-    fs.writeFileSync(path.join(folder, "use.ts"), `import { CornicheMap, type Pick } from "./corniche-map.js";
+    fs.writeFileSync(
+      path.join(folder, "corniche_web.d.ts"),
+      "export default function init(options: object): Promise<any>;\nexport const MapView: any;\n",
+    );
+    fs.writeFileSync(
+      path.join(folder, "use.ts"),
+      `import { CornicheMap, type Pick } from "./corniche-map.js";
 const map = document.createElement("corniche-map");
 map.addEventListener("pick", (event) => { const pick: Pick | null = event.detail; console.log(pick?.road?.way.toFixed(0), pick?.road?.attributes["name"]); });
 map.addEventListener("ready", ({ detail }) => console.log(detail.classes[0]?.label, map instanceof CornicheMap));
@@ -201,8 +274,20 @@ map.settings = { roads: "lines" };
 map.lookAt({ lon: 9, lat: 47 }, { jump: true });
 const pixels: Promise<{ width: number }> = map.readPixels();
 void pixels;
-`);
-    const options = { allowJs: true, checkJs: true, noEmit: true, strict: true, target: "es2022", module: "es2022", moduleResolution: "bundler", lib: ["es2023", "dom", "dom.iterable"], skipLibCheck: true, types: [] };
+`,
+    );
+    const options = {
+      allowJs: true,
+      checkJs: true,
+      noEmit: true,
+      strict: true,
+      target: "es2022",
+      module: "es2022",
+      moduleResolution: "bundler",
+      lib: ["es2023", "dom", "dom.iterable"],
+      skipLibCheck: true,
+      types: [],
+    };
     fs.writeFileSync(path.join(folder, "tsconfig.json"), JSON.stringify({ compilerOptions: options, files: ["use.ts", "element.js"] }));
     try {
       execFileSync(process.execPath, [compiler, "-p", folder], { stdio: "pipe" });
@@ -214,7 +299,9 @@ void pixels;
   });
 
   test("scripts and styles of the element are small", () => {
-    const bytes = ["corniche-map.js", "worker.js"].map((name) => zlib.brotliCompressSync(fs.readFileSync(path.join(site, name))).length).reduce((sum, one) => sum + one, 0);
+    const bytes = ["corniche-map.js", "worker.js"]
+      .map((name) => zlib.brotliCompressSync(fs.readFileSync(path.join(site, name))).length)
+      .reduce((sum, one) => sum + one, 0);
     console.log(`# the element and its worker: ${bytes} bytes of brotli`);
     assert.ok(bytes > 10_000 && bytes < 25_000, `${bytes} bytes`);
   });

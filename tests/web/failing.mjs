@@ -2,8 +2,13 @@
 
 /** Takes WebGPU away, as in browsers that have none. */
 const withoutWebGpu = () => Object.defineProperty(Navigator.prototype, "gpu", { get: () => undefined, configurable: true });
-const withoutAdapter = () => { GPU.prototype.requestAdapter = async () => null; };
-const withoutDevice = () => { GPUAdapter.prototype.requestDevice = () => Promise.reject(new DOMException("the limits are beyond those of the adapter", "OperationError")); };
+const withoutAdapter = () => {
+  GPU.prototype.requestAdapter = async () => null;
+};
+const withoutDevice = () => {
+  GPUAdapter.prototype.requestDevice = () =>
+    Promise.reject(new DOMException("the limits are beyond those of the adapter", "OperationError"));
+};
 
 /** Keeps the devices of the page, so that a test can take them away. */
 export const keepDevices = () => {
@@ -37,13 +42,34 @@ export const FAILURES = [
   { name: "an empty file", kind: ["changed", "foreign", "damaged"], src: "/bad/empty/pass.pmtiles" },
   { name: "a place off the ground", kind: "off-ground", src: "/packages/pass.pmtiles", attributes: { "look-at": "20,50" } },
   { name: "no module", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/corniche_web_bg.wasm": { status: 404, bytes: null } } },
-  { name: "a page instead of the module", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/corniche_web_bg.wasm": text("<!doctype html> not here") } },
-  { name: "a cut module", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/corniche_web_bg.wasm": { bytes: Buffer.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 200]), type: "application/wasm" } } },
+  {
+    name: "a page instead of the module",
+    kind: "files",
+    src: "/packages/pass.pmtiles",
+    replaced: { "/corniche_web_bg.wasm": text("<!doctype html> not here") },
+  },
+  {
+    name: "a cut module",
+    kind: "files",
+    src: "/packages/pass.pmtiles",
+    replaced: { "/corniche_web_bg.wasm": { bytes: Buffer.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 200]), type: "application/wasm" } },
+  },
   { name: "no glue", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/corniche_web.js": { status: 404, bytes: null } } },
   { name: "no worker", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/worker.js": { status: 404, bytes: null } } },
   { name: "a worker of the wrong type", kind: "files", src: "/packages/pass.pmtiles", replaced: { "/worker.js": text("<!doctype html>") } },
-  { name: "a policy without WebAssembly", kind: "files", src: "/packages/pass.pmtiles", policy: "default-src 'none'; script-src 'self'; worker-src 'self'; connect-src 'self'; style-src 'unsafe-inline'; img-src data:" },
-  { name: "a policy without workers", kind: "files", src: "/packages/pass.pmtiles", policy: "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'none'; connect-src 'self'; style-src 'unsafe-inline'; img-src data:" },
+  {
+    name: "a policy without WebAssembly",
+    kind: "files",
+    src: "/packages/pass.pmtiles",
+    policy: "default-src 'none'; script-src 'self'; worker-src 'self'; connect-src 'self'; style-src 'unsafe-inline'; img-src data:",
+  },
+  {
+    name: "a policy without workers",
+    kind: "files",
+    src: "/packages/pass.pmtiles",
+    policy:
+      "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'none'; connect-src 'self'; style-src 'unsafe-inline'; img-src data:",
+  },
 ];
 
 /** Hosts that fail after the beginning of the package: the map is open by then, and stays. What the notice says. */

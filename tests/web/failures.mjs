@@ -13,7 +13,11 @@ async function failing(browser, server, other, failure, options = {}) {
   server.state.policy = failure.policy ?? "";
   for (const [name, what] of Object.entries(failure.replaced ?? {})) server.state.replaced.set(name, what);
   const page = await openPage(browser, server, "/blank.html", { width: 700, height: 500, before: failure.before, ...options });
-  const opened = await addMap(page, { src: failure.src.replace("OTHER", other.origin), samples: "1", ...failure.attributes }, { height: `${options.height ?? 500}px` });
+  const opened = await addMap(
+    page,
+    { src: failure.src.replace("OTHER", other.origin), samples: "1", ...failure.attributes },
+    { height: `${options.height ?? 500}px` },
+  );
   return { page, opened };
 }
 
@@ -75,8 +79,15 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     const failure = FAILURES[0];
     const png = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "700x500"]);
     const replaced = { "/packages/pass.png": { bytes: PNG.sync.write(png), type: "image/png" } };
-    for (const [attributes, address] of [[{}, "/packages/pass.png"], [{ still: "/still.png" }, "/still.png"]]) {
-      const { page, opened } = await failing(browser, server, other, { ...failure, attributes, replaced: { ...replaced, "/still.png": replaced["/packages/pass.png"] } });
+    for (const [attributes, address] of [
+      [{}, "/packages/pass.png"],
+      [{ still: "/still.png" }, "/still.png"],
+    ]) {
+      const { page, opened } = await failing(browser, server, other, {
+        ...failure,
+        attributes,
+        replaced: { ...replaced, "/still.png": replaced["/packages/pass.png"] },
+      });
       assert.equal(opened.error.kind, "no-webgpu");
       await page.locator("corniche-map img.still").waitFor({ state: "visible" });
       assert.ok((await page.locator("corniche-map img.still").getAttribute("src")).endsWith(address));
@@ -90,7 +101,12 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
 
   test("a device that is lost is replaced, and the map is where it was", async () => {
     server.behave();
-    const page = await openMap(browser, server, { "look-at": "9.51,46.91,4000,30,50", "map-style": "dark" }, { width: 500, height: 400, before: keepDevices });
+    const page = await openMap(
+      browser,
+      server,
+      { "look-at": "9.51,46.91,4000,30,50", "map-style": "dark" },
+      { width: 500, height: 400, before: keepDevices },
+    );
     await ask(page, (map) => map.lookAt({ lon: 9.52, lat: 46.9, distance: 2500 }, { jump: true }));
     await settled(page);
     const before = await ask(page, (map) => map.camera);
@@ -104,15 +120,20 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     assert.ok(await again);
     await settled(page);
     const after = await ask(page, (map) => map.camera);
-    for (const part of ["lon", "lat"]) assert.ok(Math.abs(after[part] - before[part]) < 1e-3, `${JSON.stringify(after)} ${JSON.stringify(before)}`);
+    for (const part of ["lon", "lat"])
+      assert.ok(Math.abs(after[part] - before[part]) < 1e-3, `${JSON.stringify(after)} ${JSON.stringify(before)}`);
     assert.equal(await ask(page, (map) => map.settings.style), "dark");
     assert.ok(colours(await pixelsOf(page)) > 50);
     // Lost again and again, the element gives up and says so.
     for (let loss = 0; loss < 3; loss += 1) {
-      const next = ask(page, (map) => new Promise((resolve) => {
-        map.addEventListener("ready", () => resolve("ready"), { once: true });
-        map.addEventListener("error", (event) => resolve(event.detail.kind), { once: true });
-      }));
+      const next = ask(
+        page,
+        (map) =>
+          new Promise((resolve) => {
+            map.addEventListener("ready", () => resolve("ready"), { once: true });
+            map.addEventListener("error", (event) => resolve(event.detail.kind), { once: true });
+          }),
+      );
       await page.evaluate(() => {
         window.devices.at(-1).destroy();
         document.querySelector("corniche-map").command("north-up");
@@ -132,7 +153,10 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
   test("full graphics memory is told", async () => {
     server.behave();
     const page = await openMap(browser, server, {}, { width: 500, height: 400, before: keepDevices });
-    const failed = ask(page, (map) => new Promise((resolve) => map.addEventListener("error", (event) => resolve(event.detail), { once: true })));
+    const failed = ask(
+      page,
+      (map) => new Promise((resolve) => map.addEventListener("error", (event) => resolve(event.detail), { once: true })),
+    );
     await page.evaluate(() => {
       const event = new GPUUncapturedErrorEvent("uncapturederror", { error: new GPUOutOfMemoryError("no memory for a buffer") });
       window.devices.at(-1).dispatchEvent(event);

@@ -4,10 +4,13 @@ import { test } from "node:test";
 import { ask, checkFaults, openMap, settled } from "./browser.mjs";
 
 const camera = (page) => ask(page, (map) => map.camera);
-const focused = (page) => ask(page, (map) => {
-  const element = map.shadowRoot.activeElement;
-  return element ? `${element.tagName.toLowerCase()} ${element.getAttribute("aria-label") ?? element.textContent.trim() ?? ""}`.trim() : "";
-});
+const focused = (page) =>
+  ask(page, (map) => {
+    const element = map.shadowRoot.activeElement;
+    return element
+      ? `${element.tagName.toLowerCase()} ${element.getAttribute("aria-label") ?? element.textContent.trim() ?? ""}`.trim()
+      : "";
+  });
 
 export function tests({ browser, server }) {
   test("keys move, turn, tilt and zoom the map", async () => {
@@ -77,8 +80,28 @@ export function tests({ browser, server }) {
       assert.ok(isVisible, `${seen.at(-1)} shows that it has the focus`);
     }
     assert.ok(await page.evaluate(() => document.activeElement.id === "after"), "Tab leaves the map");
-    for (const name of [/^canvas Map/, /Panel/, /North up/, /Zoom in/, /Zoom out/, /Mouse, touch and keys/, /Go to/, /Fly/, /From above/, /First view/, /Copy link/, /Save picture/, /Record flight/, /Play flight/, /Hide the panel/, /summary Advanced/]) {
-      assert.ok(seen.some((one) => name.test(one)), `${name} is not reached: ${seen.join("; ")}`);
+    for (const name of [
+      /^canvas Map/,
+      /Panel/,
+      /North up/,
+      /Zoom in/,
+      /Zoom out/,
+      /Mouse, touch and keys/,
+      /Go to/,
+      /Fly/,
+      /From above/,
+      /First view/,
+      /Copy link/,
+      /Save picture/,
+      /Record flight/,
+      /Play flight/,
+      /Hide the panel/,
+      /summary Advanced/,
+    ]) {
+      assert.ok(
+        seen.some((one) => name.test(one)),
+        `${name} is not reached: ${seen.join("; ")}`,
+      );
     }
     await page.locator("corniche-map canvas").focus();
     await page.keyboard.press("?");
@@ -101,21 +124,28 @@ export function tests({ browser, server }) {
     // The way nearest to the middle is brought there. What is picked may lie some pixels beside it, which are fewer metres the nearer the eye is.
     let road = null;
     for (const distance of [6000, 2500, 1200, 600, 600]) {
-      road = await ask(page, async (map, way) => {
-        for (let round = 0; round < 280; round += 7) {
-          for (let turn = 0; turn < Math.max(1, round / 3); turn += 1) {
-            const angle = (turn * 6 * Math.PI) / Math.max(1, round);
-            const found = await map.pick(400 + round * Math.cos(angle), 300 + round * Math.sin(angle));
-            if (found?.road && (way === null || found.road.way === way) && Object.keys(found.road.attributes).length > 0) return found;
+      road = await ask(
+        page,
+        async (map, way) => {
+          for (let round = 0; round < 280; round += 7) {
+            for (let turn = 0; turn < Math.max(1, round / 3); turn += 1) {
+              const angle = (turn * 6 * Math.PI) / Math.max(1, round);
+              const found = await map.pick(400 + round * Math.cos(angle), 300 + round * Math.sin(angle));
+              if (found?.road && (way === null || found.road.way === way) && Object.keys(found.road.attributes).length > 0) return found;
+            }
           }
-        }
-        return null;
-      }, road?.road.way ?? null);
+          return null;
+        },
+        road?.road.way ?? null,
+      );
       assert.ok(road, "there is a road");
       await ask(page, (map, place) => map.lookAt(place, { jump: true }), { lon: road.lon, lat: road.lat, distance, pitch: 10 });
       await settled(page);
     }
-    const picked = ask(page, (map) => new Promise((resolve) => map.addEventListener("pick", (event) => resolve(event.detail), { once: true })));
+    const picked = ask(
+      page,
+      (map) => new Promise((resolve) => map.addEventListener("pick", (event) => resolve(event.detail), { once: true })),
+    );
     await page.locator("corniche-map canvas").focus();
     await page.keyboard.press("Enter");
     const { road: found } = await picked;

@@ -33,7 +33,10 @@ export function tests({ browser, server }) {
     const frames = await ask(page, async (map) => {
       const asked = [];
       const native = window.requestAnimationFrame;
-      window.requestAnimationFrame = (call) => { asked.push(call); return native(call); };
+      window.requestAnimationFrame = (call) => {
+        asked.push(call);
+        return native(call);
+      };
       await new Promise((done) => setTimeout(done, 1000));
       return asked.length;
     });
@@ -42,15 +45,28 @@ export function tests({ browser, server }) {
   });
 
   test("look-at, settings and the hash set the first view", async () => {
-    const page = await openMap(browser, server, { "look-at": "9.51,46.91,4000,45,50", roads: "sv", "map-style": "dark", exaggeration: "1.5", hash: "" });
+    const page = await openMap(browser, server, {
+      "look-at": "9.51,46.91,4000,45,50",
+      roads: "sv",
+      "map-style": "dark",
+      exaggeration: "1.5",
+      hash: "",
+    });
     const { camera, settings } = await ask(page, (map) => ({ camera: map.camera, settings: map.settings }));
     assert.ok(Math.abs(camera.lon - 9.51) < 1e-4 && Math.abs(camera.lat - 46.91) < 1e-4, JSON.stringify(camera));
-    assert.ok(Math.abs(camera.distance - 4000) < 40 && Math.abs(camera.heading - 45) < 0.1 && Math.abs(camera.pitch - 50) < 0.1, JSON.stringify(camera));
+    assert.ok(
+      Math.abs(camera.distance - 4000) < 40 && Math.abs(camera.heading - 45) < 0.1 && Math.abs(camera.pitch - 50) < 0.1,
+      JSON.stringify(camera),
+    );
     assert.deepEqual([settings.roads, settings.style, settings.exaggeration, settings.samples], ["sv", "dark", 1.5, 1]);
     // With such heights a slope may hide the next place.
-    await ask(page, (map) => { map.exaggeration = 1; });
+    await ask(page, (map) => {
+      map.exaggeration = 1;
+    });
     // A change of the hash moves the map there, and a move changes the hash.
-    await page.evaluate(() => { location.hash = "#9.5,46.92,3000,10,40"; });
+    await page.evaluate(() => {
+      location.hash = "#9.5,46.92,3000,10,40";
+    });
     await page.waitForFunction(() => Math.abs(document.querySelector("corniche-map").camera.distance - 3000) < 30);
     await ask(page, (map) => map.lookAt({ lon: 9.52, lat: 46.9, distance: 2500 }, { jump: true }));
     await page.waitForFunction(() => location.hash.startsWith("#9.52,"));
@@ -77,16 +93,33 @@ export function tests({ browser, server }) {
       const isOther = !now.data.equals(first.data);
       assert.ok(isOther, `${what} changes nothing`);
     };
-    await ask(page, (map) => { map.setAttribute("map-style", "dark"); });
+    await ask(page, (map) => {
+      map.setAttribute("map-style", "dark");
+    });
     await differs("map-style");
-    await ask(page, (map) => { map.mapStyle = "road-atlas"; map.roads = "none"; });
+    await ask(page, (map) => {
+      map.mapStyle = "road-atlas";
+      map.roads = "none";
+    });
     await differs("roads");
-    await ask(page, (map) => { map.roads = "geo"; map.settings = { classes: map.settings.classes.map((_, k) => k > 3) }; });
+    await ask(page, (map) => {
+      map.roads = "geo";
+      map.settings = { classes: map.settings.classes.map((_, k) => k > 3) };
+    });
     await differs("classes");
-    await ask(page, (map) => { map.settings = { classes: map.settings.classes.map(() => true) }; });
+    await ask(page, (map) => {
+      map.settings = { classes: map.settings.classes.map(() => true) };
+    });
     await settled(page);
     assert.ok((await pixelsOf(page)).data.equals(first.data), "with the first settings, the first picture");
-    const error = await ask(page, (map) => { try { map.settings = { style: "no-such" }; return ""; } catch (error) { return `${error.name}: ${error.message}`; } });
+    const error = await ask(page, (map) => {
+      try {
+        map.settings = { style: "no-such" };
+        return "";
+      } catch (error) {
+        return `${error.name}: ${error.message}`;
+      }
+    });
     assert.match(error, /RangeError.*no-such/);
     checkFaults(page);
     await page.end();
@@ -102,10 +135,13 @@ export function tests({ browser, server }) {
     await page.waitForFunction(() => window.kept.about === null);
     for (let wait = 0; wait < 50 && page.workers().length > 0; wait += 1) await page.waitForTimeout(50);
     assert.equal(page.workers().length, 0, "workers are ended");
-    await page.evaluate(() => new Promise((ready) => {
-      window.kept.addEventListener("ready", ready, { once: true });
-      document.querySelector("main").append(window.kept);
-    }));
+    await page.evaluate(
+      () =>
+        new Promise((ready) => {
+          window.kept.addEventListener("ready", ready, { once: true });
+          document.querySelector("main").append(window.kept);
+        }),
+    );
     await settled(page);
     assert.ok(colours(await pixelsOf(page)) > 100);
     checkFaults(page);
@@ -114,13 +150,18 @@ export function tests({ browser, server }) {
 
   test("another src opens another package, and the first one in a hurry does no harm", async () => {
     const page = await openPage(browser, server, "/blank.html", { width: 400, height: 300 });
-    const opened = await page.evaluate(() => new Promise((resolve) => {
-      const map = document.createElement("corniche-map");
-      document.querySelector("main").append(map);
-      map.addEventListener("ready", (event) => resolve(event.detail.src), { once: true });
-      map.src = "/as/missing/pass.pmtiles";
-      setTimeout(() => { map.src = "/packages/pass.pmtiles"; }, 0);
-    }));
+    const opened = await page.evaluate(
+      () =>
+        new Promise((resolve) => {
+          const map = document.createElement("corniche-map");
+          document.querySelector("main").append(map);
+          map.addEventListener("ready", (event) => resolve(event.detail.src), { once: true });
+          map.src = "/as/missing/pass.pmtiles";
+          setTimeout(() => {
+            map.src = "/packages/pass.pmtiles";
+          }, 0);
+        }),
+    );
     assert.match(opened, /packages\/pass/);
     assert.equal(await page.locator("corniche-map [role=alert]").count(), 0);
     checkFaults(page);

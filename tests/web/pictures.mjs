@@ -5,7 +5,10 @@ import path from "node:path";
 import { test } from "node:test";
 import { ask, openPage, settled } from "./browser.mjs";
 
-const SCREENS = [["desktop", { width: 1280, height: 800 }], ["phone", { width: 390, height: 844, hasTouch: true, isMobile: true, deviceScaleFactor: 2 }]];
+const SCREENS = [
+  ["desktop", { width: 1280, height: 800 }],
+  ["phone", { width: 390, height: 844, hasTouch: true, isMobile: true, deviceScaleFactor: 2 }],
+];
 
 export function tests({ browser, server, packages, pictures }) {
   const name = fs.existsSync(path.join(packages, "liechtenstein.pmtiles")) ? "liechtenstein" : "pass";
@@ -25,9 +28,17 @@ export function tests({ browser, server, packages, pictures }) {
           await take("panel");
           await click("Panel");
         } else {
-          await ask(page, (map) => map.shadowRoot.querySelectorAll("details").forEach((details, k) => { details.open = k === 2 || k === 3; }));
+          await ask(page, (map) =>
+            map.shadowRoot.querySelectorAll("details").forEach((details, k) => {
+              details.open = k === 2 || k === 3;
+            }),
+          );
           await take("panel");
-          await ask(page, (map) => map.shadowRoot.querySelectorAll("details").forEach((details, k) => { details.open = k < 3; }));
+          await ask(page, (map) =>
+            map.shadowRoot.querySelectorAll("details").forEach((details, k) => {
+              details.open = k < 3;
+            }),
+          );
         }
         await ask(page, async (map) => {
           const { clientWidth, clientHeight } = map;
@@ -36,14 +47,17 @@ export function tests({ browser, server, packages, pictures }) {
               const found = await map.pick(x, y);
               if (!found?.road?.attributes.name) continue;
               const canvas = map.shadowRoot.querySelector("canvas");
-              for (const type of ["pointerdown", "pointerup"]) canvas.dispatchEvent(new PointerEvent(type, { clientX: x, clientY: y, button: 0, pointerId: 1, bubbles: true }));
+              for (const type of ["pointerdown", "pointerup"])
+                canvas.dispatchEvent(new PointerEvent(type, { clientX: x, clientY: y, button: 0, pointerId: 1, bubbles: true }));
               return;
             }
           }
         }).catch(() => {});
         await page.waitForTimeout(400);
         await take("road");
-        await ask(page, (map) => { map.settings = { compare: "split" }; });
+        await ask(page, (map) => {
+          map.settings = { compare: "split" };
+        });
         await settled(page);
         await take("split");
         await page.keyboard.press("Escape");
@@ -56,7 +70,10 @@ export function tests({ browser, server, packages, pictures }) {
   }
 
   test("pictures: chooser and examples", async () => {
-    server.state.replaced.set("/packages.json", { bytes: Buffer.from(`[{"name":"Liechtenstein","src":"packages/${name}.pmtiles"},{"name":"A pass","src":"packages/pass.pmtiles"}]`), type: "application/json" });
+    server.state.replaced.set("/packages.json", {
+      bytes: Buffer.from(`[{"name":"Liechtenstein","src":"packages/${name}.pmtiles"},{"name":"A pass","src":"packages/pass.pmtiles"}]`),
+      type: "application/json",
+    });
     for (const [screen, options] of SCREENS) {
       const page = await openPage(browser, server, "/index.html", options);
       await page.getByText("Choose a map").waitFor();
@@ -65,7 +82,9 @@ export function tests({ browser, server, packages, pictures }) {
     }
     for (const example of ["two-maps", "events", "attributes", "maplibre"]) {
       const page = await openPage(browser, server, `/examples/${example}.html`, { width: 1000, height: 800 });
-      await page.waitForFunction(() => [...document.querySelectorAll("corniche-map")].every((map) => map.report?.is_settled), null, { timeout: 60_000 });
+      await page.waitForFunction(() => [...document.querySelectorAll("corniche-map")].every((map) => map.report?.is_settled), null, {
+        timeout: 60_000,
+      });
       await page.screenshot({ path: path.join(pictures, `example-${example}.png`) });
       await page.end();
     }

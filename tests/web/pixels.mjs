@@ -12,7 +12,11 @@ const SIZE = { width: 640, height: 400 };
 const VIEW = { share: [0.52, 0.55], distance: 4000, heading: 30, pitch: 60 };
 
 export function tests({ browser, server, packages, corniche }) {
-  const names = fs.readdirSync(packages).filter((name) => name.endsWith(".pmtiles")).map((name) => name.slice(0, -".pmtiles".length)).sort();
+  const names = fs
+    .readdirSync(packages)
+    .filter((name) => name.endsWith(".pmtiles"))
+    .map((name) => name.slice(0, -".pmtiles".length))
+    .sort();
   const skip = hasDriver() ? false : "Chromium's Vulkan driver is not where it is with Debian: set CHROMIUM_DRIVER";
   const fileOf = (name) => path.join(packages, `${name}.pmtiles`);
 
@@ -32,7 +36,22 @@ export function tests({ browser, server, packages, corniche }) {
     await settled(page);
     const picture = await pixelsOf(page);
     const size = `${picture.width}x${picture.height}`;
-    check(what, picture, rendered(corniche, fileOf(name), ["--size", size, "--ortho", "--look-at", `${lon},${lat}`, "--pixel", `${pixel_m}`, "--heading", "20", ...options]));
+    check(
+      what,
+      picture,
+      rendered(corniche, fileOf(name), [
+        "--size",
+        size,
+        "--ortho",
+        "--look-at",
+        `${lon},${lat}`,
+        "--pixel",
+        `${pixel_m}`,
+        "--heading",
+        "20",
+        ...options,
+      ]),
+    );
   }
 
   for (const name of names) {
@@ -46,14 +65,26 @@ export function tests({ browser, server, packages, corniche }) {
         await checkFromAbove(page, name, `${name} ${roads}, near, from above`, ["--roads", roads], 2000);
         // In perspective: after a flight that ends at rest.
         const [west, south, east, north] = await ask(page, (map) => map.about.bounds);
-        const { share: [u, v], ...view } = VIEW;
+        const {
+          share: [u, v],
+          ...view
+        } = VIEW;
         const place = { lon: west + (east - west) * u, lat: south + (north - south) * v, ...view };
         // Twice: only where the map has been is the height of its ground known exactly.
         for (let time = 0; time < 2; time += 1) {
           await ask(page, (map, place) => map.lookAt(place, { jump: true }), place);
           await settled(page);
         }
-        const there = ["--look-at", `${place.lon},${place.lat}`, "--distance", `${view.distance}`, "--heading", `${view.heading}`, "--pitch", `${view.pitch}`];
+        const there = [
+          "--look-at",
+          `${place.lon},${place.lat}`,
+          "--distance",
+          `${view.distance}`,
+          "--heading",
+          `${view.heading}`,
+          "--pitch",
+          `${view.pitch}`,
+        ];
         check(`${name} ${roads}, a place in perspective`, await pixelsOf(page), rendered(corniche, fileOf(name), [...size, ...there]));
         const recorded = await ask(page, async (map) => {
           map.startRecording();
@@ -65,7 +96,11 @@ export function tests({ browser, server, packages, corniche }) {
         await ask(page, (map, flight) => map.play(flight), recorded);
         await page.waitForFunction(() => !document.querySelector("corniche-map").report.is_playing);
         await settled(page);
-        check(`${name} ${roads}, in perspective, after a flight`, await pixelsOf(page), flown(corniche, fileOf(name), recorded, [...size, "--supersampling", "2"]));
+        check(
+          `${name} ${roads}, in perspective, after a flight`,
+          await pixelsOf(page),
+          flown(corniche, fileOf(name), recorded, [...size, "--supersampling", "2"]),
+        );
         await page.end();
       });
     }
@@ -73,8 +108,17 @@ export function tests({ browser, server, packages, corniche }) {
 
   test("after resizing, and at two pixels a point, pixels equal those of the native program", { skip }, async () => {
     server.behave();
-    const page = await openMap(browser, server, { controls: "none", samples: "1" }, { width: 500, height: 500, size: { width: "300px", height: "200px" }, deviceScaleFactor: 2 });
-    const sizeOf = () => ask(page, async (map) => { const { width, height } = await map.readPixels(); return [width, height]; });
+    const page = await openMap(
+      browser,
+      server,
+      { controls: "none", samples: "1" },
+      { width: 500, height: 500, size: { width: "300px", height: "200px" }, deviceScaleFactor: 2 },
+    );
+    const sizeOf = () =>
+      ask(page, async (map) => {
+        const { width, height } = await map.readPixels();
+        return [width, height];
+      });
     assert.deepEqual(await sizeOf(), [600, 400]);
     const options = ["--roads", "geo", "--supersampling", "1"];
     await checkFromAbove(page, "pass", "two pixels a point", options, 900);

@@ -24,15 +24,33 @@ function drawn(corniche, work, file) {
 }
 
 /** The picture that `render` draws. */
-export const rendered = (corniche, file, options) => drawn(corniche, (folder) => ["render", file, "-o", path.join(folder, "map.png"), "--quiet", ...options], "map.png");
+export const rendered = (corniche, file, options) =>
+  drawn(corniche, (folder) => ["render", file, "-o", path.join(folder, "map.png"), "--quiet", ...options], "map.png");
 
 /** The last frame of a flight, given as TOML. */
 export function flown(corniche, file, flight, options) {
   const roads = options[options.indexOf("--roads") + 1];
-  return drawn(corniche, (folder) => {
-    fs.writeFileSync(path.join(folder, "flight.toml"), flight);
-    return ["fly", file, "-o", path.join(folder, "flight.csv"), "--path", path.join(folder, "flight.toml"), "--frames", "4", "--png", path.join(folder, "frames"), "--quiet", ...options];
-  }, path.join("frames", `lod-${roads}-00003.png`));
+  return drawn(
+    corniche,
+    (folder) => {
+      fs.writeFileSync(path.join(folder, "flight.toml"), flight);
+      return [
+        "fly",
+        file,
+        "-o",
+        path.join(folder, "flight.csv"),
+        "--path",
+        path.join(folder, "flight.toml"),
+        "--frames",
+        "4",
+        "--png",
+        path.join(folder, "frames"),
+        "--quiet",
+        ...options,
+      ];
+    },
+    path.join("frames", `lod-${roads}-00003.png`),
+  );
 }
 
 /** How many pixels are compared, and how many bytes of them differ. */

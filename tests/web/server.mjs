@@ -4,7 +4,14 @@ import http from "node:http";
 import path from "node:path";
 import zlib from "node:zlib";
 
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".css": "text/css", ".wasm": "application/wasm", ".png": "image/png" };
+const TYPES = {
+  ".html": "text/html",
+  ".js": "text/javascript",
+  ".json": "application/json",
+  ".css": "text/css",
+  ".wasm": "application/wasm",
+  ".png": "image/png",
+};
 
 const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><meta name="color-scheme" content="light dark"><title>A map</title><link rel="icon" href="data:,">
 <style>body { margin: 0; background: light-dark(#fff, #111); }</style><main></main>
@@ -55,12 +62,28 @@ const FILES = {
 };
 
 /**
- * Serves the files of `site`, packages of `packages` under /packages/, bad hosts under /as/HOW/NAME and bad files under /bad/HOW/NAME. Other pages may read all of it.
+ * Serves the files of `site`, packages of `packages` under /packages/, bad hosts under /as/HOW/NAME and bad files under /bad/HOW/NAME.
+ * Other pages may read all of it.
  */
 export async function startServer({ site, packages }) {
-  const state = { delay_ms: 0, bytes_per_ms: 0, requests: [], replaced: new Map(), policy: "" };
+  const state = { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], replaced: new Map(), policy: "" };
   let free = 0;
   let count = 0;
+
+  /** As long as so many bytes take on the way: one link for all. */
+  async function slowly(bytes) {
+    if (state.delay_ms > 0) await new Promise((done) => setTimeout(done, state.delay_ms));
+    if (state.bytes_per_ms === 0) return;
+    const now = performance.now();
+    free = Math.max(free, now) + bytes / state.bytes_per_ms;
+    await new Promise((done) => setTimeout(done, free - now));
+  }
+
+  const kept = new Map();
+  function compressed(asked, bytes) {
+    if (!kept.has(asked)) kept.set(asked, zlib.brotliCompressSync(bytes));
+    return kept.get(asked);
+  }
 
   async function whole(name) {
     return fs.promises.readFile(path.join(packages, path.basename(name))).catch(() => null);
@@ -80,8 +103,13 @@ export async function startServer({ site, packages }) {
 
   const server = http.createServer(async (request, answer) => {
     const asked = decodeURIComponent(new URL(request.url, "http://local").pathname);
-    const allowed = { "Access-Control-Allow-Origin": "*", "Access-Control-Allow-Headers": "range", "Access-Control-Expose-Headers": "Content-Range, ETag, Content-Encoding" };
-    if (request.method === "OPTIONS") return asked.startsWith("/as/no-cors/") ? answer.writeHead(403).end() : answer.writeHead(204, allowed).end();
+    const allowed = {
+      "Access-Control-Allow-Origin": "*",
+      "Access-Control-Allow-Headers": "range",
+      "Access-Control-Expose-Headers": "Content-Range, ETag, Content-Encoding",
+    };
+    if (request.method === "OPTIONS")
+      return asked.startsWith("/as/no-cors/") ? answer.writeHead(403).end() : answer.writeHead(204, allowed).end();
     const { bytes, type, way, status } = await found(asked);
     state.requests.push({ path: asked, range: request.headers.range ?? null, method: request.method });
     if (!bytes || status) return answer.writeHead(status ?? 404, allowed).end("no");
@@ -98,12 +126,11 @@ export async function startServer({ site, packages }) {
       code = 206;
       head["Content-Range"] = `bytes ${range[0]}-${range[1]}/${bytes.length}`;
     }
-    if (state.delay_ms > 0) await new Promise((done) => setTimeout(done, state.delay_ms));
-    if (state.bytes_per_ms > 0) {
-      const now = performance.now();
-      free = Math.max(free, now) + part.length / state.bytes_per_ms;
-      await new Promise((done) => setTimeout(done, free - now));
+    if (state.compresses && !way && code === 200 && /html|javascript|css|wasm/.test(type)) {
+      part = compressed(asked, bytes);
+      head["Content-Encoding"] = "br";
     }
+    await slowly(part.length);
     if (request.method === "HEAD") {
       if (way === WAYS.gzip) head["Content-Encoding"] = "gzip";
       const told = way === WAYS["no-cors"] ? bare(head) : head;
@@ -118,7 +145,7 @@ export async function startServer({ site, packages }) {
     state,
     /** As a host that is told to behave again. */
     behave() {
-      Object.assign(state, { delay_ms: 0, bytes_per_ms: 0, requests: [], policy: "" });
+      Object.assign(state, { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], policy: "" });
       state.replaced.clear();
     },
     close: () => server.close(),

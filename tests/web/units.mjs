@@ -9,7 +9,8 @@ import { pathToFileURL } from "node:url";
 export function tests({ sources }) {
   // Node takes files that end in .js for modules only where a package.json says so.
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
-  for (const name of fs.readdirSync(sources).filter((name) => name.endsWith(".js"))) fs.copyFileSync(path.join(sources, name), path.join(folder, name));
+  for (const name of fs.readdirSync(sources).filter((name) => name.endsWith(".js")))
+    fs.copyFileSync(path.join(sources, name), path.join(folder, name));
   fs.writeFileSync(path.join(folder, "package.json"), '{ "type": "module" }');
   after(() => fs.rmSync(folder, { recursive: true }));
   const load = (name) => import(pathToFileURL(path.join(folder, name)).href);
@@ -21,7 +22,8 @@ export function tests({ sources }) {
     const above = { lon: 9.5, lat: 47.1, heading: 12, pitch: 0, above: true, pixel_m: 2.5 };
     assert.deepEqual(placeOf(textOf(above)), above);
     assert.deepEqual(placeOf("9.5, 47"), { lon: 9.5, lat: 47 });
-    for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,up", "9.5,47,1e9", null]) assert.equal(placeOf(wrong), null, String(wrong));
+    for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,up", "9.5,47,1e9", null])
+      assert.equal(placeOf(wrong), null, String(wrong));
     assert.deepEqual(placeInHash("#part&b=9.5,47&a=8,46", "a"), { lon: 8, lat: 46 });
     assert.equal(placeInHash("#9.5,47", "a"), null);
     assert.equal(hashWith("#part&a=8,46", "a", place), `#part&a=${textOf(place)}`);
@@ -31,7 +33,17 @@ export function tests({ sources }) {
 
   test("lengths of the scale are round and no longer than asked", async () => {
     const { roundLength, lengthText } = await load("scalebar.js");
-    for (const [most, length] of [[1, 1], [1.99, 1], [2, 2], [4.9, 2], [5, 5], [999, 500], [1000, 1000], [0.3, 0.2]]) assert.ok(Math.abs(roundLength(most) - length) < 1e-9, `${most}`);
+    for (const [most, length] of [
+      [1, 1],
+      [1.99, 1],
+      [2, 2],
+      [4.9, 2],
+      [5, 5],
+      [999, 500],
+      [1000, 1000],
+      [0.3, 0.2],
+    ])
+      assert.ok(Math.abs(roundLength(most) - length) < 1e-9, `${most}`);
     assert.deepEqual([lengthText(2000), lengthText(500), lengthText(0.2), lengthText(1)], ["2 km", "500 m", "20 cm", "1 m"]);
   });
 
@@ -53,8 +65,12 @@ export function tests({ sources }) {
   test("settings come from attributes, and what is no value is left out", async () => {
     const { settingsOf, changeOf, controlsOf } = await load("attributes.js");
     const element = (attributes) => ({ getAttribute: (name) => attributes[name] ?? null });
-    assert.deepEqual(settingsOf(element({ roads: "sv", "map-style": "dark", exaggeration: "2", "error-px": "x", areas: "off", wireframe: "", photo: "off" })),
-      { roads: "sv", style: "dark", exaggeration: 2, areas: false, wireframe: true, photo: 0 });
+    assert.deepEqual(
+      settingsOf(
+        element({ roads: "sv", "map-style": "dark", exaggeration: "2", "error-px": "x", areas: "off", wireframe: "", photo: "off" }),
+      ),
+      { roads: "sv", style: "dark", exaggeration: 2, areas: false, wireframe: true, photo: 0 },
+    );
     assert.equal(changeOf("samples", null), null);
     assert.equal(changeOf("samples", " "), null);
     assert.deepEqual(changeOf("photo", "style"), { photo: null });

@@ -5,7 +5,11 @@ import { drawing, make } from "./dom.js";
 export function makeCompass(map) {
   const needle = drawing("M12 2l4 10H8z", "M12 22l4-10H8z");
   needle.classList.add("needle");
-  const button = make("button", { type: "button", class: "compass", title: "North up (N)", onclick: () => map.command("north-up") }, needle);
+  const button = make(
+    "button",
+    { type: "button", class: "compass", title: "North up (N)", onclick: () => map.command("north-up") },
+    needle,
+  );
   let shown = "";
   return {
     element: button,

@@ -21,9 +21,19 @@ const nextId = () => `c${(made += 1)}`;
 export function choice(set, name, label, choices) {
   const group = nextId();
   const inputs = choices.map(([value]) => make("input", { type: "radio", name: group, value, onchange: () => set({ [name]: value }) }));
-  const element = make("fieldset", { class: "choice" }, make("legend", {}, label),
-    make("div", { class: "row" }, ...choices.map(([, text], index) => make("label", {}, inputs[index], make("span", {}, text)))));
-  return { element, show: (settings) => inputs.forEach((input) => { input.checked = input.value === String(settings[name]); }) };
+  const element = make(
+    "fieldset",
+    { class: "choice" },
+    make("legend", {}, label),
+    make("div", { class: "row" }, ...choices.map(([, text], index) => make("label", {}, inputs[index], make("span", {}, text)))),
+  );
+  return {
+    element,
+    show: (settings) =>
+      inputs.forEach((input) => {
+        input.checked = input.value === String(settings[name]);
+      }),
+  };
 }
 
 /**
@@ -36,7 +46,12 @@ export function choice(set, name, label, choices) {
  */
 export function toggle(set, name, label) {
   const input = make("input", { type: "checkbox", onchange: () => set({ [name]: input.checked }) });
-  return { element: make("label", { class: "check" }, input, make("span", {}, label)), show: (settings) => { input.checked = Boolean(settings[name]); } };
+  return {
+    element: make("label", { class: "check" }, input, make("span", {}, label)),
+    show: (settings) => {
+      input.checked = Boolean(settings[name]);
+    },
+  };
 }
 
 /**
@@ -51,11 +66,16 @@ export function toggle(set, name, label) {
  */
 export function select(set, name, label, choices, valueOf = (text) => text) {
   const id = nextId();
-  const input = make("select", { id, onchange: () => set({ [name]: valueOf(input.value) }) },
-    ...choices.map(([value, text]) => make("option", { value }, text)));
+  const input = make(
+    "select",
+    { id, onchange: () => set({ [name]: valueOf(input.value) }) },
+    ...choices.map(([value, text]) => make("option", { value }, text)),
+  );
   return {
     element: make("div", { class: "field" }, make("label", { for: id }, label), input),
-    show: (settings) => { input.value = String(settings[name]); },
+    show: (settings) => {
+      input.value = String(settings[name]);
+    },
   };
 }
 
@@ -65,7 +85,8 @@ export function select(set, name, label, choices, valueOf = (text) => text) {
  * @param {Set} set
  * @param {string} name
  * @param {string} label
- * @param {{ min: number, max: number, step: number, text: (value: number) => string, of?: (settings: any) => number, change?: (value: number) => unknown }} range
+ * @param {{ min: number, max: number, step: number, text: (value: number) => string,
+ *   of?: (settings: any) => number, change?: (value: number) => unknown }} range
  * @returns {Control}
  */
 export function slider(set, name, label, range) {
@@ -77,7 +98,11 @@ export function slider(set, name, label, range) {
     input.setAttribute("aria-valuetext", text);
   };
   const input = make("input", {
-    id, type: "range", min: range.min, max: range.max, step: range.step,
+    id,
+    type: "range",
+    min: range.min,
+    max: range.max,
+    step: range.step,
     oninput: () => {
       say();
       set({ [name]: range.change ? range.change(+input.value) : +input.value });

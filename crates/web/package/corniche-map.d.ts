@@ -107,8 +107,25 @@ export interface Pick {
 }
 
 export interface Failure {
-  kind: "no-webgpu" | "no-adapter" | "limits" | "network" | "not-found" | "cors" | "no-ranges" | "compressed" | "changed" | "damaged" | "foreign" | "old-format"
-    | "no-ground" | "off-ground" | "out-of-memory" | "device-lost" | "files" | "other";
+  kind:
+    | "no-webgpu"
+    | "no-adapter"
+    | "limits"
+    | "network"
+    | "not-found"
+    | "cors"
+    | "no-ranges"
+    | "compressed"
+    | "changed"
+    | "damaged"
+    | "foreign"
+    | "old-format"
+    | "no-ground"
+    | "off-ground"
+    | "out-of-memory"
+    | "device-lost"
+    | "files"
+    | "other";
   message: string;
   /** What can be done; may be empty. */
   advice: string;
@@ -172,9 +189,17 @@ export class CornicheMap extends HTMLElement {
   /** Fulfilled when nothing moves and all tiles of the view are there. */
   settled(): Promise<void>;
 
-  addEventListener<K extends keyof CornicheMapEventMap>(type: K, listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown, options?: boolean | AddEventListenerOptions): void;
+  addEventListener<K extends keyof CornicheMapEventMap>(
+    type: K,
+    listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
   addEventListener(type: string, listener: EventListenerOrEventListenerObject | null, options?: boolean | AddEventListenerOptions): void;
-  removeEventListener<K extends keyof CornicheMapEventMap>(type: K, listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown, options?: boolean | EventListenerOptions): void;
+  removeEventListener<K extends keyof CornicheMapEventMap>(
+    type: K,
+    listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown,
+    options?: boolean | EventListenerOptions,
+  ): void;
   removeEventListener(type: string, listener: EventListenerOrEventListenerObject | null, options?: boolean | EventListenerOptions): void;
 }
 

@@ -40,7 +40,8 @@ export function startDecoders(module, count, decoded, failed) {
   });
   return {
     count,
-    post: (/** @type {number} */ index, /** @type {object} */ message, /** @type {ArrayBuffer[]} */ transfer) => workers[index].postMessage(message, transfer),
+    post: (/** @type {number} */ index, /** @type {object} */ message, /** @type {ArrayBuffer[]} */ transfer) =>
+      workers[index].postMessage(message, transfer),
     end: () => workers.forEach((worker) => worker.terminate()),
   };
 }

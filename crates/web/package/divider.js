@@ -5,8 +5,20 @@ const STEP = 0.02;
 
 /** @param {(change: Record<string, unknown>) => void} set */
 export function makeDivider(set) {
-  const element = make("div", { class: "divider", role: "slider", tabIndex: 0, hidden: true, "aria-label": "Divider between GEO and SV", "aria-valuemin": "0", "aria-valuemax": "100" },
-    make("span", { "aria-hidden": "true" }, "GEO"), make("span", { "aria-hidden": "true" }, "SV"));
+  const element = make(
+    "div",
+    {
+      class: "divider",
+      role: "slider",
+      tabIndex: 0,
+      hidden: true,
+      "aria-label": "Divider between GEO and SV",
+      "aria-valuemin": "0",
+      "aria-valuemax": "100",
+    },
+    make("span", { "aria-hidden": "true" }, "GEO"),
+    make("span", { "aria-hidden": "true" }, "SV"),
+  );
   let share = 0.5;
 
   function place(/** @type {number} */ now) {

@@ -52,11 +52,15 @@ export class CornicheMap extends HTMLElement {
     const { signal } = this.#connected;
     window.addEventListener("hashchange", () => this.#followHash(), { signal });
     // Escape closes what is open, wherever the focus is in the map.
-    this.shadowRoot?.addEventListener("keydown", (event) => {
-      // An open dialog is closed by the browser.
-      const isEscape = /** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && !this.#layout.dialog.open;
-      if (isEscape && this.#act("close")) event.preventDefault();
-    }, { signal });
+    this.shadowRoot?.addEventListener(
+      "keydown",
+      (event) => {
+        // An open dialog is closed by the browser.
+        const isEscape = /** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && !this.#layout.dialog.open;
+        if (isEscape && this.#act("close")) event.preventDefault();
+      },
+      { signal },
+    );
     matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session?.set(this.#motion()), { signal });
     this.#label();
     this.#controls();
@@ -210,11 +214,17 @@ export class CornicheMap extends HTMLElement {
   /** Whether the panel is shown at first: where there is room beside it. */
   #opensPanel() {
     const wish = this.getAttribute("panel");
-    return controlsOf(this.getAttribute("controls")).has("panel") && (wish === null ? this.clientWidth >= WIDE : wish !== "closed" && this.clientWidth > NARROW);
+    return (
+      controlsOf(this.getAttribute("controls")).has("panel") &&
+      (wish === null ? this.clientWidth >= WIDE : wish !== "closed" && this.clientWidth > NARROW)
+    );
   }
 
   #motion() {
-    return { inertia: !matchMedia("(prefers-reduced-motion: reduce)").matches && changeOf("inertia", this.getAttribute("inertia"))?.inertia !== false };
+    return {
+      inertia:
+        !matchMedia("(prefers-reduced-motion: reduce)").matches && changeOf("inertia", this.getAttribute("inertia"))?.inertia !== false,
+    };
   }
 
   /** Several attributes that are set in one turn open the package once. */
@@ -244,8 +254,12 @@ export class CornicheMap extends HTMLElement {
     let session = null;
     try {
       session = await openSession({
-        src, layout, signal: opening.signal,
-        settings, place, covered: this.#opensPanel() ? PANEL : 0,
+        src,
+        layout,
+        signal: opening.signal,
+        settings,
+        place,
+        covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
         hashName: () => this.#hashName(),
         failed: (failure, from) => this.#lose(failure, from),
@@ -292,7 +306,13 @@ export class CornicheMap extends HTMLElement {
     this.#lost = this.#lost.filter((at) => now - at < REOPEN_WITHIN_MS);
     if (failure.kind !== "device-lost") return this.#fail(failure);
     if (this.#lost.length >= REOPEN_TIMES) {
-      return this.#fail(new Failure("device-lost", "The graphics device was lost again and again.", "Close other programs and pages that use the graphics card, and try again."));
+      return this.#fail(
+        new Failure(
+          "device-lost",
+          "The graphics device was lost again and again.",
+          "Close other programs and pages that use the graphics card, and try again.",
+        ),
+      );
     }
     const last = this.#lost.at(-1) ?? -Infinity;
     this.#lost.push(now);
@@ -303,7 +323,14 @@ export class CornicheMap extends HTMLElement {
   #fail(/** @type {import("./engine.js").Failure} */ failure) {
     const { src } = this;
     this.#close();
-    this.#layout.fail(makeFailure(failure, { src, still: this.getAttribute("still"), credit: this.getAttribute("credit") ?? USUAL_CREDIT, again: () => this.#open() }));
+    this.#layout.fail(
+      makeFailure(failure, {
+        src,
+        still: this.getAttribute("still"),
+        credit: this.getAttribute("credit") ?? USUAL_CREDIT,
+        again: () => this.#open(),
+      }),
+    );
     const { kind, message, advice } = failure;
     this.#emit("error", { kind, message, advice });
   }
@@ -374,7 +401,11 @@ for (const [attribute, property, setting] of SETTINGS) {
   Object.defineProperty(CornicheMap.prototype, property, {
     configurable: true,
     enumerable: true,
-    get() { return this.settings[setting]; },
-    set(value) { this.setAttribute(attribute, value === false ? "off" : value === true ? "on" : value === null ? "style" : String(value)); },
+    get() {
+      return this.settings[setting];
+    },
+    set(value) {
+      this.setAttribute(attribute, value === false ? "off" : value === true ? "on" : value === null ? "style" : String(value));
+    },
   });
 }

@@ -20,8 +20,10 @@ const plain = (/** @type {unknown} */ text) => String(text ?? "").replace(/JsVal
 /** Whatever was thrown, as a failure. */
 export function failureOf(/** @type {any} */ error) {
   if (error instanceof Failure) return error;
-  if (error && typeof error === "object" && typeof error.kind === "string") return new Failure(error.kind, plain(error.message), String(error.advice ?? ""));
-  if (error instanceof WebAssembly.RuntimeError) return new Failure("other", `The renderer stopped: ${error.message}`, "Load the page again. If it happens again, please report it.");
+  if (error && typeof error === "object" && typeof error.kind === "string")
+    return new Failure(error.kind, plain(error.message), String(error.advice ?? ""));
+  if (error instanceof WebAssembly.RuntimeError)
+    return new Failure("other", `The renderer stopped: ${error.message}`, "Load the page again. If it happens again, please report it.");
   return new Failure("other", error instanceof Error ? error.message : String(error));
 }
 
@@ -32,9 +34,17 @@ let engine = null;
 function checkBrowser() {
   if ("gpu" in navigator && navigator.gpu) return;
   if (!window.isSecureContext) {
-    throw new Failure("no-webgpu", `Browsers offer WebGPU only to pages with a secure address; this one is ${location.origin}.`, "Open the page with https://, or from localhost.");
+    throw new Failure(
+      "no-webgpu",
+      `Browsers offer WebGPU only to pages with a secure address; this one is ${location.origin}.`,
+      "Open the page with https://, or from localhost.",
+    );
   }
-  throw new Failure("no-webgpu", "This browser does not offer WebGPU, with which the map is drawn.", "Use a current Chrome, Edge, Firefox or Safari. On Linux, WebGPU may have to be switched on in the browser's settings.");
+  throw new Failure(
+    "no-webgpu",
+    "This browser does not offer WebGPU, with which the map is drawn.",
+    "Use a current Chrome, Edge, Firefox or Safari. On Linux, WebGPU may have to be switched on in the browser's settings.",
+  );
 }
 
 async function fetchModule() {
@@ -44,29 +54,52 @@ async function fetchModule() {
   try {
     answer = await fetch(address);
   } catch (error) {
-    throw new Failure("files", `${name} cannot be fetched: ${/** @type {Error} */ (error).message}.`, "Check the network, and whether the page's security policy (connect-src) allows it.");
+    throw new Failure(
+      "files",
+      `${name} cannot be fetched: ${/** @type {Error} */ (error).message}.`,
+      "Check the network, and whether the page's security policy (connect-src) allows it.",
+    );
   }
-  if (!answer.ok) throw new Failure("files", `The server answers ${answer.status} for ${name}.`, "Put all files of the package corniche-map into one folder of the server.");
+  if (!answer.ok)
+    throw new Failure(
+      "files",
+      `The server answers ${answer.status} for ${name}.`,
+      "Put all files of the package corniche-map into one folder of the server.",
+    );
   // A server that does not know the type of the file still has its bytes; they are only compiled later.
   const isTyped = (answer.headers.get("Content-Type") ?? "").startsWith("application/wasm");
   const bytes = isTyped ? null : await answer.arrayBuffer();
   if (bytes && new DataView(bytes).byteLength < 8) throw new Failure("files", `${name} is empty.`, "Copy the file to the server again.");
   if (bytes && new DataView(bytes).getUint32(0) !== 0x00_61_73_6d) {
-    throw new Failure("files", `The server sends something else for ${name}, of type ${answer.headers.get("Content-Type") ?? "unknown"}.`, "Put all files of the package corniche-map into one folder of the server.");
+    throw new Failure(
+      "files",
+      `The server sends something else for ${name}, of type ${answer.headers.get("Content-Type") ?? "unknown"}.`,
+      "Put all files of the package corniche-map into one folder of the server.",
+    );
   }
   try {
     return await (bytes ? WebAssembly.compile(bytes) : WebAssembly.compileStreaming(answer));
   } catch (error) {
     const text = String(/** @type {Error} */ (error).message);
     const isPolicy = /Content Security Policy|unsafe-eval/i.test(text);
-    throw new Failure("files", isPolicy ? "The page's security policy forbids WebAssembly." : `${name} cannot be compiled: ${text}.`, isPolicy ? "Add 'wasm-unsafe-eval' to script-src of the Content-Security-Policy." : "Copy the file to the server again: it may be cut off.");
+    throw new Failure(
+      "files",
+      isPolicy ? "The page's security policy forbids WebAssembly." : `${name} cannot be compiled: ${text}.`,
+      isPolicy
+        ? "Add 'wasm-unsafe-eval' to script-src of the Content-Security-Policy."
+        : "Copy the file to the server again: it may be cut off.",
+    );
   }
 }
 
 async function load() {
   checkBrowser();
   const script = import("./corniche_web.js").catch((error) => {
-    throw new Failure("files", `corniche_web.js cannot be loaded: ${error.message}.`, "Put all files of the package corniche-map into one folder of the server.");
+    throw new Failure(
+      "files",
+      `corniche_web.js cannot be loaded: ${error.message}.`,
+      "Put all files of the package corniche-map into one folder of the server.",
+    );
   });
   const [module, glue] = await Promise.all([fetchModule(), script]);
   await glue.default({ module_or_path: module });
@@ -76,6 +109,8 @@ async function load() {
 /** The renderer, ready to open views. A failure is not kept: the next call tries again. */
 export function loadEngine() {
   engine ??= load();
-  engine.catch(() => { engine = null; });
+  engine.catch(() => {
+    engine = null;
+  });
   return engine;
 }

@@ -45,7 +45,9 @@ function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} *
   const [first, ...rest] = addresses;
   if (!first) return;
   image.onerror = () => tryStills(image, rest);
-  image.onload = () => { image.hidden = false; };
+  image.onload = () => {
+    image.hidden = false;
+  };
   image.src = first;
 }
 
@@ -57,11 +59,14 @@ export function makeFailure(failure, about) {
   const image = make("img", { class: "still", alt: "A picture of the map", hidden: true });
   if (WITH_PICTURE.has(failure.kind)) tryStills(image, stillsOf(about.still, about.src));
   const credit = make("p", { class: "still-credit pill" }, about.credit);
-  const card = make("div", { class: "card failure", role: "alert" },
+  const card = make(
+    "div",
+    { class: "card failure", role: "alert" },
     make("h2", {}, icons.warning(), HEADINGS[failure.kind] ?? HEADINGS.other),
     make("p", {}, sentence(failure.message)),
     failure.advice ? make("p", { class: "advice" }, sentence(failure.advice)) : null,
     about.src && !about.src.startsWith("blob:") ? make("p", { class: "address" }, about.src) : null,
-    make("button", { type: "button", class: "plain", onclick: about.again }, "Try again"));
+    make("button", { type: "button", class: "plain", onclick: about.again }, "Try again"),
+  );
   return make("div", { class: "failed", "data-kind": failure.kind }, image, credit, card);
 }

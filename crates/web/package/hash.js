@@ -29,7 +29,13 @@ export function placeOf(text) {
 export function textOf(place) {
   const rounded = (/** @type {number | undefined} */ value, /** @type {number} */ digits) => +(value ?? 0).toFixed(digits);
   const metres = (place.above ? place.pixel_m : place.distance) ?? 0;
-  const parts = [rounded(place.lon, 6), rounded(place.lat, 6), rounded(metres, metres < 100 ? 4 : 0), rounded(place.heading, 1), rounded(place.pitch, 1)];
+  const parts = [
+    rounded(place.lon, 6),
+    rounded(place.lat, 6),
+    rounded(metres, metres < 100 ? 4 : 0),
+    rounded(place.heading, 1),
+    rounded(place.pitch, 1),
+  ];
   return parts.join(",") + (place.above ? ",above" : "");
 }
 

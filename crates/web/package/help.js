@@ -4,11 +4,24 @@ import { icons } from "./icons.js";
 import { HELP } from "./keys.js";
 
 export function makeHelp() {
-  const dialog = make("dialog", { class: "help card", "aria-labelledby": "help-title" },
-    make("header", {}, make("h2", { id: "help-title" }, "Mouse, touch and keys"),
-      make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => dialog.close() }, icons.close())),
-    make("dl", { tabIndex: 0, "aria-label": "Mouse, touch and keys" }, ...HELP.flatMap(([what, does]) => [make("dt", {}, what), make("dd", {}, does)])));
+  const dialog = make(
+    "dialog",
+    { class: "help card", "aria-labelledby": "help-title" },
+    make(
+      "header",
+      {},
+      make("h2", { id: "help-title" }, "Mouse, touch and keys"),
+      make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => dialog.close() }, icons.close()),
+    ),
+    make(
+      "dl",
+      { tabIndex: 0, "aria-label": "Mouse, touch and keys" },
+      ...HELP.flatMap(([what, does]) => [make("dt", {}, what), make("dd", {}, does)]),
+    ),
+  );
   // A click beside the dialog closes it.
-  dialog.addEventListener("click", (/** @type {MouseEvent} */ event) => { if (event.target === dialog) dialog.close(); });
+  dialog.addEventListener("click", (/** @type {MouseEvent} */ event) => {
+    if (event.target === dialog) dialog.close();
+  });
   return dialog;
 }

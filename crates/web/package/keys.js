@@ -1,7 +1,20 @@
 // Keys on the map. Letters of commands go by what is printed on the key, keys to fly by where they are.
 
 /** Commands of the view and of the page, by `KeyboardEvent.key`. */
-export const COMMANDS = { f: "toggle-fly", t: "toggle-above", n: "north-up", r: "reset", Home: "reset", c: "record", v: "link", p: "picture", m: "panel", "?": "help", Enter: "pick", Escape: "close" };
+export const COMMANDS = {
+  f: "toggle-fly",
+  t: "toggle-above",
+  n: "north-up",
+  r: "reset",
+  Home: "reset",
+  c: "record",
+  v: "link",
+  p: "picture",
+  m: "panel",
+  "?": "help",
+  Enter: "pick",
+  Escape: "close",
+};
 
 /** What the dialog of keys says. */
 export const HELP = [
@@ -60,9 +73,13 @@ export function watchKeys(canvas, to) {
 
   canvas.addEventListener("keydown", (event) => key(event, true), { signal });
   canvas.addEventListener("keyup", (event) => key(event, false), { signal });
-  canvas.addEventListener("blur", () => {
-    to.view()?.let_go(now());
-    to.wake();
-  }, { signal });
+  canvas.addEventListener(
+    "blur",
+    () => {
+      to.view()?.let_go(now());
+      to.wake();
+    },
+    { signal },
+  );
   return () => end.abort();
 }

@@ -9,7 +9,8 @@ import { makePlaceCard } from "./place_card.js";
 import { makeScaleBar } from "./scalebar.js";
 import { makeStatus } from "./status.js";
 
-const CANVAS_HELP = "Arrow keys move the map, Shift and arrow keys turn and tilt it, plus and minus zoom, Enter says what road is in the middle, question mark lists all keys.";
+const CANVAS_HELP =
+  "Arrow keys move the map, Shift and arrow keys turn and tilt it, plus and minus zoom, Enter says what road is in the middle, question mark lists all keys.";
 
 /** A text of credits, with the address of OpenStreetMap's copyright page as a link. Nothing is fetched for it. */
 function creditNodes(/** @type {string[]} */ credits) {
@@ -40,14 +41,46 @@ export function makeLayout(shadow, map) {
   const dialog = makeHelp();
   const credit = make("div", { class: "credit pill", part: "credit", hidden: true });
   const bar = make("div");
-  const progress = make("div", { class: "progress", role: "progressbar", "aria-label": "Loading the map", "aria-valuemin": "0", "aria-valuemax": "100", "aria-hidden": "true" }, bar);
+  const progress = make(
+    "div",
+    {
+      class: "progress",
+      role: "progressbar",
+      "aria-label": "Loading the map",
+      "aria-valuemin": "0",
+      "aria-valuemax": "100",
+      "aria-hidden": "true",
+    },
+    bar,
+  );
   const opening = make("p", { class: "opening-text", hidden: true }, "Opening the map");
-  const panelButton = make("button", { type: "button", title: "Panel (M)", "aria-label": "Panel", "aria-expanded": "false", onclick: () => map.command("panel") }, icons.layers());
-  const zoom = make("div", { class: "group card" },
+  const panelButton = make(
+    "button",
+    { type: "button", title: "Panel (M)", "aria-label": "Panel", "aria-expanded": "false", onclick: () => map.command("panel") },
+    icons.layers(),
+  );
+  const zoom = make(
+    "div",
+    { class: "group card" },
     make("button", { type: "button", title: "Zoom in (+)", "aria-label": "Zoom in", onclick: () => map.zoom(1) }, icons.plus()),
-    make("button", { type: "button", title: "Zoom out (−)", "aria-label": "Zoom out", onclick: () => map.zoom(-1) }, icons.minus()));
-  const tools = make("div", { class: "group card" }, panelButton,
-    make("button", { type: "button", class: "help-button", title: "Mouse, touch and keys (?)", "aria-label": "Mouse, touch and keys", onclick: () => map.command("help") }, icons.help()));
+    make("button", { type: "button", title: "Zoom out (−)", "aria-label": "Zoom out", onclick: () => map.zoom(-1) }, icons.minus()),
+  );
+  const tools = make(
+    "div",
+    { class: "group card" },
+    panelButton,
+    make(
+      "button",
+      {
+        type: "button",
+        class: "help-button",
+        title: "Mouse, touch and keys (?)",
+        "aria-label": "Mouse, touch and keys",
+        onclick: () => map.command("help"),
+      },
+      icons.help(),
+    ),
+  );
   const compassGroup = make("div", { class: "group card" }, compass.element);
   const stack = make("div", { class: "stack" }, tools, compassGroup, zoom);
   const middle = make("div", { class: "middle" }, notices.element, place.element);
@@ -66,7 +99,15 @@ export function makeLayout(shadow, map) {
   }
 
   return {
-    compass, scale, status, notices, place, divider, dialog, over, panelButton,
+    compass,
+    scale,
+    status,
+    notices,
+    place,
+    divider,
+    dialog,
+    over,
+    panelButton,
     canvas: () => canvas,
     renewCanvas() {
       const hadFocus = shadow.activeElement === canvas;

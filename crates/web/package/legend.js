@@ -18,11 +18,24 @@ export function makeLegend(set) {
     if (now !== labels) {
       labels = now;
       swatches = classes.map(() => make("span", { class: "swatch" }));
-      inputs = classes.map(() => make("input", { type: "checkbox", onchange: () => set({ classes: inputs.map((input) => input.checked) }) }));
-      element.replaceChildren(...classes.map((one, k) => make("li", {}, make("label", { class: "check" }, inputs[k], swatches[k], make("span", {}, one.label)))));
+      inputs = classes.map(() =>
+        make("input", { type: "checkbox", onchange: () => set({ classes: inputs.map((input) => input.checked) }) }),
+      );
+      element.replaceChildren(
+        ...classes.map((one, k) => make("li", {}, make("label", { class: "check" }, inputs[k], swatches[k], make("span", {}, one.label)))),
+      );
     }
-    classes.forEach((one, k) => { swatches[k].style.backgroundColor = one.color; });
+    classes.forEach((one, k) => {
+      swatches[k].style.backgroundColor = one.color;
+    });
   }
 
-  return { element, list, show: (settings) => inputs.forEach((input, k) => { input.checked = settings.classes[k] !== false; }) };
+  return {
+    element,
+    list,
+    show: (settings) =>
+      inputs.forEach((input, k) => {
+        input.checked = settings.classes[k] !== false;
+      }),
+  };
 }

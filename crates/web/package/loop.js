@@ -26,7 +26,9 @@ export function makeLoop(element, draw) {
     if (isSeen) wake();
   });
   // The browser itself holds back frames of a hidden page; the page must only be woken when it is shown again.
-  const shown = () => { if (!document.hidden) wake(); };
+  const shown = () => {
+    if (!document.hidden) wake();
+  };
 
   function stop() {
     isOver = true;

@@ -17,9 +17,12 @@ export function makeNotices() {
       const same = /** @type {any} */ ([...element.children].find((one) => /** @type {any} */ (one).dataset.key === key));
       const times = same ? Number(same.dataset.times) + 1 : 1;
       same?.remove();
-      const notice = make("div", { class: `notice card ${kind}`, "data-key": key, "data-times": String(times) },
+      const notice = make(
+        "div",
+        { class: `notice card ${kind}`, "data-key": key, "data-times": String(times) },
         make("span", {}, sentence(text), times > 1 ? ` (${times} times)` : null),
-        make("button", { type: "button", class: "icon", "aria-label": "Dismiss", onclick: () => notice.remove() }, icons.close()));
+        make("button", { type: "button", class: "icon", "aria-label": "Dismiss", onclick: () => notice.remove() }, icons.close()),
+      );
       element.append(notice);
       if (kind === "tell") setTimeout(() => notice.remove(), TOLD_MS);
       while (element.children.length > MOST) element.firstChild?.remove();

@@ -9,7 +9,9 @@ const times = (/** @type {number} */ value) => `× ${value.toFixed(2)}`;
 const mega = (/** @type {number} */ bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 /** Widths and heights are set in steps of equal factors. */
 const power = (/** @type {(settings: any) => number} */ of, /** @type {(value: number) => unknown} */ change) => ({
-  min: -3, max: 3, step: 0.1,
+  min: -3,
+  max: 3,
+  step: 0.1,
   text: (/** @type {number} */ value) => times(2 ** value),
   of: (/** @type {any} */ settings) => Math.log2(of(settings)),
   change: (/** @type {number} */ value) => change(+(2 ** value).toFixed(3)),
@@ -18,16 +20,30 @@ const power = (/** @type {(settings: any) => number} */ of, /** @type {(value: n
 /** A field for a place, which says below itself what is wrong with what was typed. */
 function makeGoTo(/** @type {(text: string) => string} */ goTo) {
   const wrong = make("p", { class: "wrong", id: "go-to-wrong", role: "status" });
-  const input = make("input", { type: "text", placeholder: "lon, lat", autocomplete: "off", spellcheck: false, inputMode: "text", "aria-label": "Go to: longitude, latitude in degrees", "aria-describedby": "go-to-wrong" });
-  return make("form", {
-    class: "go-to",
-    onsubmit: (/** @type {Event} */ event) => {
-      event.preventDefault();
-      const why = goTo(input.value);
-      setText(wrong, why);
-      input.setAttribute("aria-invalid", String(why !== ""));
+  const input = make("input", {
+    type: "text",
+    placeholder: "lon, lat",
+    autocomplete: "off",
+    spellcheck: false,
+    inputMode: "text",
+    "aria-label": "Go to: longitude, latitude in degrees",
+    "aria-describedby": "go-to-wrong",
+  });
+  return make(
+    "form",
+    {
+      class: "go-to",
+      onsubmit: (/** @type {Event} */ event) => {
+        event.preventDefault();
+        const why = goTo(input.value);
+        setText(wrong, why);
+        input.setAttribute("aria-invalid", String(why !== ""));
+      },
     },
-  }, input, make("button", { type: "submit", class: "plain" }, "Go to"), wrong);
+    input,
+    make("button", { type: "submit", class: "plain" }, "Go to"),
+    wrong,
+  );
 }
 
 /** What the view needs at the moment, for those who want to know. */
@@ -71,38 +87,143 @@ export function makePanel(map, about, close) {
   record.classList.add("record");
   const fly = action(icons.fly(), "Fly", () => map.command("toggle-fly"));
   const above = action(icons.above(), "From above", () => map.command("toggle-above"));
-  const widths = about.classes.map((one, k) => use(slider(set, "widths", one.label,
-    power((settings) => settings.widths[k] ?? 1, (value) => (last?.widths ?? []).map((/** @type {number} */ width, /** @type {number} */ other) => (other === k ? value : width))))));
+  const widths = about.classes.map((one, k) =>
+    use(
+      slider(
+        set,
+        "widths",
+        one.label,
+        power(
+          (settings) => settings.widths[k] ?? 1,
+          (value) => (last?.widths ?? []).map((/** @type {number} */ width, /** @type {number} */ other) => (other === k ? value : width)),
+        ),
+      ),
+    ),
+  );
   /** @type {any} */
   let last = null;
 
-  const element = make("section", { class: "panel card", "aria-label": "Map settings" },
-    make("header", {}, make("h2", {}, about.name), make("button", { type: "button", class: "icon", title: "Hide the panel (M)", "aria-label": "Hide the panel", onclick: close }, icons.close())),
-    make("div", { class: "scroll" },
-      section("Roads", true, use(legend),
-        use(choice(set, "roads", "Drawn as", [["geo", "GEO"], ["sv", "SV"], ["none", "None"]])),
-        use(choice(set, "compare", "Compare GEO and SV", [["off", "Off"], ["split", "Split"], ["difference", "Difference"]]))),
-      section("Map", true,
-        use(select(set, "style", "Style", about.styles.map((style) => [style, style]))),
+  const element = make(
+    "section",
+    { class: "panel card", "aria-label": "Map settings" },
+    make(
+      "header",
+      {},
+      make("h2", {}, about.name),
+      make(
+        "button",
+        { type: "button", class: "icon", title: "Hide the panel (M)", "aria-label": "Hide the panel", onclick: close },
+        icons.close(),
+      ),
+    ),
+    make(
+      "div",
+      { class: "scroll" },
+      section(
+        "Roads",
+        true,
+        use(legend),
+        use(
+          choice(set, "roads", "Drawn as", [
+            ["geo", "GEO"],
+            ["sv", "SV"],
+            ["none", "None"],
+          ]),
+        ),
+        use(
+          choice(set, "compare", "Compare GEO and SV", [
+            ["off", "Off"],
+            ["split", "Split"],
+            ["difference", "Difference"],
+          ]),
+        ),
+      ),
+      section(
+        "Map",
+        true,
+        use(
+          select(
+            set,
+            "style",
+            "Style",
+            about.styles.map((style) => [style, style]),
+          ),
+        ),
         use(slider(set, "exaggeration", "Heights", { min: 0, max: 4, step: 0.1, text: times })),
-        about.has.photo ? use(slider(set, "photo", "Photo", { min: -0.05, max: 1, step: 0.05, text: (value) => (value < 0 ? "as the style" : percent(value)), of: (settings) => settings.photo ?? -0.05, change: (value) => (value < 0 ? null : value) })) : null,
+        about.has.photo
+          ? use(
+              slider(set, "photo", "Photo", {
+                min: -0.05,
+                max: 1,
+                step: 0.05,
+                text: (value) => (value < 0 ? "as the style" : percent(value)),
+                of: (settings) => settings.photo ?? -0.05,
+                change: (value) => (value < 0 ? null : value),
+              }),
+            )
+          : null,
         about.has.areas ? use(toggle(set, "areas", "Areas")) : null,
-        about.has.boundaries ? use(toggle(set, "boundaries", "Boundaries")) : null),
-      section("View", true, makeGoTo(map.goTo),
-        make("div", { class: "actions" }, fly, above,
+        about.has.boundaries ? use(toggle(set, "boundaries", "Boundaries")) : null,
+      ),
+      section(
+        "View",
+        true,
+        makeGoTo(map.goTo),
+        make(
+          "div",
+          { class: "actions" },
+          fly,
+          above,
           action(icons.home(), "First view", () => map.command("reset")),
           map.hasLink ? action(icons.link(), "Copy link", () => map.command("link")) : null,
           action(icons.picture(), "Save picture", () => map.command("picture")),
           record,
-          action(icons.play(), "Play flight", () => map.command("play")))),
-      section("Advanced", false,
-        use(select(set, "outline", "Outlines", [["style", "As the style"], ["none", "None"], ["3", "3 × 3"], ["5", "5 × 5"]])),
-        use(slider(set, "error_px", "Ground error", { min: -1, max: 4, step: 0.5, text: (value) => `${+(2 ** value).toFixed(1)} px`, of: (settings) => Math.log2(settings.error_px), change: (value) => 2 ** value })),
-        use(select(set, "samples", "Samples", [["1", "1 × 1"], ["2", "2 × 2"], ["3", "3 × 3"], ["4", "4 × 4"]], Number)),
+          action(icons.play(), "Play flight", () => map.command("play")),
+        ),
+      ),
+      section(
+        "Advanced",
+        false,
+        use(
+          select(set, "outline", "Outlines", [
+            ["style", "As the style"],
+            ["none", "None"],
+            ["3", "3 × 3"],
+            ["5", "5 × 5"],
+          ]),
+        ),
+        use(
+          slider(set, "error_px", "Ground error", {
+            min: -1,
+            max: 4,
+            step: 0.5,
+            text: (value) => `${+(2 ** value).toFixed(1)} px`,
+            of: (settings) => Math.log2(settings.error_px),
+            change: (value) => 2 ** value,
+          }),
+        ),
+        use(
+          select(
+            set,
+            "samples",
+            "Samples",
+            [
+              ["1", "1 × 1"],
+              ["2", "2 × 2"],
+              ["3", "3 × 3"],
+              ["4", "4 × 4"],
+            ],
+            Number,
+          ),
+        ),
         use(toggle(set, "wireframe", "Edges of triangles")),
         use(toggle(set, "inertia", "Inertia")),
-        widths.length > 0 ? make("h3", {}, "Widths of roads") : null, ...widths),
-      section("Figures", false, figures.element)));
+        widths.length > 0 ? make("h3", {}, "Widths of roads") : null,
+        ...widths,
+      ),
+      section("Figures", false, figures.element),
+    ),
+  );
 
   return {
     element,

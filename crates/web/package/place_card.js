@@ -6,9 +6,17 @@ import { coordinatesText } from "./status.js";
 export function makePlaceCard() {
   const body = make("div", { class: "scroll", tabIndex: 0, "aria-label": "Attributes" });
   const title = make("h2", {});
-  const element = make("section", { class: "place-card card", hidden: true, "aria-label": "Place", "aria-live": "polite" },
-    make("header", {}, title, make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => hide() }, icons.close())),
-    body);
+  const element = make(
+    "section",
+    { class: "place-card card", hidden: true, "aria-label": "Place", "aria-live": "polite" },
+    make(
+      "header",
+      {},
+      title,
+      make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => hide() }, icons.close()),
+    ),
+    body,
+  );
 
   function hide() {
     const wasShown = !element.hidden;

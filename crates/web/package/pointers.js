@@ -49,9 +49,15 @@ export function watchPointers(canvas, to) {
   }
 
   const perPoint = () => canvas.width / canvas.getBoundingClientRect().width || 1;
-  const far = (/** @type {any} */ a, /** @type {any} */ b, /** @type {number} */ points) => Math.hypot(a.x - b.x, a.y - b.y) > points * perPoint();
+  const far = (/** @type {any} */ a, /** @type {any} */ b, /** @type {number} */ points) =>
+    Math.hypot(a.x - b.x, a.y - b.y) > points * perPoint();
 
-  function press(/** @type {{ x: number, y: number }} */ place, /** @type {number} */ button, /** @type {PointerEvent} */ event, finger = false) {
+  function press(
+    /** @type {{ x: number, y: number }} */ place,
+    /** @type {number} */ button,
+    /** @type {PointerEvent} */ event,
+    finger = false,
+  ) {
     held = { ...place, button, isStill: true, isLong: false, finger };
     to.view()?.press(button, place.x, place.y, event.shiftKey, event.ctrlKey, now());
     clearTimeout(longPress);
@@ -152,26 +158,34 @@ export function watchPointers(canvas, to) {
     press(at(event), event.button, event);
   });
   // The middle button would start the browser's own scrolling.
-  on("mousedown", (event) => { if (event.button === 1) event.preventDefault(); });
+  on("mousedown", (event) => {
+    if (event.button === 1) event.preventDefault();
+  });
   on("pointermove", (event) => (event.pointerType === "touch" ? fingerMove(event) : move(at(event))));
   on("pointerup", (event) => {
     if (event.pointerType === "touch") return fingerUp(event);
     if (held?.button === event.button || event.buttons === 0) release();
   });
   on("pointercancel", (event) => (event.pointerType === "touch" ? fingerUp(event, false) : release(false)));
-  on("lostpointercapture", (event) => { if (event.pointerType !== "touch") release(false); });
+  on("lostpointercapture", (event) => {
+    if (event.pointerType !== "touch") release(false);
+  });
   on("pointerleave", (event) => {
     if (event.pointerType === "touch" || held) return;
     to.view()?.leave();
     to.wake();
   });
   on("contextmenu", (event) => event.preventDefault());
-  on("wheel", (event) => {
-    event.preventDefault();
-    const place = at(event);
-    to.view()?.wheel(notchesOf(event), place.x, place.y, now());
-    to.wake();
-  }, { passive: false });
+  on(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const place = at(event);
+      to.view()?.wheel(notchesOf(event), place.x, place.y, now());
+      to.wake();
+    },
+    { passive: false },
+  );
 
   return {
     /** Whether a button or a finger holds the map. */

@@ -13,7 +13,7 @@ const MOVE_ENDS_MS = 200;
 /** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
 function nameOf(/** @type {string} */ src) {
   const { hash, pathname, protocol } = new URL(src);
-  const name = protocol === "blob:" ? hash.slice(1) : pathname.split("/").pop() ?? "";
+  const name = protocol === "blob:" ? hash.slice(1) : (pathname.split("/").pop() ?? "");
   try {
     return decodeURIComponent(name).replace(/\.pmtiles$/, "") || "Map";
   } catch {
@@ -36,8 +36,8 @@ function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSign
 /**
  * Opens a package.
  *
- * @param {{ src: string, settings: Record<string, unknown>, place: any, covered: number, workers: number | null, layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal,
- *   hashName: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
+ * @param {{ src: string, settings: Record<string, unknown>, place: any, covered: number, workers: number | null,
+ *   layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal, hashName: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
  *   showCard: () => boolean, command: (name: string) => boolean }} from
  */
 export async function openSession(from) {
@@ -70,23 +70,50 @@ export async function openSession(from) {
     const failure = failureOf(error);
     from.failed(failure, session);
   };
-  const noWorkers = (/** @type {any} */ error) => failed(new Failure("files", `A worker cannot decode tiles: ${error.message}.`, "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it."));
+  const noWorkers = (/** @type {any} */ error) =>
+    failed(
+      new Failure(
+        "files",
+        `A worker cannot decode tiles: ${error.message}.`,
+        "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it.",
+      ),
+    );
   let decoders;
   try {
     decoders = startDecoders(module, from.workers ?? usualCount(), glue.decoded, noWorkers);
   } catch (error) {
-    throw new Failure("files", `Workers cannot be started: ${/** @type {Error} */ (error).message}.`, "Check the page's security policy (worker-src).");
+    throw new Failure(
+      "files",
+      `Workers cannot be started: ${/** @type {Error} */ (error).message}.`,
+      "Check the page's security policy (worker-src).",
+    );
   }
   ends.push(decoders.end);
   const host = { wake: () => loop?.wake(), post: decoders.post, workers: decoders.count };
   // What workers had under way when they were ended is told as failed, or it would be waited for.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
-  const options = { settings: from.settings, view: from.place ?? undefined, size_px: [width, height], pixels_per_point: ratio, covered_px: Math.round(from.covered * ratio) };
+  const options = {
+    settings: from.settings,
+    view: from.place ?? undefined,
+    size_px: [width, height],
+    pixels_per_point: ratio,
+    covered_px: Math.round(from.covered * ratio),
+  };
   const opened = glue.MapView.open(canvas, from.src, JSON.stringify(options), host);
   // Where a worker fails first, the view is still let go once it is there.
-  opened.then((/** @type {any} */ one) => { if (isOver) one.free(); }, () => {});
+  opened.then(
+    (/** @type {any} */ one) => {
+      if (isOver) one.free();
+    },
+    () => {},
+  );
   try {
-    view = await Promise.race([opened, new Promise((_, reject) => { stopOpening = reject; })]);
+    view = await Promise.race([
+      opened,
+      new Promise((_, reject) => {
+        stopOpening = reject;
+      }),
+    ]);
   } catch (error) {
     end();
     throw error;
@@ -139,7 +166,9 @@ export async function openSession(from) {
   function completed(/** @type {any} */ target) {
     const { distance, heading, pitch, above, pixel_m } = report?.view ?? {};
     const isAbove = target.above ?? (above && target.distance === undefined && target.pitch === undefined);
-    return isAbove ? { heading, pixel_m, ...target, above: true } : { distance, heading, pitch, ...target, above: undefined, pixel_m: undefined };
+    return isAbove
+      ? { heading, pixel_m, ...target, above: true }
+      : { distance, heading, pitch, ...target, above: undefined, pixel_m: undefined };
   }
 
   function goTo(/** @type {string} */ text) {
@@ -224,7 +253,9 @@ export async function openSession(from) {
     else layout.place.hide();
   }
 
-  const panel = makePanel({ set: setByHand, command: from.command, goTo, hasLink: from.hashName() !== null }, about, () => from.command("panel"));
+  const panel = makePanel({ set: setByHand, command: from.command, goTo, hasLink: from.hashName() !== null }, about, () =>
+    from.command("panel"),
+  );
   layout.over.prepend(panel.element);
   ends.push(() => panel.element.remove());
   const wake = () => loop.wake();
@@ -238,18 +269,30 @@ export async function openSession(from) {
   ends.push(watchKeys(canvas, { ...input, command: from.command }));
   loop = makeLoop(canvas, draw);
   ends.push(loop.stop, () => clearTimeout(moveTimer));
-  ends.push(watchSize(canvas, (...size) => {
-    view?.resize(...size);
-    // Drawn before the page is painted, or the map would flicker while it is resized.
-    loop.now();
-  }));
+  ends.push(
+    watchSize(canvas, (...size) => {
+      view?.resize(...size);
+      // Drawn before the page is painted, or the map would flicker while it is resized.
+      loop.now();
+    }),
+  );
   layout.credit(about.attribution);
   show();
 
   const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hashName: from.hashName });
   if (about.is_software) tell("tell", "No graphics card was found: the processor draws");
   const session = {
-    end, set, setByHand, command, lookAt, goTo, actions, panel: panel.element, tell, wake, draw: loop.now,
+    end,
+    set,
+    setByHand,
+    command,
+    lookAt,
+    goTo,
+    actions,
+    panel: panel.element,
+    tell,
+    wake,
+    draw: loop.now,
     about: () => about,
     settings: () => settings,
     report: () => report,
@@ -263,10 +306,11 @@ export async function openSession(from) {
       view.wheel(steps, canvas.width / 2, canvas.height / 2, now());
       wake();
     },
-    settled: () => new Promise((/** @type {(value?: any) => void} */ resolve) => {
-      waiting.push(resolve);
-      wake();
-    }),
+    settled: () =>
+      new Promise((/** @type {(value?: any) => void} */ resolve) => {
+        waiting.push(resolve);
+        wake();
+      }),
   };
   return session;
 }

@@ -13,9 +13,13 @@ export function watchSize(canvas, resized) {
     const ratio = window.devicePixelRatio || 1;
     const exact = entry.devicePixelContentBoxSize?.[0];
     const box = entry.contentBoxSize[0];
-    const [width, height] = [[exact?.inlineSize, box.inlineSize * ratio], [exact?.blockSize, box.blockSize * ratio]].map(([told, computed]) =>
+    const [width, height] = [
+      [exact?.inlineSize, box.inlineSize * ratio],
+      [exact?.blockSize, box.blockSize * ratio],
+    ].map(([told, computed]) =>
       // Where a browser pretends to have another screen, its exact sizes are still those of the true one.
-      told !== undefined && Math.abs(told - Number(computed)) < 2 ? told : Math.round(Number(computed)));
+      told !== undefined && Math.abs(told - Number(computed)) < 2 ? told : Math.round(Number(computed)),
+    );
     if (width > 0 && height > 0) resized(width, height, ratio);
   });
   try {

@@ -4,7 +4,8 @@ import { lengthText } from "./scalebar.js";
 
 /** Degrees with five decimals: about a metre. */
 export function coordinatesText(/** @type {{ lon: number, lat: number }} */ place) {
-  const side = (/** @type {number} */ value, /** @type {string} */ positive, /** @type {string} */ negative) => `${Math.abs(value).toFixed(5)}° ${value < 0 ? negative : positive}`;
+  const side = (/** @type {number} */ value, /** @type {string} */ positive, /** @type {string} */ negative) =>
+    `${Math.abs(value).toFixed(5)}° ${value < 0 ? negative : positive}`;
   return `${side(place.lat, "N", "S")}, ${side(place.lon, "E", "W")}`;
 }
 

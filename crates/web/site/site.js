@@ -25,15 +25,18 @@ async function begin() {
   if (src) return show(src, nameOf(src));
   const known = await packages();
   if (known.length === 1) return show(known[0].src, known[0].name);
-  said.textContent = known.length > 1 ? "Choose a map." : "No map lies beside this page. Name one in its address, ?src=ADDRESS, or open a file.";
-  document.getElementById("list").append(...known.map(({ name, src }) => {
-    const item = document.createElement("li");
-    const link = document.createElement("a");
-    link.href = `?src=${encodeURIComponent(src)}`;
-    link.textContent = name;
-    item.append(link);
-    return item;
-  }));
+  said.textContent =
+    known.length > 1 ? "Choose a map." : "No map lies beside this page. Name one in its address, ?src=ADDRESS, or open a file.";
+  document.getElementById("list").append(
+    ...known.map(({ name, src }) => {
+      const item = document.createElement("li");
+      const link = document.createElement("a");
+      link.href = `?src=${encodeURIComponent(src)}`;
+      link.textContent = name;
+      item.append(link);
+      return item;
+    }),
+  );
 }
 
 document.getElementById("file").addEventListener("change", (event) => showFile(event.target.files[0]));
@@ -43,7 +46,9 @@ addEventListener("dragover", (event) => {
   event.preventDefault();
   drop.hidden = false;
 });
-addEventListener("dragleave", (event) => { if (!event.relatedTarget) drop.hidden = true; });
+addEventListener("dragleave", (event) => {
+  if (!event.relatedTarget) drop.hidden = true;
+});
 addEventListener("drop", (event) => {
   drop.hidden = true;
   if (!hasFile(event)) return;
