@@ -12,8 +12,11 @@
 //!
 //! This crate never computes geometry, and has no controls of its own but what a page can say.
 
+#[cfg(any(test, target_arch = "wasm32"))]
 mod merging;
+#[cfg(any(test, target_arch = "wasm32"))]
 mod settings;
+#[cfg(any(test, target_arch = "wasm32"))]
 mod tables;
 
 #[cfg(target_arch = "wasm32")]

@@ -8,10 +8,6 @@ const MOST_MERGED_BYTES: u64 = 128 << 10;
 /// Groups of ranges to fetch at once, as places in `ranges` (first byte, length), by position. A range that is longer than what is merged
 /// is a group by itself.
 #[must_use]
-#[cfg_attr(
-    not(target_arch = "wasm32"),
-    allow(dead_code, reason = "only browsers ask for ranges; the tests run everywhere")
-)]
 pub(crate) fn merged(ranges: &[[u64; 2]]) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..ranges.len()).collect();
     order.sort_by_key(|place| ranges[*place]);

@@ -9,6 +9,9 @@ fn what_is_not_named_stays_and_what_is_named_changes() {
         Settings { roads: Roads::Sv, cell_px: None, photo: Some(0.5), ..usual.clone() }
     );
     assert_eq!(changed.road_options().method, RoadMethod::ShadowVolumes);
+    assert_eq!(changed.edges(), Wireframe::Hidden);
+    let edges = usual.changed_by(r#"{"wireframe": true}"#).unwrap();
+    assert_eq!(edges.edges(), Wireframe::Shown);
     let text = serde_json::to_string(&changed).unwrap();
     assert_eq!(usual.changed_by(&text).unwrap(), changed);
     let both = usual

@@ -5,7 +5,6 @@ use corniche_styles::Style;
 use serde::de::DeserializeOwned;
 
 const STYLES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/styles.bin"));
-#[cfg(any(test, target_arch = "wasm32"))]
 const LABELS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/labels.bin"));
 
 /// A table of named values; the build script wrote it.
@@ -25,7 +24,6 @@ pub(crate) fn style(name: &str) -> Option<Style> {
 }
 
 /// What the roads of each class are called, 0 first, with the FRC table of this name.
-#[cfg(any(test, target_arch = "wasm32"))]
 pub(crate) fn class_labels(frc_table: &str) -> [String; FunctionalRoadClass::COUNT] {
     let known = table::<Vec<String>>(LABELS).into_iter().find(|(name, _)| name == frc_table);
     let known = known.and_then(|(_, labels)| labels.try_into().ok());
