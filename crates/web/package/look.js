@@ -25,7 +25,7 @@ const css = `
 *, ::before, ::after { box-sizing: border-box; }
 [hidden] { display: none !important; }
 .root { position: absolute; inset: 0; container: map / size; background: var(--ground); }
-canvas { display: block; inline-size: 100%; block-size: 100%; touch-action: none; outline: none; -webkit-user-select: none; user-select: none; cursor: grab; }
+canvas { display: block; inline-size: 100%; block-size: 100%; touch-action: none; outline: none; -webkit-user-select: none; user-select: none; -webkit-touch-callout: none; cursor: grab; }
 canvas:active { cursor: grabbing; }
 canvas:focus-visible { outline: 3px solid var(--accent); outline-offset: -3px; }
 .cross { position: absolute; inset: 0; margin: auto; inline-size: 22px; block-size: 22px; pointer-events: none; display: none; fill: none; stroke: var(--accent); stroke-width: 2; filter: drop-shadow(0 0 1px #fff); }
