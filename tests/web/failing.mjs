@@ -72,7 +72,7 @@ export const FAILURES = [
   },
 ];
 
-/** Hosts that fail after the beginning of the package: the map is open by then, and stays. What the notice says. */
+/** Hosts that fail after the beginning of the package: the map is open by then, but has nothing to show. What is said. */
 export const LATER = [
   { name: "cut answers", says: /cut off/, src: "/as/truncated/pass.pmtiles" },
   { name: "closed connections", says: /breaks off|cannot be reached/, src: "/as/closing/pass.pmtiles" },

@@ -119,7 +119,7 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .status { display: flex; flex-wrap: wrap; gap: 0 0.9rem; font-variant-numeric: tabular-nums; white-space: pre-wrap; }
 .status:not(:has(span:not(:empty))) { display: none; }
 .status span:empty { display: none; }
-.credit { text-align: end; margin-inline-start: auto; max-inline-size: 60%; }
+.credit { text-align: end; margin-inline-start: auto; max-inline-size: 60%; text-wrap: balance; }
 .credit a { color: inherit; }
 .progress { position: absolute; inset: 0 0 auto; block-size: 3px; pointer-events: none; opacity: 1; transition: opacity 0.4s 0.2s; }
 .progress[aria-hidden="true"] { opacity: 0; }

@@ -1,7 +1,7 @@
 // The bar that shows a round length on the ground, valid in the middle of the map.
 import { make, setText } from "./dom.js";
 
-const WIDEST = 110;
+const WIDEST = 90;
 
 /** The largest of 1, 2 and 5 times a power of ten that is no larger. */
 export function roundLength(/** @type {number} */ most) {

@@ -132,6 +132,8 @@ export async function openSession(from) {
   /** @type {import("./corniche-map.js").FrameReport | null} */
   let report = null;
   let place = "";
+  let warning = "";
+  let hasSettled = false;
   let moveTimer = 0;
   const tell = (/** @type {"warn" | "tell"} */ kind, /** @type {string} */ text) => layout.notices.add(kind, text);
 
@@ -217,7 +219,16 @@ export async function openSession(from) {
     layout.status.show(now);
     layout.progress(now.progress);
     panel.report(now);
-    for (const { kind, text } of now.notices) tell(kind, text);
+    for (const { kind, text } of now.notices) {
+      tell(kind, text);
+      if (kind === "warn") warning = text;
+    }
+    // A map of which no tile came is no map: why is told in its place.
+    if (now.is_settled && !hasSettled && now.tiles.drawn === 0 && warning !== "") {
+      failed(new Failure("other", warning));
+      return null;
+    }
+    hasSettled ||= now.is_settled;
     watchMoves(now);
     if (now.is_settled) settle();
     return now.next;
