@@ -54,11 +54,18 @@ const FILES = {
   empty: () => Buffer.alloc(0),
 };
 
+const kept = new Map();
+function compressed(bytes) {
+  const key = `${bytes.length} ${bytes.subarray(0, 4096)}`;
+  if (!kept.has(key)) kept.set(key, zlib.brotliCompressSync(bytes));
+  return kept.get(key);
+}
+
 /**
  * Serves the files of `site`, packages of `packages` under /packages/, bad hosts under /as/HOW/NAME and bad files under /bad/HOW/NAME. Other pages may read all of it.
  */
 export async function startServer({ site, packages }) {
-  const state = { delay_ms: 0, bytes_per_ms: 0, requests: [], replaced: new Map(), policy: "" };
+  const state = { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], replaced: new Map(), policy: "" };
   let free = 0;
   let count = 0;
 
@@ -98,6 +105,11 @@ export async function startServer({ site, packages }) {
       code = 206;
       head["Content-Range"] = `bytes ${range[0]}-${range[1]}/${bytes.length}`;
     }
+    // As static hosts do it: files of the page, and never a package.
+    if (state.compresses && !match && !asked.startsWith("/packages/") && /\bbr\b/.test(request.headers["accept-encoding"] ?? "")) {
+      part = compressed(part);
+      head["Content-Encoding"] = "br";
+    }
     if (state.delay_ms > 0) await new Promise((done) => setTimeout(done, state.delay_ms));
     if (state.bytes_per_ms > 0) {
       const now = performance.now();
@@ -118,7 +130,7 @@ export async function startServer({ site, packages }) {
     state,
     /** As a host that is told to behave again. */
     behave() {
-      Object.assign(state, { delay_ms: 0, bytes_per_ms: 0, requests: [], policy: "" });
+      Object.assign(state, { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], policy: "" });
       state.replaced.clear();
     },
     close: () => server.close(),
