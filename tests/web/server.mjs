@@ -126,7 +126,9 @@ export async function startServer({ site, packages }) {
       code = 206;
       head["Content-Range"] = `bytes ${range[0]}-${range[1]}/${bytes.length}`;
     }
-    if (state.compresses && !way && code === 200 && /html|javascript|css|wasm/.test(type)) {
+    // As static hosts do it: files of the page, and never a package.
+    const takesBrotli = /\bbr\b/.test(request.headers["accept-encoding"] ?? "");
+    if (state.compresses && takesBrotli && !match && /html|javascript|css|wasm/.test(type)) {
       part = compressed(asked, bytes);
       head["Content-Encoding"] = "br";
     }

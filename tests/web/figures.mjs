@@ -1,0 +1,121 @@
+// Measures the page: the first picture over a slow network, and tasks of the main thread during a flight.
+//
+//   node figures.mjs SITE PACKAGES [NAME…]
+//
+// 20 Mbit/s and 50 ms for each answer, files of the page compressed as static hosts do it. The renderer is a program on the processor here, which takes most of
+// the time of a picture; so the time until a frame is handed to it is told, too.
+import path from "node:path";
+import { openPage, startChromium } from "./browser.mjs";
+import { startServer } from "./server.mjs";
+
+const [site, packages, ...named] = process.argv.slice(2);
+const names = named.length > 0 ? named : ["pass"];
+const browser = await startChromium();
+if (!browser) process.exit(77);
+const server = await startServer({ site: path.resolve(site), packages: path.resolve(packages) });
+const SLOW = { delay_ms: 50, bytes_per_ms: 2500, compresses: true };
+
+/** Notes, in the page, when frames begin and end, what they report, and messages of workers. */
+function watch() {
+  window.corniche_frames = [];
+  window.corniche_decoded = [];
+  const make = window.Worker;
+  window.Worker = class extends make {
+    constructor(...all) {
+      super(...all);
+      this.addEventListener("message", (event) => {
+        if (event.data?.tile) window.corniche_decoded.push([performance.now(), event.data.tile.byteLength]);
+      });
+    }
+  };
+  window.corniche_watch = (view) => {
+    const frame = view.prototype.frame;
+    view.prototype.frame = function (now) {
+      const begun = performance.now();
+      const text = frame.call(this, now);
+      const { tiles, is_settled, requests, bytes, triangles } = JSON.parse(text);
+      window.corniche_frames.push({ begun, took: performance.now() - begun, ...tiles, is_settled, requests, bytes, triangles });
+      return text;
+    };
+  };
+}
+
+const kB = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
+const ms = (time) => `${time.toFixed(0)} ms`;
+
+for (const name of names) {
+  server.behave();
+  Object.assign(server.state, SLOW);
+  const before = async (page) => page.addInitScript(watch);
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+  const page = await context.newPage();
+  await before(page);
+  // The module's class is wrapped as soon as the page has it.
+  await page.addInitScript(() => {
+    const timer = setInterval(async () => {
+      if (!document.querySelector("corniche-map")) return;
+      clearInterval(timer);
+      window.corniche_watch((await import("/corniche_web.js")).MapView);
+    }, 1);
+  });
+  await page.goto(`${server.origin}/?src=/packages/${name}.pmtiles`);
+  await page.waitForFunction(() => window.corniche_frames?.some((frame) => frame.is_settled), null, { timeout: 120_000 });
+  const frames = await page.evaluate(() => window.corniche_frames);
+  const first = frames.find((frame) => frame.drawn > 0);
+  const last = frames.find((frame) => frame.is_settled);
+  const decoded = await page.evaluate(() => window.corniche_decoded);
+  console.log(
+    `${name}: first coarse picture handed to the renderer after ${ms(first.begun + first.took)}, ${first.requests} requests and ${kB(first.bytes)} of the package; ` +
+      `whole picture after ${ms(last.begun + last.took)} (the processor draws), ${last.requests} requests, ${kB(last.bytes)}; ${decoded.length} tiles decoded`,
+  );
+  const files = server.state.requests.filter(({ path: asked }) => !asked.startsWith("/packages/")).length;
+  console.log(`${name}: ${files} files of the page, ${server.state.requests.length} requests in all until then`);
+  await context.close();
+
+  // A flight over the package, on a fast network.
+  server.behave();
+  const flight = await openPage(browser, server, `/?src=/packages/${name}.pmtiles`, { width: 640, height: 400, before: watch });
+  await flight.waitForFunction(() => document.querySelector("corniche-map")?.camera);
+  const told = await flight.evaluate(async () => {
+    const map = document.querySelector("corniche-map");
+    window.corniche_watch((await import("/corniche_web.js")).MapView);
+    const tasks = [];
+    new PerformanceObserver((list) => tasks.push(...list.getEntries().map((entry) => entry.duration))).observe({
+      entryTypes: ["longtask"],
+    });
+    const [west, south, east, north] = map.about.bounds;
+    window.corniche_decoded.length = 0;
+    const begun = performance.now();
+    for (let step = 0; step <= 8; step += 1) {
+      const share = 0.15 + 0.7 * (step / 8);
+      map.lookAt({
+        lon: west + share * (east - west),
+        lat: south + (0.3 + 0.4 * (step % 2)) * (north - south),
+        distance: 4000,
+        heading: 40 * step,
+        pitch: 60,
+      });
+      await new Promise((done) => setTimeout(done, 1500));
+    }
+    await map.settled?.();
+    const seconds = (performance.now() - begun) / 1000;
+    return {
+      tasks,
+      frames: window.corniche_frames.map((frame) => frame.took),
+      decoded: window.corniche_decoded.length,
+      bytes: window.corniche_decoded.reduce((sum, [, bytes]) => sum + bytes, 0),
+      seconds,
+      memory: performance.memory?.usedJSHeapSize,
+    };
+  });
+  const sorted = told.frames.toSorted((a, b) => a - b);
+  const at = (share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
+  console.log(
+    `${name}: flight of ${told.seconds.toFixed(0)} s: ${told.decoded} tiles decoded (${(told.decoded / told.seconds).toFixed(1)} a second, ${kB(told.bytes)} of geometry), ${sorted.length} frames, ` +
+      `in the page median ${at(0.5).toFixed(1)} ms, 95 % ${at(0.95).toFixed(1)} ms, longest ${at(1).toFixed(1)} ms; tasks over 50 ms: ${told.tasks.length}, longest ${ms(Math.max(0, ...told.tasks))}`,
+  );
+  await flight.end();
+}
+
+await browser.close();
+server.close();
