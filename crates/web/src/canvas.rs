@@ -11,8 +11,6 @@ use corniche_viewer::{
     lod::Drawn,
     tiles::TileGeometry,
 };
-use wasm_bindgen::JsValue;
-use wasm_bindgen_futures::JsFuture;
 use web_sys::HtmlCanvasElement;
 
 use crate::{problem::Problem, settings::Compare};
@@ -264,16 +262,4 @@ impl PageCanvas {
     pub(crate) fn shown_width_px(&self) -> u32 {
         self.shown.as_ref().map_or(0, |scene| scene.camera.size_px()[0])
     }
-}
-
-/// Lets the browser do other things.
-pub(crate) async fn turn() {
-    let promise = js_sys::Promise::new(&mut |resolve, _| {
-        let global = js_sys::global();
-        let set = js_sys::Reflect::get(&global, &"setTimeout".into()).unwrap_or(JsValue::UNDEFINED);
-        let set: js_sys::Function = wasm_bindgen::JsCast::unchecked_into(set);
-        // Every browser has timers.
-        let _ = set.call2(&global, &resolve, &5.into());
-    });
-    let _ = JsFuture::from(promise).await;
 }

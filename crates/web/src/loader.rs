@@ -1,14 +1,25 @@
 //! Loads the tiles of a map: bytes by ranges, decoding in the workers.
 
-use std::{cell::RefCell, collections::BTreeMap, rc::Rc, sync::Arc};
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+    rc::Rc,
+    sync::Arc,
+};
 
 use corniche_geom::TileId;
 use corniche_live::{Loaded, TileLoader};
+use corniche_tileset::{OpenError, ReadError};
 use corniche_viewer::tiles::{LoadTileError, PackageTiles, TileGeometry};
 use futures_util::future::{AbortHandle, abortable};
 use wasm_bindgen_futures::spawn_local;
 
-use crate::{decoders::Decoders, host::Host, source::WebSource};
+use crate::{decoders::Decoders, host::Host, problem::Problem, source::WebSource, timer::pause};
+
+/// A tile that the server did not give is asked for again after this time, and then after twice as long each time …
+const FIRST_REST_MS: f64 = 2000.0;
+/// … but not after longer than this.
+const LAST_REST_MS: f64 = 30_000.0;
 
 /// The tiles of a package, and who decodes them.
 pub(crate) struct Tileset {
@@ -38,6 +49,10 @@ struct State {
     under_way: BTreeMap<TileId, Load>,
     /// Tiles that are there before they are asked for: those of the first view.
     ready: BTreeMap<TileId, TileGeometry>,
+    /// Tiles that the server does not give. They are asked for again from time to time; meanwhile what is coarser is drawn.
+    troubled: BTreeSet<TileId>,
+    /// What is wrong with the server, and nobody was told.
+    problems: Vec<Problem>,
 }
 
 /// A tile under way.
@@ -86,6 +101,16 @@ impl PageLoader {
         is_other
     }
 
+    /// What went wrong with the server since this was asked last.
+    pub(crate) fn take_problems(&self) -> Vec<Problem> {
+        std::mem::take(&mut self.state.borrow_mut().problems)
+    }
+
+    /// How many tiles wait because the server does not give them.
+    pub(crate) fn troubled(&self) -> usize {
+        self.state.borrow().troubled.len()
+    }
+
     /// Loads tiles that will be asked for soon.
     pub(crate) fn foresee(&self, ids: &[TileId]) {
         for id in ids {
@@ -104,12 +129,26 @@ impl PageLoader {
             return;
         }
         let (tiles, decoder) = (Rc::clone(&self.tiles), self.decoder.borrow().clone());
-        let (load, handle) = abortable(async move { tiles.load(id, &decoder).await });
+        let (for_load, host) = (Rc::clone(&self.state), self.host.clone());
+        let (load, handle) = abortable(async move {
+            let mut rest_ms = FIRST_REST_MS;
+            loop {
+                let tile = tiles.load(id, &decoder).await;
+                let Some(why) = of_server(&tile) else { return tile };
+                let told = tiles.package.package().source().take_problem();
+                let problem = told.unwrap_or_else(|| Problem::new("network", why, ""));
+                for_load.borrow_mut().meet(id, problem);
+                host.wake();
+                pause(rest_ms).await;
+                rest_ms = (2.0 * rest_ms).min(LAST_REST_MS);
+            }
+        });
         state.under_way.insert(id, Load { handle, is_asked });
         let (state, host) = (Rc::clone(&self.state), self.host.clone());
         spawn_local(async move {
             let Ok(tile) = load.await else { return };
             let mut state = state.borrow_mut();
+            state.troubled.remove(&id);
             let is_asked = state.under_way.remove(&id).is_some_and(|load| load.is_asked);
             match tile {
                 tile if is_asked => state.arrived.push(Loaded { id, tile }),
@@ -127,9 +166,30 @@ impl PageLoader {
     }
 }
 
+/// Why a tile did not come, where its server is to blame and not its bytes.
+fn of_server(tile: &Result<TileGeometry, LoadTileError>) -> Option<String> {
+    match tile.as_ref().err()?.source.downcast_ref::<ReadError>()? {
+        ReadError::Source { source, .. } => Some(source.reason.clone()),
+        ReadError::Directory { source: OpenError::Source(source), .. } => {
+            Some(source.reason.clone())
+        }
+        _ => None,
+    }
+}
+
 impl State {
+    /// The server did not give a tile.
+    fn meet(&mut self, id: TileId, problem: Problem) {
+        // Many tiles meet the same problem; it is told when the first of them does.
+        if self.troubled.is_empty() {
+            self.problems.push(problem);
+        }
+        self.troubled.insert(id);
+    }
+
     /// Stops all that is under way.
     fn stop(&mut self) {
+        self.troubled.clear();
         for load in std::mem::take(&mut self.under_way).into_values() {
             load.handle.abort();
         }
@@ -161,6 +221,7 @@ impl TileLoader for PageLoader {
         for id in ids {
             if let Some(load) = state.under_way.remove(id) {
                 load.handle.abort();
+                state.troubled.remove(id);
                 dropped.push(*id);
             }
         }

@@ -28,7 +28,7 @@ use wasm_bindgen_futures::future_to_promise;
 use web_sys::HtmlCanvasElement;
 
 use crate::{
-    canvas::{PageCanvas, turn},
+    canvas::PageCanvas,
     flights::Flights,
     host::Host,
     loader::{PageLoader, Tileset},
@@ -38,6 +38,7 @@ use crate::{
     report::{About, ClassEntry, GroundPlace, Has, Notice, Pick},
     settings::{Compare, Settings},
     tables,
+    timer::pause,
 };
 
 /// A place is picked at most so far beside a road, points of the screen.
@@ -283,7 +284,7 @@ impl MapView {
             let mut picture: Vec<u8> = Vec::new();
             for (mut read, columns) in parts {
                 while !read.has_arrived(&gpu).map_err(told)? {
-                    turn().await;
+                    pause(5.0).await;
                 }
                 let texels = read.into_texels(&gpu).map_err(told)?;
                 if picture.is_empty() {

@@ -41,10 +41,13 @@ impl MapView {
             ));
         }
         for defect in self.tiles.take_arrivals() {
-            let of_source = self.tileset.package.package().source().take_problem();
-            let text = of_source
-                .map_or(defect, |problem| format!("{} {}", problem.message, problem.advice));
-            self.notices.push(Notice::warning(text));
+            self.notices.push(Notice::warning(defect));
+        }
+        for Problem { message, advice, .. } in self.loader.take_problems() {
+            let text = format!(
+                "Tiles cannot be loaded; they are asked for again from time to time. {message} {advice}"
+            );
+            self.notices.push(Notice::warning(text.trim()));
         }
         self.fly(now_s);
         let camera = {
@@ -161,6 +164,8 @@ impl MapView {
             loading: self.tiles.loading(),
             full: self.tiles.is_full(),
         };
+        // Nothing is to be waited for from a server that gives no tiles.
+        let troubled = self.loader.troubled();
         let is_moving = self.camera.is_moving() || self.flights.is_playing();
         // A recording needs frames only while something moves; a picture that was drawn in a hurry is drawn again at rest.
         let is_busy = is_moving || is_under_way || self.is_hurried;
@@ -169,7 +174,9 @@ impl MapView {
         let wanted = (tiles.drawn + tiles.missing).max(1) as f64;
         FrameReport {
             next: if is_busy { Next::Now } else { Next::Asked },
-            is_settled: !is_busy && (tiles.missing == 0 || tiles.full) && tiles.loading == 0,
+            is_settled: !is_busy
+                && (tiles.missing == 0 || tiles.full || troubled > 0)
+                && tiles.loading == troubled,
             view: place,
             cursor,
             metres_per_pixel,
