@@ -185,9 +185,9 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 3", "\"plan_version\": 4");
+    let later = text.replace("\"plan_version\": 4", "\"plan_version\": 5");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 4") && error.contains("version 3"), "{error}");
+    assert!(error.contains("version 5") && error.contains("version 4"), "{error}");
     for bad in ["", "{}", "[3]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");

@@ -3,8 +3,7 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_viewer::{ClassSet, Outline, RoadMethod, RoadOptions, Wireframe, range};
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::tables;
 
@@ -76,6 +75,39 @@ pub(crate) struct Settings {
     pub(crate) inertia: bool,
 }
 
+/// Settings to change; those that are left out stay as they are.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[expect(clippy::option_option, reason = "JSON has a field with a value, one with null, and none")]
+pub(crate) struct Changes {
+    roads: Option<Roads>,
+    compare: Option<Compare>,
+    divider: Option<f32>,
+    classes: Option<[bool; FunctionalRoadClass::COUNT]>,
+    widths: Option<[f32; FunctionalRoadClass::COUNT]>,
+    outline: Option<Edge>,
+    style: Option<String>,
+    #[serde(deserialize_with = "said")]
+    photo: Option<Option<f32>>,
+    areas: Option<bool>,
+    boundaries: Option<bool>,
+    exaggeration: Option<f64>,
+    error_px: Option<f64>,
+    #[serde(deserialize_with = "said")]
+    cell_px: Option<Option<f64>>,
+    samples: Option<u32>,
+    wireframe: Option<bool>,
+    inertia: Option<bool>,
+}
+
+/// A value that is there, `null` among them.
+#[expect(clippy::option_option, reason = "as the fields that it reads")]
+fn said<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<Option<T>>, D::Error> {
+    Option::<T>::deserialize(deserializer).map(Some)
+}
+
 impl Default for Settings {
     /// As `corniche render` draws without options.
     fn default() -> Self {
@@ -106,17 +138,41 @@ impl Settings {
     /// # Errors
     /// In words, when the text is no such object or a value is out of its range.
     pub(crate) fn changed_by(&self, changes: &str) -> Result<Self, String> {
-        let failed = |error: serde_json::Error| format!("settings: {error}");
-        // By way of text and of one kind of reader, which keeps the module of the page small.
-        let read = |text: &str| {
-            serde_json::from_slice::<Map<String, Value>>(text.as_bytes()).map_err(failed)
-        };
-        let mut all = read(&serde_json::to_string(self).map_err(failed)?)?;
-        all.extend(read(changes)?);
-        let all = serde_json::to_vec(&all).map_err(failed)?;
-        let changed: Self = serde_json::from_slice(&all).map_err(failed)?;
+        let changes: Changes = serde_json::from_slice(changes.as_bytes())
+            .map_err(|error| format!("settings: {error}"))?;
+        self.changed(&changes)
+    }
+
+    /// The same of changes that were read already.
+    ///
+    /// # Errors
+    /// In words, when a value is out of its range.
+    pub(crate) fn changed(&self, changes: &Changes) -> Result<Self, String> {
+        let changed = self.with(changes);
         changed.check()?;
         Ok(changed)
+    }
+
+    /// These settings with some of them changed, unchecked.
+    fn with(&self, changes: &Changes) -> Self {
+        Self {
+            roads: changes.roads.unwrap_or(self.roads),
+            compare: changes.compare.unwrap_or(self.compare),
+            divider: changes.divider.unwrap_or(self.divider),
+            classes: changes.classes.unwrap_or(self.classes),
+            widths: changes.widths.unwrap_or(self.widths),
+            outline: changes.outline.unwrap_or(self.outline),
+            style: changes.style.clone().unwrap_or_else(|| self.style.clone()),
+            photo: changes.photo.unwrap_or(self.photo),
+            areas: changes.areas.unwrap_or(self.areas),
+            boundaries: changes.boundaries.unwrap_or(self.boundaries),
+            exaggeration: changes.exaggeration.unwrap_or(self.exaggeration),
+            error_px: changes.error_px.unwrap_or(self.error_px),
+            cell_px: changes.cell_px.unwrap_or(self.cell_px),
+            samples: changes.samples.unwrap_or(self.samples),
+            wireframe: changes.wireframe.unwrap_or(self.wireframe),
+            inertia: changes.inertia.unwrap_or(self.inertia),
+        }
     }
 
     fn check(&self) -> Result<(), String> {

@@ -8,11 +8,11 @@ use super::formats::{COLOR, DEPTH};
 /// A shader's name and its text, complete as it is compiled.
 pub(crate) type Shader = (&'static str, &'static str);
 
-/// A [`Shader`]: its name, then the files of `shaders/` that are joined into its text, in this order. WGSL has no `include`,
+/// A [`Shader`]: its name, then the files of `shaders/`, without their comments, that are joined into its text, in this order. WGSL has no `include`,
 /// so declarations that several shaders need are in files of their own. For files in `drawables/`.
 macro_rules! shader {
     ($name:literal: $($file:literal),+) => {
-        ($name, concat!($(include_str!(concat!("../../shaders/", $file, ".wgsl"))),+))
+        ($name, concat!($(include_str!(concat!(env!("OUT_DIR"), "/shaders/", $file, ".wgsl"))),+))
     };
 }
 pub(crate) use shader;

@@ -19,7 +19,7 @@ use corniche_viewer::{
 use futures_util::future::join;
 use web_sys::HtmlCanvasElement;
 
-use super::{MapView, clamped, decoder_of, fineness_of};
+use crate::map::{Map, clamped, decoder_of, fineness_of};
 use crate::{
     canvas::PageCanvas,
     decoders::Decoders,
@@ -30,7 +30,7 @@ use crate::{
     loader::{PageLoader, Tileset},
     place::{Place, view_of},
     problem::Problem,
-    settings::Settings,
+    settings::{Changes, Settings},
     source::WebSource,
     tables,
 };
@@ -44,7 +44,7 @@ const BUDGET: StreamBudget =
 #[serde(default, deny_unknown_fields)]
 struct Options {
     /// Those that are not the usual ones.
-    settings: Option<serde_json::Value>,
+    settings: Changes,
     /// Where to look; without it, where the roads are.
     view: Option<Place>,
     /// Pixels at the right that are covered by a panel.
@@ -74,15 +74,12 @@ pub(crate) async fn open(
     address: String,
     options: &str,
     host: Host,
-) -> Result<MapView, Problem> {
+) -> Result<Map, Problem> {
     let wrong = |why: String| Problem::new("other", why, "Correct the page.");
     let options: Options =
         serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
             .map_err(|error| wrong(format!("options: {error}")))?;
-    let settings = match &options.settings {
-        Some(changes) => Settings::default().changed_by(&changes.to_string()).map_err(wrong)?,
-        None => Settings::default(),
-    };
+    let settings = Settings::default().changed(&options.settings).map_err(wrong)?;
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
     let style = settings.look().map_err(wrong)?;
@@ -140,7 +137,7 @@ pub(crate) async fn open(
     let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
     let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
     let labels = tables::class_labels(&manifest.settings.frc_table);
-    Ok(MapView {
+    Ok(Map {
         address,
         canvas: page_canvas,
         loader,

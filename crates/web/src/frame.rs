@@ -3,7 +3,7 @@
 use corniche_live::{controls::Mode, request_of_view};
 use corniche_viewer::{camera::Camera, lod::Quality, tiles::MapPackage as _};
 
-use super::{HURRY_S, MapView, fineness_of, ground};
+use crate::map::{HURRY_S, Map, fineness_of, ground};
 use crate::{
     canvas::Scene,
     flights::view_of_pose,
@@ -13,7 +13,7 @@ use crate::{
 };
 use corniche_live::controls::KnownGround as _;
 
-impl MapView {
+impl Map {
     /// Does all of a frame.
     ///
     /// # Errors

@@ -1,0 +1,22 @@
+//! Copies the shaders without their comments, which a program need not carry: in the module of a page every kilobyte counts. Lines keep their numbers.
+
+use std::{env, error::Error, fs, path::Path};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed=src/shaders");
+    let folder = Path::new(&env::var("OUT_DIR")?).join("shaders");
+    fs::create_dir_all(&folder)?;
+    for entry in fs::read_dir("src/shaders")? {
+        let path = entry?.path();
+        let text = fs::read_to_string(&path)?;
+        let name = path.file_name().ok_or("a shader without a name")?;
+        fs::write(folder.join(name), without_comments(&text))?;
+    }
+    Ok(())
+}
+
+/// WGSL has no texts in quotes, so `//` always begins a comment.
+fn without_comments(text: &str) -> String {
+    let code = |line: &str| line.split("//").next().unwrap_or_default().trim_end().to_owned();
+    text.lines().map(|line| code(line) + "\n").collect()
+}
