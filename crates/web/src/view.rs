@@ -163,7 +163,7 @@ impl MapView {
                 }
             }
             other => {
-                self.0.notices.push(Notice::warning(format!("There is no command {other:?}.")))
+                self.0.notices.push(Notice::warning(format!("There is no command {other:?}.")));
             }
         }
         String::new()
