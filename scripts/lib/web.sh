@@ -20,7 +20,7 @@ find_web_cargo() {
 }
 
 missing_for_debian_web() {
-    /usr/bin/rustc --version 2>/dev/null | grep -q 1.9 || echo rustc-web
+    /usr/bin/rustc --version 2>/dev/null | grep -qE "^rustc 1\.(9[5-9]|[1-9][0-9][0-9])" || echo rustc-web
     [ -x /usr/bin/cargo ] || echo cargo-web
     [ -d /usr/lib/rustlib/src ] || [ -d /usr/src/rustc-web ] || echo rust-web-src
     command -v wasm-ld >/dev/null || echo lld

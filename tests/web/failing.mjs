@@ -72,9 +72,9 @@ export const FAILURES = [
   },
 ];
 
-/** Hosts that fail after the beginning of the package: the map is open by then, but has nothing to show. What is said. */
+/** Hosts that fail after the beginning of the package: the map is open by then. What is said: in a notice where the coarse map stays, else in its place. */
 export const LATER = [
-  { name: "cut answers", says: /cut off/, src: "/as/truncated/pass.pmtiles" },
-  { name: "closed connections", says: /breaks off|cannot be reached/, src: "/as/closing/pass.pmtiles" },
+  { name: "cut answers", stays: true, says: /cut off/, src: "/as/truncated/pass.pmtiles" },
+  { name: "closed connections", stays: true, says: /breaks off|cannot be reached/, src: "/as/closing/pass.pmtiles" },
   { name: "a changing file", says: /another one/, src: "/as/changed/pass.pmtiles" },
 ];

@@ -52,9 +52,10 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     test(`told in words after the beginning: ${failure.name}`, async () => {
       const { page, opened } = await failing(browser, server, other, failure);
       assert.ok(opened.ready, JSON.stringify(opened.error));
-      const alert = page.locator("corniche-map [role=alert]");
-      await alert.waitFor();
-      assert.match(await alert.textContent(), failure.says);
+      const told = page.locator(failure.stays ? "corniche-map .notice.warn" : "corniche-map [role=alert]").first();
+      await told.waitFor();
+      assert.match(await told.textContent(), failure.says);
+      if (failure.stays) assert.ok(colours(await pixelsOf(page)) > 100, "the coarse map is gone");
       assert.deepEqual(page.faults.errors, []);
       await page.screenshot({ path: path.join(pictures, `failure-${failure.name.replace(/\W+/g, "-")}.png`) });
       await page.end();
@@ -111,7 +112,6 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     await page.evaluate(() => {
       window.devices.at(-1).destroy();
       const map = document.querySelector("corniche-map");
-      map.command("north-up");
     });
     await page.locator("corniche-map .notice").filter({ hasText: "device was lost" }).waitFor();
     assert.ok(await again);
@@ -133,7 +133,6 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       );
       await page.evaluate(() => {
         window.devices.at(-1).destroy();
-        document.querySelector("corniche-map").command("north-up");
       });
       const what = await next;
       if (what !== "ready") {
@@ -157,7 +156,6 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     await page.evaluate(() => {
       const event = new GPUUncapturedErrorEvent("uncapturederror", { error: new GPUOutOfMemoryError("no memory for a buffer") });
       window.devices.at(-1).dispatchEvent(event);
-      document.querySelector("corniche-map").command("north-up");
     });
     const { kind, message } = await failed;
     assert.equal(kind, "out-of-memory", message);

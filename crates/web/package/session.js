@@ -52,7 +52,14 @@ export async function openSession(from) {
   const end = () => {
     if (isOver) return;
     isOver = true;
-    for (const stop of ends.reverse()) stop();
+    for (const stop of ends.reverse()) {
+      try {
+        stop();
+      } catch (error) {
+        // A renderer that stopped cannot be let go; the rest can.
+        console.warn(error);
+      }
+    }
   };
   signal.addEventListener("abort", end);
 
@@ -89,7 +96,16 @@ export async function openSession(from) {
     );
   }
   ends.push(decoders.end);
-  const host = { wake: () => loop?.wake(), post: decoders.post, workers: decoders.count };
+  const host = {
+    wake: () => loop?.wake(),
+    /** @type {typeof decoders.post} */
+    post(worker, message, transfer) {
+      if (!isOver) decoders.post(worker, message, transfer);
+      // An opening that goes on must not wait for workers that have ended.
+      else queueMicrotask(() => glue.decoded({ job: /** @type {any} */ (message).job, error: "the map was closed" }));
+    },
+    workers: decoders.count,
+  };
   // What workers had under way when they were ended is told as failed, or it would be waited for.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
   const options = {
@@ -132,8 +148,6 @@ export async function openSession(from) {
   /** @type {import("./corniche-map.js").FrameReport | null} */
   let report = null;
   let place = "";
-  let warning = "";
-  let hasSettled = false;
   let moveTimer = 0;
   const tell = (/** @type {"warn" | "tell"} */ kind, /** @type {string} */ text) => layout.notices.add(kind, text);
 
@@ -219,16 +233,7 @@ export async function openSession(from) {
     layout.status.show(now);
     layout.progress(now.progress);
     panel.report(now);
-    for (const { kind, text } of now.notices) {
-      tell(kind, text);
-      if (kind === "warn") warning = text;
-    }
-    // A map of which no tile came is no map: why is told in its place.
-    if (now.is_settled && !hasSettled && now.tiles.drawn === 0 && warning !== "") {
-      failed(new Failure("other", warning));
-      return null;
-    }
-    hasSettled ||= now.is_settled;
+    for (const { kind, text } of now.notices) tell(kind, text);
     watchMoves(now);
     if (now.is_settled) settle();
     return now.next;
@@ -279,7 +284,11 @@ export async function openSession(from) {
   ends.push(pointers.end);
   ends.push(watchKeys(canvas, { ...input, command: from.command }));
   loop = makeLoop(canvas, draw);
-  ends.push(loop.stop, () => clearTimeout(moveTimer));
+  // A device that is lost while the map is at rest is told by the next frame, which nothing else would ask for.
+  const watching = setInterval(() => {
+    if (view && !document.hidden && !view.is_well()) wake();
+  }, 1000);
+  ends.push(loop.stop, () => clearTimeout(moveTimer), () => clearInterval(watching));
   ends.push(
     watchSize(canvas, (...size) => {
       view?.resize(...size);

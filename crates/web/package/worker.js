@@ -10,6 +10,8 @@ self.onmessage = (event) => {
     const answer = work(event.data);
     if (answer !== undefined) self.postMessage(answer, { transfer: answer.tile ? [answer.tile.buffer] : [] });
   } catch (error) {
-    self.postMessage({ failed: String(error) });
+    // A tile on which the decoder stops costs that tile, and not the map.
+    const { job } = event.data;
+    self.postMessage(job === undefined ? { failed: String(error) } : { job, error: `the decoder stopped: ${error}` });
   }
 };

@@ -21,6 +21,8 @@ struct Job {
     host: Host,
     worker: u32,
     answer: oneshot::Sender<Result<Uint8Array, String>>,
+    /// Dropped when the worker has answered, whether somebody waits or not.
+    _busy: Busy,
 }
 
 thread_local! {
@@ -61,7 +63,9 @@ impl Decoders {
         let worker = self.least_busy();
         let job = JOBS.with_borrow_mut(|jobs| {
             jobs.last = jobs.last.wrapping_add(1);
-            jobs.under_way.insert(jobs.last, Job { host: self.host.clone(), worker, answer });
+            let busy = Busy::new(&self.loads, worker);
+            let job = Job { host: self.host.clone(), worker, answer, _busy: busy };
+            jobs.under_way.insert(jobs.last, job);
             jobs.last
         });
         let transfer = Array::new();
@@ -79,11 +83,9 @@ impl Decoders {
             ("y", y.into()),
             ("payload", payload),
         ]);
-        let busy = Busy::new(&self.loads, worker);
         self.host.post(worker, &message, &transfer);
-        let got = got.await;
-        drop(busy);
-        let bytes = got.unwrap_or_else(|_| Err("the map was closed".to_owned())).map_err(failed)?;
+        let bytes =
+            got.await.unwrap_or_else(|_| Err("the map was closed".to_owned())).map_err(failed)?;
         TileGeometry::from_bytes(&bytes.to_vec()).map_err(|error| failed(error.to_string()))
     }
 
@@ -93,7 +95,7 @@ impl Decoders {
     }
 }
 
-/// A job counts as long as somebody waits for it.
+/// A job counts as long as its worker has it.
 struct Busy {
     loads: Rc<RefCell<Vec<u32>>>,
     worker: u32,

@@ -12,8 +12,12 @@ pub(crate) struct Answer {
     pub(crate) bytes: Vec<u8>,
     /// Length of the whole file.
     pub(crate) file_bytes: u64,
-    pub(crate) etag: Option<String>,
+    /// What tells this version of the file from others: `ETag`, or else `Last-Modified`.
+    pub(crate) version: Option<String>,
 }
+
+/// The kind of a problem of which only [`diagnosed`] finds out more. It goes no farther than the source.
+pub(crate) const UNREACHABLE: &str = "unreachable";
 
 /// The text for a server that must be set up otherwise.
 const EXPOSE: &str = "Let the server send `Access-Control-Allow-Origin` and `Access-Control-Expose-Headers: Content-Range, ETag, Content-Encoding`.";
@@ -31,7 +35,7 @@ pub(crate) async fn range(
 ) -> Result<Answer, Problem> {
     let response = match request(address, Some([first, last]), Some(signal)).await {
         Ok(response) => response,
-        Err(error) => return Err(unreachable(address, &error).await),
+        Err(error) => return Err(Problem::new(UNREACHABLE, thrown(&error), "")),
     };
     let header = |name: &str| response.headers().get(name).ok().flatten();
     let status = response.status();
@@ -109,7 +113,7 @@ pub(crate) async fn range(
     if bytes.len() as u64 != asked {
         return Err(cut_off(&format!("it has {} bytes of {asked}", bytes.len())));
     }
-    Ok(Answer { bytes, file_bytes, etag: header("etag") })
+    Ok(Answer { bytes, file_bytes, version: header("etag").or_else(|| header("last-modified")) })
 }
 
 /// The length of the file, from `bytes FIRST-LAST/LENGTH`; `None` if the range begins elsewhere.
@@ -129,18 +133,23 @@ fn compressed(encoding: &str) -> Problem {
     )
 }
 
-/// Why a request found no answer: the browser tells no page, so it is found out by asking otherwise.
-async fn unreachable(address: &str, error: &JsValue) -> Problem {
-    if let Ok(response) = request(address, None, None).await {
+/// Why requests of kind [`UNREACHABLE`] found no answer: the browser tells no page, so it is found out by asking otherwise. Other problems are
+/// returned as they are.
+pub(crate) async fn diagnosed(address: &str, problem: Problem) -> Problem {
+    if problem.kind != UNREACHABLE {
+        return problem;
+    }
+    let why = problem.message;
+    if let Ok(response) = request(address, None, None).await
+        && response.ok()
+    {
         let encoding = response.headers().get("content-encoding").ok().flatten();
         drop_body(&response);
         if let Some(encoding) = encoding {
             return compressed(&encoding);
         }
-        let message = format!(
-            "The server breaks off when a part of the file is asked for ({}).",
-            thrown(error)
-        );
+        let message =
+            format!("The server breaks off when a part of the file is asked for ({why}).");
         return Problem::new("no-ranges", message, RANGES);
     }
     if opaque(address).await {
@@ -149,7 +158,7 @@ async fn unreachable(address: &str, error: &JsValue) -> Problem {
     }
     Problem::new(
         "network",
-        format!("The server cannot be reached ({}).", thrown(error)),
+        format!("The server cannot be reached ({why})."),
         "Check the address and the connection, and try again.",
     )
 }

@@ -13,6 +13,9 @@ use crate::{
 };
 use corniche_live::controls::KnownGround as _;
 
+/// While tiles are loaded anew, what was shown stays, but no longer than this.
+const MOST_WAIT_S: f64 = 1.0;
+
 impl Map {
     /// Does all of a frame.
     ///
@@ -43,12 +46,18 @@ impl Map {
         for defect in self.tiles.take_arrivals() {
             self.notices.push(Notice::warning(defect));
         }
-        for Problem { message, advice, .. } in self.loader.take_problems() {
+        for problem in self.loader.take_problems() {
+            // Its tiles are those of another package now.
+            if problem.kind == "changed" {
+                return Err(problem);
+            }
+            let Problem { message, advice, .. } = problem;
             let text = format!(
                 "Tiles cannot be loaded; they are asked for again from time to time. {message} {advice}"
             );
             self.notices.push(Notice::warning(text.trim()));
         }
+        self.last_s = now_s;
         self.fly(now_s);
         let camera = {
             let ground = ground(
@@ -62,10 +71,17 @@ impl Map {
         let is_under_way = self.change_tiles(&camera, now_s);
         let pose = self.pose();
         self.flights.note(now_s, pose);
-        // While tiles are loaded anew, what was shown stays.
         let is_there = self.tiles.missing() == 0 && !is_under_way;
-        self.is_beginning_again &= !is_there && !self.tiles.is_full();
-        let is_new = if self.is_beginning_again { false } else { self.draw(&camera, now_s)? };
+        let is_waiting = self.anew_s.is_some_and(|begun_s| {
+            !is_there
+                && !self.tiles.is_full()
+                && self.loader.troubled() == 0
+                && now_s - begun_s < MOST_WAIT_S
+        });
+        if !is_waiting {
+            self.anew_s = None;
+        }
+        let is_new = if is_waiting { false } else { self.draw(&camera, now_s)? };
         {
             let (scale, manifest) = (self.vertical_scale(), self.tileset.package.manifest());
             let ground = ground(&self.tiles, &self.settings, manifest, self.height_range_m);
@@ -168,15 +184,19 @@ impl Map {
         let troubled = self.loader.troubled();
         let is_moving = self.camera.is_moving() || self.flights.is_playing();
         // A recording needs frames only while something moves; a picture that was drawn in a hurry is drawn again at rest.
-        let is_busy = is_moving || is_under_way || self.is_hurried;
+        let is_busy = is_moving || is_under_way || self.is_hurried || self.anew_s.is_some();
         let traffic = self.tileset.package.package().source().traffic();
         let (counts, [used, most]) = (self.canvas.counts(), self.tiles.bytes_of_budget());
         let wanted = (tiles.drawn + tiles.missing).max(1) as f64;
+        let is_settled = !is_busy
+            && (tiles.missing == 0 || tiles.full || troubled > 0)
+            && tiles.loading == troubled;
+        if is_settled {
+            self.loader.end_foresight();
+        }
         FrameReport {
             next: if is_busy { Next::Now } else { Next::Asked },
-            is_settled: !is_busy
-                && (tiles.missing == 0 || tiles.full || troubled > 0)
-                && tiles.loading == troubled,
+            is_settled,
             view: place,
             cursor,
             metres_per_pixel,

@@ -106,6 +106,18 @@ impl PageLoader {
         std::mem::take(&mut self.state.borrow_mut().problems)
     }
 
+    /// The first view is complete: what was foreseen and not asked for is not needed.
+    pub(crate) fn end_foresight(&self) {
+        let mut state = self.state.borrow_mut();
+        state.ready.clear();
+        state.under_way.retain(|_, load| {
+            if !load.is_asked {
+                load.handle.abort();
+            }
+            load.is_asked
+        });
+    }
+
     /// How many tiles wait because the server does not give them.
     pub(crate) fn troubled(&self) -> usize {
         self.state.borrow().troubled.len()
@@ -134,7 +146,8 @@ impl PageLoader {
             let mut rest_ms = FIRST_REST_MS;
             loop {
                 let tile = tiles.load(id, &decoder).await;
-                let Some(why) = of_server(&tile) else { return tile };
+                let is_asked = for_load.borrow().is_asked(id);
+                let Some(why) = of_server(&tile).filter(|_| is_asked) else { return tile };
                 let told = tiles.package.package().source().take_problem();
                 let problem = told.unwrap_or_else(|| Problem::new("network", why, ""));
                 for_load.borrow_mut().meet(id, problem);
@@ -178,6 +191,11 @@ fn of_server(tile: &Result<TileGeometry, LoadTileError>) -> Option<String> {
 }
 
 impl State {
+    /// Whether a tile under way was asked for.
+    fn is_asked(&self, id: TileId) -> bool {
+        self.under_way.get(&id).is_some_and(|load| load.is_asked)
+    }
+
     /// The server did not give a tile.
     fn meet(&mut self, id: TileId, problem: Problem) {
         // Many tiles meet the same problem; it is told when the first of them does.

@@ -54,8 +54,10 @@ pub(crate) struct Map {
     pub(crate) notices: Vec<Notice>,
     /// The scene of the last frame was drawn with fewer samples than asked.
     pub(crate) is_hurried: bool,
-    /// Tiles are loaded anew; what is shown stays until those of the view are there.
-    pub(crate) is_beginning_again: bool,
+    /// When tiles began to be loaded anew; what was shown stays until those of the view are there.
+    pub(crate) anew_s: Option<f64>,
+    /// Time of the last frame.
+    pub(crate) last_s: f64,
 }
 
 impl Drop for Map {
@@ -112,7 +114,7 @@ impl Map {
         if self.loader.read_otherwise(decoder_of(&changed, &style)) {
             self.tiles.begin_again();
             self.canvas.clear();
-            self.is_beginning_again = true;
+            self.anew_s = Some(self.last_s);
         }
         (self.settings, self.style) = (changed, style);
         Ok(())
@@ -159,7 +161,13 @@ impl Map {
         let sighted = SightedGround {
             extent: MapExtent::of_data(manifest.data_bounds, self.height_range_m),
             heights_m: self.height_range_m,
-            at_place_m: at.and_then(|at| ground.height(at)).map(|height| height / scale),
+            at_place_m: at.and_then(|at| {
+                let known_m = ground.height(at).map(|height| height / scale);
+                // Before the first tiles are there, any height will do.
+                let [low_m, high_m] = self.height_range_m;
+                let is_inside = manifest.data_bounds.contains(at) && self.tiles.drawn().is_empty();
+                known_m.or_else(|| is_inside.then(|| f64::midpoint(low_m, high_m)))
+            }),
         };
         let camera = request
             .camera(manifest, sighted, scale, self.size_px)

@@ -154,7 +154,8 @@ pub(crate) async fn open(
         flights: Flights::default(),
         notices: Vec::new(),
         is_hurried: false,
-        is_beginning_again: false,
+        anew_s: None,
+        last_s: 0.0,
         tileset,
     })
 }

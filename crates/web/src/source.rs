@@ -11,7 +11,12 @@ use futures_channel::oneshot;
 use wasm_bindgen_futures::spawn_local;
 use web_sys::AbortController;
 
-use crate::{fetch::range, merging::merged, problem::Problem};
+use crate::{
+    fetch::{UNREACHABLE, diagnosed, range},
+    merging::merged,
+    problem::Problem,
+    timer::pause,
+};
 
 /// What the first request asks for: the tables of most packages, and the first tiles.
 const HEAD_BYTES: u64 = 64 << 10;
@@ -19,6 +24,14 @@ const HEAD_BYTES: u64 = 64 << 10;
 const CACHE_BYTES: usize = 64 << 20;
 /// What failed on its way is asked for again so often.
 const TRIES: u32 = 3;
+
+/// Time before that.
+const REST_MS: f64 = 300.0;
+
+/// Whether the same request may succeed a moment later.
+fn may_pass(problem: &Problem) -> bool {
+    matches!(problem.kind, "network" | UNREACHABLE)
+}
 
 /// What was asked of the server so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,7 +47,7 @@ pub(crate) struct WebSource(Rc<Shared>);
 struct Shared {
     address: String,
     file_bytes: u64,
-    etag: Option<String>,
+    version: Option<String>,
     cache: RefCell<Cache>,
     waiting: RefCell<Vec<Waiting>>,
     traffic: Cell<Traffic>,
@@ -124,8 +137,9 @@ impl WebSource {
             tries += 1;
             let controller = controller()?;
             match range(address, [0, HEAD_BYTES - 1], &controller.signal()).await {
-                Err(problem) if problem.kind == "network" && tries < TRIES => {}
-                head => break head?,
+                Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
+                Err(problem) => return Err(diagnosed(address, problem).await),
+                Ok(head) => break head,
             }
         };
         let traffic = Traffic { requests: tries, bytes: head.bytes.len() as u64 };
@@ -134,7 +148,7 @@ impl WebSource {
         Ok(Self(Rc::new(Shared {
             address: address.to_owned(),
             file_bytes: head.file_bytes,
-            etag: head.etag,
+            version: head.version,
             cache: RefCell::new(cache),
             waiting: RefCell::default(),
             traffic: Cell::new(traffic),
@@ -223,10 +237,13 @@ impl Shared {
             traffic.bytes += answer.as_ref().map_or(0, |answer| answer.bytes.len() as u64);
             self.traffic.set(traffic);
             match answer {
-                Err(problem)
-                    if problem.kind == "network" && tries < TRIES && request.wanted.get() > 0 => {}
-                Err(problem) => return Err(problem),
-                Ok(answer) if answer.file_bytes != self.file_bytes || answer.etag != self.etag => {
+                // Nobody waits any more, and the request was stopped.
+                Err(problem) if request.wanted.get() == 0 => return Err(problem),
+                Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
+                Err(problem) => return Err(diagnosed(&self.address, problem).await),
+                Ok(answer)
+                    if answer.file_bytes != self.file_bytes || answer.version != self.version =>
+                {
                     return Err(Problem::new(
                         "changed",
                         "The file on the server is another one than when the map was opened.",

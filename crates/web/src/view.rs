@@ -58,6 +58,13 @@ impl MapView {
         Ok(json(&report))
     }
 
+    /// Whether nothing is wrong with the device or the server that the next frame would tell. A page at rest asks from time to time.
+    #[must_use]
+    pub fn is_well(&self) -> bool {
+        let gpu = self.0.canvas.gpu();
+        !gpu.is_lost() && !gpu.has_fault()
+    }
+
     /// A button goes down: 0 left, 1 middle, 2 right.
     pub fn press(&mut self, button: u8, x: f64, y: f64, shift: bool, control: bool, now_s: f64) {
         self.0.flights.stop_playing();

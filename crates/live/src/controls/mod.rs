@@ -12,8 +12,8 @@
 //!  W A S D, Q E             fly mode: ahead, left, back, right, down, up; with Shift fast
 //! ```
 //!
-//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and two fingers zoom and turn at once from the first
-//! movement on. A notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
+//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and two fingers zoom and turn at once, as soon as
+//! it is clear that they do not tilt. A notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
 //! zoom by whole levels from where the camera is, not to the next whole level: no level is special here. A double click acts
 //! when the button goes down for the second time. The largest tilt is 85°, in `MapLibre` usually 60°. What a drag or a zoom
 //! keeps under the cursor is a point of the terrain. `MapLibre` has nothing on the middle button.

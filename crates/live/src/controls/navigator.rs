@@ -276,6 +276,7 @@ impl Navigator {
     pub fn travel_to(&mut self, view: View, now_s: f64) {
         self.stop();
         self.gesture = None;
+        self.fingers = None;
         self.mode = Mode::Map;
         if view.from_above.is_none() {
             self.seen.view = self.seen.view.in_perspective();
@@ -287,6 +288,7 @@ impl Navigator {
     fn toggle_above(&mut self, ground: &dyn KnownGround) {
         self.stop();
         self.gesture = None;
+        self.fingers = None;
         self.flying.let_go();
         self.mode = Mode::Map;
         // Going back to a view in perspective would undo this.
@@ -306,6 +308,7 @@ impl Navigator {
     fn toggle_fly(&mut self) {
         self.stop();
         self.gesture = None;
+        self.fingers = None;
         self.seen.view = self.seen.view.in_perspective();
         self.flying.let_go();
         self.mode = match self.mode {

@@ -144,6 +144,12 @@ impl Gpu {
         self.faults.is_lost.load(Ordering::Acquire)
     }
 
+    /// Whether there is a fault that [`Gpu::take_fault`] will tell.
+    #[must_use]
+    pub fn has_fault(&self) -> bool {
+        self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
     /// The first fault since this was asked last: memory ran out, or the renderer made a mistake. What was drawn since
     /// then cannot be trusted. Reading pixels back reports the same fault.
     #[must_use]
