@@ -111,7 +111,6 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     const again = ask(page, (map) => new Promise((resolve) => map.addEventListener("ready", () => resolve(true), { once: true })));
     await page.evaluate(() => {
       window.devices.at(-1).destroy();
-      const map = document.querySelector("corniche-map");
     });
     await page.locator("corniche-map .notice").filter({ hasText: "device was lost" }).waitFor();
     assert.ok(await again);
