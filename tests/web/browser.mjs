@@ -38,6 +38,8 @@ export function startChromium() {
 export async function openPage(browser, server, address, { width = 800, height = 600, before, ...context } = {}) {
   const made = await browser.newContext({ viewport: { width, height }, ...context });
   const page = await made.newPage();
+  // A processor draws, and other programs may want it.
+  page.setDefaultTimeout(90_000);
   const faults = { foreign: [], errors: [], console: [] };
   page.on("request", (request) => {
     if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(server.origin)) faults.foreign.push(request.url());

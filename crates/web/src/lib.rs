@@ -6,9 +6,9 @@
 //!                                      ranges (fetch) ─┘  └─ decoded tiles ◄── workers: the same module, `work`
 //! ```
 //!
-//! [`MapView`](view::MapView) is a map on a canvas. It draws when the page calls `frame`, and asks for frames through the page's `Host`. Bytes
-//! come by range requests ([`source`]), tiles are decoded by the page's workers ([`worker`]), each an instance of this module; no memory is
-//! shared, so that any static host will do. What fails is told as a [`Problem`](problem::Problem): a kind for programs, a message and advice for people.
+//! `view::MapView` is a map on a canvas. It draws when the page calls `frame`, and asks for frames through the page's `Host`. Bytes
+//! come by range requests (`source`), tiles are decoded by the page's workers (`worker`), each an instance of this module; no memory is
+//! shared, so that any static host will do. What fails is told as a `problem::Problem`: a kind for programs, a message and advice for people.
 //!
 //! This crate never computes geometry, and has no controls of its own but what a page can say.
 
