@@ -30,7 +30,7 @@ pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
 
 /// How much the eye is too low, for a message. It is rounded up to a tenth of a metre, so that a message never reads
 /// "0.0 m too low".
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub(crate) fn rounded_up_m(lacking_m: f64) -> f64 {
     (lacking_m * 10.0).ceil() / 10.0
 }
