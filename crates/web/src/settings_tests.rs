@@ -28,7 +28,7 @@ fn what_is_not_named_stays_and_what_is_named_changes() {
 #[test]
 fn what_cannot_be_is_told_in_words() {
     for (changes, told) in [
-        ("[]", "settings"),
+        ("7", "settings"),
         (r#"{"road": "sv"}"#, "unknown field `road`"),
         (r#"{"roads": "both"}"#, "unknown variant `both`"),
         (r#"{"samples": 9}"#, "1 to 4"),
