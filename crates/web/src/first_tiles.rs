@@ -3,6 +3,7 @@
 use std::{cell::RefCell, collections::BTreeMap};
 
 use corniche_geom::{Frame, TileId};
+use corniche_tileset::Manifest;
 use corniche_viewer::{
     CameraRequest, SightedGround,
     tiles::{
@@ -86,7 +87,7 @@ pub(crate) async fn first_tiles(
             there.insert(tile.id, tile);
         }
         let noting = Noting { tiles: tileset, there: &there, missing: RefCell::default() };
-        let found = looked(&noting, manifest.data_bounds, camera, place);
+        let found = looked(&noting, manifest, camera, place);
         wanted = noting.missing.into_inner();
         wanted.retain(|id| !there.contains_key(id));
         match found {
@@ -133,14 +134,17 @@ fn tiles_at(tileset: &Tileset, at: [f64; 2]) -> Vec<TileId> {
 
 fn looked(
     source: &Noting<'_>,
-    data: corniche_geom::Bounds,
+    manifest: &Manifest,
     camera: CameraRequest,
     place: Option<[f64; 2]>,
 ) -> Result<Option<SightedGround>, LoadTileError> {
+    let data = manifest.data_bounds;
     let mut store = TileStore::new(source);
     let Some(coarsest) = store.coarsest_ground()? else { return Ok(None) };
     let heights_m = coarsest.height_range_m;
-    let extent = if camera.is_overview() { store.map_extent(data)? } else { None };
+    // Without roads nothing tells where they are, and all levels would be searched for them.
+    let has_roads = manifest.counts.roads_kept > 0;
+    let extent = if camera.is_overview() && has_roads { store.map_extent(data)? } else { None };
     let extent = extent.unwrap_or_else(|| MapExtent::of_data(data, heights_m));
     let at_place_m = match place {
         Some(at) => store.ground_height_m(at)?,
