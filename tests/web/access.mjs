@@ -41,6 +41,11 @@ export function tests({ browser, server }) {
         map.shadowRoot.querySelector("[aria-label='Hide the panel']").click();
       });
       await checkPage(page, "with the divider, without the panel");
+      // A place that has ground: the card tells of it.
+      await ask(page, async (map) => {
+        map.lookAt({ lon: 9.51, lat: 46.91, distance: 4000, heading: 30, pitch: 60 }, { jump: true });
+        await map.settled();
+      });
       await page.locator("corniche-map canvas").focus();
       await page.keyboard.press("Enter");
       await page.locator("corniche-map .place-card").waitFor({ state: "visible" });
