@@ -13,7 +13,7 @@ function startWorker(/** @type {string} */ script) {
 export const usualCount = () => Math.max(2, Math.min(4, (navigator.hardwareConcurrency || 4) - 1));
 
 /**
- * @param {WebAssembly.Module} module
+ * @param {Promise<WebAssembly.Module>} module where it cannot be had, workers wait until they are ended
  * @param {number} count
  * @param {(message: any) => void} decoded
  * @param {(error: unknown) => void} failed called once at most
@@ -35,7 +35,7 @@ export function startDecoders(module, count, decoded, failed) {
       event.preventDefault();
       fail(new Error(event.message || "the worker's script cannot be loaded"));
     };
-    worker.postMessage({ module });
+    module.then((module) => worker.postMessage({ module })).catch(() => {});
     return worker;
   });
   return {

@@ -27,11 +27,11 @@ export function failureOf(/** @type {any} */ error) {
   return new Failure("other", error instanceof Error ? error.message : String(error));
 }
 
-/** @type {Promise<{ module: WebAssembly.Module, glue: any }> | null} */
+/** @type {{ module: Promise<WebAssembly.Module>, ready: Promise<any> } | null} */
 let engine = null;
 
 /** Says at once where this browser cannot show a map, before anything is fetched for it. */
-function checkBrowser() {
+export function checkBrowser() {
   if ("gpu" in navigator && navigator.gpu) return;
   if (!window.isSecureContext) {
     throw new Failure(
@@ -92,8 +92,8 @@ async function fetchModule() {
   }
 }
 
-async function load() {
-  checkBrowser();
+/** The module's glue, with the module in it. */
+async function start(/** @type {Promise<WebAssembly.Module>} */ module) {
   const script = import("./corniche_web.js").catch((error) => {
     throw new Failure(
       "files",
@@ -101,16 +101,21 @@ async function load() {
       "Put all files of the package corniche-map into one folder of the server.",
     );
   });
-  const [module, glue] = await Promise.all([fetchModule(), script]);
-  await glue.default({ module_or_path: module });
-  return { module, glue };
+  // The browser sets up its graphics meanwhile. Whether there is an adapter is told later, by the renderer.
+  navigator.gpu?.requestAdapter().catch(() => {});
+  const [compiled, glue] = await Promise.all([module, script]);
+  await glue.default({ module_or_path: compiled });
+  return glue;
 }
 
-/** The renderer, ready to open views. A failure is not kept: the next call tries again. */
+/** The renderer: `module` for workers, `ready` for views. A failure is not kept: the next call tries again. */
 export function loadEngine() {
-  engine ??= load();
-  engine.catch(() => {
-    engine = null;
-  });
+  if (!engine) {
+    const module = fetchModule();
+    engine = { module, ready: start(module) };
+    engine.ready.catch(() => {
+      engine = null;
+    });
+  }
   return engine;
 }

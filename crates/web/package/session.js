@@ -1,7 +1,8 @@
 // One opened package: the view, its workers, its frames and its input.
 import { makeActions } from "./actions.js";
 import { startDecoders, usualCount } from "./decoders.js";
-import { Failure, failureOf, loadEngine } from "./engine.js";
+import { Failure, checkBrowser, failureOf, loadEngine } from "./engine.js";
+import { HEAD_BYTES, askForHead } from "./head.js";
 import { watchKeys } from "./keys.js";
 import { makeLoop } from "./loop.js";
 import { makePanel } from "./panel.js";
@@ -63,14 +64,20 @@ export async function openSession(from) {
   };
   signal.addEventListener("abort", end);
 
+  checkBrowser();
+  // The package's first bytes, the workers and the module are all on their way at the same time.
   const size = firstSize(canvas, signal);
-  const { module, glue } = await loadEngine();
-  const [width, height, ratio] = await size;
-  if (signal.aborted) return null;
-  canvas.width = width;
-  canvas.height = height;
+  const head = askForHead(from.src, signal);
+  const engine = loadEngine();
+  /** @type {any} */
+  let glue = null;
   /** @type {(error: unknown) => void} */
   let stopOpening = () => {};
+  // Rejected where a worker fails before the map is open.
+  const stopped = new Promise((_, reject) => {
+    stopOpening = reject;
+  });
+  stopped.catch(() => {});
   const failed = (/** @type {unknown} */ error) => {
     stopOpening(error);
     if (isOver || !view) return;
@@ -85,9 +92,10 @@ export async function openSession(from) {
         "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it.",
       ),
     );
+  /** @type {ReturnType<typeof startDecoders>} */
   let decoders;
   try {
-    decoders = startDecoders(module, from.workers ?? usualCount(), glue.decoded, noWorkers);
+    decoders = startDecoders(engine.module, from.workers ?? usualCount(), (message) => glue.decoded(message), noWorkers);
   } catch (error) {
     throw new Failure(
       "files",
@@ -96,6 +104,16 @@ export async function openSession(from) {
     );
   }
   ends.push(decoders.end);
+  try {
+    glue = await Promise.race([engine.ready, stopped]);
+  } catch (error) {
+    end();
+    throw error;
+  }
+  const [width, height, ratio] = await size;
+  if (signal.aborted) return null;
+  canvas.width = width;
+  canvas.height = height;
   const host = {
     wake: () => loop?.wake(),
     /** @type {typeof decoders.post} */
@@ -105,6 +123,8 @@ export async function openSession(from) {
       else queueMicrotask(() => glue.decoded({ job: /** @type {any} */ (message).job, error: "the map was closed" }));
     },
     workers: decoders.count,
+    head,
+    head_bytes: HEAD_BYTES,
   };
   // What workers had under way when they were ended is told as failed, or it would be waited for.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
@@ -124,12 +144,7 @@ export async function openSession(from) {
     () => {},
   );
   try {
-    view = await Promise.race([
-      opened,
-      new Promise((_, reject) => {
-        stopOpening = reject;
-      }),
-    ]);
+    view = await Promise.race([opened, stopped]);
   } catch (error) {
     end();
     throw error;

@@ -33,10 +33,24 @@ pub(crate) async fn range(
     [first, last]: [u64; 2],
     signal: &AbortSignal,
 ) -> Result<Answer, Problem> {
-    let response = match request(address, Some([first, last]), Some(signal)).await {
-        Ok(response) => response,
-        Err(error) => return Err(Problem::new(UNREACHABLE, thrown(&error), "")),
-    };
+    answer(request(address, Some([first, last]), Some(signal)).await, [first, last]).await
+}
+
+/// The same of a request that the page has sent.
+///
+/// # Errors
+/// As [`range`].
+pub(crate) async fn sent(response: Promise, [first, last]: [u64; 2]) -> Result<Answer, Problem> {
+    let response = JsFuture::from(response).await.map(JsValue::unchecked_into);
+    answer(response, [first, last]).await
+}
+
+/// What a server sends for the bytes from `first` to `last`.
+async fn answer(
+    response: Result<Response, JsValue>,
+    [first, last]: [u64; 2],
+) -> Result<Answer, Problem> {
+    let response = response.map_err(|error| Problem::new(UNREACHABLE, thrown(&error), ""))?;
     let header = |name: &str| response.headers().get(name).ok().flatten();
     let status = response.status();
     match status {

@@ -1,11 +1,12 @@
 //! What the page does for a map.
 
-use js_sys::Array;
+use js_sys::{Array, Promise};
 use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
 
 #[wasm_bindgen]
 extern "C" {
     /// The page's side of a map. `wake()` asks for a frame, `post(worker, message, transfer)` hands a message to a worker, `workers` is their number.
+    /// `head` is the answer to the first request, for the first `head_bytes` of the package: the page sends it while this module is on its way.
     #[derive(Clone)]
     pub type Host;
 
@@ -20,4 +21,12 @@ extern "C" {
     /// How many workers there are.
     #[wasm_bindgen(method, getter)]
     pub fn workers(this: &Host) -> u32;
+
+    /// The answer to the request for the first bytes of the package.
+    #[wasm_bindgen(method, getter)]
+    pub fn head(this: &Host) -> Promise;
+
+    /// How many bytes it asks for.
+    #[wasm_bindgen(method, getter)]
+    pub fn head_bytes(this: &Host) -> u32;
 }

@@ -5,10 +5,11 @@ use std::{rc::Rc, sync::Arc};
 use corniche_geom::TileId;
 use corniche_live::{
     CameraControl, GroundProbe, Tiles,
-    controls::{Inertia, Navigator},
+    controls::{Inertia, Navigator, View},
     first_view, limits,
 };
-use corniche_tileset::{OpenError, Package};
+use corniche_styles::Style;
+use corniche_tileset::{Manifest, OpenError, Package};
 use corniche_viewer::{
     CameraRequest, SightedGround,
     lod::Quality,
@@ -65,6 +66,83 @@ fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
     Arc::new(package)
 }
 
+/// What is asked of the first view.
+struct FirstLook<'a> {
+    settings: &'a Settings,
+    style: &'a Style,
+    request: CameraRequest,
+    /// Pixels at the right that are covered by a panel.
+    covered_px: u32,
+}
+
+impl FirstLook<'_> {
+    /// The view itself.
+    fn view(
+        &self,
+        manifest: &Manifest,
+        ground: SightedGround,
+        size_px: [u32; 2],
+    ) -> Result<View, Problem> {
+        let scale = self.settings.exaggeration * manifest.point_scale;
+        match self.request {
+            CameraRequest::FromAbove { .. } => {
+                let heights = ground.heights_m.map(|height_m| height_m * scale);
+                let camera = self.request.camera(manifest, ground, scale, size_px);
+                camera.map(|camera| view_of(self.request, &camera, manifest, heights))
+            }
+            _ => first_view(self.request, manifest, ground, scale, size_px, self.covered_px),
+        }
+        .map_err(|error| off_ground(&error))
+    }
+}
+
+/// A package that was opened, and what the first view needs of it.
+struct Opened {
+    tileset: Rc<Tileset>,
+    loader: PageLoader,
+    ground: SightedGround,
+    /// The first view, in the size that was asked for.
+    home: View,
+}
+
+impl Opened {
+    /// Reads the tables and the first tiles, and asks for those that the first view will need.
+    async fn new(
+        address: &str,
+        host: &Host,
+        look: &FirstLook<'_>,
+        size_px: [u32; 2],
+    ) -> Result<Self, Problem> {
+        let source = WebSource::open(address, host).await?;
+        let told = |error: &OpenError| Problem::opening(error, source.take_problem());
+        let package = Package::open(source.clone()).await.map_err(|error| told(&error))?;
+        let metadata = package.metadata().await.map_err(|error| told(&error))?;
+        let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
+        if !package.exists(TileId::ROOT) {
+            return Err(Problem::new(
+                "no-ground",
+                "The package has no tiles.",
+                "Build it from a DEM that has heights.",
+            ));
+        }
+        let manifest = package.manifest();
+        let decoders = Decoders::new(host.clone(), &metadata);
+        let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
+        let decoder = decoder_of(look.settings, look.style);
+        let first = first_tiles(&tileset, look.request, &decoder).await?;
+        let home = look.view(manifest, first.ground, size_px)?;
+        let settings = look.settings;
+        let (fineness, roads) = (fineness_of(settings), settings.road_options());
+        let quality =
+            Quality::of_package(manifest, fineness, look.style, roads, settings.exaggeration);
+        let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), decoder, first.tiles);
+        let camera = home.camera(size_px);
+        let heights_m = first.ground.heights_m;
+        loader.foresee(&foreseen(package.as_ref(), manifest, heights_m, &camera, quality));
+        Ok(Self { tileset, loader, ground: first.ground, home })
+    }
+}
+
 /// Opens a package and finds the first view.
 ///
 /// # Errors
@@ -83,58 +161,26 @@ pub(crate) async fn open(
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
     let style = settings.look().map_err(wrong)?;
-    let decoder = decoder_of(&settings, &style);
-    let size_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
-
-    // The device and the first bytes are waited for at the same time.
-    let (page_canvas, source) = join(PageCanvas::new(canvas), WebSource::open(&address)).await;
+    let asked_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
+    let first_look =
+        FirstLook { settings: &settings, style: &style, request, covered_px: options.covered_px };
+    // The device is waited for while the package is read.
+    let (page_canvas, opened) =
+        join(PageCanvas::new(canvas), Opened::new(&address, &host, &first_look, asked_px)).await;
     let page_canvas = page_canvas?;
-    let source = source?;
-    let told = |error: &OpenError| Problem::opening(error, source.take_problem());
-    let package = Package::open(source.clone()).await.map_err(|error| told(&error))?;
-    let metadata = package.metadata().await.map_err(|error| told(&error))?;
-    let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
-    if !package.exists(TileId::ROOT) {
-        return Err(Problem::new(
-            "no-ground",
-            "The package has no tiles.",
-            "Build it from a DEM that has heights.",
-        ));
-    }
+    let Opened { tileset, loader, ground, home } = opened?;
+    let package = &tileset.package;
     let manifest = package.manifest();
-    let decoders = Decoders::new(host.clone(), &metadata);
-    let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
-    let first = first_tiles(&tileset, request, &decoder).await?;
-    let SightedGround { heights_m, .. } = first.ground;
-    let scale = settings.exaggeration * manifest.point_scale;
-    let size_px = clamped(size_px, page_canvas.gpu().max_side_px());
-    let home = match request {
-        CameraRequest::FromAbove { .. } => {
-            let camera = request
-                .camera(manifest, first.ground, scale, size_px)
-                .map_err(|error| off_ground(&error))?;
-            view_of(request, &camera, manifest, heights_m.map(|height_m| height_m * scale))
-        }
-        _ => first_view(request, manifest, first.ground, scale, size_px, options.covered_px)
-            .map_err(|error| off_ground(&error))?,
-    };
-    let fineness = fineness_of(&settings);
-    let roads = settings.road_options();
-    let quality = Quality::of_package(manifest, fineness, &style, roads, settings.exaggeration);
-    let loader = PageLoader::new(Rc::clone(&tileset), host, decoder, first.tiles);
-    loader.foresee(&foreseen(
-        package.as_ref(),
-        manifest,
-        heights_m,
-        &home.camera(size_px),
-        quality,
-    ));
+    let size_px = clamped(asked_px, page_canvas.gpu().max_side_px());
+    let home =
+        if size_px == asked_px { home } else { first_look.view(manifest, ground, size_px)? };
+    let heights_m = ground.heights_m;
     let inertia = if settings.inertia { Inertia::On } else { Inertia::Off };
     let navigator = Navigator::new(home, limits(manifest), size_px, inertia);
     let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
     let budget =
         StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
-    let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(&package);
+    let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(package);
     let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
     let labels = tables::class_labels(&manifest.settings.frc_table);
     Ok(Map {

@@ -12,14 +12,13 @@ use wasm_bindgen_futures::spawn_local;
 use web_sys::AbortController;
 
 use crate::{
-    fetch::{UNREACHABLE, diagnosed, range},
+    fetch::{UNREACHABLE, diagnosed, range, sent},
+    host::Host,
     merging::merged,
     problem::Problem,
     timer::pause,
 };
 
-/// What the first request asks for: the tables of most packages, and the first tiles.
-const HEAD_BYTES: u64 = 64 << 10;
 /// What is kept of what was read.
 const CACHE_BYTES: usize = 64 << 20;
 /// What failed on its way is asked for again so often.
@@ -127,16 +126,21 @@ impl Cache {
 }
 
 impl WebSource {
-    /// Asks for the beginning of the file.
+    /// Takes the beginning of the file, which the page has asked for, and asks again where it was lost.
     ///
     /// # Errors
     /// When it cannot be read.
-    pub(crate) async fn open(address: &str) -> Result<Self, Problem> {
+    pub(crate) async fn open(address: &str, host: &Host) -> Result<Self, Problem> {
+        let bytes = [0, u64::from(host.head_bytes()).max(1) - 1];
         let mut tries = 0;
         let head = loop {
             tries += 1;
-            let controller = controller()?;
-            match range(address, [0, HEAD_BYTES - 1], &controller.signal()).await {
+            let head = if tries == 1 {
+                sent(host.head(), bytes).await
+            } else {
+                range(address, bytes, &controller()?.signal()).await
+            };
+            match head {
                 Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
                 Err(problem) => return Err(diagnosed(address, problem).await),
                 Ok(head) => break head,
