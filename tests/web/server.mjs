@@ -111,7 +111,11 @@ export async function startServer({ site, packages }) {
     if (request.method === "OPTIONS")
       return asked.startsWith("/as/no-cors/") ? answer.writeHead(403).end() : answer.writeHead(204, allowed).end();
     const { bytes, type, way, status } = await found(asked);
-    state.requests.push({ path: asked, range: request.headers.range ?? null, method: request.method });
+    const record = { path: asked, range: request.headers.range ?? null, method: request.method, isStopped: false };
+    state.requests.push(record);
+    answer.on("close", () => {
+      record.isStopped = !answer.writableFinished;
+    });
     if (!bytes || status) return answer.writeHead(status ?? 404, allowed).end("no");
     const head = { ...allowed, "Content-Type": type, "Accept-Ranges": "bytes", ETag: `"${bytes.length}"`, "Cache-Control": "no-store" };
     if (state.policy && type === "text/html") head["Content-Security-Policy"] = state.policy;

@@ -449,11 +449,11 @@ impl Frustum {
 }
 
 fn pixel_at_unit_depth_m(fov_y_rad: f64, [_, height]: [u32; 2]) -> f64 {
-    2.0 * (fov_y_rad / 2.0).tan() / f64::from(height)
+    2.0 * libm::tan(fov_y_rad / 2.0) / f64::from(height)
 }
 
 fn half_extent_at_unit_depth(fov_y_rad: f64, [width, height]: [u32; 2]) -> DVec2 {
-    let tan = (fov_y_rad / 2.0).tan();
+    let tan = libm::tan(fov_y_rad / 2.0);
     DVec2::new(tan * f64::from(width) / f64::from(height), tan)
 }
 

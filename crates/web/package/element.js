@@ -261,6 +261,7 @@ export class CornicheMap extends HTMLElement {
         place,
         covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
+        memory: Number(this.getAttribute("memory")) || null,
         hashName: () => this.#hashName(),
         failed: (failure, from) => this.#lose(failure, from),
         emit: (name, detail, cancelable) => this.#emit(name, detail, cancelable),

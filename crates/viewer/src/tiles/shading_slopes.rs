@@ -24,7 +24,8 @@ impl ShadingSlopes {
 
     /// From a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
     pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
-        let half = |slope: f64| f16::from_f64(slope.clamp(-STEEPEST, STEEPEST)).to_bits();
+        // By way of f32, as some processors do it anyway: else it would be rounded twice on these and once on others.
+        let half = |slope: f64| f16::from_f32(slope.clamp(-STEEPEST, STEEPEST) as f32).to_bits();
         let texels = relief.slopes(cell).map(|slopes| slopes.map(half)).collect();
         let water = relief.water().unwrap_or_default();
         Self {
