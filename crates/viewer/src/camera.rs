@@ -119,11 +119,22 @@ impl Camera {
         orientation: Orientation,
         size_px: [u32; 2],
     ) -> Self {
-        let world_from_view = world_from_view(orientation);
+        let backward = world_from_view(orientation).z_axis;
+        Self::at_eye(target_in_world + backward * distance_m, distance_m, orientation, size_px)
+    }
+
+    /// Looks from `eye_in_world` at what is `distance_m` away.
+    #[must_use]
+    pub fn at_eye(
+        eye_in_world: DVec3,
+        distance_m: f64,
+        orientation: Orientation,
+        size_px: [u32; 2],
+    ) -> Self {
         Self {
-            eye_in_world: target_in_world + world_from_view.z_axis * distance_m,
+            eye_in_world,
             projection: Projection::Perspective,
-            world_from_view,
+            world_from_view: world_from_view(orientation),
             fov_y_rad: FOV_Y_RAD,
             size_px,
             near_m: distance_m * NEAR_SHARE,

@@ -1,14 +1,13 @@
 //! Where the dashes of tunnels and lines are.
 
 use corniche_geom::Bounds;
-use serde::{Deserialize, Serialize};
 
 /// Lengths are counted in whole lengths of this many metres, so that f32 is precise enough between them. A power of two, as the
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
 
 /// Where dashes are on a segment.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DashPlace {
     /// How far along the line the segment's start is, working metres.
     start_m: f32,
@@ -30,6 +29,11 @@ impl DashPlace {
     /// As shaders take it: start and rate.
     pub(crate) const fn numbers(self) -> [f32; 2] {
         [self.start_m, self.rate]
+    }
+
+    /// That of these numbers.
+    pub(crate) const fn of_numbers([start_m, rate]: [f32; 2]) -> Self {
+        Self { start_m, rate }
     }
 }
 

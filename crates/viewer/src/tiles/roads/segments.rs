@@ -1,6 +1,5 @@
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
-use serde::{Deserialize, Serialize};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
@@ -13,7 +12,7 @@ use super::{
 };
 
 /// A straight piece of a road's centre-line on the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadSegment {
     /// The segment of the source line that it is a piece of: its start, metres east and north of the tile's reference
     /// point.
