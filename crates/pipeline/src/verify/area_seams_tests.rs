@@ -59,7 +59,7 @@ fn stretches_without_others() {
     }
 }
 
-/// As in the drawing above [`Seam`]: the first tile covers the line alone from a corner of the outline to another one.
+/// As in the drawing of the module: the first tile covers the line alone from a corner of the outline to another one.
 #[test]
 fn an_outline_that_runs_along_the_line_is_not_broken() {
     for seam in seams() {
