@@ -5,11 +5,12 @@
 //
 // BUILT is the page that scripts/web makes, PYTHON an interpreter with rerun's SDK; pages, data and pictures are put into FOLDER. 20 Mbit/s, 50 ms for each answer, a new browser with nothing kept for each run, HTTP/1.1 (six requests at a time), 1280 × 800. Each map looks from where
 // <corniche-map> looks when it opens the package. Each run is made twice: with pictures, which are judged by their pixels (others/frames.mjs), and with all draw calls left out
-// (others/watch.mjs), since the renderer is a program on the processor here, which takes most of the time.
+// (others/watch.mjs), since the renderer is a program on the processor here, which takes most of the time. With RUNS 0 it shows instead what maps do where something fails.
 import fs from "node:fs";
 import path from "node:path";
 import { startChromium } from "./browser.mjs";
 import { compressAll, makeData, makeRecording } from "./others/data.mjs";
+import { showFaults } from "./others/faults.mjs";
 import { follow, judge, toPng } from "./others/frames.mjs";
 import { makeSite } from "./others/site.mjs";
 import { watch } from "./others/watch.mjs";
@@ -25,6 +26,7 @@ const ofPage = (page, roads) => (view, data) => `/${page}?view=${view}&roads=${r
 const MAPS = {
   corniche: { address: (view, data) => `/corniche/index.html?src=/${data}/li.pmtiles#${view}`, leastVertices: 3000 },
   "maplibre, vector tiles": { address: ofPage("maplibre/maplibre.html", "tiles") },
+  "maplibre, vector tiles, one source of heights": { address: ofPage("maplibre/maplibre.html", "tiles, one source") },
   "maplibre, GeoJSON": { address: ofPage("maplibre/maplibre.html", "geojson") },
   "cesium, terrain and GeoJSON": { address: ofPage("cesium/cesium.html", "geojson") },
   "cesium, terrain and GeoJSON, bundled": { address: ofPage("cesium/bundled.html", "geojson") },
@@ -135,6 +137,10 @@ console.log(`all look from ${view} (longitude, latitude, metres, heading, pitch)
 makeRecording({ folder, corniche, python, view });
 const wanted = Object.entries(MAPS).filter(([name]) => named.length === 0 || named.some((one) => name.startsWith(one)));
 for (const [name, map] of wanted) {
+  if (Number(runs) === 0) {
+    await showFaults({ openBrowser, watch, server, name, map, view, pictures });
+    continue;
+  }
   const file = name.replace(/[^a-zA-Z0-9]+/g, "-");
   const [seen, mute] = [[], []];
   for (let run = 0; run < Number(runs); run += 1) {
