@@ -72,10 +72,17 @@ async function measure(server, { address, leastVertices = 0, isSilent = false },
   const frames = mute ? [] : await follow(page);
   await page.goto(`${server.origin}${address(view, "data")}`, { waitUntil: "commit" });
   await page.waitForFunction((name) => window.others.told[name] !== undefined, isSilent ? "handed" : "whole");
-  // It is whole when nothing changes any more.
-  const quiet = () => Date.now() - Math.max(frames.at(-1)?.at_ms ?? 0, server.state.requests.at(-1)?.sent_ms ?? 0) > QUIET_MS;
-  const end = Date.now() + 60_000;
-  while (!quiet() && Date.now() < end) await new Promise((done) => setTimeout(done, 200));
+  // Nothing changes any more when no frame, no request and no word came for a while, and the renderer is done with all: a screenshot waits for it.
+  const begun = Date.now();
+  const latest = () => Math.max(begun, frames.at(-1)?.at_ms ?? 0, server.state.requests.at(-1)?.sent_ms ?? 0);
+  const calm = async () => {
+    while (Date.now() - latest() < QUIET_MS && Date.now() - begun < LONGEST_MS) await new Promise((done) => setTimeout(done, 200));
+  };
+  await calm();
+  if (!mute) {
+    await page.screenshot({ timeout: LONGEST_MS });
+    await calm();
+  }
   const { told, origin, drawn } = await page.evaluate(() => ({ told: window.others.told, origin: performance.timeOrigin, drawn: window.others.frames }));
   const shown = mute ? null : judge(frames.filter(({ at_ms }) => at_ms >= origin));
   const requests = [...server.state.requests];

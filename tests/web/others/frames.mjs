@@ -15,12 +15,15 @@ const FEW_PIXELS = 0.001;
 export const read = (bytes) => jpeg.decode(bytes, { useTArray: true, formatAsRGBA: true });
 export const toPng = ({ width, height, data }) => PNG.sync.write(Object.assign(new PNG({ width, height }), { data: Buffer.from(data) }));
 
-/** Follows the pictures of a page by the browser's own protocol: each as it is shown, with its time in milliseconds since 1970. */
+/**
+ * Follows the pictures of a page by the browser's own protocol, with the time in milliseconds since 1970 when each came here, drawn. The browser's own times are those when a picture was
+ * begun, which the renderer may finish seconds later.
+ */
 export async function follow(page) {
   const frames = [];
   const client = await page.context().newCDPSession(page);
-  client.on("Page.screencastFrame", ({ data, metadata, sessionId }) => {
-    frames.push({ at_ms: metadata.timestamp * 1000, bytes: Buffer.from(data, "base64") });
+  client.on("Page.screencastFrame", ({ data, sessionId }) => {
+    frames.push({ at_ms: performance.timeOrigin + performance.now(), bytes: Buffer.from(data, "base64") });
     client.send("Page.screencastFrameAck", { sessionId }).catch(() => {});
   });
   await client.send("Page.startScreencast", { format: "jpeg", quality: 80, maxWidth: FRAME.width, maxHeight: FRAME.height, everyNthFrame: 1 });

@@ -17,7 +17,7 @@ HEIGHTS = [400, 800, 1500, 2200, 3000]
 COLOURS = [(169, 193, 143), (195, 207, 159), (216, 211, 171), (203, 185, 153), (236, 232, 226)]
 ROADS = [(217, 96, 59), (224, 138, 60), (230, 176, 74), (236, 208, 106), (245, 239, 200), (255, 255, 255), (255, 255, 255), (255, 255, 255), (181, 138, 99)]
 ROAD_WIDTHS_PX = [3, 2.5, 2.5, 2, 1.5, 1.5, 1, 1, 1]
-# A quarter of a metre would be lost in the depth of the picture.
+# On the ground itself lines would fight with it for depth.
 LIFT_M = 10.0
 
 corniche, package, file = sys.argv[1:4]
@@ -29,16 +29,16 @@ def told(*options):
 
 
 info = told("info", package)
-finest = max(tile["level"] for tile in info["tiles"])
-ids = [f"{tile['level']}/{tile['column']}/{tile['row']}" for tile in info["tiles"] if tile["level"] == finest]
-west, south, east, north = told("tile", package, "0/0/0")["bounds"]
-middle = np.array([(west + east) / 2, (south + north) / 2, 0.0])
+finest = max(int(one.split("/")[0]) for one in info["tiles"])
+ids = [one for one in info["tiles"] if one.startswith(f"{finest}/")]
+bounds = info["manifest"]["data_bounds"]
+middle = np.array([(bounds["min_x"] + bounds["max_x"]) / 2, (bounds["min_y"] + bounds["max_y"]) / 2, 0.0])
 
 vertices, normals, triangles, lines, classes = [], [], [], [], []
 count = 0
 for one in ids:
     tile = told("tile", package, one)
-    ground = tile["terrain"]
+    ground = tile["tin"]
     vertices.append(np.array(ground["vertices"]) - middle)
     normals.append(np.array(ground["normals"]))
     triangles.append(np.array(ground["triangles"]) + count)
@@ -49,7 +49,9 @@ for one in ids:
 vertices, normals, triangles = (np.concatenate(parts) for parts in (vertices, normals, triangles))
 shades = np.stack([np.interp(vertices[:, 2], HEIGHTS, [colour[k] for colour in COLOURS]) for k in range(3)], axis=1).astype(np.uint8)
 
-target = np.array([0.0, 0.0, float(np.interp(0.5, [0, 1], [vertices[:, 2].min(), vertices[:, 2].max()]))])
+target = np.array([0.0, 0.0, (vertices[:, 2].min() + vertices[:, 2].max()) / 2])
+# Its pictures are 55 degrees high, those of the other maps 45; nearer, the ground is as large.
+distance_m *= math.tan(math.radians(45 / 2)) / math.tan(math.radians(55 / 2))
 flat, turn = math.radians(pitch), math.radians(heading)
 eye = target + distance_m * np.array([-math.sin(flat) * math.sin(turn), -math.sin(flat) * math.cos(turn), math.cos(flat)])
 view = rrb.Spatial3DView(
