@@ -1,6 +1,6 @@
 """Writes the finest level of a package as a recording for rerun: recording.py CORNICHE PACKAGE FILE.rrd DISTANCE HEADING PITCH
 
-One mesh with normals and a colour for each vertex, and lines for the roads, in metres around the middle of the root tile, as somebody would log them. rerun has no levels of detail,
+One mesh with normals and a colour for each vertex, and lines for the roads, in metres around the middle of the data, as somebody would log them. rerun has no levels of detail,
 so all of it is read before a picture.
 """
 
