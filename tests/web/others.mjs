@@ -8,6 +8,7 @@
 // (others/watch.mjs), since the renderer is a program on the processor here, which takes most of the time. With RUNS 0 it shows instead what maps do where something fails.
 import fs from "node:fs";
 import path from "node:path";
+import { fileURLToPath } from "node:url";
 import { startChromium } from "./browser.mjs";
 import { compressAll, makeData, makeRecording } from "./others/data.mjs";
 import { showFaults } from "./others/faults.mjs";
@@ -17,6 +18,7 @@ import { watch } from "./others/watch.mjs";
 import { startServer } from "./server.mjs";
 
 const [folder, built, corniche, python, heights, extract, runs, ...named] = process.argv.slice(2);
+const here = path.dirname(fileURLToPath(import.meta.url));
 const SLOW = { delay_ms: 50, bytes_per_ms: 2500, compresses: true };
 const VIEWPORT = { width: 1280, height: 800 };
 const LONGEST_MS = 240_000;
@@ -56,11 +58,16 @@ function tellWhole() {
   addEventListener("ready", (event) => event.target.settled?.().then(() => (window.others.told.whole ??= performance.now())), true);
 }
 
-async function measure(server, { address, leastVertices = 0, isSilent = false }, view, mute) {
+/** One run, in a browser of its own. */
+async function measure(server, map, view, mute) {
   const { browser, page } = await openBrowser(async (page) => {
-    await page.addInitScript(watch, { mute, leastVertices });
+    await page.addInitScript(watch, { mute, leastVertices: map.leastVertices ?? 0 });
     await page.addInitScript(tellWhole);
   });
+  return measureIn(page, server, map, view, mute).finally(() => browser.close());
+}
+
+async function measureIn(page, server, { address, isSilent = false }, view, mute) {
   const faults = [];
   page.on("pageerror", (error) => faults.push(String(error)));
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
@@ -86,7 +93,6 @@ async function measure(server, { address, leastVertices = 0, isSilent = false },
   const { told, origin, drawn } = await page.evaluate(() => ({ told: window.others.told, origin: performance.timeOrigin, drawn: window.others.frames }));
   const shown = mute ? null : judge(frames.filter(({ at_ms }) => at_ms >= origin));
   const requests = [...server.state.requests];
-  await browser.close();
 
   /** Requests and bytes, of the program and of data, that had come by a time. */
   function until(ms) {
@@ -124,7 +130,7 @@ function told(results, name) {
 }
 
 fs.mkdirSync(path.join(folder, "work"), { recursive: true });
-makeSite({ folder, modules: path.join(import.meta.dirname, "node_modules"), pages: path.join(import.meta.dirname, "others", "pages"), built });
+makeSite({ folder, modules: path.join(here, "node_modules"), pages: path.join(here, "others", "pages"), built });
 makeData({ folder, corniche, heights, extract });
 compressAll(site);
 const server = await startServer({ site, packages: path.join(site, "data") });
@@ -142,12 +148,7 @@ async function firstView() {
 const view = await firstView();
 console.log(`all look from ${view} (longitude, latitude, metres, heading, pitch)`);
 makeRecording({ folder, corniche, python, view });
-const wanted = Object.entries(MAPS).filter(([name]) => named.length === 0 || named.some((one) => name.startsWith(one)));
-for (const [name, map] of wanted) {
-  if (Number(runs) === 0) {
-    await showFaults({ openBrowser, watch, server, name, map, view, pictures });
-    continue;
-  }
+async function compare(name, map) {
   const file = name.replace(/[^a-zA-Z0-9]+/g, "-");
   const [seen, mute] = [[], []];
   for (let run = 0; run < Number(runs); run += 1) {
@@ -164,5 +165,18 @@ for (const [name, map] of wanted) {
   console.log(`  nothing drawn: ground handed over: ${told(mute, "handed")}`);
   console.log(`  nothing drawn: whole:              ${told(mute, "told")}`);
   console.log(`  frames ${drawn}; not found: ${missing.length} ${missing.slice(0, 3).join(" ")}; errors: ${faults.length} ${faults[0] ?? ""}`);
+}
+
+const wanted = Object.entries(MAPS).filter(([name]) => named.length === 0 || named.some((one) => name.startsWith(one)));
+for (const [name, map] of wanted) {
+  if (Number(runs) === 0) {
+    await showFaults({ openBrowser, watch, server, name, map, view, pictures });
+    continue;
+  }
+  // One that fails does not keep the others from being measured.
+  await compare(name, map).catch((error) => {
+    console.log(`\n${name}: failed: ${error.message.split("\n")[0]}`);
+    process.exitCode = 1;
+  });
 }
 server.close();

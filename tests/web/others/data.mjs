@@ -2,6 +2,7 @@
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
+import { fileURLToPath } from "node:url";
 import zlib from "node:zlib";
 import { PNG } from "pngjs";
 
@@ -48,7 +49,7 @@ export function makeRecording({ folder, corniche, python, view }) {
   const at = (name) => path.join(folder, "site", "data", name);
   if (fs.existsSync(at("li.rrd"))) return;
   const [, , distance, heading, pitch] = view.split(",");
-  console.log(String(run(python, path.join(import.meta.dirname, "recording.py"), corniche, at("li.pmtiles"), at("li.rrd"), distance, heading, pitch)).trim());
+  console.log(String(run(python, fileURLToPath(new URL("recording.py", import.meta.url)), corniche, at("li.pmtiles"), at("li.rrd"), distance, heading, pitch)).trim());
 }
 
 /** The ways that the package has, as OpenStreetMap draws them, with their class; six decimals, which is a decimetre. */
@@ -57,8 +58,8 @@ function makeRoads(corniche, packagePath, extract, work, file) {
   run(corniche, "export", "roads", packagePath, "-q", "-O", "-o", kept);
   const [head, ...rows] = fs.readFileSync(kept, "utf8").trim().split("\n");
   const columns = head.split(",");
-  // Lines as WKT stand in quotes and come first or last; ids and classes are plain numbers behind or before them.
-  const plain = (row) => row.replace(/"[^"]*"/g, "").split(",");
+  // Only lines as WKT and names hold commas, and stand in quotes.
+  const plain = (row) => row.match(/("[^"]*"|[^,"])+|(?<=,|^)(?=,|$)/g).map((field) => field.replaceAll('"', ""));
   const classes = new Map(rows.map(plain).map((row) => [row[columns.indexOf("way_id")], Number(row[columns.indexOf("class")])]));
   const all = path.join(work, "ways.geojson");
   fs.rmSync(all, { force: true });
