@@ -10,7 +10,7 @@ import fs from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { startChromium } from "./browser.mjs";
-import { compressAll, makeData, makeRecording } from "./others/data.mjs";
+import { compressAll, heightAt, makeData, makeRecording } from "./others/data.mjs";
 import { showFaults } from "./others/faults.mjs";
 import { follow, judge, toPng } from "./others/frames.mjs";
 import { makeSite } from "./others/site.mjs";
@@ -24,7 +24,7 @@ const VIEWPORT = { width: 1280, height: 800 };
 const LONGEST_MS = 240_000;
 const QUIET_MS = 3000;
 
-const ofPage = (page, roads) => (view, data) => `/${page}?view=${view}&roads=${roads}&data=${data}`;
+const ofPage = (page, roads) => (view, data) => `/${page}?view=${view}&height=${height_m}&roads=${roads}&data=${data}`;
 const MAPS = {
   corniche: { address: (view, data) => `/corniche/index.html?src=/${data}/li.pmtiles#${view}`, leastVertices: 3000 },
   "maplibre, vector tiles": { address: ofPage("maplibre/maplibre.html", "tiles") },
@@ -146,8 +146,10 @@ async function firstView() {
 }
 
 const view = await firstView();
-console.log(`all look from ${view} (longitude, latitude, metres, heading, pitch)`);
-makeRecording({ folder, corniche, python, view });
+const height_m = heightAt(heights, view);
+console.log(`all look at ${view} (longitude, latitude, metres from there to the eye, heading, pitch), ${height_m} m high`);
+makeRecording({ folder, corniche, python, view, height_m });
+
 async function compare(name, map) {
   const file = name.replace(/[^a-zA-Z0-9]+/g, "-");
   const [seen, mute] = [[], []];

@@ -45,11 +45,10 @@ export function makeData({ folder, corniche, heights, extract }) {
 }
 
 /** A recording for rerun, whose first view is part of it. */
-export function makeRecording({ folder, corniche, python, view }) {
+export function makeRecording({ folder, corniche, python, view, height_m }) {
   const at = (name) => path.join(folder, "site", "data", name);
   if (fs.existsSync(at("li.rrd"))) return;
-  const [, , distance, heading, pitch] = view.split(",");
-  console.log(String(run(python, fileURLToPath(new URL("recording.py", import.meta.url)), corniche, at("li.pmtiles"), at("li.rrd"), distance, heading, pitch)).trim());
+  console.log(String(run(python, fileURLToPath(new URL("recording.py", import.meta.url)), corniche, at("li.pmtiles"), at("li.rrd"), height_m, ...view.split(","))).trim());
 }
 
 /** The ways that the package has, as OpenStreetMap draws them, with their class; six decimals, which is a decimetre. */
@@ -121,4 +120,10 @@ export function compressAll(site) {
     if (!/\.(html|css|js|mjs|json|geojson|wasm|terrain|pbf)$/.test(name) || fs.existsSync(`${file}.br`) || !fs.statSync(file).isFile()) continue;
     fs.writeFileSync(`${file}.br`, zlib.brotliCompressSync(fs.readFileSync(file)));
   }
+}
+
+/** The ground's height where a view looks, metres. */
+export function heightAt(heights, view) {
+  const [lon, lat] = view.split(",");
+  return Number(run("gdallocationinfo", "-valonly", "-wgs84", heights, lon, lat));
 }

@@ -1,6 +1,6 @@
-"""Writes the finest level of a package as a recording for rerun: recording.py CORNICHE PACKAGE FILE.rrd DISTANCE HEADING PITCH
+"""Writes the finest level of a package as a recording for rerun: recording.py CORNICHE PACKAGE FILE.rrd HEIGHT LON LAT DISTANCE HEADING PITCH
 
-One mesh with normals and a colour for each vertex, and lines for the roads, in metres around the middle of the data, as somebody would log them. rerun has no levels of detail,
+One mesh with normals and a colour for each vertex, and lines for the roads, in metres around the place looked at, as somebody would log them. rerun has no levels of detail,
 so all of it is read before a picture.
 """
 
@@ -21,7 +21,7 @@ ROAD_WIDTHS_PX = [3, 2.5, 2.5, 2, 1.5, 1.5, 1, 1, 1]
 LIFT_M = 10.0
 
 corniche, package, file = sys.argv[1:4]
-distance_m, heading, pitch = (float(text) for text in sys.argv[4:7])
+height_m, lon, lat, distance_m, heading, pitch = (float(text) for text in sys.argv[4:10])
 
 
 def told(*options):
@@ -31,8 +31,9 @@ def told(*options):
 info = told("info", package)
 finest = max(int(one.split("/")[0]) for one in info["tiles"])
 ids = [one for one in info["tiles"] if one.startswith(f"{finest}/")]
-bounds = info["manifest"]["data_bounds"]
-middle = np.array([(bounds["min_x"] + bounds["max_x"]) / 2, (bounds["min_y"] + bounds["max_y"]) / 2, 0.0])
+# The package is in degrees; its metres are those along each axis.
+unit = info["manifest"]["metres_per_unit"]
+middle = np.array([lon * unit[0], lat * unit[1], 0.0])
 
 vertices, normals, triangles, lines, classes = [], [], [], [], []
 count = 0
@@ -49,7 +50,7 @@ for one in ids:
 vertices, normals, triangles = (np.concatenate(parts) for parts in (vertices, normals, triangles))
 shades = np.stack([np.interp(vertices[:, 2], HEIGHTS, [colour[k] for colour in COLOURS]) for k in range(3)], axis=1).astype(np.uint8)
 
-target = np.array([0.0, 0.0, (vertices[:, 2].min() + vertices[:, 2].max()) / 2])
+target = np.array([0.0, 0.0, height_m])
 # Its pictures are 55 degrees high, those of the other maps 45; nearer, the ground is as large.
 distance_m *= math.tan(math.radians(45 / 2)) / math.tan(math.radians(55 / 2))
 flat, turn = math.radians(pitch), math.radians(heading)

@@ -18,8 +18,8 @@ export async function show(Cesium) {
   scene.backgroundColor = Cesium.Color.fromCssColorString("#dfe6e9");
   if (scene.sun) scene.sun.show = false;
   if (scene.moon) scene.moon.show = false;
-  const { lon, lat, distance, heading, pitch, fov } = view;
-  const middle = Cesium.Cartesian3.fromDegrees(lon, lat, 450);
+  const { lon, lat, height, distance, heading, pitch, fov } = view;
+  const middle = Cesium.Cartesian3.fromDegrees(lon, lat, height);
   const radians = Cesium.Math.toRadians;
   // Its angle is that of the longer side.
   viewer.camera.frustum.fov = 2 * Math.atan(Math.tan(radians(fov) / 2) * (innerWidth / innerHeight));

@@ -2,8 +2,8 @@
 
 const asked = new URLSearchParams(location.search);
 const [lon, lat, distance, heading, pitch] = asked.get("view").split(",").map(Number);
-/** The place looked at, metres from there to the eye, and degrees: heading from north, pitch from straight down, and from the bottom to the top of the picture. */
-export const view = { lon, lat, distance, heading, pitch, fov: 45 };
+/** The place looked at with its height, metres from there to the eye, and degrees: heading from north, pitch from straight down, and from the bottom to the top of the picture. */
+export const view = { lon, lat, height: Number(asked.get("height")), distance, heading, pitch, fov: 45 };
 export const roads = asked.get("roads");
 /** Where the data lies: a folder that is not there shows what a map does without it. */
 export const data = `${location.origin}/${asked.get("data") ?? "data"}`;
