@@ -45,7 +45,10 @@ function mainTasks(events) {
   const main = new Set(
     events.filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain").map(({ pid, tid }) => `${pid} ${tid}`),
   );
+  // Starting and ending the trace take the thread, too.
+  const [begins, ends] = ["flight begins", "flight ends"].map((mark) => events.find(({ name }) => name === mark).ts);
   return events
+    .filter(({ ts }) => ts > begins && ts < ends)
     .filter(({ name, ph, pid, tid }) => name === "RunTask" && ph === "X" && main.has(`${pid} ${tid}`))
     .map(({ dur }) => dur / 1000)
     .filter((task) => task >= 1)
@@ -100,12 +103,13 @@ for (const name of names) {
   server.behave();
   const flight = await openPage(browser, server, `/?src=/packages/${name}.pmtiles`, { width: 640, height: 400, before: watch });
   await flight.waitForFunction(() => document.querySelector("corniche-map")?.camera);
-  await browser.startTracing(flight, { categories: ["toplevel", "disabled-by-default-devtools.timeline", "devtools.timeline", "__metadata"] });
+  await browser.startTracing(flight, { categories: ["toplevel", "disabled-by-default-devtools.timeline", "devtools.timeline", "blink.user_timing", "__metadata"] });
   const told = await flight.evaluate(async () => {
     const map = document.querySelector("corniche-map");
     window.corniche_watch((await import("/corniche_web.js")).MapView);
     const [west, south, east, north] = map.about.bounds;
     window.corniche_decoded.length = 0;
+    performance.mark("flight begins");
     const begun = performance.now();
     for (let step = 0; step <= 8; step += 1) {
       const share = 0.15 + 0.7 * (step / 8);
@@ -120,6 +124,7 @@ for (const name of names) {
     }
     await map.settled?.();
     const seconds = (performance.now() - begun) / 1000;
+    performance.mark("flight ends");
     return {
       frames: window.corniche_frames.map((frame) => frame.took),
       decoded: window.corniche_decoded.length,

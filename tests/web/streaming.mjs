@@ -42,10 +42,15 @@ export function tests({ browser, server }) {
     const size = { width: 500, height: 400 };
     const countUploads = () => {
       window.uploaded = 0;
-      const make = GPUDevice.prototype.createBuffer;
+      const buffer = GPUDevice.prototype.createBuffer;
       GPUDevice.prototype.createBuffer = function (descriptor) {
-        if (descriptor.label === "tile") window.uploaded += descriptor.size;
-        return make.call(this, descriptor);
+        if (["tile", "roads"].includes(descriptor.label)) window.uploaded += descriptor.size;
+        return buffer.call(this, descriptor);
+      };
+      const texture = GPUQueue.prototype.writeTexture;
+      GPUQueue.prototype.writeTexture = function (to, data, layout, size) {
+        window.uploaded += layout.bytesPerRow * (size.height ?? size[1]);
+        return texture.call(this, to, data, layout, size);
       };
     };
     const page = await openMap(browser, server, { memory: String(memory), controls: "none" }, { ...size, before: countUploads });
@@ -53,10 +58,11 @@ export function tests({ browser, server }) {
     assert.ok(reports.length > 100, `${reports.length} reports`);
     const most = Math.max(...reports.map(({ gpu_bytes: [used] }) => used));
     const uploaded = await page.evaluate(() => window.uploaded);
-    console.log(`# at most ${(most / MIB).toFixed(2)} MiB of ${memory}, ${(uploaded / MIB).toFixed(1)} MiB of ground uploaded on the way`);
+    console.log(`# at most ${(most / MIB).toFixed(2)} MiB of ${memory}, ${(uploaded / MIB).toFixed(1)} MiB uploaded on the way`);
     for (const { gpu_bytes } of reports) assert.deepEqual(gpu_bytes[1], memory * MIB);
     assert.ok(most <= memory * MIB, `${most} bytes of tiles`);
-    assert.ok(uploaded > 2 * memory * MIB, `only ${uploaded} bytes were uploaded: the budget was never full`);
+    // So some of it had to go again.
+    assert.ok(uploaded > memory * MIB, `only ${uploaded} bytes were uploaded: the memory was never full`);
     await settled(page);
     checkFaults(page);
     await page.end();
@@ -89,18 +95,21 @@ export function tests({ browser, server }) {
     const page = await openMap(browser, server, { controls: "none" }, { width: 500, height: 400 });
     await lookAround(page, PLACES.slice(3, 9), 0);
     await settled(page);
-    for (const place of PLACES.slice(3, 9)) {
+    for (const place of [...PLACES.slice(3, 9), ...PLACES.slice(3, 9)]) {
       await lookAround(page, [place], 0);
       await settled(page);
     }
-    const before = server.state.requests.length;
-    for (const place of PLACES.slice(3, 9)) {
-      await lookAround(page, [place], 0);
-      await settled(page);
-    }
-    assert.equal(server.state.requests.length, before);
-    const ranges = server.state.requests.map(({ range }) => range).filter(Boolean);
-    assert.equal(new Set(ranges).size, ranges.length, "no range twice");
+    const ranges = server.state.requests
+      .filter(({ range, isStopped }) => range && !isStopped)
+      .map(({ range }) => range.slice("bytes=".length).split("-").map(Number))
+      .sort(([a], [b]) => a - b);
+    assert.ok(ranges.length > 6, `${ranges.length} ranges`);
+    // Neighbours that are fetched as one may have a little between them that was read before.
+    const gap = 4096;
+    ranges.slice(1).forEach(([first], place) => {
+      const [, last] = ranges[place];
+      assert.ok(last - first < gap, `bytes ${first} to ${last} were asked for twice`);
+    });
     await page.end();
   });
 }

@@ -97,13 +97,19 @@ struct Cache {
 }
 
 impl Cache {
-    fn get(&mut self, offset: u64, length: usize) -> Option<Vec<u8>> {
+    /// What there is of some bytes, from the first of them on; maybe nothing.
+    fn get(&mut self, offset: u64, length: usize) -> Vec<u8> {
         self.clock += 1;
-        let (from, (bytes, used)) = self.ranges.range_mut(..=offset).next_back()?;
-        let at = usize::try_from(offset - from).ok()?;
-        let found = bytes.get(at..at.checked_add(length)?)?.to_vec();
-        *used = self.clock;
-        Some(found)
+        let Some((from, (bytes, used))) = self.ranges.range_mut(..=offset).next_back() else {
+            return Vec::new();
+        };
+        let behind = usize::try_from(offset - from).ok().and_then(|at| bytes.get(at..));
+        let found = behind.map(|behind| behind[..length.min(behind.len())].to_vec());
+        let found = found.unwrap_or_default();
+        if !found.is_empty() {
+            *used = self.clock;
+        }
+        found
     }
 
     fn put(&mut self, offset: u64, bytes: Rc<[u8]>) {
@@ -270,9 +276,12 @@ impl ByteSource for WebSource {
         if length == 0 {
             return Ok(Vec::new());
         }
-        if let Some(found) = shared.cache.borrow_mut().get(offset, length) {
+        let mut found = shared.cache.borrow_mut().get(offset, length);
+        if found.len() == length {
             return Ok(found);
         }
+        // The first request ends within a tile: only what is missing is asked for.
+        let (offset, length) = (offset + found.len() as u64, length - found.len());
         let (answer, got) = oneshot::channel();
         let ticket = Rc::new(Ticket::default());
         let is_first = shared.waiting.borrow().is_empty();
@@ -287,12 +296,14 @@ impl ByteSource for WebSource {
         let got = got.await;
         drop(leaving);
         let dropped = || Err(Problem::new("other", "the request was dropped", ""));
-        got.unwrap_or_else(|_| dropped()).map_err(|problem| SourceError {
+        let rest = got.unwrap_or_else(|_| dropped()).map_err(|problem| SourceError {
             name: shared.address.clone(),
             offset,
             length,
             reason: problem.message,
             may_pass: problem.kind == "network",
-        })
+        })?;
+        found.extend(rest);
+        Ok(found)
     }
 }
