@@ -60,6 +60,7 @@ impl Map {
         }
         self.last_s = now_s;
         self.fly(now_s);
+        self.place_again();
         let camera = {
             let ground = ground(
                 &self.tiles,
@@ -192,6 +193,7 @@ impl Map {
             && (tiles.missing == 0 || tiles.full || troubled > 0)
             && tiles.loading == troubled;
         if is_settled {
+            self.placed = None;
             self.loader.end_foresight();
         }
         FrameReport {

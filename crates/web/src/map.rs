@@ -5,13 +5,13 @@ use std::rc::Rc;
 use corniche_geom::TileId;
 use corniche_live::{
     CameraControl, GroundProbe, ShownGround, TileLoader as _, Tiles,
-    controls::{Inertia, Input, KnownGround as _},
+    controls::{Inertia, Input, KnownGround as _, View},
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{Rgb, RoadStyle, Style};
 use corniche_tileset::{FORMAT_VERSION, Manifest};
 use corniche_viewer::{
-    SightedGround,
+    CameraRequest, OffGround, SightedGround,
     flight::Pose,
     lod::Fineness,
     range,
@@ -56,6 +56,8 @@ pub(crate) struct Map {
     pub(crate) is_hurried: bool,
     /// When tiles began to be loaded anew; what was shown stays until those of the view are there.
     pub(crate) anew_s: Option<f64>,
+    /// A place that was jumped to, and the view of it. The ground there may still be on its way.
+    pub(crate) placed: Option<(CameraRequest, View)>,
     /// Time of the last frame.
     pub(crate) last_s: f64,
 }
@@ -149,15 +151,28 @@ impl Map {
         }
     }
 
+    /// Moves to a place that the page names, as JSON.
     pub(crate) fn go(&mut self, place: &str, now_s: f64, jump: bool) -> Result<(), String> {
         let place: Place = serde_json::from_slice(place.as_bytes())
             .map_err(|error| format!("the place: {error}"))?;
         let request = place.request();
         range::check_camera(request).map_err(|error| error.to_string())?;
+        let view = self.view_at(request).map_err(|error| error.to_string())?;
+        if jump {
+            self.camera.jump_to(view);
+            self.placed = Some((request, self.camera.view()));
+        } else {
+            self.camera.travel_to(view, now_s);
+        }
+        Ok(())
+    }
+
+    /// The view of a place, by the ground that is known.
+    fn view_at(&self, request: CameraRequest) -> Result<View, OffGround> {
         let manifest = self.tileset.package.manifest();
         let scale = self.vertical_scale();
         let ground = ground(&self.tiles, &self.settings, manifest, self.height_range_m);
-        let at = request.place(manifest).map_err(|error| error.to_string())?;
+        let at = request.place(manifest)?;
         let sighted = SightedGround {
             extent: MapExtent::of_data(manifest.data_bounds, self.height_range_m),
             heights_m: self.height_range_m,
@@ -169,21 +184,23 @@ impl Map {
                 known_m.or_else(|| is_inside.then(|| f64::midpoint(low_m, high_m)))
             }),
         };
-        let camera = request
-            .camera(manifest, sighted, scale, self.size_px)
-            .map_err(|error| error.to_string())?;
-        let view = view_of(
-            request,
-            &camera,
-            manifest,
-            self.height_range_m.map(|height_m| height_m * scale),
-        );
-        if jump {
-            self.camera.jump_to(view);
-        } else {
-            self.camera.travel_to(view, now_s);
+        let camera = request.camera(manifest, sighted, scale, self.size_px)?;
+        let heights = self.height_range_m.map(|height_m| height_m * scale);
+        Ok(view_of(request, &camera, manifest, heights))
+    }
+
+    /// Looks again at the place that was jumped to, as long as nothing else moves the camera: finer ground has come, at another height.
+    pub(crate) fn place_again(&mut self) {
+        let Some((request, view)) = self.placed.take() else { return };
+        if self.camera.view() != view {
+            return;
         }
-        Ok(())
+        if let Ok(again) = self.view_at(request)
+            && again != view
+        {
+            self.camera.jump_to(again);
+        }
+        self.placed = Some((request, self.camera.view()));
     }
 
     /// The ground at a pixel: where it is, the tile that is drawn there, and how far beside a road it may be picked, working metres.

@@ -201,6 +201,7 @@ pub(crate) async fn open(
         notices: Vec::new(),
         is_hurried: false,
         anew_s: None,
+        placed: None,
         last_s: 0.0,
         tileset,
     })
