@@ -1,15 +1,19 @@
 // The custom element: attributes, properties, methods and events around an opened package.
-import { SETTINGS, changeOf, controlsOf, settingsOf } from "./attributes.js";
+import { SETTINGS, changeOf, controlsOf, settingOf, settingsOf } from "./attributes.js";
 import { Failure, failureOf } from "./engine.js";
 import { makeFailure } from "./failures.js";
-import { hashWith, placeInHash, placeOf } from "./hash.js";
+import { attributeText, changed, changesIn, changesText, shortList } from "./hand_made.js";
+import { changesAfter, hashWith, partInHash, placeBefore, placeOf } from "./hash.js";
 import { makeLayout } from "./layout.js";
 import { look } from "./look.js";
+import { isAddress, readStyle } from "./own_styles.js";
 import { openSession } from "./session.js";
 
 const REOPEN_AFTER_MS = 4000;
 const REOPEN_TIMES = 3;
 const REOPEN_WITHIN_MS = 60_000;
+/** Browsers allow only so many changes of the address in a time, and a slider makes many. */
+const WRITE_HASH_AFTER_MS = 400;
 const NARROW = 560;
 const WIDE = 720;
 /** Points of the screen that the panel covers, with the space beside it. */
@@ -18,7 +22,7 @@ const USUAL_CREDIT = "© OpenStreetMap contributors";
 
 /** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
 export class CornicheMap extends HTMLElement {
-  static observedAttributes = ["src", "look-at", "label", "controls", "hash", ...SETTINGS.map(([attribute]) => attribute)];
+  static observedAttributes = ["src", "look-at", "label", "controls", "gestures", "hash", ...SETTINGS.map(([attribute]) => attribute)];
 
   /** @type {ReturnType<typeof makeLayout>} */
   #layout;
@@ -32,6 +36,17 @@ export class CornicheMap extends HTMLElement {
   #lostTimer = 0;
   /** Settings that were set before the package was open. @type {Record<string, unknown>} */
   #wanted = {};
+  /** All settings as the program and the page ask for them; what differs in the view was changed by hand. @type {Record<string, unknown>} */
+  #asked = {};
+  /** @type {Record<string, unknown>} */
+  #usual = {};
+  /** @type {any} */
+  #glue = null;
+  /** Own styles that are on their way: the last one counts. */
+  #stylings = 0;
+  /** @type {Promise<void>} */
+  #styling = Promise.resolve();
+  #hashTimer = 0;
   /** @type {AbortController | null} */
   #connected = null;
 
@@ -61,14 +76,19 @@ export class CornicheMap extends HTMLElement {
       },
       { signal },
     );
-    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session?.set(this.#motion()), { signal });
+    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session && this.#set(this.#motion()), {
+      signal,
+    });
+    document.addEventListener("fullscreenchange", () => this.#gestures(), { signal });
     this.#label();
     this.#controls();
+    this.#gestures();
     this.#open();
   }
 
   disconnectedCallback() {
     this.#connected?.abort();
+    clearTimeout(this.#hashTimer);
     this.#close();
   }
 
@@ -78,11 +98,14 @@ export class CornicheMap extends HTMLElement {
     if (name === "src") this.#open();
     else if (name === "label") this.#label();
     else if (name === "controls") this.#controls();
+    else if (name === "gestures") this.#gestures();
     else if (name === "look-at") {
       const place = placeOf(text);
       if (place && this.#session) this.#session.lookAt(place);
     } else {
-      const change = changeOf(name, text);
+      const setting = settingOf(name);
+      // An attribute that is taken away asks for the usual value; before the package is open, that is what it is without it.
+      const change = text === null && setting ? this.#usualOf(setting) : changeOf(name, text);
       if (change) this.settings = change;
     }
   }
@@ -103,11 +126,8 @@ export class CornicheMap extends HTMLElement {
   }
 
   set settings(change) {
-    if (!this.#session) Object.assign(this.#wanted, change);
-    else {
-      const why = this.#session.set(change);
-      if (why !== "") throw new RangeError(why);
-    }
+    const why = this.#set(change);
+    if (why !== "") throw new RangeError(why);
   }
 
   /** What the package is; `null` before it is open. */
@@ -176,9 +196,10 @@ export class CornicheMap extends HTMLElement {
     return this.#need().readPixels();
   }
 
-  /** Fulfilled when nothing moves and all tiles of the view are there. */
+  /** Fulfilled when nothing moves, all tiles of the view are there, and an own style has been read. */
   settled() {
-    return this.#need().settled();
+    const session = this.#need();
+    return this.#styling.then(() => session.settled());
   }
 
   /** Properties that were assigned before this class was there hide those of the class. */
@@ -211,6 +232,11 @@ export class CornicheMap extends HTMLElement {
     if (!controlsOf(this.getAttribute("controls")).has("panel")) this.#showPanel(false);
   }
 
+  /** A map that fills the screen has no page to scroll. */
+  #gestures() {
+    this.#layout.cooperate(this.getAttribute("gestures") === "cooperative" && document.fullscreenElement === null);
+  }
+
   /** Whether the panel is shown at first: where there is room beside it. */
   #opensPanel() {
     const wish = this.getAttribute("panel");
@@ -227,6 +253,66 @@ export class CornicheMap extends HTMLElement {
     };
   }
 
+  /** What an attribute that is taken away asks for: the usual value, which is known once the program is there. */
+  #usualOf(/** @type {string} */ setting) {
+    return setting === "inertia" ? this.#motion() : { [setting]: this.#usual[setting] };
+  }
+
+  /** Sets what the page asks for; in words, why not. An own style is shown when its file has been read. */
+  #set(/** @type {any} */ change) {
+    const session = this.#session;
+    if (!session) {
+      Object.assign(this.#wanted, change);
+      return "";
+    }
+    const { style, ...others } = change;
+    const now = isAddress(style) ? others : change;
+    const why = session.set(now);
+    if (why !== "") return why;
+    for (const setting of Object.keys(now)) this.#asked[setting] = session.settings()[setting];
+    if (style === undefined) return "";
+    const turn = (this.#stylings += 1);
+    if (now === change) return "";
+    this.#styling = this.#keepStyle(style).then((isKept) => {
+      if (!isKept || turn !== this.#stylings || session !== this.#session) return;
+      session.set({ style });
+      this.#asked.style = style;
+    });
+    return "";
+  }
+
+  /** Hands an own style to the renderer, under its address; whether it could be read. */
+  async #keepStyle(/** @type {string} */ address, reading = readStyle(address)) {
+    try {
+      const why = this.#glue.MapView.keep_style(await reading);
+      if (why !== "") throw new Error(why);
+      return true;
+    } catch (error) {
+      this.#layout.notices.add("warn", /** @type {Error} */ (error).message);
+      return false;
+    }
+  }
+
+  /** The changes of a link that can be; the others are told. */
+  async #changesOfLink(/** @type {string} */ link, /** @type {any} */ settings) {
+    const { changes, unknown } = changesIn(link, settings);
+    const good = {};
+    for (const [part, change] of changes) {
+      const { style } = /** @type {any} */ (change);
+      // A link may have been written by anyone: it must not make this page ask other hosts.
+      const isOwn = isAddress(style) && new URL(style, document.baseURI).origin === location.origin;
+      if (isOwn && this.#faultOf(change) !== "" && !(await this.#keepStyle(style))) continue;
+      if (this.#faultOf(change) === "") Object.assign(good, change);
+      else unknown.push(part);
+    }
+    if (unknown.length > 0) this.#layout.notices.add("warn", `Left out of the link: ${shortList(unknown)}`);
+    return good;
+  }
+
+  #faultOf(/** @type {Record<string, unknown>} */ change) {
+    return this.#glue.MapView.fault_of(JSON.stringify(change));
+  }
+
   /** Several attributes that are set in one turn open the package once. */
   #open() {
     if (this.#isAsked) return;
@@ -234,15 +320,15 @@ export class CornicheMap extends HTMLElement {
     queueMicrotask(() => {
       this.#isAsked = false;
       if (!this.isConnected) return;
-      const name = this.#hashName();
-      const place = (name === null ? null : placeInHash(location.hash, name)) ?? placeOf(this.getAttribute("look-at"));
+      const part = this.#partOfHash();
+      const place = placeBefore(part) ?? placeOf(this.getAttribute("look-at"));
       this.#close();
-      void this.#start({ ...settingsOf(this), ...this.#motion(), ...this.#wanted }, place);
+      void this.#start({ ...settingsOf(this), ...this.#motion(), ...this.#wanted }, place, changesAfter(part ?? ""));
     });
   }
 
-  /** @param {Record<string, unknown>} settings @param {any} place */
-  async #start(settings, place) {
+  /** @param {Record<string, unknown>} settings those of the page @param {any} place @param {string} link what was changed by hand, as text */
+  async #start(settings, place, link) {
     const { src } = this;
     if (src === "") return;
     const opening = new AbortController();
@@ -250,6 +336,14 @@ export class CornicheMap extends HTMLElement {
     const layout = this.#layout;
     layout.fail(null);
     layout.opening(true);
+    // What was taken away before the program was there has no value.
+    const said = Object.fromEntries(Object.entries(settings).filter(([, value]) => value !== undefined));
+    const { style } = /** @type {any} */ (said);
+    const isKnown = () => this.#glue !== null && this.#faultOf({ style }) === "";
+    // It comes on the way of the program.
+    const reading = isAddress(style) && !isKnown() ? readStyle(style) : null;
+    reading?.catch(() => {});
+    let byHand = {};
     /** @type {any} */
     let session = null;
     try {
@@ -257,11 +351,23 @@ export class CornicheMap extends HTMLElement {
         src,
         layout,
         signal: opening.signal,
-        settings,
+        settings: async (glue) => {
+          this.#glue = glue;
+          this.#usual = JSON.parse(glue.MapView.usual_settings());
+          if (reading && !(await this.#keepStyle(style, reading))) delete said.style;
+          byHand = await this.#changesOfLink(link, { ...this.#usual, ...said });
+          return { ...said, ...byHand };
+        },
+        changed: (change) => {
+          if ("style" in change) this.#stylings += 1;
+          clearTimeout(this.#hashTimer);
+          this.#hashTimer = setTimeout(() => this.#writeHash(), WRITE_HASH_AFTER_MS);
+        },
         place,
         covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
         hashName: () => this.#hashName(),
+        hash: () => this.#hash(),
         failed: (failure, from) => this.#lose(failure, from),
         emit: (name, detail, cancelable) => this.#emit(name, detail, cancelable),
         showCard: () => controlsOf(this.getAttribute("controls")).has("card"),
@@ -273,10 +379,13 @@ export class CornicheMap extends HTMLElement {
     }
     if (opening.signal.aborted || !session) return;
     this.#session = session;
+    this.#asked = { ...this.#usual, ...session.settings() };
+    for (const setting of Object.keys(byHand)) this.#asked[setting] = setting in said ? said[setting] : this.#usual[setting];
     // What was set while the package was being opened.
-    const late = { ...this.#wanted };
+    const late = Object.entries(this.#wanted).map(([setting, value]) => [setting, value === undefined ? this.#usual[setting] : value]);
     this.#wanted = {};
-    if (Object.keys(late).length > 0) session.set(late);
+    const why = late.length > 0 ? this.#set(Object.fromEntries(late)) : "";
+    if (why !== "") session.tell("warn", why);
     layout.opening(false);
     this.#showPanel(this.#opensPanel());
     // With the first frame, the camera is known.
@@ -299,7 +408,8 @@ export class CornicheMap extends HTMLElement {
 
   /** The view cannot go on. A device that was lost comes back: the view is opened again where it was, but not again and again. */
   #lose(/** @type {import("./engine.js").Failure} */ failure, /** @type {any} */ session) {
-    const settings = session.settings();
+    const settings = this.#asked;
+    const link = changesText(changed(session.settings(), settings));
     const place = session.report()?.view ?? null;
     this.#close();
     const now = performance.now();
@@ -317,7 +427,7 @@ export class CornicheMap extends HTMLElement {
     const last = this.#lost.at(-1) ?? -Infinity;
     this.#lost.push(now);
     this.#layout.notices.add("tell", "The graphics device was lost. The map is opened again.");
-    this.#lostTimer = setTimeout(() => void this.#start(settings, place), Math.max(0, last + REOPEN_AFTER_MS - now));
+    this.#lostTimer = setTimeout(() => void this.#start(settings, place, link), Math.max(0, last + REOPEN_AFTER_MS - now));
   }
 
   #fail(/** @type {import("./engine.js").Failure} */ failure) {
@@ -340,18 +450,42 @@ export class CornicheMap extends HTMLElement {
     return this.dispatchEvent(new CustomEvent(name, { detail, cancelable }));
   }
 
-  #writeHash() {
+  /** The part of the page's address that is this map's. */
+  #partOfHash() {
+    const name = this.#hashName();
+    return name === null ? null : partInHash(location.hash, name);
+  }
+
+  /** The fragment with the camera and with what was changed by hand; `null` where the page does not keep them. */
+  #hash() {
     const name = this.#hashName();
     const place = this.camera;
-    if (name === null || !place) return;
-    const hash = hashWith(location.hash, name, place);
-    if (hash !== location.hash) history.replaceState(history.state, "", hash);
+    if (name === null || !place) return null;
+    return hashWith(location.hash, name, place, changesText(changed(this.#session.settings(), this.#asked)));
+  }
+
+  #writeHash() {
+    const hash = this.#hash();
+    if (hash !== null && hash !== location.hash) history.replaceState(history.state, "", hash);
   }
 
   #followHash() {
-    const name = this.#hashName();
-    const place = name === null ? null : placeInHash(location.hash, name);
+    const part = this.#partOfHash();
+    const place = placeBefore(part);
     if (place) this.#session?.lookAt(place, true);
+    // A link to a place alone leaves the settings as they are.
+    const link = changesAfter(part ?? "");
+    if (link !== "" && this.#session) this.#styling = this.#takeChanges(link);
+  }
+
+  /** Shows what a link says was changed, and nothing else that was. */
+  async #takeChanges(/** @type {string} */ link) {
+    const session = this.#session;
+    const turn = (this.#stylings += 1);
+    const changes = await this.#changesOfLink(link, this.#asked);
+    if (session !== this.#session || turn !== this.#stylings) return;
+    const others = Object.keys(changed(session.settings(), this.#asked)).map((setting) => [setting, this.#asked[setting]]);
+    session.set({ ...Object.fromEntries(others), ...changes });
   }
 
   #showPanel(/** @type {boolean} */ isShown) {
@@ -405,7 +539,7 @@ for (const [attribute, property, setting] of SETTINGS) {
       return this.settings[setting];
     },
     set(value) {
-      this.setAttribute(attribute, value === false ? "off" : value === true ? "on" : value === null ? "style" : String(value));
+      this.setAttribute(attribute, typeof value === "number" ? String(value) : attributeText(value));
     },
   });
 }
