@@ -1,13 +1,13 @@
 // The custom element: attributes, properties, methods and events around an opened package.
-import { SETTINGS, changeOf, controlsOf, settingOf, settingsOf } from "./attributes.js";
+import { SETTINGS, changeOf, controlsOf, settingOf } from "./attributes.js";
 import { Failure, failureOf } from "./engine.js";
 import { makeFailure } from "./failures.js";
-import { attributeText, changed, changesIn, changesText, shortList } from "./hand_made.js";
+import { attributeText } from "./hand_made.js";
 import { changesAfter, hashWith, partInHash, placeBefore, placeOf } from "./hash.js";
 import { makeLayout } from "./layout.js";
 import { look } from "./look.js";
-import { isAddress, readStyle } from "./own_styles.js";
 import { openSession } from "./session.js";
+import { Settings } from "./settings.js";
 
 const REOPEN_AFTER_MS = 4000;
 const REOPEN_TIMES = 3;
@@ -26,6 +26,7 @@ export class CornicheMap extends HTMLElement {
 
   /** @type {ReturnType<typeof makeLayout>} */
   #layout;
+  #settings = new Settings(this, (text) => this.#layout.notices.add("warn", text));
   /** @type {any} */
   #session = null;
   /** @type {AbortController | null} */
@@ -34,18 +35,6 @@ export class CornicheMap extends HTMLElement {
   /** @type {number[]} */
   #lost = [];
   #lostTimer = 0;
-  /** Settings that were set before the package was open. @type {Record<string, unknown>} */
-  #wanted = {};
-  /** All settings as the program and the page ask for them; what differs in the view was changed by hand. @type {Record<string, unknown>} */
-  #asked = {};
-  /** @type {Record<string, unknown>} */
-  #usual = {};
-  /** @type {any} */
-  #glue = null;
-  /** Own styles that are on their way: the last one counts. */
-  #stylings = 0;
-  /** @type {Promise<void>} */
-  #styling = Promise.resolve();
   #hashTimer = 0;
   /** @type {AbortController | null} */
   #connected = null;
@@ -76,7 +65,7 @@ export class CornicheMap extends HTMLElement {
       },
       { signal },
     );
-    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session && this.#set(this.#motion()), {
+    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session && this.#settings.set(this.#motion()), {
       signal,
     });
     document.addEventListener("fullscreenchange", () => this.#gestures(), { signal });
@@ -104,8 +93,7 @@ export class CornicheMap extends HTMLElement {
       if (place && this.#session) this.#session.lookAt(place);
     } else {
       const setting = settingOf(name);
-      // An attribute that is taken away asks for the usual value; before the package is open, that is what it is without it.
-      const change = text === null && setting ? this.#usualOf(setting) : changeOf(name, text);
+      const change = text === null && setting ? this.#without(setting) : changeOf(name, text);
       if (change) this.settings = change;
     }
   }
@@ -122,11 +110,11 @@ export class CornicheMap extends HTMLElement {
 
   /** All settings; those assigned are changed, the others stay. */
   get settings() {
-    return structuredClone(this.#session ? this.#session.settings() : { ...settingsOf(this), ...this.#wanted });
+    return structuredClone(this.#settings.shown);
   }
 
   set settings(change) {
-    const why = this.#set(change);
+    const why = this.#settings.set(change);
     if (why !== "") throw new RangeError(why);
   }
 
@@ -199,7 +187,7 @@ export class CornicheMap extends HTMLElement {
   /** Fulfilled when nothing moves, all tiles of the view are there, and an own style has been read. */
   settled() {
     const session = this.#need();
-    return this.#styling.then(() => session.settled());
+    return this.#settings.styled.then(() => session.settled());
   }
 
   /** Properties that were assigned before this class was there hide those of the class. */
@@ -253,64 +241,9 @@ export class CornicheMap extends HTMLElement {
     };
   }
 
-  /** What an attribute that is taken away asks for: the usual value, which is known once the program is there. */
-  #usualOf(/** @type {string} */ setting) {
-    return setting === "inertia" ? this.#motion() : { [setting]: this.#usual[setting] };
-  }
-
-  /** Sets what the page asks for; in words, why not. An own style is shown when its file has been read. */
-  #set(/** @type {any} */ change) {
-    const session = this.#session;
-    if (!session) {
-      Object.assign(this.#wanted, change);
-      return "";
-    }
-    const { style, ...others } = change;
-    const now = isAddress(style) ? others : change;
-    const why = session.set(now);
-    if (why !== "") return why;
-    for (const setting of Object.keys(now)) this.#asked[setting] = session.settings()[setting];
-    if (style === undefined) return "";
-    const turn = (this.#stylings += 1);
-    if (now === change) return "";
-    this.#styling = this.#keepStyle(style).then((isKept) => {
-      if (!isKept || turn !== this.#stylings || session !== this.#session) return;
-      session.set({ style });
-      this.#asked.style = style;
-    });
-    return "";
-  }
-
-  /** Hands an own style to the renderer, under its address; whether it could be read. */
-  async #keepStyle(/** @type {string} */ address, reading = readStyle(address)) {
-    try {
-      const why = this.#glue.MapView.keep_style(await reading);
-      if (why !== "") throw new Error(why);
-      return true;
-    } catch (error) {
-      this.#layout.notices.add("warn", /** @type {Error} */ (error).message);
-      return false;
-    }
-  }
-
-  /** The changes of a link that can be; the others are told. */
-  async #changesOfLink(/** @type {string} */ link, /** @type {any} */ settings) {
-    const { changes, unknown } = changesIn(link, settings);
-    const good = {};
-    for (const [part, change] of changes) {
-      const { style } = /** @type {any} */ (change);
-      // A link may have been written by anyone: it must not make this page ask other hosts.
-      const isOwn = isAddress(style) && new URL(style, document.baseURI).origin === location.origin;
-      if (isOwn && this.#faultOf(change) !== "" && !(await this.#keepStyle(style))) continue;
-      if (this.#faultOf(change) === "") Object.assign(good, change);
-      else unknown.push(part);
-    }
-    if (unknown.length > 0) this.#layout.notices.add("warn", `Left out of the link: ${shortList(unknown)}`);
-    return good;
-  }
-
-  #faultOf(/** @type {Record<string, unknown>} */ change) {
-    return this.#glue.MapView.fault_of(JSON.stringify(change));
+  /** What the attribute of a setting leaves where it is taken away: the usual value. */
+  #without(/** @type {string} */ setting) {
+    return setting === "inertia" ? this.#motion() : { [setting]: this.#settings.usual(setting) };
   }
 
   /** Several attributes that are set in one turn open the package once. */
@@ -323,7 +256,7 @@ export class CornicheMap extends HTMLElement {
       const part = this.#partOfHash();
       const place = placeBefore(part) ?? placeOf(this.getAttribute("look-at"));
       this.#close();
-      void this.#start({ ...settingsOf(this), ...this.#motion(), ...this.#wanted }, place, changesAfter(part ?? ""));
+      void this.#start({ ...this.#motion(), ...this.#settings.wanted }, place, changesAfter(part ?? ""));
     });
   }
 
@@ -336,14 +269,7 @@ export class CornicheMap extends HTMLElement {
     const layout = this.#layout;
     layout.fail(null);
     layout.opening(true);
-    // What was taken away before the program was there has no value.
-    const said = Object.fromEntries(Object.entries(settings).filter(([, value]) => value !== undefined));
-    const { style } = /** @type {any} */ (said);
-    const isKnown = () => this.#glue !== null && this.#faultOf({ style }) === "";
-    // It comes on the way of the program.
-    const reading = isAddress(style) && !isKnown() ? readStyle(style) : null;
-    reading?.catch(() => {});
-    let byHand = {};
+    const asked = this.#settings.opening(settings, link);
     /** @type {any} */
     let session = null;
     try {
@@ -351,15 +277,9 @@ export class CornicheMap extends HTMLElement {
         src,
         layout,
         signal: opening.signal,
-        settings: async (glue) => {
-          this.#glue = glue;
-          this.#usual = JSON.parse(glue.MapView.usual_settings());
-          if (reading && !(await this.#keepStyle(style, reading))) delete said.style;
-          byHand = await this.#changesOfLink(link, { ...this.#usual, ...said });
-          return { ...said, ...byHand };
-        },
+        settings: asked.of,
         changed: (change) => {
-          if ("style" in change) this.#stylings += 1;
+          this.#settings.changedByHand(change);
           clearTimeout(this.#hashTimer);
           this.#hashTimer = setTimeout(() => this.#writeHash(), WRITE_HASH_AFTER_MS);
         },
@@ -379,12 +299,7 @@ export class CornicheMap extends HTMLElement {
     }
     if (opening.signal.aborted || !session) return;
     this.#session = session;
-    this.#asked = { ...this.#usual, ...session.settings() };
-    for (const setting of Object.keys(byHand)) this.#asked[setting] = setting in said ? said[setting] : this.#usual[setting];
-    // What was set while the package was being opened.
-    const late = Object.entries(this.#wanted).map(([setting, value]) => [setting, value === undefined ? this.#usual[setting] : value]);
-    this.#wanted = {};
-    const why = late.length > 0 ? this.#set(Object.fromEntries(late)) : "";
+    const why = asked.done(session);
     if (why !== "") session.tell("warn", why);
     layout.opening(false);
     this.#showPanel(this.#opensPanel());
@@ -398,6 +313,7 @@ export class CornicheMap extends HTMLElement {
     this.#opening?.abort();
     this.#opening = null;
     this.#session = null;
+    this.#settings.closed();
     const layout = this.#layout;
     layout.opening(false);
     layout.fail(null);
@@ -408,8 +324,7 @@ export class CornicheMap extends HTMLElement {
 
   /** The view cannot go on. A device that was lost comes back: the view is opened again where it was, but not again and again. */
   #lose(/** @type {import("./engine.js").Failure} */ failure, /** @type {any} */ session) {
-    const settings = this.#asked;
-    const link = changesText(changed(session.settings(), settings));
+    const { settings, link } = this.#settings.kept;
     const place = session.report()?.view ?? null;
     this.#close();
     const now = performance.now();
@@ -461,7 +376,7 @@ export class CornicheMap extends HTMLElement {
     const name = this.#hashName();
     const place = this.camera;
     if (name === null || !place) return null;
-    return hashWith(location.hash, name, place, changesText(changed(this.#session.settings(), this.#asked)));
+    return hashWith(location.hash, name, place, this.#settings.link);
   }
 
   #writeHash() {
@@ -475,17 +390,7 @@ export class CornicheMap extends HTMLElement {
     if (place) this.#session?.lookAt(place, true);
     // A link to a place alone leaves the settings as they are.
     const link = changesAfter(part ?? "");
-    if (link !== "" && this.#session) this.#styling = this.#takeChanges(link);
-  }
-
-  /** Shows what a link says was changed, and nothing else that was. */
-  async #takeChanges(/** @type {string} */ link) {
-    const session = this.#session;
-    const turn = (this.#stylings += 1);
-    const changes = await this.#changesOfLink(link, this.#asked);
-    if (session !== this.#session || turn !== this.#stylings) return;
-    const others = Object.keys(changed(session.settings(), this.#asked)).map((setting) => [setting, this.#asked[setting]]);
-    session.set({ ...Object.fromEntries(others), ...changes });
+    if (link !== "") this.#settings.takeLink(link);
   }
 
   #showPanel(/** @type {boolean} */ isShown) {

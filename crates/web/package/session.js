@@ -37,7 +37,7 @@ function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSign
 /**
  * Opens a package.
  *
- * @param {{ src: string, settings: (glue: any) => Promise<Record<string, unknown>>, changed: (change: object) => void, place: any, covered: number, workers: number | null,
+ * @param {{ src: string, settings: (glue: any) => Promise<Record<string, unknown>>, changed: (change: Record<string, unknown>) => void, place: any, covered: number, workers: number | null,
  *   layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal, hashName: () => string | null, hash: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
  *   showCard: () => boolean, command: (name: string) => boolean }} from
  */
