@@ -18,7 +18,7 @@ async function longPage(browser, server, attributes, options = {}) {
       main.insertAdjacentElement(where, text);
     }
   });
-  const { ready } = await addMap(page, { src: "/packages/pass.pmtiles", samples: "1", ...VIEW, ...attributes }, { height: "400px" });
+  const { ready } = await addMap(page, { src: "/packages/pass.pmtiles", samples: "1", controls: "none", ...VIEW, ...attributes }, { height: "400px" });
   assert.ok(ready);
   await settled(page);
   return page;
@@ -118,7 +118,7 @@ export function tests({ browser, server, pictures }) {
     assert.ok(Math.abs(panned.pitch - before.pitch) < 0.5, "it is not tilted");
     assert.ok(moved(panned, before) > 1e-4, "it is moved");
     const kept = await ask(page, (map) => map.pick(400, 264));
-    assert.ok(moved(kept, { ...ground, distance: kept.distance }) < 2e-4 || Math.hypot(kept.lon - ground.lon, kept.lat - ground.lat) < 1e-4);
+    assert.ok(Math.hypot(kept.lon - ground.lon, kept.lat - ground.lat) < 1e-4, `${JSON.stringify(kept)} ${JSON.stringify(ground)}`);
     assert.ok(!(await isHinted(page)));
     await finger.up();
 
@@ -177,7 +177,6 @@ export function tests({ browser, server, pictures }) {
   test("a cooperative map that fills the screen is greedy", async () => {
     const page = await longPage(browser, server, { gestures: "cooperative" });
     for (const of of ["map", "parent"]) {
-      await page.evaluate(() => document.body.addEventListener("click", () => {}, { once: true }));
       const isFull = await ask(
         page,
         async (map, of) => {
@@ -192,7 +191,7 @@ export function tests({ browser, server, pictures }) {
       const before = await camera(page);
       await page.mouse.move(300, 200);
       await wheel(page, -200);
-      assert.ok((await camera(page)).distance < 0.8 * before.distance, of);
+      assert.ok((await camera(page)).distance < 0.9 * before.distance, of);
       assert.ok(!(await isHinted(page)));
       await page.evaluate(() => document.exitFullscreen());
       await page.waitForTimeout(300);
@@ -207,7 +206,7 @@ export function tests({ browser, server, pictures }) {
   });
 
   test("the help tells the gestures that there are", async () => {
-    const page = await longPage(browser, server, { gestures: "cooperative" });
+    const page = await longPage(browser, server, { gestures: "cooperative", controls: "" });
     const said = () => page.locator("corniche-map dialog dt:visible").allTextContents();
     await page.locator("corniche-map canvas").focus();
     await page.keyboard.press("?");
@@ -223,7 +222,7 @@ export function tests({ browser, server, pictures }) {
   ]) {
     test(`pictures: the hint, ${screen}`, async () => {
       for (const colorScheme of ["light", "dark"]) {
-        const page = await longPage(browser, server, { gestures: "cooperative" }, { ...options, colorScheme });
+        const page = await longPage(browser, server, { gestures: "cooperative", controls: "" }, { ...options, colorScheme });
         if (screen === "desktop") {
           await page.mouse.move(400, 300);
           await page.mouse.wheel(0, 60);

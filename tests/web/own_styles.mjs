@@ -130,7 +130,7 @@ export function tests({ browser, server, packages, sources, corniche }) {
   test("the panel names an own style by its file, and one can go back to it", async () => {
     lay();
     const page = await openMap(browser, server, { "map-style": "styles/mine.toml", hash: "" }, { width: 1280, height: 800 });
-    const select = page.locator("corniche-map .panel .field").filter({ hasText: "Style" }).locator("select");
+    const select = page.locator("corniche-map .panel .field").filter({ hasText: "Style" }).locator("select").first();
     assert.equal(await select.inputValue(), "styles/mine.toml");
     assert.match(await select.locator("option:checked").textContent(), /^mine\.toml$/);
     await select.selectOption("dark");

@@ -92,7 +92,7 @@ export function makeLayout(shadow, map) {
   /** @type {HTMLElement | null} */
   let failed = null;
   let canvas = newCanvas();
-  root.append(canvas, cross, help, opening, hint.element, divider.element, over, progress, dialog);
+  root.append(canvas, cross, help, opening, divider.element, over, hint.element, progress, dialog);
   shadow.append(root);
 
   /** A canvas is bound to the device with which it was drawn: after a device is lost, another one is needed. */
