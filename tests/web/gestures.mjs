@@ -27,6 +27,7 @@ async function longPage(browser, server, attributes, options = {}) {
 const camera = (page) => ask(page, (map) => map.camera);
 const scrolled = (page) => page.evaluate(() => Math.round(scrollY));
 const hint = (page) => page.locator("corniche-map .hint");
+const shownHint = (page) => page.locator("corniche-map .hint.shown");
 const isHinted = (page) => hint(page).evaluate((element) => element.classList.contains("shown"));
 const moved = (a, b) => Math.abs(a.lon - b.lon) + Math.abs(a.lat - b.lat) + Math.abs(a.distance - b.distance) / 1e5;
 
@@ -43,13 +44,13 @@ export function tests({ browser, server, pictures }) {
     const page = await longPage(browser, server, { gestures: "cooperative" });
     await page.mouse.move(300, 300);
     const before = await camera(page);
-    await wheel(page, 150);
-    assert.equal(await scrolled(page), 150);
+    await page.mouse.wheel(0, 150);
+    await shownHint(page).waitFor();
+    await page.waitForFunction(() => scrollY === 150);
+    await settled(page);
     assert.deepEqual(await camera(page), before, "the map stays");
-    assert.ok(await isHinted(page));
     assert.match(await hint(page).textContent(), /^Hold (Ctrl|⌘) and scroll to zoom the map$/);
-    await page.waitForTimeout(2500);
-    assert.ok(!(await isHinted(page)), "the hint goes by itself");
+    await shownHint(page).waitFor({ state: "detached" });
     for (const key of ["Control", "Meta"]) {
       const far = await camera(page);
       await wheel(page, -200, key);
@@ -98,12 +99,12 @@ export function tests({ browser, server, pictures }) {
     await finger.down([400, 400]);
     for (let step = 1; step <= 8; step += 1) await finger.move([400, 400 - 20 * step]);
     await finger.up();
+    await shownHint(page).waitFor();
+    assert.match(await hint(page).textContent(), /two fingers/);
     await page.waitForTimeout(500);
     const down = await scrolled(page);
     assert.ok(down > 80, `the page scrolled by ${down}`);
     assert.deepEqual(await camera(page), before, "the map stays");
-    assert.ok(await isHinted(page));
-    assert.match(await hint(page).textContent(), /two fingers/);
     await page.evaluate(() => scrollTo(0, 0));
 
     // Up and down together: the ground between the fingers goes along.
@@ -158,6 +159,26 @@ export function tests({ browser, server, pictures }) {
     assert.ok((await camera(page)).distance < 0.7 * there.distance);
     checkFaults(page);
     await page.end();
+  });
+
+  test("cooperative: what two fingers do is kept from the browser, what one does is not", async () => {
+    for (const [gestures, kept] of [
+      ["cooperative", [false, true]],
+      ["greedy", [false, false]],
+    ]) {
+      const page = await longPage(browser, server, { gestures }, { hasTouch: true, isMobile: true });
+      const isKept = await ask(page, (map) => {
+        const target = map.shadowRoot.querySelector("canvas");
+        const touch = (identifier) => new Touch({ identifier, target, clientX: 100 * identifier, clientY: 200 });
+        return [[touch(1)], [touch(1), touch(2)]].map(
+          (touches) => !target.dispatchEvent(new TouchEvent("touchmove", { cancelable: true, touches, targetTouches: touches })),
+        );
+      });
+      assert.deepEqual(isKept, kept, gestures);
+      const action = await page.locator("corniche-map canvas").evaluate((canvas) => getComputedStyle(canvas).touchAction);
+      assert.equal(action, gestures === "greedy" ? "none" : "pan-x pan-y");
+      await page.end();
+    }
   });
 
   test("greedy, as without the attribute: the wheel and one finger move the map", async () => {
@@ -232,8 +253,8 @@ export function tests({ browser, server, pictures }) {
           for (let step = 1; step <= 5; step += 1) await finger.move([200, 350 - 10 * step]);
           await finger.up();
         }
-        await page.waitForTimeout(500);
-        assert.ok(await isHinted(page));
+        await shownHint(page).waitFor();
+        await page.waitForTimeout(300);
         const [width, most] = await hint(page).evaluate((element) => [element.firstChild.getBoundingClientRect().width, element.clientWidth]);
         assert.ok(width < most, "it fits");
         await page.screenshot({ path: path.join(pictures, `hint-${screen}-${colorScheme}.png`) });

@@ -104,7 +104,7 @@ export function tests({ sources }) {
     assert.deepEqual(Object.assign({}, ...changesIn("classes=none;widths=none", usual).changes.map(([, change]) => change)), none);
     const bad = ["neon=1", "exaggeration=high", "classes=0,9", "classes=", "widths=1", "widths=1:x", "map-style=%E0", "constructor=1", "7"];
     assert.deepEqual(changesIn(bad.join(";"), usual), { changes: [], unknown: bad });
-    assert.equal(shortList(["a=1", "b=2", "c=3"]), "a=1, b=2 and 1 more");
+    assert.equal(shortList(["a=1", "b=2", "c=3"]), "a=1 and 2 more");
     assert.ok(shortList(["x".repeat(1e5)]).length < 30);
   });
 

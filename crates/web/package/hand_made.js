@@ -85,6 +85,7 @@ export function changesIn(text, settings) {
 
 /** Parts of a link for a notice: anything may be in them, at any length. */
 export function shortList(/** @type {string[]} */ parts) {
-  const shown = parts.slice(0, 2).map((part) => (part.length > 20 ? `${part.slice(0, 19)}…` : part));
-  return shown.join(", ") + (parts.length > 2 ? ` and ${parts.length - 2} more` : "");
+  const [first] = parts;
+  const shown = first.length > 20 ? `${first.slice(0, 19)}…` : first;
+  return parts.length > 1 ? `${shown} and ${parts.length - 1} more` : shown;
 }

@@ -1,7 +1,7 @@
 // Says how a map is moved in a page that scrolls, while somebody scrolls over the map.
 import { make, setText } from "./dom.js";
 
-const SHOWN_MS = 1500;
+const SHOWN_MS = 2000;
 const KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? "⌘" : "Ctrl";
 const TEXTS = { wheel: `Hold ${KEY} and scroll to zoom the map`, finger: "Use two fingers to move the map" };
 
