@@ -17,7 +17,7 @@ const MINE = (sources) =>
 const READER = ["/style_reader.js", "/corniche_web_styles_bg.wasm"];
 const SIZE = { width: 640, height: 400 };
 
-export function tests({ browser, server, packages, sources, corniche }) {
+export function tests({ browser, server, packages, sources, corniche, pictures }) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
   after(() => fs.rmSync(folder, { recursive: true }));
   const mine = MINE(sources);
@@ -81,11 +81,11 @@ export function tests({ browser, server, packages, sources, corniche }) {
   });
 
   for (const [what, answer, told] of [
-    ["is not there", { bytes: null, status: 404 }, /bad\.toml: the server answers 404/i],
-    ["is a page", { bytes: Buffer.from("<!doctype html>"), type: "text/html" }, /bad\.toml: line 1: /i],
+    ["is not there", { bytes: null, status: 404 }, /^Style bad\.toml: the server answers 404/i],
+    ["is a page", { bytes: Buffer.from("<!doctype html>"), type: "text/html" }, /^Style bad\.toml: line 1: /i],
     ["has an unknown entry", toml(`neon = true\n${mine}`), /bad\.toml: line 1: unknown field `neon`/i],
     ["has a number out of range", toml(mine.replace("outline_px = 2", "outline_px = 9")), /bad\.toml: outline_px of 9 is out of range; it must be 0 to 4/i],
-    ["is too long", toml(`${mine}\n#${" ".repeat(1 << 21)}`), /bad\.toml: it is longer than 1048576 bytes/i],
+    ["is too long", toml(`${mine}\n#${" ".repeat(1 << 21)}`), /^Style bad\.toml: it is longer than 1048576 bytes/i],
     ["is no text", { bytes: Buffer.from([0x61, 0xff, 0xfe]), type: "application/toml" }, /bad\.toml: it is no text in UTF-8/i],
   ]) {
     test(`an own style that ${what} is told, and the one before stays`, async () => {
@@ -100,7 +100,8 @@ export function tests({ browser, server, packages, sources, corniche }) {
       const lines = await warned(page)
         .locator("span")
         .evaluate((span) => Math.round((span.clientHeight - 2 * parseFloat(getComputedStyle(span).paddingTop)) / parseFloat(getComputedStyle(span).lineHeight)));
-      assert.ok(lines <= 3, `${lines} lines`);
+      assert.ok(lines <= 2, `${lines} lines`);
+      await page.screenshot({ path: path.join(pictures, `own-style-that-${what.replace(/\W+/g, "-")}.png`) });
       await settled(page);
       assert.equal((await style(page))[0], "dark");
       assert.deepEqual(page.faults.errors, []);
@@ -119,7 +120,7 @@ export function tests({ browser, server, packages, sources, corniche }) {
       lay();
       server.state.replaced.set(name, answer);
       const page = await openMap(browser, server, { "map-style": "styles/mine.toml", hash: "" }, { width: 360, height: 500 });
-      assert.match(await warned(page).textContent(), /^mine\.toml: |belongs beside corniche-map\.js/i);
+      assert.match(await warned(page).textContent(), /^Style mine\.toml: (line 1: .|(style_reader\.js|corniche_web_styles_bg\.wasm) of corniche-map is missing)/);
       assert.equal((await style(page))[0], "road-atlas");
       assert.deepEqual(page.faults.errors, []);
       await page.end();

@@ -20,8 +20,10 @@ export function fileOf(/** @type {string} */ address) {
  * @returns {Promise<Uint8Array>}
  */
 export async function readStyle(address) {
-  const reader = await import("./style_reader.js").catch(() => {
-    throw new Error(`${fileOf(address)}: style_reader.js cannot be loaded; it belongs beside corniche-map.js`);
+  const what = `style ${fileOf(address)}`;
+  const reader = await import("./style_reader.js").catch((error) => {
+    console.warn(error);
+    throw new Error(`${what}: style_reader.js of corniche-map is missing`);
   });
-  return reader.readStyle(address, fileOf(address));
+  return reader.readStyle(address, what);
 }

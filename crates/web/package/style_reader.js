@@ -18,7 +18,8 @@ async function load() {
 function loadModule() {
   module ??= load().catch((error) => {
     module = null;
-    throw new Error(`${MODULE} cannot be loaded (${error.message}); it belongs beside corniche-map.js`);
+    console.warn(error);
+    throw new Error(`${MODULE} of corniche-map is missing`);
   });
   return module;
 }
@@ -42,7 +43,7 @@ async function bytesOf(/** @type {string} */ address) {
     length += value.length;
     if (length > MOST_BYTES) {
       void reader.cancel();
-      throw new Error(`it is longer than ${MOST_BYTES} bytes, far more than any settings`);
+      throw new Error(`it is longer than ${MOST_BYTES} bytes`);
     }
   }
 }
@@ -65,16 +66,16 @@ function inShort(/** @type {string} */ why) {
 
 /**
  * @param {string} address
- * @param {string} file its name for people
+ * @param {string} what the style, for people
  */
-export async function readStyle(address, file) {
+export async function readStyle(address, what) {
   try {
     const [bytes] = await Promise.all([bytesOf(address), loadModule()]);
     return style_table(address, textOf(bytes));
   } catch (error) {
     const why = typeof error === "string" ? error : /** @type {Error} */ (error).message;
     const short = inShort(why);
-    if (short !== why) console.warn(`${file}: ${why}`);
-    throw new Error(`${file}: ${short}`);
+    if (short !== why) console.warn(`${what}: ${why}`);
+    throw new Error(`${what}: ${short}`);
   }
 }
