@@ -35,8 +35,8 @@ export function tests({ browser, server, packages, sources, corniche, pictures }
 
   test("an own style: pixels equal those of render --style", { skip: hasDriver() ? false : "without Chromium's Vulkan driver" }, async () => {
     lay();
-    const native = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "640x400", "--style", file]);
-    const usual = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "640x400"]);
+    const native = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "640x400", "--roads", "geo", "--style", file]);
+    const usual = rendered(corniche, path.join(packages, "pass.pmtiles"), ["--size", "640x400", "--roads", "geo"]);
     assert.ok(difference(usual, native).bytes > 10_000, "the style is another one");
     const check = async (page, what) => {
       await settled(page);
