@@ -40,6 +40,25 @@ function watch() {
   };
 }
 
+/** How long the tasks of a page's main thread took that took a millisecond and more, the longest first, from a trace. */
+function mainTasks(events) {
+  const main = new Set(
+    events.filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain").map(({ pid, tid }) => `${pid} ${tid}`),
+  );
+  return events
+    .filter(({ name, ph, pid, tid }) => name === "RunTask" && ph === "X" && main.has(`${pid} ${tid}`))
+    .map(({ dur }) => dur / 1000)
+    .filter((task) => task >= 1)
+    .sort((a, b) => b - a);
+}
+
+/** Median, 95th percentile and largest of some times. */
+function spread(times) {
+  const sorted = times.toSorted((a, b) => a - b);
+  const at = (share) => (sorted[Math.floor(share * (sorted.length - 1))] ?? 0).toFixed(1);
+  return `median ${at(0.5)} ms, 95 % ${at(0.95)} ms, longest ${at(1)} ms`;
+}
+
 const kB = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
 const ms = (time) => `${time.toFixed(0)} ms`;
 
@@ -81,13 +100,10 @@ for (const name of names) {
   server.behave();
   const flight = await openPage(browser, server, `/?src=/packages/${name}.pmtiles`, { width: 640, height: 400, before: watch });
   await flight.waitForFunction(() => document.querySelector("corniche-map")?.camera);
+  await browser.startTracing(flight, { categories: ["toplevel", "disabled-by-default-devtools.timeline", "devtools.timeline", "__metadata"] });
   const told = await flight.evaluate(async () => {
     const map = document.querySelector("corniche-map");
     window.corniche_watch((await import("/corniche_web.js")).MapView);
-    const tasks = [];
-    new PerformanceObserver((list) => tasks.push(...list.getEntries().map((entry) => entry.duration))).observe({
-      entryTypes: ["longtask"],
-    });
     const [west, south, east, north] = map.about.bounds;
     window.corniche_decoded.length = 0;
     const begun = performance.now();
@@ -105,7 +121,6 @@ for (const name of names) {
     await map.settled?.();
     const seconds = (performance.now() - begun) / 1000;
     return {
-      tasks,
       frames: window.corniche_frames.map((frame) => frame.took),
       decoded: window.corniche_decoded.length,
       bytes: window.corniche_decoded.reduce((sum, [, bytes]) => sum + bytes, 0),
@@ -113,11 +128,10 @@ for (const name of names) {
       memory: performance.memory?.usedJSHeapSize,
     };
   });
-  const sorted = told.frames.toSorted((a, b) => a - b);
-  const at = (share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
+  const tasks = mainTasks(JSON.parse(String(await browser.stopTracing())).traceEvents);
   console.log(
-    `${name}: flight of ${told.seconds.toFixed(0)} s: ${told.decoded} tiles decoded (${(told.decoded / told.seconds).toFixed(1)} a second, ${kB(told.bytes)} of geometry), ${sorted.length} frames, ` +
-      `in the page median ${at(0.5).toFixed(1)} ms, 95 % ${at(0.95).toFixed(1)} ms, longest ${at(1).toFixed(1)} ms; tasks over 50 ms: ${told.tasks.length}, longest ${ms(Math.max(0, ...told.tasks))}`,
+    `${name}: flight of ${told.seconds.toFixed(0)} s: ${told.decoded} tiles decoded (${(told.decoded / told.seconds).toFixed(1)} a second, ${kB(told.bytes)} of geometry), ${told.frames.length} frames; ` +
+      `in the page for a frame ${spread(told.frames)}; ${tasks.length} tasks of the main thread of a millisecond and more: ${spread(tasks)}; the longest ${tasks.slice(0, 5).map((task) => task.toFixed(1)).join(", ")} ms`,
   );
   await flight.end();
 }

@@ -7,6 +7,7 @@ import zlib from "node:zlib";
 const TYPES = {
   ".html": "text/html",
   ".js": "text/javascript",
+  ".mjs": "text/javascript",
   ".json": "application/json",
   ".css": "text/css",
   ".wasm": "application/wasm",
@@ -81,9 +82,14 @@ export async function startServer({ site, packages }) {
   }
 
   const kept = new Map();
-  function compressed(asked, bytes) {
-    if (!kept.has(asked)) kept.set(asked, zlib.brotliCompressSync(bytes));
-    return kept.get(asked);
+  /** What is sent in place of a file: NAME.br beside it, or, for files of a page, what is made now. `null` where it goes as it is. */
+  function compressed(asked, bytes, type) {
+    if (!kept.has(asked)) {
+      const beside = path.join(site, `${asked}.br`);
+      if (fs.existsSync(beside)) kept.set(asked, fs.readFileSync(beside));
+      else if (/html|javascript|css|wasm/.test(type)) kept.set(asked, zlib.brotliCompressSync(bytes));
+    }
+    return kept.get(asked) ?? null;
   }
 
   async function whole(name) {
@@ -112,7 +118,11 @@ export async function startServer({ site, packages }) {
     if (request.method === "OPTIONS")
       return asked.startsWith("/as/no-cors/") ? answer.writeHead(403).end() : answer.writeHead(204, allowed).end();
     const { bytes, type, way, status } = await found(asked);
-    state.requests.push({ path: asked, range: request.headers.range ?? null, method: request.method });
+    const told = { path: asked, range: request.headers.range ?? null, method: request.method, isStopped: false };
+    state.requests.push(told);
+    answer.on("close", () => {
+      told.isStopped = !answer.writableFinished;
+    });
     if (!bytes || status) return answer.writeHead(status ?? 404, allowed).end("no");
     const head = { ...allowed, "Content-Type": type, "Accept-Ranges": "bytes", ETag: `"${bytes.length}"`, "Cache-Control": "no-store" };
     if (state.policy && type === "text/html") head["Content-Security-Policy"] = state.policy;
@@ -129,11 +139,14 @@ export async function startServer({ site, packages }) {
     }
     // As static hosts do it: files of the page, and never a package.
     const takesBrotli = /\bbr\b/.test(request.headers["accept-encoding"] ?? "");
-    if (state.compresses && takesBrotli && !match && /html|javascript|css|wasm/.test(type)) {
-      part = compressed(asked, bytes);
+    const small = state.compresses && takesBrotli && !match ? compressed(asked, bytes, type) : null;
+    if (small) {
+      part = small;
       head["Content-Encoding"] = "br";
     }
     await slowly(part.length);
+    // When the last byte was sent, in milliseconds since 1970.
+    Object.assign(told, { bytes: part.length, sent_ms: performance.timeOrigin + performance.now() });
     if (request.method === "HEAD") {
       if (way === WAYS.gzip) head["Content-Encoding"] = "gzip";
       const told = way === WAYS["no-cors"] ? bare(head) : head;

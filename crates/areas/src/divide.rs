@@ -16,8 +16,9 @@ pub enum Axis {
     North,
 }
 
-/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Both cover the same stretches of the line, between the
-/// same points; a corner of the outline that only touches the line lies in the part on its side alone.
+/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Where the polygon lies on
+/// both sides of the line, both cover the same of it, between the same points. Where the outline runs along the line, the part on its inner side
+/// alone has it, and so with a corner that only touches the line.
 ///
 /// ```text
 ///        │                       each ring is cut at the line; what that adds along the line is there

@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use geo::Validation as _;
 use proptest::prelude::*;
 
@@ -59,6 +61,21 @@ fn a_comb_falls_into_its_teeth() {
     assert_eq!(divide(&comb, Axis::North, -3).unwrap(), [vec![], vec![comb]]);
 }
 
+/// Corners of cells whose sides are level and upright.
+fn upright([x, y]: [i64; 2]) -> LatticePoint {
+    LatticePoint::new(10 * x, 10 * y)
+}
+
+/// The polygons around cells whose sides are level and upright.
+fn upright_polygons(cells: &BTreeSet<(i64, i64)>) -> Vec<Polygon> {
+    let ring = |&(x, y): &(i64, i64)| {
+        [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1], [x, y]].map(upright)
+    };
+    let rings: Vec<_> = cells.iter().map(ring).collect();
+    let ways: Vec<_> = rings.iter().map(|points| OutlineWay { points }).collect();
+    crate::assemble(&ways).unwrap().polygons
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 300 }))]
 
@@ -82,6 +99,28 @@ proptest! {
             for part in smaller.iter().chain(&larger) {
                 prop_assert!(to_geo(part).is_valid());
             }
+        }
+    }
+
+    /// Where the outline runs along the line, nothing moves: each part is what lies on its side. So one part alone covers the line there.
+    #[test]
+    fn a_line_along_the_outline(cells in cells(), is_east: bool, column in 0_i64..10) {
+        let axis = if is_east { Axis::East } else { Axis::North };
+        let line = Line { axis, at: 10 * column };
+        let is_smaller = |&(x, y): &(i64, i64)| (if is_east { x } else { y }) < column;
+        let sides: [BTreeSet<_>; 2] = [true, false].map(|side| cells.iter().copied().filter(|cell| is_smaller(cell) == side).collect());
+        let [mut smaller, mut larger] = [Vec::new(), Vec::new()];
+        for polygon in upright_polygons(&cells) {
+            let [one, other] = divide(&polygon, axis, line.at).unwrap();
+            smaller.extend(one);
+            larger.extend(other);
+        }
+        for (parts, side, offset) in [(smaller, &sides[0], -1), (larger, &sides[1], 0)] {
+            prop_assert_eq!(doubled_area(&parts), 200 * side.len() as i128);
+            let beside = |place: i64| if is_east { (column + offset, place) } else { (place, column + offset) };
+            let covered: Vec<i64> = (0..9).filter(|&place| side.contains(&beside(place))).collect();
+            let expected: Vec<[i64; 2]> = covered.chunk_by(|a, b| a + 1 == *b).map(|run| [10 * run[0], 10 * run[run.len() - 1] + 10]).collect();
+            prop_assert_eq!(along_line(&parts, line), expected);
         }
     }
 }

@@ -51,7 +51,7 @@ pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option
         widen(&mut beneath_range_m, beneath.part_of(triangle, surface).corners());
         covered += part.area();
         let [east_m, north_m] = surface.gradient_m(triangle);
-        rise_m = rise_m.max(east_m.hypot(north_m));
+        rise_m = rise_m.max(libm::hypot(east_m, north_m));
     }
     if near_range_m[0] > near_range_m[1] {
         return None;

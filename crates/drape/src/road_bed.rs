@@ -92,7 +92,7 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
             widen(&mut range_m, height_m - plane_m);
             // Ground beside the piece is reached straight across it; ground around an end can lie in any direction.
             if along < -slack || along > length + slack {
-                let most_m = bend_m[0].hypot(bend_m[1]);
+                let most_m = libm::hypot(bend_m[0], bend_m[1]);
                 widen(&mut rises_m, most_m);
                 widen(&mut rises_m, -most_m);
             } else {

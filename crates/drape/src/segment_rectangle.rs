@@ -20,7 +20,7 @@ impl SegmentRectangle {
     /// Around the segment from `p` to `q`, reaching `margin` beyond it on every side, all in lattice steps.
     pub(crate) fn new([p, q]: [[f64; 2]; 2], margin: f64) -> Self {
         let (du, dv) = (q[0] - p[0], q[1] - p[1]);
-        let length = du.hypot(dv);
+        let length = libm::hypot(du, dv);
         let [east, north] = if length > 0.0 { [du / length, dv / length] } else { [1.0, 0.0] };
         Self { p, east, north, length, beyond: [margin; 2], margin }
     }

@@ -212,7 +212,7 @@ impl CoordinateTable {
             let (behind, ahead) = (beside(-SCALE_SPAN_M / 2.0), beside(SCALE_SPAN_M / 2.0));
             let east_m = (ahead[0] - behind[0]).to_radians() * parallel_m;
             let north_m = (ahead[1] - behind[1]).to_radians() * meridian_m;
-            SCALE_SPAN_M / east_m.hypot(north_m)
+            SCALE_SPAN_M / libm::hypot(east_m, north_m)
         };
         let scale = [along(0), along(1)];
         scale.iter().all(|scale| scale.is_finite() && *scale > 0.0).then_some(scale)
@@ -271,10 +271,10 @@ impl CoordinateTable {
 /// ```
 #[must_use]
 pub fn width_factor(scale: [f64; 2], direction: [f64; 2]) -> f64 {
-    let length = direction[0].hypot(direction[1]);
+    let length = libm::hypot(direction[0], direction[1]);
     let [dx, dy] = if length > 0.0 { direction.map(|part| part / length) } else { [1.0, 0.0] };
     let [sx, sy] = scale;
-    sx * sy * (dx / sx).hypot(dy / sy)
+    sx * sy * libm::hypot(dx / sx, dy / sy)
 }
 
 /// First sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.

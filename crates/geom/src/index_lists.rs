@@ -1,5 +1,3 @@
-use serde::{Deserialize, Serialize};
-
 /// Lists of indices, one list for each place: triangles by the cells of a grid, half-edges by their vertex.
 ///
 /// ```text
@@ -10,7 +8,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Two flat arrays take 4 bytes for each place and for each entry, and are allocated once, with their final lengths: the
 /// entries are counted first, then filled in.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IndexLists {
     /// The list of place p is `indices[starts[p]..starts[p + 1]]`.
     starts: Vec<u32>,
@@ -42,6 +40,19 @@ impl IndexLists {
             }
         }
         Self { starts, indices }
+    }
+
+    /// Lists of parts as [`IndexLists::parts`] gives them; `None` if they are others.
+    #[must_use]
+    pub fn of_parts(starts: Vec<u32>, indices: Vec<u32>) -> Option<Self> {
+        let ends = [starts.first()?, starts.last()?].map(|at| *at as usize);
+        (ends == [0, indices.len()] && starts.is_sorted()).then_some(Self { starts, indices })
+    }
+
+    /// Where the list of each place begins, and where the last one ends; and all lists one after the other.
+    #[must_use]
+    pub fn parts(&self) -> [&[u32]; 2] {
+        [&self.starts, &self.indices]
     }
 
     /// The list of a place, ascending.

@@ -17,3 +17,19 @@ fn without_items_every_list_is_empty() {
     assert!(lists.is_empty() && lists.of(0).is_empty() && lists.of(1).is_empty());
     assert_eq!(IndexLists::new(0, 0, |_| std::iter::empty()), IndexLists::default());
 }
+
+#[test]
+fn lists_are_made_of_their_parts_and_of_nothing_else() {
+    let lists = IndexLists::new(3, 4, |item| std::iter::once(item % 3));
+    let [starts, indices] = lists.parts().map(<[u32]>::to_vec);
+    assert_eq!(IndexLists::of_parts(starts.clone(), indices.clone()), Some(lists));
+    assert_eq!(IndexLists::of_parts(vec![0], Vec::new()), Some(IndexLists::default()));
+    for (wrong, of) in [
+        (Vec::new(), indices.clone()),
+        (vec![1, 2, 3, 4], indices.clone()),
+        (vec![0, 3, 2, 4], indices.clone()),
+        (starts.clone(), Vec::new()),
+    ] {
+        assert_eq!(IndexLists::of_parts(wrong.clone(), of), None, "{wrong:?}");
+    }
+}

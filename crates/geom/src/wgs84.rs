@@ -18,7 +18,7 @@ pub fn radii_m(latitude_deg: f64) -> [f64; 2] {
 /// Source: Snyder 1987, *Map Projections: A Working Manual*, equations 4-18 to 4-21.
 #[must_use]
 pub fn radii_of_m(semi_major_m: f64, eccentricity_2: f64, latitude_deg: f64) -> [f64; 2] {
-    let (sin, cos) = latitude_deg.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(latitude_deg.to_radians());
     let w_2 = 1.0 - eccentricity_2 * sin * sin;
     let across_m = semi_major_m / w_2.sqrt();
     [across_m * cos, across_m * (1.0 - eccentricity_2) / w_2]

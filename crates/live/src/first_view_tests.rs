@@ -18,3 +18,16 @@ fn the_first_view_shows_all_the_data_beside_the_panel() {
         }
     }
 }
+
+#[test]
+fn without_a_panel_the_first_view_is_that_of_a_picture_to_the_last_bit() {
+    let plan =
+        Bounds { min_x: 513_402.3, min_y: 5_039_817.9, max_x: 519_633.1, max_y: 5_046_488.7 };
+    for step in 0..200 {
+        let up = f64::from(step) * 0.37;
+        let subject = WorldBox::new(plan, [up, 328.1 + up]);
+        let orientation = Orientation { heading_deg: 7.3 * up, pitch_deg: 45.0 };
+        let picture = Camera::framing(subject, orientation, [640, 400]);
+        assert_eq!(in_left_part(&picture, orientation, 640).camera([640, 400]), picture);
+    }
+}

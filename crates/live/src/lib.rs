@@ -19,6 +19,7 @@ mod first_view;
 mod ground_probe;
 #[cfg(not(target_arch = "wasm32"))]
 mod loader_threads;
+mod map_scene;
 #[doc(hidden)]
 pub mod polled_loader;
 mod recorder;
@@ -34,6 +35,7 @@ pub use {
     camera_limits::{MAX_PITCH_DEG, limits},
     first_view::first_view,
     ground_probe::{GroundPoint, GroundProbe},
+    map_scene::MapScene,
     recorder::Recorder,
     request_of_view::{camera_request, request_of_view},
     tile_loader::{Loaded, TileLoader},

@@ -6,14 +6,14 @@ mod support;
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use corniche_areas::{AreaClass, AreaTable};
-use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_areas::{AreaClass, AreaObject, AreaTable};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 use corniche_pipeline::{
     CheckId, Needs, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
 };
 use corniche_tileset::{
-    AreaRecord, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas, payload_sizes,
-    pmtiles_order, with_areas,
+    AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
+    payload_sizes, pmtiles_order, with_areas,
 };
 use support::{
     Options,
@@ -250,6 +250,32 @@ fn a_point_that_moves_along_a_border() {
         }
     });
     apart.assert_breaks(&[CheckId::AreaSeams]);
+}
+
+/// The outline runs along the border from corner to corner, so the neighbour has nothing there.
+#[test]
+fn an_outline_along_a_border_is_one_of_one_tile() {
+    for (levels_above, beside, expected) in
+        [(0, 0, &[][..]), (0, 1, &[CheckId::AreaSeams]), (1, 0, &[]), (1, 1, &[CheckId::AreaSeams])]
+    {
+        let mut apart = Apart::sound();
+        let level = apart.manifest.frame.max_level() - levels_above;
+        let is_there = |id: TileId| apart.tiles.contains_key(&pmtiles_order(id));
+        let mut ids = apart.tiles.values().map(|tile| tile.id).filter(|id| id.z() == level);
+        let id = ids.find(|id| id.neighbour(0, 1).is_some_and(is_there)).unwrap();
+        let LatticeBounds { min, max } = apart.manifest.frame.tile_lattice_bounds(id);
+        // On the lattices of all levels: their spacings are powers of two.
+        let side = 1 << ((max.u - min.u) / 4).ilog2();
+        let west = (min.u / side + 1) * side + beside;
+        let corners = [[west, min.v], [west + side, min.v], [west, min.v + side]];
+        let ring = corners.map(|[u, v]| LatticePoint::new(u, v)).to_vec();
+        apart.change(id, |areas| {
+            let polygons = vec![AreaRings { rings: vec![ring] }];
+            let (object, class) = (AreaObject::Way(99), AreaClass::Water);
+            areas.push(AreaRecord { object, class, name: String::new(), polygons });
+        });
+        apart.assert_breaks(expected);
+    }
 }
 
 /// The manifest's rows of `docs/fields.md` that are about areas.

@@ -12,7 +12,7 @@ impl RoadStyle {
     #[must_use]
     pub fn shown_share(&self, pixel_m: f64) -> f64 {
         let Some(max_pixel_m) = self.max_pixel_m else { return 1.0 };
-        let steps = (pixel_m / f64::from(max_pixel_m)).ln() / FADE_FACTOR.ln();
+        let steps = libm::log(pixel_m / f64::from(max_pixel_m)) / libm::log(FADE_FACTOR);
         (1.0 - steps).clamp(0.0, 1.0)
     }
 

@@ -55,7 +55,7 @@ impl WidthScaling {
     #[must_use]
     pub fn factor(&self, distance_m: f64) -> f64 {
         let growth = (distance_m / f64::from(self.threshold_m)).max(1.0);
-        f64::from(self.constant) * growth.powf(f64::from(self.exponent))
+        f64::from(self.constant) * libm::pow(growth, f64::from(self.exponent))
     }
 }
 

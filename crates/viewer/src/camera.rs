@@ -119,11 +119,22 @@ impl Camera {
         orientation: Orientation,
         size_px: [u32; 2],
     ) -> Self {
-        let world_from_view = world_from_view(orientation);
+        let backward = world_from_view(orientation).z_axis;
+        Self::at_eye(target_in_world + backward * distance_m, distance_m, orientation, size_px)
+    }
+
+    /// Looks from `eye_in_world` at what is `distance_m` away.
+    #[must_use]
+    pub fn at_eye(
+        eye_in_world: DVec3,
+        distance_m: f64,
+        orientation: Orientation,
+        size_px: [u32; 2],
+    ) -> Self {
         Self {
-            eye_in_world: target_in_world + world_from_view.z_axis * distance_m,
+            eye_in_world,
             projection: Projection::Perspective,
-            world_from_view,
+            world_from_view: world_from_view(orientation),
             fov_y_rad: FOV_Y_RAD,
             size_px,
             near_m: distance_m * NEAR_SHARE,
@@ -449,11 +460,11 @@ impl Frustum {
 }
 
 fn pixel_at_unit_depth_m(fov_y_rad: f64, [_, height]: [u32; 2]) -> f64 {
-    2.0 * (fov_y_rad / 2.0).tan() / f64::from(height)
+    2.0 * libm::tan(fov_y_rad / 2.0) / f64::from(height)
 }
 
 fn half_extent_at_unit_depth(fov_y_rad: f64, [width, height]: [u32; 2]) -> DVec2 {
-    let tan = (fov_y_rad / 2.0).tan();
+    let tan = libm::tan(fov_y_rad / 2.0);
     DVec2::new(tan * f64::from(width) / f64::from(height), tan)
 }
 

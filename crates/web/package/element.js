@@ -286,6 +286,7 @@ export class CornicheMap extends HTMLElement {
         place,
         covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
+        memory: Number(this.getAttribute("memory")) || null,
         hashName: () => this.#hashName(),
         hash: () => this.#hash(),
         failed: (failure, from) => this.#lose(failure, from),

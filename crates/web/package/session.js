@@ -10,6 +10,7 @@ import { watchPointers } from "./pointers.js";
 import { watchSize } from "./size.js";
 
 const MOVE_ENDS_MS = 200;
+const MIB = 1 << 20;
 
 /** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
 function nameOf(/** @type {string} */ src) {
@@ -37,7 +38,7 @@ function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSign
 /**
  * Opens a package.
  *
- * @param {{ src: string, settings: (glue: any) => Promise<Record<string, unknown>>, changed: (change: Record<string, unknown>) => void, place: any, covered: number, workers: number | null,
+ * @param {{ src: string, settings: (glue: any) => Promise<Record<string, unknown>>, changed: (change: Record<string, unknown>) => void, place: any, covered: number, workers: number | null, memory: number | null,
  *   layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal, hashName: () => string | null, hash: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
  *   showCard: () => boolean, command: (name: string) => boolean }} from
  */
@@ -135,6 +136,7 @@ export async function openSession(from) {
     size_px: [width, height],
     pixels_per_point: ratio,
     covered_px: Math.round(from.covered * ratio),
+    gpu_bytes: from.memory === null ? undefined : Math.round(from.memory * MIB),
   };
   const opened = glue.MapView.open(canvas, from.src, JSON.stringify(options), host);
   // Where a worker fails first, the view is still let go once it is there.

@@ -3,35 +3,22 @@
 use std::rc::Rc;
 
 use corniche_geom::TileId;
-use corniche_styles::Style;
+use corniche_live::MapScene;
 use corniche_viewer::{
-    FrameView, RoadOptions, Wireframe,
-    camera::Camera,
+    RoadOptions,
     gpu::{Gpu, Picture, ReadBack, Renderer, ResidentTiles, Targets},
-    lod::Drawn,
     tiles::TileGeometry,
 };
 use web_sys::HtmlCanvasElement;
 
 use crate::{problem::Problem, settings::Compare};
 
-/// What the map shows. Two equal scenes look the same, as long as their tiles are on the graphics card.
+/// What the page shows of the map. Two equal scenes look the same, as long as their tiles are on the graphics card.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scene {
-    pub(crate) camera: Camera,
-    pub(crate) style: Style,
-    /// How the roads of each picture are drawn: one picture, or GEO and SV.
-    pub(crate) roads: Vec<RoadOptions>,
+    pub(crate) map: MapScene,
     pub(crate) compare: Compare,
     pub(crate) divider: f32,
-    pub(crate) exaggeration: f64,
-    pub(crate) point_scale: f64,
-    pub(crate) height_range_m: [f64; 2],
-    pub(crate) cell_px: f64,
-    pub(crate) latitude_deg: f64,
-    pub(crate) wireframe: Wireframe,
-    pub(crate) drawn: Vec<Drawn>,
-    pub(crate) samples: u32,
 }
 
 /// Numbers of the scene that was drawn last.
@@ -133,15 +120,17 @@ impl PageCanvas {
         }
         let told = |error: corniche_viewer::gpu::GpuError| Problem::of_gpu(&error);
         self.shown = None;
-        self.targets.truncate(scene.roads.len());
+        self.targets.truncate(scene.map.roads.len());
         self.counts = Counts::default();
-        for (place, roads) in scene.roads.iter().enumerate() {
-            let size_px = scene.camera.size_px();
+        for (place, roads) in scene.map.roads.iter().enumerate() {
+            let size_px = scene.map.camera.size_px();
             let fits = |targets: &Targets| {
-                (targets.size_px(), targets.samples_per_side()) == (size_px, scene.samples)
+                (targets.size_px(), targets.samples_per_side())
+                    == (size_px, scene.map.samples_per_side)
             };
             if !self.targets.get(place).is_some_and(fits) {
-                let targets = Targets::new(&self.gpu, size_px, scene.samples).map_err(told)?;
+                let targets =
+                    Targets::new(&self.gpu, size_px, scene.map.samples_per_side).map_err(told)?;
                 self.targets.truncate(place);
                 self.targets.push(targets);
             }
@@ -150,8 +139,14 @@ impl PageCanvas {
         if scene.compare == Compare::Difference
             && let [first, second] = &self.targets[..]
         {
-            let picture =
-                Picture::new(&self.gpu, scene.camera.size_px(), scene.samples).map_err(told)?;
+            let (size_px, samples) = (scene.map.camera.size_px(), scene.map.samples_per_side);
+            let fits = |picture: &Picture| {
+                (picture.size_px(), picture.samples_per_side()) == (size_px, samples)
+            };
+            let picture = match self.difference.take().filter(fits) {
+                Some(picture) => picture,
+                None => Picture::new(&self.gpu, size_px, samples).map_err(told)?,
+            };
             self.renderer.draw_difference(&self.gpu, first, second, &picture).map_err(told)?;
             self.difference = Some(picture);
         } else {
@@ -163,19 +158,8 @@ impl PageCanvas {
     }
 
     fn draw_one(&mut self, place: usize, roads: RoadOptions, scene: &Scene) {
-        let view = FrameView {
-            camera: &scene.camera,
-            style: &scene.style,
-            roads,
-            exaggeration: scene.exaggeration,
-            point_scale: scene.point_scale,
-            height_range_m: scene.height_range_m,
-            wall_m: FrameView::wall_beside_m(scene.height_range_m),
-            cell_px: scene.cell_px,
-            latitude_deg: scene.latitude_deg,
-            wireframe: scene.wireframe,
-        };
-        let tiles = self.tiles.draw_list(&scene.drawn);
+        let view = scene.map.view(roads);
+        let tiles = self.tiles.draw_list(&scene.map.drawn);
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
             self.counts.segments += tile.road_segments(&view);
@@ -186,7 +170,7 @@ impl PageCanvas {
     /// The pictures that the canvas shows: each with the columns where it is seen.
     fn parts(&self) -> Vec<(&Picture, std::ops::Range<u32>)> {
         let Some(scene) = &self.shown else { return Vec::new() };
-        let [width, _] = scene.camera.size_px();
+        let [width, _] = scene.map.camera.size_px();
         if let Some(picture) = &self.difference {
             return vec![(picture, 0..width)];
         }
@@ -201,7 +185,7 @@ impl PageCanvas {
 
     /// Copies the pictures to the canvas. The canvas has the format of the pictures, so no pass is needed.
     fn show(&mut self, scene: &Scene) -> Result<(), Problem> {
-        let size_px = scene.camera.size_px();
+        let size_px = scene.map.camera.size_px();
         if self.configured_px != Some(size_px) {
             let [width, height] = size_px;
             self.canvas.set_width(width);
@@ -260,6 +244,6 @@ impl PageCanvas {
 
     /// Width of what is shown, pixels.
     pub(crate) fn shown_width_px(&self) -> u32 {
-        self.shown.as_ref().map_or(0, |scene| scene.camera.size_px()[0])
+        self.shown.as_ref().map_or(0, |scene| scene.map.camera.size_px()[0])
     }
 }

@@ -71,7 +71,7 @@ pub(crate) async fn first_tiles(
     let place = camera.place(manifest).map_err(|error| off_ground(&error))?;
     let mut there = BTreeMap::new();
     // All tiles above the place are needed, and asked for at once; else each would wait for the one above it.
-    let mut wanted = place.map_or_else(|| vec![TileId::ROOT], |at| tiles_at(tileset, at));
+    let mut wanted = place.map_or_else(|| vec![TileId::ROOT], |at| tileset.package.tiles_at(at));
     loop {
         let loads = wanted.iter().map(|id| tileset.load(*id, decoder));
         for tile in join_all(loads).await {
@@ -114,22 +114,6 @@ pub(crate) fn off_ground(error: &corniche_viewer::OffGround) -> Problem {
         error.to_string(),
         "Leave the place out, or name one that the package covers.",
     )
-}
-
-/// The tiles that exist at a place, from the root down to the finest.
-fn tiles_at(tileset: &Tileset, at: [f64; 2]) -> Vec<TileId> {
-    let (package, mut all) = (&tileset.package, vec![TileId::ROOT]);
-    let frame = package.frame();
-    let mut last = TileId::ROOT;
-    while last.z() < frame.max_level() {
-        let below = last
-            .children()
-            .find(|child| frame.tile_bounds(*child).contains(at) && package.exists(*child));
-        let Some(below) = below else { break };
-        all.push(below);
-        last = below;
-    }
-    all
 }
 
 fn looked(

@@ -1,6 +1,6 @@
 //! What a frame does: tiles that have arrived, time, choice of tiles, drawing, and what the page is told.
 
-use corniche_live::{controls::Mode, request_of_view};
+use corniche_live::{MapScene, controls::Mode, request_of_view};
 use corniche_viewer::{camera::Camera, lod::Quality, tiles::MapPackage as _};
 
 use crate::map::{HURRY_S, Map, fineness_of, ground};
@@ -10,6 +10,7 @@ use crate::{
     place::Place,
     problem::Problem,
     report::{FrameReport, GroundPlace, Next, Notice, TileCounts},
+    settings::Settings,
 };
 use corniche_live::controls::KnownGround as _;
 
@@ -134,12 +135,10 @@ impl Map {
         self.is_hurried = is_hurrying && wanted > 1;
         let samples = if self.is_hurried { 1 } else { wanted };
         let manifest = self.tileset.package.manifest();
-        let scene = Scene {
+        let map = MapScene {
             camera: self.camera.view().camera(camera.size_px()),
             style: self.style.clone(),
             roads: self.settings.pictures(),
-            compare: self.settings.compare,
-            divider: self.settings.divider,
             exaggeration: self.settings.exaggeration,
             point_scale: manifest.point_scale,
             height_range_m: self.height_range_m,
@@ -147,9 +146,10 @@ impl Map {
             latitude_deg: manifest.wgs84_bounds.center()[1],
             wireframe: self.settings.edges(),
             drawn: self.tiles.drawn().to_vec(),
-            samples,
+            samples_per_side: samples,
         };
-        self.canvas.draw(&scene)
+        let Settings { compare, divider, .. } = self.settings;
+        self.canvas.draw(&Scene { map, compare, divider })
     }
 
     fn report(&mut self, camera: &Camera, is_under_way: bool, now_s: f64) -> FrameReport {

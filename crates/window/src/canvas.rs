@@ -6,7 +6,7 @@ mod snapshot;
 
 use corniche_geom::TileId;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    RoadMethod, RoadOptions,
     gpu::{
         Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, ResidentTiles,
         Targets,
@@ -94,9 +94,9 @@ impl Canvas {
             return Ok(Drew { pictures: *pictures, is_new: false });
         }
         self.shown = None;
-        self.maps.truncate(scene.roads.len());
+        self.maps.truncate(scene.map.roads.len());
         self.counts = Counts::default();
-        for (place, roads) in scene.roads.iter().enumerate() {
+        for (place, roads) in scene.map.roads.iter().enumerate() {
             self.fit_map(place, scene)?;
             self.draw_map(place, *roads, scene);
         }
@@ -113,7 +113,7 @@ impl Canvas {
 
     /// Makes room for the picture at `place`.
     fn fit_map(&mut self, place: usize, scene: &Scene) -> Result<(), GpuError> {
-        let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+        let (size_px, samples) = (scene.map.camera.size_px(), scene.map.samples_per_side);
         let fits = |map: &Map| {
             (map.targets.size_px(), map.targets.samples_per_side()) == (size_px, samples)
         };
@@ -136,19 +136,8 @@ impl Canvas {
 
     fn draw_map(&mut self, place: usize, roads: RoadOptions, scene: &Scene) {
         let Some(map) = self.maps.get_mut(place) else { return };
-        let view = FrameView {
-            camera: &scene.camera,
-            style: &scene.style,
-            roads,
-            exaggeration: scene.exaggeration,
-            point_scale: scene.point_scale,
-            height_range_m: scene.height_range_m,
-            wall_m: FrameView::wall_beside_m(scene.height_range_m),
-            cell_px: scene.cell_px,
-            latitude_deg: scene.latitude_deg,
-            wireframe: scene.wireframe,
-        };
-        let tiles = self.tiles.draw_list(&scene.drawn);
+        let view = scene.map.view(roads);
+        let tiles = self.tiles.draw_list(&scene.map.drawn);
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
             self.counts.segments += tile.road_segments(&view);
@@ -160,7 +149,7 @@ impl Canvas {
     }
 
     fn draw_difference(&mut self, scene: &Scene) -> Result<TextureId, GpuError> {
-        let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+        let (size_px, samples) = (scene.map.camera.size_px(), scene.map.samples_per_side);
         let [first, second] = &self.maps[..] else { return Ok(TextureId::default()) };
         let fits = |picture: &Picture| {
             (picture.size_px(), picture.samples_per_side()) == (size_px, samples)
@@ -190,7 +179,7 @@ impl Canvas {
 
     /// Whether the pictures shown have all the window's pixels.
     pub(crate) fn is_full(&self) -> bool {
-        self.shown.as_ref().is_some_and(|(scene, _)| scene.camera.size_px() == scene.window_px)
+        self.shown.as_ref().is_some_and(|(scene, _)| scene.map.camera.size_px() == scene.window_px)
     }
 
     /// Whether it is not yet known how long the last frame took the graphics card.
@@ -209,7 +198,7 @@ impl Canvas {
     /// When the device is lost.
     pub(crate) fn times(&mut self) -> Result<Vec<(RoadMethod, PassTimes)>, ReadBackError> {
         let Some((scene, _)) = &self.shown else { return Ok(Vec::new()) };
-        for (map, roads) in self.maps.iter_mut().zip(&scene.roads) {
+        for (map, roads) in self.maps.iter_mut().zip(&scene.map.roads) {
             if let Some(timer) = &mut map.timer
                 && let Some(times) = timer.poll(&self.gpu)?
             {

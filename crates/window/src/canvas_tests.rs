@@ -1,5 +1,6 @@
 use std::time::{Duration, Instant};
 
+use corniche_live::MapScene;
 use corniche_styles::Style;
 use corniche_viewer::{
     Wireframe,
@@ -30,15 +31,19 @@ fn scene(compare: Compare) -> Scene {
     scene_of_size(compare, SIZE_PX)
 }
 
+/// The same with heights doubled.
+fn raised() -> Scene {
+    let mut raised = scene(Compare::Off);
+    raised.map.exaggeration = 2.0;
+    raised
+}
+
 pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
-    Scene {
-        lines_revision: 0,
+    let map = MapScene {
         camera: Camera::look_at(DVec3::ZERO, 1000.0, level, size_px),
-        window_px: size_px,
         style: Style::road_atlas(),
         roads: compare.pictures(RoadOptions::of(RoadMethod::Geometry)),
-        compare,
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 100.0],
@@ -47,7 +52,8 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
         wireframe: Wireframe::Hidden,
         drawn: Vec::new(),
         samples_per_side: 1,
-    }
+    };
+    Scene { map, window_px: size_px, compare, lines_revision: 0 }
 }
 
 fn red_beside_map(ui: &mut egui::Ui, texture: TextureId) {
@@ -97,7 +103,7 @@ fn only_another_scene_is_drawn() {
     let Some(mut canvas) = canvas() else { return };
     let first = canvas.draw(&scene(Compare::Off)).unwrap();
     assert!(first.is_new && !canvas.draw(&scene(Compare::Off)).unwrap().is_new);
-    let raised = Scene { exaggeration: 2.0, ..scene(Compare::Off) };
+    let raised = raised();
     let second = canvas.draw(&raised).unwrap();
     assert!(second.is_new);
     assert_eq!(first.pictures, second.pictures, "in the same texture");
@@ -118,7 +124,9 @@ fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
     let before = map(&canvas);
     let mut snapshot = canvas.snap_map(0.5).unwrap();
     let night = Style { sky: [0.0; 3], ..Style::road_atlas() };
-    canvas.draw(&Scene { style: night, ..scene(Compare::Off) }).unwrap();
+    let mut other = scene(Compare::Off);
+    other.map.style = night;
+    canvas.draw(&other).unwrap();
     assert_ne!(map(&canvas), before, "something else is shown by now");
     let begun = Instant::now();
     while !snapshot.has_arrived(canvas.gpu()).unwrap() {
@@ -166,7 +174,9 @@ fn in_a_hurry_fewer_pixels_are_drawn() {
     assert!(canvas.is_full());
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
     let camera = Camera::look_at(DVec3::ZERO, 1000.0, level, [32, 24]);
-    canvas.draw(&Scene { camera, ..full.clone() }).unwrap();
+    let mut coarse = full.clone();
+    coarse.map.camera = camera;
+    canvas.draw(&coarse).unwrap();
     assert!(!canvas.is_full());
     assert_eq!(map(&canvas).dimensions(), (32, 24));
     assert!(canvas.draw(&full).unwrap().is_new && canvas.is_full());
@@ -179,7 +189,7 @@ fn what_was_lost_is_drawn_again_by_another_canvas() {
     let before = map(&first);
     first.gpu().device().destroy();
     // Whether or not drawing on tells of it, it must not end the program.
-    let _ = first.draw(&Scene { exaggeration: 2.0, ..scene(Compare::Off) });
+    let _ = first.draw(&raised());
     let _ = first.times();
     assert!(first.gpu().is_lost());
     let Some(mut second) = canvas() else { return };

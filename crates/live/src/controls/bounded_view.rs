@@ -124,7 +124,7 @@ impl BoundedView {
 
     /// Zooms in unless the eye would be too low or too near to the pivot, or out unless it would be too far away.
     pub(crate) fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn KnownGround) -> Moved {
-        let zoomed = self.view.zoomed_at(pivot, (-levels).exp2());
+        let zoomed = self.view.zoomed_at(pivot, libm::exp2(-levels));
         let distance_m = match zoomed.from_above {
             None => zoomed.eye_in_world.distance(pivot),
             Some(_) => zoomed.focus_m,

@@ -66,7 +66,7 @@ impl Fingers {
                 }
                 // y grows downwards, so angles grow clockwise.
                 Step::Pinch {
-                    levels: (now.length() / before.length()).log2(),
+                    levels: libm::log2(now.length() / before.length()),
                     clockwise_deg: before.angle_to(now).to_degrees(),
                     between_px,
                 }

@@ -41,7 +41,7 @@ impl Flying {
     }
 
     pub(crate) fn turn_wheel(&mut self, notches: f64) {
-        let most = SPEED_RANGE[1].ln() / SPEED_PER_NOTCH.ln();
+        let most = libm::log(SPEED_RANGE[1]) / libm::log(SPEED_PER_NOTCH);
         self.notches = (self.notches + notches).clamp(-most, most);
     }
 
@@ -51,7 +51,7 @@ impl Flying {
 
     /// Speed along an axis. It grows with the height above the ground, of which the view's focus is a measure.
     pub(crate) fn speed_m_per_s(&self, view: &View) -> f64 {
-        let wheel = SPEED_PER_NOTCH.powf(self.notches).clamp(SPEED_RANGE[0], SPEED_RANGE[1]);
+        let wheel = libm::pow(SPEED_PER_NOTCH, self.notches).clamp(SPEED_RANGE[0], SPEED_RANGE[1]);
         let fast = if self.is_fast { FAST } else { 1.0 };
         view.focus_m.max(10.0) * 0.5 * wheel * fast
     }

@@ -214,14 +214,14 @@ impl Navigator {
         }
         if self.glide_m_per_s != DVec3::ZERO {
             self.seen.view.eye_in_world += self.glide_m_per_s * dt_s;
-            self.glide_m_per_s *= (-dt_s / GLIDE_DECAY_S).exp();
+            self.glide_m_per_s *= libm::exp(-dt_s / GLIDE_DECAY_S);
             if self.glide_m_per_s.length() < GLIDE_MIN_PX_PER_S / 4.0 * self.seen.pixel_m() {
                 self.glide_m_per_s = DVec3::ZERO;
             }
         }
         if self.pending.is_some() {
             let share = match self.inertia {
-                Inertia::On => 1.0 - (-dt_s / STEP_DECAY_S).exp(),
+                Inertia::On => 1.0 - libm::exp(-dt_s / STEP_DECAY_S),
                 Inertia::Off => 1.0,
             };
             self.do_pending(share, ground);

@@ -46,9 +46,7 @@ impl View {
     /// The camera for a picture of this size.
     #[must_use]
     pub fn camera(&self, size_px: [u32; 2]) -> Camera {
-        let backward = self.world_from_view().z_axis;
-        let target = self.eye_in_world - backward * self.focus_m;
-        let camera = Camera::look_at(target, self.focus_m, self.orientation, size_px);
+        let camera = Camera::at_eye(self.eye_in_world, self.focus_m, self.orientation, size_px);
         match self.from_above {
             None => camera,
             Some(heights) => Camera::from_above(

@@ -1,10 +1,11 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};
 use corniche_geom::{LatticePoint, NodeIndex};
 use proptest::prelude::*;
 
 use super::*;
+use crate::verify::area_seams::{Beside, Seam};
 
 /// Three levels of tiles, 10 m cells.
 fn frame() -> Frame {
@@ -30,13 +31,21 @@ fn star(center: [i64; 2], radii: &[i64]) -> Area {
     };
     let rings = [ring(1.0), ring(0.3)];
     let ways = rings.each_ref().map(|points| OutlineWay { points });
-    Area {
-        object: AreaObject::Way(5),
-        class: AreaClass::Water,
-        name: None,
-        polygons: assemble(&ways).unwrap().polygons,
-        area_m2: 1.0,
+    area(assemble(&ways).unwrap().polygons)
+}
+
+fn area(polygons: Vec<Polygon>) -> Area {
+    let object = AreaObject::Way(5);
+    Area { object, class: AreaClass::Water, name: None, polygons, area_m2: 1.0 }
+}
+
+/// The parts of an area by level and tile.
+fn by_level(splitting: &Splitting<'_>, area: &Area) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
+    let mut by_level: BTreeMap<u8, BTreeMap<TileId, AreaRecord>> = BTreeMap::new();
+    for (id, record) in splitting.split(area).unwrap() {
+        by_level.entry(id.z()).or_default().insert(id, record);
     }
+    by_level
 }
 
 fn doubled_area(parts: &[AreaRings]) -> i128 {
@@ -47,26 +56,22 @@ fn doubled_area(parts: &[AreaRings]) -> i128 {
     parts.iter().flat_map(|part| &part.rings).map(of_ring).sum()
 }
 
-/// Stretches of an upright line, the border of a tile, along which its parts run. A corner of the outline that touches the line from one side
-/// is a point of the part on that side alone; both cover the same of the line.
-fn along(parts: &[AreaRings], u: i64) -> Vec<[i64; 2]> {
-    let mut pieces = Vec::new();
-    for ring in parts.iter().flat_map(|part| &part.rings) {
-        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-            if a.u == u && b.u == u {
-                pieces.push([a.v.min(b.v), a.v.max(b.v)]);
-            }
+/// Asserts that neighbours cover the same of the lines between them, but for outlines that run along these.
+fn assert_seams_hold(frame: &Frame, tiles: &BTreeMap<TileId, AreaRecord>) {
+    let all = tiles
+        .keys()
+        .flat_map(|&id| [id, id.neighbour(-1, 0).unwrap_or(id), id.neighbour(0, -1).unwrap_or(id)]);
+    for id in all.collect::<BTreeSet<TileId>>() {
+        for beside in [Beside::East, Beside::South] {
+            let Some(neighbour) = beside.neighbour(id) else { continue };
+            let seam = Seam::new(frame, id, beside, None);
+            let of = |id: TileId| tiles.get(&id).map_or(&[][..], std::slice::from_ref);
+            let covered = [id, neighbour]
+                .map(|id| seam.covered(of(id)).into_values().next().unwrap_or_default());
+            let broken = seam.broken(covered.each_ref().map(Vec::as_slice));
+            assert_eq!(broken, [[0; 2]; 0], "{id} and {neighbour}: {covered:?}");
         }
     }
-    pieces.sort_unstable();
-    pieces.dedup_by(|later, piece| {
-        let touches = later[0] <= piece[1];
-        if touches {
-            piece[1] = piece[1].max(later[1]);
-        }
-        touches
-    });
-    pieces
 }
 
 #[test]
@@ -103,32 +108,45 @@ proptest! {
         let area = star(center.map(|part| part * metre), &radii);
         let whole: i128 = area.polygons.iter().map(Polygon::doubled_area).sum();
         let splitting = splitting(&frame);
-        let mut by_level: BTreeMap<u8, BTreeMap<TileId, Vec<AreaRings>>> = BTreeMap::new();
-        for (id, record) in splitting.split(&area).unwrap() {
-            let bounds = frame.tile_lattice_bounds(id);
-            let points = record.polygons.iter().flat_map(|part| &part.rings).flatten();
-            prop_assert!(points.into_iter().all(|&point| bounds.contains(point)));
-            by_level.entry(id.z()).or_default().insert(id, record.polygons);
-        }
-        for (level, tiles) in by_level {
-            let sum: i128 = tiles.values().map(|parts| doubled_area(parts)).sum();
+        for (level, tiles) in by_level(&splitting, &area) {
+            for (&id, record) in &tiles {
+                let bounds = frame.tile_lattice_bounds(id);
+                let points = record.polygons.iter().flat_map(|part| &part.rings).flatten();
+                prop_assert!(points.into_iter().all(|&point| bounds.contains(point)));
+            }
+            let sum: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
             // All of it is inside the root unless the star reaches beyond 5120 m.
             let around: i128 = 4 * radii.iter().map(|&radius| i128::from(radius)).sum::<i128>();
             let off = i128::from(splitting.step(level)) * around;
             let reach = 3000 + 1500;
             prop_assert!(reach < 5120 && (sum - whole).abs() <= off, "{level}: {sum} of {whole}");
-            for (id, parts) in &tiles {
-                let Some(east) = id.neighbour(1, 0) else { continue };
-                let line = frame.tile_lattice_bounds(*id).max.u;
-                // On the coarse lattice an edge of the outline itself can come to lie on the line: it has the area on one side alone.
-                let near = |point: &&LatticePoint| (point.u - line).abs() <= splitting.step(level);
-                let rings = area.polygons.iter().flat_map(Polygon::rings);
-                if rings.map(|ring| ring.points().iter().filter(near).count()).any(|count| count > 1) {
-                    continue;
-                }
-                let other = tiles.get(&east).map_or_else(Vec::new, |parts| along(parts, line));
-                prop_assert_eq!(along(parts, line), other, "{} and {}", id, east);
-            }
+            assert_seams_hold(&frame, &tiles);
+        }
+    }
+
+    /// Outlines that run along the lines between tiles, cross them at and beside corners, and leave them at any angle.
+    #[test]
+    fn seams_hold_where_outlines_run_along_them(
+        cells in prop::collection::btree_set((-5_i64..5, -5_i64..5), 1..70),
+        moved in prop::collection::vec((-2_i64..3, -2_i64..3), 121),
+        side_cells in prop::sample::select(vec![3_i64, 16, 100]),
+        fine in prop::sample::select(vec![0_i64, 0, 1, 17]),
+    ) {
+        let frame = frame();
+        let splitting = splitting(&frame);
+        let side = side_cells * frame.node_steps(2)[0];
+        let place = |[x, y]: [i64; 2]| {
+            let (east, north) = moved[(11 * (y + 5) + x + 5) as usize];
+            LatticePoint::new(x * side + east * side / 6 + fine * east, y * side + north * side / 6 + fine * north)
+        };
+        let rings: Vec<Vec<LatticePoint>> = cells
+            .iter()
+            .map(|&(x, y)| [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1], [x, y]].map(place).to_vec())
+            .collect();
+        let ways: Vec<_> = rings.iter().map(|points| OutlineWay { points }).collect();
+        let area = area(assemble(&ways).unwrap().polygons);
+        for (_, tiles) in by_level(&splitting, &area) {
+            assert_seams_hold(&frame, &tiles);
         }
     }
 }

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_areas::AreaObject;
-use corniche_geom::{LatticePoint, TileId, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, TileId, cross};
 use corniche_tileset::{AreaLevelRecord, AreaRecord, FilePackage, decode_areas, payload_sizes};
 
 use super::{
+    area_seams::{Beside, Seam},
     checks::{CheckId, Findings},
     each_tile::each_tile,
     error::VerifyError,
@@ -71,7 +72,12 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
     let mut found = Found { findings: Findings::default(), counts: [0; 3] };
     // Tiles that cannot be read are told elsewhere.
     let Some(payload) = package.tile(id).ok().flatten() else { return found };
-    let frame = &package.manifest().frame;
+    let manifest = package.manifest();
+    let frame = &manifest.frame;
+    let clip = manifest.clip.as_ref().map(|clip| {
+        let [min, max] = clip.nodes.map(|node| frame.lattice_of_node(node));
+        LatticeBounds { min, max }
+    });
     let Ok(areas) = decode_areas(&payload, id, frame) else { return found };
     for area in &areas {
         found.findings.look(CheckId::AreaRings, rings_are_right(area), || {
@@ -81,21 +87,23 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
     let points = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.areas.stored);
     found.counts = [areas.len() as u64, points.map(|ring| ring.len() as u64).sum(), bytes];
-    for (dx, dy) in [(1, 0), (0, 1)] {
-        let Some(beside) = id.neighbour(dx, dy) else { continue };
-        let other = package.tile(beside).ok().flatten();
+    for beside in [Beside::East, Beside::South] {
+        let Some(neighbour) = beside.neighbour(id) else { continue };
+        let other = package.tile(neighbour).ok().flatten();
         // A neighbour without ground has no areas.
-        let Some(other) = other.and_then(|other| decode_areas(&other, beside, frame).ok()) else {
+        let Some(other) = other.and_then(|other| decode_areas(&other, neighbour, frame).ok())
+        else {
             continue;
         };
-        let bounds = frame.tile_lattice_bounds(id);
-        let border = if dx == 1 { Border::East(bounds.max.u) } else { Border::South(bounds.min.v) };
-        let (own, other) = (on_border(&areas, border), on_border(&other, border));
+        let seam = Seam::new(frame, id, beside, clip);
+        let [own, other] = [&areas, &other].map(|areas| seam.covered(areas));
         let all: BTreeSet<&AreaObject> = own.keys().chain(other.keys()).collect();
         for object in all {
-            let is_same = own.get(object) == other.get(object);
-            found.findings.look(CheckId::AreaSeams, is_same, || {
-                format!("{object} between the tiles {id} and {beside}")
+            let covered = [&own, &other].map(|of| of.get(object).map_or(&[][..], Vec::as_slice));
+            let broken = seam.broken(covered);
+            found.findings.look(CheckId::AreaSeams, broken.is_empty(), || {
+                let pieces = broken.len();
+                format!("{object} between the tiles {id} and {neighbour}: one of them alone covers {pieces} pieces of the line")
             });
         }
     }
@@ -115,47 +123,4 @@ fn rings_are_right(area: &AreaRecord) -> bool {
                 && doubled_area != 0
         })
     })
-}
-
-/// A line between two tiles.
-#[derive(Debug, Clone, Copy)]
-enum Border {
-    East(i64),
-    South(i64),
-}
-
-impl Border {
-    /// Where along the border a point lies; `None` beside it.
-    fn along(self, point: LatticePoint) -> Option<i64> {
-        match self {
-            Self::East(u) => (point.u == u).then_some(point.v),
-            Self::South(v) => (point.v == v).then_some(point.u),
-        }
-    }
-}
-
-/// What of a border each object covers: pieces that do not touch, in order.
-fn on_border(areas: &[AreaRecord], border: Border) -> BTreeMap<AreaObject, Vec<[i64; 2]>> {
-    let mut pieces: BTreeMap<AreaObject, Vec<[i64; 2]>> = BTreeMap::new();
-    for area in areas {
-        for ring in area.polygons.iter().flat_map(|part| &part.rings) {
-            let next = ring.iter().cycle().skip(1);
-            for (&a, &b) in ring.iter().zip(next) {
-                if let (Some(a), Some(b)) = (border.along(a), border.along(b)) {
-                    pieces.entry(area.object).or_default().push([a.min(b), a.max(b)]);
-                }
-            }
-        }
-    }
-    for own in pieces.values_mut() {
-        own.sort_unstable();
-        own.dedup_by(|later, piece| {
-            let touches = later[0] <= piece[1];
-            if touches {
-                piece[1] = piece[1].max(later[1]);
-            }
-            touches
-        });
-    }
-    pieces
 }

@@ -87,7 +87,7 @@ checks! {
     PhotoLevels "photo.levels" Package "a photo of a coarse level is, within the loss of its coding, that of the tiles beneath it, averaged"
     PhotoSums "photo.sums" Package "photos and their bytes on each level are those of the tiles"
     AreaRings "areas.rings" Package "the outer rings of areas run counter-clockwise, those around holes clockwise, and no point of a ring comes twice"
-    AreaSeams "areas.seams" Package "an area that lies on both sides of a line between two tiles covers the same of the line in both"
+    AreaSeams "areas.seams" Package "what an area covers of a line between two tiles is the same in both, but where its outline can run along the line"
     AreaSums "areas.sums" Package "areas, points and bytes on each level are those of the tiles, and objects are kept or lost"
     BoundaryPlaces "boundaries.places" Package "each segment of a boundary comes into its tile or the margin around it"
     BoundaryOrder "boundaries.order" Package "boundaries of a tile are in order of class and way"

@@ -1,5 +1,6 @@
 //! Checks whether a package keeps its promises, by looking at every tile.
 
+pub(crate) mod area_seams;
 mod areas;
 mod attributes;
 mod boundaries;

@@ -7,12 +7,12 @@ use wgpu::{
 };
 
 use super::Gpu;
-use crate::tiles::{AreaVolumes, ClassVolumes};
+use crate::tiles::{AreaCorner, AreaVolumes, AreaWall, ClassVolumes};
 
 /// Bytes of a wall: two plan positions, bottom and top as f32.
-const WALL_BYTES: u64 = 24;
+const WALL_BYTES: u64 = size_of::<AreaWall>() as u64;
 /// Bytes of a corner of caps: a plan position, bottom and top as f32.
-const CORNER_BYTES: u64 = 16;
+const CORNER_BYTES: u64 = size_of::<AreaCorner>() as u64;
 /// Bytes of the box around a class: two positions as f32, its number as u32.
 const BOX_BYTES: u64 = 28;
 
@@ -62,8 +62,8 @@ impl AreaBuffers {
         let box_in_tile = areas.box_in_tile?;
         let vertices = |name, bytes: &[u8]| gpu.buffer(name, bytes, BufferUsages::VERTEX);
         Some(Self {
-            walls: vertices("area walls", &wall_bytes(areas)),
-            corners: vertices("area corners", &corner_bytes(areas)),
+            walls: vertices("area walls", bytemuck::cast_slice(&areas.walls)),
+            corners: vertices("area corners", bytemuck::cast_slice(&areas.corners)),
             triangles: gpu.buffer(
                 "area triangles",
                 bytemuck::cast_slice(&areas.triangles),
@@ -130,26 +130,6 @@ impl AreaBuffers {
     fn of_class(&self, class: AreaClass) -> Option<&ClassVolumes> {
         self.classes.iter().find(|volumes| volumes.class == class)
     }
-}
-
-fn wall_bytes(areas: &AreaVolumes) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(areas.walls.len() * WALL_BYTES as usize);
-    for wall in &areas.walls {
-        for part in [wall.start_in_tile, wall.end_in_tile, wall.heights_in_tile] {
-            bytes.extend_from_slice(bytemuck::cast_slice(&part));
-        }
-    }
-    bytes
-}
-
-fn corner_bytes(areas: &AreaVolumes) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(areas.corners.len() * CORNER_BYTES as usize);
-    for corner in &areas.corners {
-        for part in [corner.place_in_tile, corner.heights_in_tile] {
-            bytes.extend_from_slice(bytemuck::cast_slice(&part));
-        }
-    }
-    bytes
 }
 
 fn box_bytes(areas: &AreaVolumes) -> Vec<u8> {

@@ -11,7 +11,7 @@ use super::Gpu;
 use crate::tiles::{GroundMesh, GroundVertex};
 
 /// Bytes of a vertex: position as three f32, normal and skirt flag as four i8.
-const VERTEX_BYTES: u64 = 16;
+const VERTEX_BYTES: u64 = size_of::<GroundVertex>() as u64;
 const ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
 
 /// The vertices of [`GroundBuffers`], as a pipeline needs them.
@@ -44,7 +44,7 @@ impl GroundBuffers {
         let surface = mesh.surface_indices as u32;
         let index_format = index_format(mesh);
         (all > 0).then(|| Self {
-            vertices: buffer(&vertex_bytes(&mesh.vertices), BufferUsages::VERTEX),
+            vertices: buffer(bytemuck::cast_slice(&mesh.vertices), BufferUsages::VERTEX),
             indices: buffer(&index_bytes(&mesh.indices, index_format), BufferUsages::INDEX),
             index_format,
             surface: 0..surface,
@@ -127,7 +127,10 @@ fn index_buffer_bytes(indices: u64, format: IndexFormat) -> u64 {
 fn index_bytes(indices: &[u32], format: IndexFormat) -> Vec<u8> {
     let mut bytes = match format {
         // All of them are below the number of vertices.
-        IndexFormat::Uint16 => indices.iter().flat_map(|at| (*at as u16).to_ne_bytes()).collect(),
+        IndexFormat::Uint16 => {
+            let short: Vec<u16> = indices.iter().map(|at| *at as u16).collect();
+            bytemuck::cast_slice(&short).to_vec()
+        }
         IndexFormat::Uint32 => bytemuck::cast_slice(indices).to_vec(),
     };
     bytes.resize(index_buffer_bytes(indices.len() as u64, format) as usize, 0);
@@ -144,15 +147,6 @@ fn edges(triangles: &[u32]) -> Vec<[u32; 2]> {
     edges.sort_unstable();
     edges.dedup();
     edges
-}
-
-fn vertex_bytes(vertices: &[GroundVertex]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(vertices.len() * VERTEX_BYTES as usize);
-    for vertex in vertices {
-        bytes.extend_from_slice(bytemuck::cast_slice(&vertex.position_in_tile));
-        bytes.extend_from_slice(bytemuck::cast_slice(&vertex.normal_skirt));
-    }
-    bytes
 }
 
 #[cfg(test)]

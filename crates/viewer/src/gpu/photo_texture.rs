@@ -27,8 +27,7 @@ pub(crate) fn upload(gpu: &Gpu, photo: &PhotoImage) -> TextureView {
         usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (level, rgba) in (0..).zip(&photo.sizes) {
-        let side = photo.side >> level;
+    for (level, (side, rgba)) in (0..).zip(photo.sizes()) {
         gpu.queue.write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture: &texture,

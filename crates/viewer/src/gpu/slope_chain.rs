@@ -52,6 +52,6 @@ impl SlopeChain {
         // Where the tile is among those with the same coarsest tile above it.
         let [column, row] = [id.x(), id.y()].map(|at| (at % (1 << (Self::LEVELS - 1))) as f32);
         let cell_m = east_m.max(north_m) / TILE_CELLS as f64;
-        [column, row, coarsest, cell_m.log2() as f32]
+        [column, row, coarsest, libm::log2(cell_m) as f32]
     }
 }

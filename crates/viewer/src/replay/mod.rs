@@ -247,8 +247,7 @@ impl<'a> Replay<'a> {
         let eye = DVec3::new(x, y, height_m * self.vertical_scale());
         let size_px = self.options.size_px;
         // Only the direction of view is needed here; it does not depend on the place of the eye.
-        let backward = Camera::look_at(eye, 1.0, orientation, size_px).world_from_view().z_axis;
-        Camera::look_at(eye - backward * focus_m, focus_m, orientation, size_px)
+        Camera::at_eye(eye, focus_m, orientation, size_px)
     }
 
     /// Puts the tiles that a frame shows onto the graphics card, as far as they are there and fit.

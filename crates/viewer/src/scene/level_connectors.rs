@@ -89,7 +89,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
 /// Where the way continues in the tile beyond: its nearest end on the side that faces this tile.
 fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
     let distance_m =
-        |other: &RoadEnd| (other.at_m[0] - end.at_m[0]).hypot(other.at_m[1] - end.at_m[1]);
+        |other: &RoadEnd| libm::hypot(other.at_m[0] - end.at_m[0], other.at_m[1] - end.at_m[1]);
     beyond
         .ends
         .iter()

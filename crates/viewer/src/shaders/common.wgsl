@@ -140,6 +140,8 @@ fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
 
 // A class has faded away at this many times the distance up to which it is shown in full: half a zoom step.
 const FADE_FACTOR = 1.41421356;
+// The same in zoom steps: its logarithm, written out because not every compiler of shaders computes it with the same last digit.
+const FADE_STEPS = 0.5;
 
 // Service roads come one zoom step later than the rest of their class.
 const SERVICE_SHARE = 0.5;
@@ -153,7 +155,7 @@ fn full_distance_m(class_number: u32, look: u32) -> f32 {
 // thin over half a zoom step.
 fn part_share(road: Road, distance_m: f32) -> f32 {
     let full_m = road.part_m * frame.network.x;
-    return clamp(1.0 - log2(max(distance_m, 1e-3) / full_m) / log2(FADE_FACTOR), 0.0, 1.0);
+    return clamp(1.0 - log2(max(distance_m, 1e-3) / full_m) / FADE_STEPS, 0.0, 1.0);
 }
 
 // Whether anything of a road is shown at a distance from the eye. Both methods and the connectors of levels ask this.
@@ -164,7 +166,7 @@ fn is_shown(road: Road, distance_m: f32) -> bool {
 
 // Share of a road's colour that is shown at a distance from the eye: linear in the zoom.
 fn shown_share(class_number: u32, look: u32, distance_m: f32) -> f32 {
-    let steps = log2(max(distance_m, 1e-3) / full_distance_m(class_number, look)) / log2(FADE_FACTOR);
+    let steps = log2(max(distance_m, 1e-3) / full_distance_m(class_number, look)) / FADE_STEPS;
     return clamp(1.0 - steps, 0.0, 1.0);
 }
 

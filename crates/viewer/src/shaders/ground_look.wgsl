@@ -68,7 +68,7 @@ fn light_on(normal: vec3<f32>) -> f32 {
 fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
     // Gentle ground is shaded as if it were steeper; steep ground as it is.
     let slope = length(normal.xy) / max(normal.z, 1e-3);
-    let s2 = GENTLE_SLOPE * GENTLE_SLOPE;
+    let s2 = GENTLE_SLOPE_2;
     let steeper = 1.0 + (colors.heights.z - 1.0) * s2 / (s2 + slope * slope);
     let seen = normalize(vec3(normal.xy * steeper, normal.z));
     let light = light_on(seen);

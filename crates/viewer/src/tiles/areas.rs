@@ -14,6 +14,7 @@
 mod border_strips;
 mod plan_mesh;
 
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -25,7 +26,7 @@ use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
 };
-use super::{GroundMesh, ground_mesh::relative};
+use super::{GroundMesh, blocks, ground_mesh::relative};
 
 /// How far volumes reach beyond the ground in them, below and above, as a share of a cell of the tile's level. The ground's heights
 /// are rounded when they are drawn; this is far more.
@@ -46,7 +47,8 @@ pub struct BadArea {
 }
 
 /// A wall of a volume: upright over a segment of the outline, with the inside on the left.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct AreaWall {
     /// Metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],
@@ -57,7 +59,8 @@ pub struct AreaWall {
 }
 
 /// A corner of the caps of a volume, at the bottom and at the top.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct AreaCorner {
     /// Metres from the tile's reference point, east and north.
     pub place_in_tile: [f32; 2],
@@ -84,10 +87,13 @@ pub struct ClassVolumes {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AreaVolumes {
     /// Walls.
+    #[serde(with = "blocks::plain")]
     pub walls: Vec<AreaWall>,
     /// Corners of caps.
+    #[serde(with = "blocks::plain")]
     pub corners: Vec<AreaCorner>,
     /// Indices of `corners`, three for each triangle of a cap, counter-clockwise seen from above.
+    #[serde(with = "blocks::plain")]
     pub triangles: Vec<u32>,
     /// The classes that the tile has, in order of their numbers.
     pub classes: Vec<ClassVolumes>,

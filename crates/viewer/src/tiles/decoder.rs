@@ -159,3 +159,7 @@ impl TileDecoder {
         Ok(TileGeometry { photo: photo.map(PhotoImage::new), ..tile })
     }
 }
+
+#[cfg(test)]
+#[path = "decoder_tests.rs"]
+mod tests;

@@ -1,11 +1,13 @@
+use bytemuck::{Pod, Zeroable};
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
 use serde::{Deserialize, Serialize};
 
-use super::triangle_grid::TriangleGrid;
+use super::{blocks, triangle_grid::TriangleGrid};
 
 /// A vertex of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct GroundVertex {
     /// Metres from the tile's reference point; z is true height, before exaggeration.
     pub(crate) position_in_tile: [f32; 3],
@@ -23,8 +25,10 @@ pub(crate) struct GroundVertex {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
+    #[serde(with = "blocks::plain")]
     pub(crate) vertices: Vec<GroundVertex>,
     /// Three per triangle; the ground first.
+    #[serde(with = "blocks::plain")]
     pub(crate) indices: Vec<u32>,
     /// How many of the indices are ground.
     pub(crate) surface_indices: usize,

@@ -85,7 +85,7 @@ fn part_of(start: [f32; 2], end: [f32; 2], from: f32, to: f32) -> Piece {
     let [start, end] = [start, end].map(|point| point.map(f64::from));
     let along = [end[0] - start[0], end[1] - start[1]];
     let middle = f64::midpoint(f64::from(from), f64::from(to));
-    let length_m = f64::from(to - from) * along[0].hypot(along[1]);
+    let length_m = f64::from(to - from) * libm::hypot(along[0], along[1]);
     ([start[0] + middle * along[0], start[1] + middle * along[1]], length_m)
 }
 

@@ -6,6 +6,7 @@
 //! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
 pub(crate) mod areas;
+mod blocks;
 mod decoder;
 mod drawn_area;
 mod geometry;

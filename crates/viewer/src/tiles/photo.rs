@@ -1,6 +1,8 @@
 use corniche_tileset::Photo;
 use serde::{Deserialize, Serialize};
 
+use super::blocks;
+
 /// The photo of a tile, ready to be uploaded: four sizes, each half as large as the one before.
 ///
 /// More sizes are not needed: a tile whose texels are more than eight times too fine is replaced by a coarser one. And in more the
@@ -10,7 +12,8 @@ pub struct PhotoImage {
     /// Texels along a side, border included.
     pub(crate) side: u32,
     /// Red, green, blue and alpha of each texel, row by row from the north; the finest size first.
-    pub(crate) sizes: [Vec<u8>; Self::SIZES],
+    #[serde(with = "blocks::plain")]
+    rgba: Vec<u8>,
 }
 
 impl PhotoImage {
@@ -24,13 +27,28 @@ impl PhotoImage {
         let second = halved(&photo.rgba, side);
         let third = halved(&second, side / 2);
         let fourth = halved(&third, side / 4);
-        Self { side: side as u32, sizes: [photo.rgba, second, third, fourth] }
+        let mut rgba = photo.rgba;
+        for size in [second, third, fourth] {
+            rgba.extend(size);
+        }
+        Self { side: side as u32, rgba }
+    }
+
+    /// The texels of each size: their side, and red, green, blue and alpha of each, row by row from the north; the finest size first.
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = (u32, &[u8])> {
+        let mut rest = &self.rgba[..];
+        (0..Self::SIZES).map(move |level| {
+            let side = self.side >> level;
+            let (size, smaller) = rest.split_at(4 * side as usize * side as usize);
+            rest = smaller;
+            (side, size)
+        })
     }
 
     /// Bytes of all sizes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.sizes.iter().map(|size| size.len() as u64).sum()
+        self.rgba.len() as u64
     }
 }
 

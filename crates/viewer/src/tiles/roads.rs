@@ -8,6 +8,7 @@ mod lines;
 mod list;
 mod look;
 mod parts;
+mod records;
 mod segments;
 mod volumes;
 

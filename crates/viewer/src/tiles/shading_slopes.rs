@@ -3,6 +3,8 @@ use corniche_tileset::Relief;
 use half::f16;
 use serde::{Deserialize, Serialize};
 
+use super::blocks;
+
 /// The slopes of the ground at all nodes of a tile, as texels: rise in metres per metre east and north, row 0 in the north.
 ///
 /// Slopes and not normals, so that a stretched ground needs one product; both are mixed along a straight line between nodes. Half
@@ -10,8 +12,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShadingSlopes {
     /// Bits of half-precision numbers.
+    #[serde(with = "blocks::plain")]
     texels: Vec<[u16; 2]>,
     /// 255 where a node is water, else 0; empty without water.
+    #[serde(with = "blocks::plain")]
     water: Vec<u8>,
 }
 
@@ -24,7 +28,8 @@ impl ShadingSlopes {
 
     /// From a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
     pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
-        let half = |slope: f64| f16::from_f64(slope.clamp(-STEEPEST, STEEPEST)).to_bits();
+        // By way of f32, as some processors do it anyway: else it would be rounded twice on these and once on others.
+        let half = |slope: f64| f16::from_f32(slope.clamp(-STEEPEST, STEEPEST) as f32).to_bits();
         let texels = relief.slopes(cell).map(|slopes| slopes.map(half)).collect();
         let water = relief.water().unwrap_or_default();
         Self {

@@ -20,6 +20,20 @@ pub trait TileCatalog {
     fn frame(&self) -> &Frame;
     /// Whether the tile or anything beneath it exists.
     fn exists(&self, id: TileId) -> bool;
+
+    /// The tiles that exist at a position in the working CRS, from the root down to the finest.
+    fn tiles_at(&self, at: [f64; 2]) -> Vec<TileId> {
+        let (frame, mut there) = (self.frame(), Vec::new());
+        let mut next = self.exists(TileId::ROOT).then_some(TileId::ROOT);
+        while let Some(id) = next {
+            there.push(id);
+            next = (id.z() < frame.max_level())
+                .then(|| id.children().find(|child| frame.tile_bounds(*child).contains(at)))
+                .flatten()
+                .filter(|child| self.exists(*child));
+        }
+        there
+    }
 }
 
 /// Tiles for threads that may wait for them. Where nothing may wait, as in a browser, [`PackageTiles`](super::PackageTiles)

@@ -154,16 +154,7 @@ impl<'a> TileStore<'a> {
     /// # Errors
     /// When a tile cannot be read.
     pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
-        let mut there = Vec::new();
-        let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
-        while let Some(id) = next {
-            there.push(id);
-            next = (id.z() < self.max_level())
-                .then(|| id.children().find(|child| self.plan_bounds(*child).contains(at)))
-                .flatten()
-                .filter(|child| self.source.exists(*child));
-        }
-        for id in there.into_iter().rev() {
+        for id in self.source.tiles_at(at).into_iter().rev() {
             self.load_tile(id)?;
             let height_m = self.get(id).and_then(|tile| tile.ground_height_m(at));
             if height_m.is_some() {

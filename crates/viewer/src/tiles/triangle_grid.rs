@@ -3,6 +3,8 @@ use std::ops::RangeInclusive;
 use corniche_geom::IndexLists;
 use serde::{Deserialize, Serialize};
 
+use super::blocks;
+
 /// Cells along each side of a grid.
 const SIDE: usize = 32;
 /// A share of its extent by which a triangle reaches beyond its corners: look-ups accept each of its barycentric weights
@@ -23,6 +25,7 @@ pub(crate) struct TriangleGrid {
     /// How far triangles may reach beyond the cells in which their corners lie, metres.
     slack_m: f64,
     /// The triangles of each cell, row by row from the south.
+    #[serde(with = "blocks::index_lists")]
     triangles: IndexLists,
 }
 

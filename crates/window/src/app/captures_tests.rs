@@ -1,9 +1,6 @@
 use super::*;
 use crate::{
-    canvas::{
-        Scene,
-        tests::{canvas, scene_of_size},
-    },
+    canvas::tests::{canvas, scene_of_size},
     save_files::tests::NoFiles,
     settings::Compare,
 };
@@ -11,14 +8,15 @@ use crate::{
 #[test]
 fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     let Some(mut canvas) = canvas() else { return };
-    let scene = scene_of_size(Compare::Off, [64, 48]);
+    let mut scene = scene_of_size(Compare::Off, [64, 48]);
     canvas.draw(&scene).unwrap();
     let mut captures = Captures::new(Shots::new(Box::new(NoFiles)));
     canvas.gpu().device().destroy();
     // Its pixels cannot come.
     let snapshot = canvas.snap_map(0.5).unwrap();
     // Without a picture of the map there is nothing to take.
-    canvas.draw(&Scene { roads: Vec::new(), ..scene }).unwrap();
+    scene.map.roads.clear();
+    canvas.draw(&scene).unwrap();
     captures.want(Shot::Map);
     captures.developing.push_back((Shot::Map, snapshot));
     // The device tells of its loss once it has been waited for.

@@ -3,7 +3,7 @@
 //! In this order: tiles that have arrived, time, choice of tiles, map, panel. A change made in the panel is seen in the next
 //! frame, which the panel asks for.
 
-use corniche_live::Changes;
+use corniche_live::{Changes, MapScene};
 use corniche_styles::Rgb;
 use corniche_viewer::{
     camera::Camera,
@@ -175,16 +175,16 @@ impl App {
         now_s: f64,
     ) -> Result<Drew, WindowError> {
         let mut scene = self.scene(camera, now_s);
-        let wanted = scene.samples_per_side;
+        let wanted = scene.map.samples_per_side;
         let drew = loop {
             match canvas.draw(&scene) {
-                Err(GpuError::TooLarge { .. }) if scene.samples_per_side > 1 => {
-                    scene.samples_per_side -= 1;
+                Err(GpuError::TooLarge { .. }) if scene.map.samples_per_side > 1 => {
+                    scene.map.samples_per_side -= 1;
                 }
                 drew => break drew?,
             }
         };
-        let drawn = scene.samples_per_side;
+        let drawn = scene.map.samples_per_side;
         if drawn < wanted {
             self.notices.warn(format!(
                 "{wanted} × {wanted} samples a pixel are more than the adapter can draw in a window of this size; there \
@@ -205,12 +205,10 @@ impl App {
             (window_px, self.settings.samples_per_side)
         };
         let settings = &self.settings;
-        Scene {
+        let map = MapScene {
             camera: self.camera.view().camera(size_px),
-            window_px,
             style: settings.applied_to(self.styles.at(settings.style)),
             roads: settings.compare.pictures(settings.roads),
-            compare: settings.compare,
             exaggeration: settings.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.package.height_range_m(),
@@ -218,9 +216,10 @@ impl App {
             latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: settings.wireframe(),
             drawn: self.tiles.drawn().to_vec(),
-            lines_revision: self.drawing.revision(),
             samples_per_side,
-        }
+        };
+        let lines_revision = self.drawing.revision();
+        Scene { map, window_px, compare: settings.compare, lines_revision }
     }
 
     fn look(&mut self, camera: &Camera, is_new: bool) {

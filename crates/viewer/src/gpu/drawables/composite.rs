@@ -84,7 +84,7 @@ fn void_plane(view: &FrameView<'_>) -> DVec4 {
     let eye = view.camera.eye_in_world();
     let lowest = (view.height_range_m[0] - view.wall_m) * view.vertical_scale();
     // Spacings are powers of two, so that all of them divide this one. In f32, a place then has 2^-24 of it.
-    let widest = (4096.0 * view.camera.focus_m()).log2().round().exp2();
+    let widest = libm::exp2(libm::log2(4096.0 * view.camera.focus_m()).round());
     DVec4::new(eye.x.rem_euclid(widest), eye.y.rem_euclid(widest), eye.z - lowest, widest)
 }
 

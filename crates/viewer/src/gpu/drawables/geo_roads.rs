@@ -39,7 +39,7 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
 
 /// Uploads the segments of a tile.
 pub(crate) fn upload(gpu: &Gpu, roads: &RoadSegments) -> RoadBuffers {
-    RoadBuffers::new(gpu, roads, &instance_bytes(roads.all()))
+    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances(roads.all())))
 }
 
 /// Bytes of the buffer that [`upload`] makes.
@@ -47,29 +47,33 @@ pub(crate) fn bytes_of(roads: &RoadSegments) -> u64 {
     roads.all().len() as u64 * INSTANCE_BYTES
 }
 
-fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(segments.len() * INSTANCE_BYTES as usize);
-    for segment in segments {
-        let Bed { slopes, rises, most_m, leaves_tile } = segment.bed;
-        for pair in [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes] {
-            bytes.extend_from_slice(bytemuck::cast_slice(&pair));
-        }
-        bytes.extend_from_slice(&segment.height_in_tile.to_ne_bytes());
-        bytes.extend_from_slice(&segment.width_factor.to_ne_bytes());
-        let [at_start, at_end] = segment.has_caps;
-        let flags = [at_start, at_end].into_iter().chain(leaves_tile);
-        let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
-        let [start, end] = segment.flat_ends.map(u32::from);
-        let flags = flags | segment.look.number() << 9 | start << 11 | end << 12;
-        bytes.extend_from_slice(&(u32::from(segment.class.number()) | flags).to_ne_bytes());
-        for bound in [rises].iter().chain(&most_m).flatten() {
-            bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());
-        }
-        bytes.extend_from_slice(&own_width_value(segment.own_width).to_ne_bytes());
-        bytes.extend_from_slice(bytemuck::cast_slice(&segment.dash.numbers()));
-        bytes.extend_from_slice(&segment.part_m.to_ne_bytes());
-    }
-    bytes
+/// An instance, as words.
+type Instance = [u32; INSTANCE_BYTES as usize / 4];
+
+fn instances(segments: &[RoadSegment]) -> Vec<Instance> {
+    segments.iter().map(instance).collect()
+}
+
+fn instance(segment: &RoadSegment) -> Instance {
+    let Bed { slopes, rises, most_m: [cell, cells, margin], leaves_tile } = segment.bed;
+    let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
+    let [at_start, at_end] = segment.has_caps;
+    let flags = [at_start, at_end].into_iter().chain(leaves_tile);
+    let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
+    let [start, end] = segment.flat_ends.map(u32::from);
+    let flags = flags | segment.look.number() << 9 | start << 11 | end << 12;
+    let bounds = |pair: [f32; 2]| bytemuck::cast::<[u16; 2], u32>(pair.map(f16_above));
+    let [[a, b], [c, d], [e, f], [g, h]] =
+        [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes].map(numbers);
+    let [height, width] = numbers([segment.height_in_tile, segment.width_factor]);
+    let class = u32::from(segment.class.number()) | flags;
+    let [rises, cell, cells, margin] = [rises, cell, cells, margin].map(bounds);
+    let [dash_start, dash_rate] = numbers(segment.dash.numbers());
+    let [own_width, part] = numbers([own_width_value(segment.own_width), segment.part_m]);
+    [
+        a, b, c, d, e, f, g, h, height, width, class, rises, cell, cells, margin, own_width,
+        dash_start, dash_rate, part,
+    ]
 }
 
 /// The bits of the smallest 16-bit float that is not below `value`. Below 2^-14 it may be larger than the smallest, and above

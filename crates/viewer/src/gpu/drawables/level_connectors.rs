@@ -37,9 +37,9 @@ impl LevelConnectors {
             let reference_m = reference_of(connector.fine);
             (volume(connector, reference_m), connector.coarse as u32 + 1)
         });
-        let bytes = sv_roads::instance_bytes(volumes);
-        let instances =
-            (!bytes.is_empty()).then(|| gpu.buffer("connectors", &bytes, BufferUsages::VERTEX));
+        let all = sv_roads::instances(volumes);
+        let buffer = || gpu.buffer("connectors", bytemuck::cast_slice(&all), BufferUsages::VERTEX);
+        let instances = (!all.is_empty()).then(buffer);
         Self { list, instances }
     }
 

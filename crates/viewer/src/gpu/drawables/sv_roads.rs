@@ -40,7 +40,7 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
 /// Uploads the volumes of a tile.
 pub(crate) fn upload(gpu: &Gpu, roads: &RoadVolumes) -> RoadBuffers {
     let volumes = roads.all().iter().map(|volume| (*volume, 0));
-    RoadBuffers::new(gpu, roads, &instance_bytes(volumes))
+    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances(volumes)))
 }
 
 /// Bytes of the buffer that [`upload`] makes.
@@ -48,23 +48,31 @@ pub(crate) fn bytes_of(roads: &RoadVolumes) -> u64 {
     roads.all().len() as u64 * INSTANCE_BYTES
 }
 
+/// An instance, as words.
+pub(crate) type Instance = [u32; INSTANCE_BYTES as usize / 4];
+
 /// Instances of volumes. With each is the number of the other tile that it belongs to if it connects two levels, else 0.
-pub(crate) fn instance_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(volumes.size_hint().0 * INSTANCE_BYTES as usize);
-    for (volume, other) in volumes {
-        bytes.extend_from_slice(bytemuck::cast_slice(&volume.start_in_tile));
-        bytes.extend_from_slice(bytemuck::cast_slice(&volume.end_in_tile));
-        bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
-        bytes.extend_from_slice(bytemuck::cast_slice(&volume.near.range_in_tile));
-        bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
-        bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
-        let class = u32::from(volume.class.number());
-        let [start, end] = volume.flat_ends.map(u32::from);
-        let flags = volume.look.number() << 4 | start << 6 | end << 7;
-        bytes.extend_from_slice(&(class | flags | other << 8).to_ne_bytes());
-        bytes.extend_from_slice(&own_width_value(volume.own_width).to_ne_bytes());
-        bytes.extend_from_slice(bytemuck::cast_slice(&volume.dash.numbers()));
-        bytes.extend_from_slice(&volume.part_m.to_ne_bytes());
-    }
-    bytes
+pub(crate) fn instances(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<Instance> {
+    volumes.map(|(volume, other)| instance(&volume, other)).collect()
+}
+
+fn instance(volume: &RoadVolume, other: u32) -> Instance {
+    let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
+    let [[a, b], [c, d], [low, high], [near_low, near_high]] = [
+        volume.start_in_tile,
+        volume.end_in_tile,
+        volume.height_range_in_tile,
+        volume.near.range_in_tile,
+    ]
+    .map(numbers);
+    let [rise, width] = numbers([volume.near.rise, volume.width_factor]);
+    let [start, end] = volume.flat_ends.map(u32::from);
+    let flags = volume.look.number() << 4 | start << 6 | end << 7;
+    let class = u32::from(volume.class.number()) | flags | other << 8;
+    let [dash_start, dash_rate] = numbers(volume.dash.numbers());
+    let [own_width, part] = numbers([own_width_value(volume.own_width), volume.part_m]);
+    [
+        a, b, c, d, low, high, near_low, near_high, rise, width, class, own_width, dash_start,
+        dash_rate, part,
+    ]
 }

@@ -134,7 +134,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
 
 /// Unit vector towards the light in world space, turned by an angle.
 fn towards_light(light: &Light, turned_deg: f64) -> DVec3 {
-    let (azimuth, altitude) =
-        ((light.azimuth_deg + turned_deg).to_radians(), light.altitude_deg.to_radians());
-    DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
+    let [(east, north), (up, along)] = [light.azimuth_deg + turned_deg, light.altitude_deg]
+        .map(|deg| libm::sincos(deg.to_radians()));
+    DVec3::new(east * along, north * along, up)
 }

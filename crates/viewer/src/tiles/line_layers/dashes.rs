@@ -26,10 +26,10 @@ impl GroundLengths {
     /// A piece of a segment lies on the ground between these points. `vertical_scale` is the world height of a metre of true height.
     pub(crate) fn add(&mut self, segment: usize, ends_m: [[f64; 3]; 2], vertical_scale: f64) {
         let [from, to] = ends_m;
-        let plan_m = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let plan_m = libm::hypot(to[0] - from[0], to[1] - from[1]);
         if let Some(sums) = self.lengths_m.get_mut(segment) {
             sums[0] += plan_m;
-            sums[1] += plan_m.hypot((to[2] - from[2]) * vertical_scale);
+            sums[1] += libm::hypot(plan_m, (to[2] - from[2]) * vertical_scale);
         }
     }
 
@@ -41,7 +41,7 @@ impl GroundLengths {
             // What lies on no ground of the tile is not drawn there.
             let rate = if *plan_m > 0.0 { ground_m / plan_m } else { 1.0 };
             let start_m = along_m;
-            along_m += rate * (to[0] - from[0]).hypot(to[1] - from[1]);
+            along_m += rate * libm::hypot(to[0] - from[0], to[1] - from[1]);
             (*from, start_m, rate)
         });
         DashPlaces(of_segments.collect())
@@ -55,7 +55,7 @@ impl DashPlaces {
     /// For a part of a segment that starts at this point.
     pub(crate) fn at(&self, segment: usize, start: [f64; 2]) -> DashPlace {
         let Some((from, start_m, rate)) = self.0.get(segment) else { return DashPlace::flat(0.0) };
-        let beyond_m = (start[0] - from[0]).hypot(start[1] - from[1]);
+        let beyond_m = libm::hypot(start[0] - from[0], start[1] - from[1]);
         DashPlace::new(start_m + rate * beyond_m, *rate)
     }
 }

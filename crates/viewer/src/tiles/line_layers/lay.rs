@@ -67,7 +67,7 @@ fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
     let mut divided: Vec<LatticePoint> = points.first().copied().into_iter().collect();
     for [from, to] in points.array_windows::<2>() {
         let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
-        let parts = (du.hypot(dv) / longest).ceil().max(1.0);
+        let parts = (libm::hypot(du, dv) / longest).ceil().max(1.0);
         // A segment may go all around the earth: only what is near is divided.
         let [first, last] = shares_in(*from, [du, dv], &around);
         let numbers = (first * parts).floor().max(1.0) as u64..=(last * parts).ceil() as u64;

@@ -1,14 +1,13 @@
 //! Where the dashes of tunnels and lines are.
 
 use corniche_geom::Bounds;
-use serde::{Deserialize, Serialize};
 
 /// Lengths are counted in whole lengths of this many metres, so that f32 is precise enough between them. A power of two, as the
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
 
 /// Where dashes are on a segment.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DashPlace {
     /// How far along the line the segment's start is, working metres.
     start_m: f32,
@@ -30,6 +29,11 @@ impl DashPlace {
     /// As shaders take it: start and rate.
     pub(crate) const fn numbers(self) -> [f32; 2] {
         [self.start_m, self.rate]
+    }
+
+    /// That of these numbers.
+    pub(crate) const fn of_numbers([start_m, rate]: [f32; 2]) -> Self {
+        Self { start_m, rate }
     }
 }
 
@@ -56,7 +60,7 @@ pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlac
     let mut reached_m = vertices_m.first().filter(|first| is_inside(**first)).map(|_| 0.0);
     let segments = vertices_m.windows(2).map(|pair| {
         let [[x, y], [to_x, to_y]] = [pair[0], pair[1]];
-        let length_m = (to_x - x).hypot(to_y - y);
+        let length_m = libm::hypot(to_x - x, to_y - y);
         let ends_inside = is_inside(pair[1]);
         let start_m = match reached_m {
             Some(start_m) => start_m,
@@ -72,7 +76,7 @@ pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlac
 /// How far the start of a segment alone is along its direction, counted from the CRS's zero.
 pub(crate) fn dash_of_segment_m([start, end]: [[f64; 2]; 2]) -> f64 {
     let [dx, dy] = [end[0] - start[0], end[1] - start[1]];
-    let length_m = dx.hypot(dy);
+    let length_m = libm::hypot(dx, dy);
     if length_m == 0.0 {
         return 0.0;
     }

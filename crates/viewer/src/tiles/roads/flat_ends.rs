@@ -95,7 +95,7 @@ fn height(class: FunctionalRoadClass, look: RoadLook) -> [u8; 3] {
 /// The direction of a segment, of length 1; `None` if it has no length.
 fn direction([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (dx, dy) = (to_x - x, to_y - y);
-    let length_m = dx.hypot(dy);
+    let length_m = libm::hypot(dx, dy);
     (length_m > 0.0).then_some([dx / length_m, dy / length_m])
 }
 

@@ -1,10 +1,9 @@
 use corniche_geom::TILE_CELLS;
-use serde::{Deserialize, Serialize};
 
 /// A plane through a piece of a road, and how far the ground beside it is below or above that plane, true metres.
 ///
 /// Of each pair of bounds the first is for ground below, the second for ground above; neither is negative.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bed {
     /// How many metres the plane rises for each metre along the piece, and for each metre to its left.
     pub slopes: [f32; 2],
@@ -27,7 +26,7 @@ impl Bed {
 }
 
 /// Heights of the ground no farther from a segment than [`NearHeights::reach_m`].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NearHeights {
     /// Lowest and highest ground beneath, true metres above the reference point, rounded outwards.
     pub(crate) range_in_tile: [f32; 2],

@@ -3,7 +3,10 @@ use std::ops::Range;
 
 use corniche_roads::FunctionalRoadClass;
 
-use super::RoadEnd;
+use super::{
+    super::blocks::{Recorded, records},
+    RoadEnd,
+};
 
 /// What has a functional road class, or the place of one.
 pub(crate) trait Classed {
@@ -12,7 +15,9 @@ pub(crate) trait Classed {
 
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Recorded")]
 pub struct RoadList<T> {
+    #[serde(with = "records")]
     pieces: Vec<T>,
     ranges: [Range<u32>; FunctionalRoadClass::COUNT],
     ends: Vec<RoadEnd>,

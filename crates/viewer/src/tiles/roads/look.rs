@@ -40,6 +40,13 @@ impl RoadLook {
             Self::Service => 3,
         }
     }
+
+    /// That of a number.
+    pub(crate) fn of_number(number: u32) -> Option<Self> {
+        [Self::Plain, Self::Link, Self::Tunnel, Self::Service]
+            .into_iter()
+            .find(|look| look.number() == number)
+    }
 }
 
 #[cfg(test)]

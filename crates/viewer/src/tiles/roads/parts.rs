@@ -166,7 +166,7 @@ impl Net {
 }
 
 fn distance([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
-    (to_x - x).hypot(to_y - y)
+    libm::hypot(to_x - x, to_y - y)
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
-use serde::{Deserialize, Serialize};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
@@ -13,7 +12,7 @@ use super::{
 };
 
 /// A straight piece of a road's centre-line on the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadSegment {
     /// The segment of the source line that it is a piece of: its start, metres east and north of the tile's reference
     /// point.
@@ -86,14 +85,14 @@ impl Piece {
     pub(crate) fn direction(&self) -> [f64; 2] {
         let [p, q] = self.source_m;
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-        let length_m = dx.hypot(dy);
+        let length_m = libm::hypot(dx, dy);
         if length_m > 0.0 { [dx / length_m, dy / length_m] } else { [1.0, 0.0] }
     }
 
     /// How long it is in plan.
     pub(crate) fn length_m(&self) -> f64 {
         let [[x, y, _], [to_x, to_y, _]] = self.ends_m;
-        (to_x - x).hypot(to_y - y)
+        libm::hypot(to_x - x, to_y - y)
     }
 
     /// How far along its source segment a position lies: 0 at its start, 1 at its end.
@@ -108,7 +107,8 @@ impl Piece {
 /// The ends of a line, where it was not cut at the border or beside a void.
 fn line_ends(line: &GroundLine) -> LineEnds {
     // Positions of the same point by two formulas.
-    let is_at = |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| (to_x - x).hypot(to_y - y) < 1e-6;
+    let is_at =
+        |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| libm::hypot(to_x - x, to_y - y) < 1e-6;
     let first = line.sources_m.first().zip(line.points_m.first());
     let last = line.sources_m.last().zip(line.points_m.last());
     LineEnds {

@@ -1,6 +1,5 @@
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
-use serde::{Deserialize, Serialize};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
@@ -13,7 +12,7 @@ use super::{
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadVolume {
     /// Metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],

@@ -1,0 +1,93 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::tiles::{RoadList, RoadSegments, RoadVolumes};
+
+fn described() -> impl Strategy<Value = (FunctionalRoadClass, OwnWidth, RoadLook)> {
+    let class = (0..FunctionalRoadClass::COUNT as u8)
+        .prop_map(|number| FunctionalRoadClass::new(number).expect("a class"));
+    let own_width = prop_oneof![
+        Just(OwnWidth::Unknown),
+        (1..=u32::MAX).prop_map(|mm| OwnWidth::Millimetres(NonZeroU32::new(mm).expect("above 0"))),
+        (1..=u8::MAX).prop_map(|lanes| OwnWidth::Lanes(NonZeroU8::new(lanes).expect("above 0"))),
+    ];
+    let look = (0..4_u32).prop_map(|number| RoadLook::of_number(number).expect("a look"));
+    (class, own_width, look)
+}
+
+fn pair() -> impl Strategy<Value = [f32; 2]> {
+    [-1e6_f32..1e6, -1e6_f32..1e6]
+}
+
+prop_compose! {
+    fn segment()(
+        pairs in [pair(), pair(), pair(), pair(), pair(), pair(), pair(), pair(), pair(), pair()],
+        part_m in prop_oneof![0.0_f32..1e6, Just(f32::INFINITY)],
+        flags in any::<[bool; 7]>(),
+        (class, own_width, look) in described(),
+    ) -> RoadSegment {
+        let [start_in_tile, end_in_tile, shares, heights, slopes, rises, a, b, c, dash] = pairs;
+        let [cap, other_cap, flat, other_flat, near, far, farthest] = flags;
+        RoadSegment {
+            start_in_tile, end_in_tile, shares,
+            height_in_tile: heights[0],
+            has_caps: [cap, other_cap],
+            width_factor: heights[1],
+            bed: Bed { slopes, rises, most_m: [a, b, c], leaves_tile: [near, far, farthest] },
+            class, own_width, look, part_m,
+            dash: DashPlace::of_numbers(dash),
+            flat_ends: [flat, other_flat],
+        }
+    }
+}
+
+prop_compose! {
+    fn volume()(
+        pairs in [pair(), pair(), pair(), pair(), pair(), pair()],
+        part_m in 0.0_f32..1e6,
+        flat_ends in any::<[bool; 2]>(),
+        (class, own_width, look) in described(),
+    ) -> RoadVolume {
+        let [start_in_tile, end_in_tile, height_range_in_tile, range_in_tile, pair, dash] = pairs;
+        RoadVolume {
+            start_in_tile, end_in_tile, height_range_in_tile,
+            near: NearHeights { range_in_tile, rise: pair[0] },
+            width_factor: pair[1],
+            class, own_width, look, part_m,
+            dash: DashPlace::of_numbers(dash),
+            flat_ends,
+        }
+    }
+}
+
+fn sent<T: Recorded>(list: &RoadList<T>) -> RoadList<T> {
+    let config = bincode::config::legacy();
+    let bytes = bincode::serde::encode_to_vec(list, config).expect("there is memory");
+    bincode::serde::decode_from_slice(&bytes, config).expect("they are whole").0
+}
+
+proptest! {
+    #[test]
+    fn segments_come_as_they_were_sent(segments in prop::collection::vec(segment(), 0..20)) {
+        let list: RoadSegments = RoadList::sorted(segments, |segment| segment.class, Vec::new());
+        prop_assert_eq!(sent(&list), list);
+    }
+
+    #[test]
+    fn volumes_come_as_they_were_sent(volumes in prop::collection::vec(volume(), 0..20)) {
+        let list: RoadVolumes = RoadList::sorted(volumes, |volume| volume.class, Vec::new());
+        prop_assert_eq!(sent(&list), list);
+    }
+}
+
+#[test]
+fn words_of_no_road_are_refused() {
+    let words = [0_u32; 24];
+    assert!(RoadSegment::of_words(&words).is_some());
+    // A class, a kind of width, a width of nothing, a look.
+    for (at, word) in [(21, 9), (21, 3 << 8), (21, 1 << 8), (23, 4)] {
+        let mut others = words;
+        others[at] = word;
+        assert!(RoadSegment::of_words(&others).is_none(), "word {at} is {word}");
+    }
+}

@@ -1,0 +1,106 @@
+// What is asked of the server and kept in memory while the map moves.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { ask, checkFaults, openMap, settled } from "./browser.mjs";
+
+const MIB = 1 << 20;
+/** Places all over the sample, as shares of its extent, near enough for the finest tiles. */
+const PLACES = [0.12, 0.3, 0.5, 0.7, 0.88].flatMap((u) => [0.2, 0.5, 0.8].map((v) => [u, v]));
+
+/** Lets the map look at each place in turn; returns what each frame said. */
+const lookAround = (page, places, rest_ms) =>
+  ask(
+    page,
+    async (map, { places, rest_ms }) => {
+      const [west, south, east, north] = map.about.bounds;
+      const reports = [];
+      const wait = (time) => new Promise((done) => setTimeout(done, time));
+      for (const [u, v] of places) {
+        const place = { lon: west + u * (east - west), lat: south + v * (north - south), distance: 900, heading: 360 * u, pitch: 55 };
+        try {
+          map.lookAt(place, { jump: true });
+        } catch (error) {
+          // A void of the sample has no ground to look at.
+          if (!/ground/.test(error.message)) throw error;
+          continue;
+        }
+        for (let time = 0; time < rest_ms; time += 50) {
+          await wait(50);
+          const { gpu_bytes, tiles, requests, bytes } = map.report;
+          reports.push({ gpu_bytes, tiles, requests, bytes });
+        }
+      }
+      return reports;
+    },
+    { places, rest_ms },
+  );
+
+export function tests({ browser, server }) {
+  test("a long way over the map stays within the memory for tiles, whatever was seen before", async () => {
+    server.behave();
+    const memory = 3;
+    const size = { width: 500, height: 400 };
+    const countUploads = () => {
+      window.uploaded = 0;
+      const make = GPUDevice.prototype.createBuffer;
+      GPUDevice.prototype.createBuffer = function (descriptor) {
+        if (descriptor.label === "tile") window.uploaded += descriptor.size;
+        return make.call(this, descriptor);
+      };
+    };
+    const page = await openMap(browser, server, { memory: String(memory), controls: "none" }, { ...size, before: countUploads });
+    const reports = await lookAround(page, [...PLACES, ...PLACES], 400);
+    assert.ok(reports.length > 100, `${reports.length} reports`);
+    const most = Math.max(...reports.map(({ gpu_bytes: [used] }) => used));
+    const uploaded = await page.evaluate(() => window.uploaded);
+    console.log(`# at most ${(most / MIB).toFixed(2)} MiB of ${memory}, ${(uploaded / MIB).toFixed(1)} MiB of ground uploaded on the way`);
+    for (const { gpu_bytes } of reports) assert.deepEqual(gpu_bytes[1], memory * MIB);
+    assert.ok(most <= memory * MIB, `${most} bytes of tiles`);
+    assert.ok(uploaded > 2 * memory * MIB, `only ${uploaded} bytes were uploaded: the budget was never full`);
+    await settled(page);
+    checkFaults(page);
+    await page.end();
+  });
+
+  test("tiles that are out of view are not waited for: their requests are stopped", async () => {
+    server.behave();
+    const page = await openMap(browser, server, { controls: "none", inertia: "off" }, { width: 500, height: 400 });
+    server.behave();
+    // So slow that no tile comes before the map looks elsewhere.
+    Object.assign(server.state, { delay_ms: 50, bytes_per_ms: 20 });
+    const reports = await lookAround(page, PLACES.slice(0, 6), 200);
+    const stopped = server.state.requests.filter(({ isStopped }) => isStopped).length;
+    const asked = server.state.requests.length;
+    console.log(`# ${stopped} of ${asked} requests were stopped`);
+    assert.ok(stopped > 0, `none of ${asked} requests was stopped`);
+    assert.ok(Math.max(...reports.map(({ tiles }) => tiles.loading)) <= 12, "tiles under way");
+    // What is wanted still comes.
+    Object.assign(server.state, { delay_ms: 0, bytes_per_ms: 0 });
+    await settled(page);
+    const report = await ask(page, (map) => map.report);
+    assert.deepEqual([report.tiles.missing, report.notices], [0, []]);
+    checkFaults(page);
+    await page.end();
+    server.behave();
+  });
+
+  test("what was read is not asked for again", async () => {
+    server.behave();
+    const page = await openMap(browser, server, { controls: "none" }, { width: 500, height: 400 });
+    await lookAround(page, PLACES.slice(3, 9), 0);
+    await settled(page);
+    for (const place of PLACES.slice(3, 9)) {
+      await lookAround(page, [place], 0);
+      await settled(page);
+    }
+    const before = server.state.requests.length;
+    for (const place of PLACES.slice(3, 9)) {
+      await lookAround(page, [place], 0);
+      await settled(page);
+    }
+    assert.equal(server.state.requests.length, before);
+    const ranges = server.state.requests.map(({ range }) => range).filter(Boolean);
+    assert.equal(new Set(ranges).size, ranges.length, "no range twice");
+    await page.end();
+  });
+}
