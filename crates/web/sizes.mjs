@@ -6,15 +6,26 @@ import zlib from "node:zlib";
 const [folder] = process.argv.slice(2);
 const brotli = (bytes) =>
   zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_QUALITY]: 11, [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } });
-const total = [0, 0, 0];
-const row = (name, sizes) => console.log(name.padEnd(24), ...sizes.map((size) => size.toLocaleString("en").padStart(11)));
-console.log("file".padEnd(24), ...["raw", "gzip", "brotli"].map((head) => head.padStart(11)));
-for (const name of fs.readdirSync(folder).sort()) {
-  const file = path.join(folder, name);
-  if (!fs.statSync(file).isFile() || name.endsWith(".d.ts") || !/\.(js|css|wasm|html)$/.test(name)) continue;
-  const bytes = fs.readFileSync(file);
-  const sizes = [bytes.length, zlib.gzipSync(bytes, { level: 9 }).length, brotli(bytes).length];
-  sizes.forEach((size, k) => (total[k] += size));
-  row(name, sizes);
+/** What a page fetches with its first own style, and never without one. */
+const OWN_STYLES = new Set(["style_reader.js", "corniche_web_styles_bg.wasm"]);
+const row = (name, sizes) => console.log(name.padEnd(32), ...sizes.map((size) => size.toLocaleString("en").padStart(11)));
+
+function list(head, names, sum) {
+  console.log(head.padEnd(32), ...["raw", "gzip", "brotli"].map((column) => column.padStart(11)));
+  const total = [0, 0, 0];
+  for (const name of names) {
+    const bytes = fs.readFileSync(path.join(folder, name));
+    const sizes = [bytes.length, zlib.gzipSync(bytes, { level: 9 }).length, brotli(bytes).length];
+    sizes.forEach((size, k) => (total[k] += size));
+    row(name, sizes);
+  }
+  row(sum, total);
 }
-row("all", total);
+
+const names = fs
+  .readdirSync(folder)
+  .sort()
+  .filter((name) => fs.statSync(path.join(folder, name)).isFile() && !name.endsWith(".d.ts") && /\.(js|css|wasm|html)$/.test(name));
+list("every map", names.filter((name) => !OWN_STYLES.has(name)), "all of it");
+console.log();
+list("only with an own style", names.filter((name) => OWN_STYLES.has(name)), "all of it");

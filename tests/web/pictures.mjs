@@ -80,7 +80,7 @@ export function tests({ browser, server, packages, pictures }) {
       await page.screenshot({ path: path.join(pictures, `${screen}-chooser.png`) });
       await page.end();
     }
-    for (const example of ["two-maps", "events", "attributes", "maplibre"]) {
+    for (const example of ["two-maps", "events", "attributes", "article", "maplibre"]) {
       const page = await openPage(browser, server, `/examples/${example}.html`, { width: 1000, height: 800 });
       await page.waitForFunction(() => [...document.querySelectorAll("corniche-map")].every((map) => map.report?.is_settled), null, {
         timeout: 60_000,

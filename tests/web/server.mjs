@@ -12,6 +12,7 @@ const TYPES = {
   ".css": "text/css",
   ".wasm": "application/wasm",
   ".png": "image/png",
+  ".toml": "text/plain",
 };
 
 const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><meta name="color-scheme" content="light dark"><title>A map</title><link rel="icon" href="data:,">

@@ -16,7 +16,7 @@ export function tests({ sources }) {
   const load = (name) => import(pathToFileURL(path.join(folder, name)).href);
 
   test("a camera in an address is read as it was written", async () => {
-    const { placeOf, textOf, placeInHash, hashWith } = await load("hash.js");
+    const { placeOf, textOf, partInHash, placeBefore, changesAfter, hashWith } = await load("hash.js");
     const place = { lon: 9.521234, lat: 47.141, distance: 6000, heading: -30.5, pitch: 60 };
     assert.deepEqual(placeOf(textOf(place)), place);
     const above = { lon: 9.5, lat: 47.1, heading: 12, pitch: 0, above: true, pixel_m: 2.5 };
@@ -24,11 +24,17 @@ export function tests({ sources }) {
     assert.deepEqual(placeOf("9.5, 47"), { lon: 9.5, lat: 47 });
     for (const wrong of ["", "9.5", "x,y", "181,0", "9,91", "1,2,3,4,5,up", "9.5,47,1e9", null])
       assert.equal(placeOf(wrong), null, String(wrong));
-    assert.deepEqual(placeInHash("#part&b=9.5,47&a=8,46", "a"), { lon: 8, lat: 46 });
-    assert.equal(placeInHash("#9.5,47", "a"), null);
+    assert.deepEqual(placeBefore(partInHash("#part&b=9.5,47&a=8,46", "a")), { lon: 8, lat: 46 });
+    assert.equal(partInHash("#9.5,47", "a"), null);
+    assert.equal(placeBefore(null), null);
     assert.equal(hashWith("#part&a=8,46", "a", place), `#part&a=${textOf(place)}`);
     assert.equal(hashWith("#9,47", "", place), `#${textOf(place)}`);
     assert.equal(hashWith("#contents", "", place), `#contents&${textOf(place)}`);
+    // With what was changed by hand.
+    const part = partInHash("#contents&9,47;roads=sv;areas=off", "");
+    assert.deepEqual([placeBefore(part), changesAfter(part)], [{ lon: 9, lat: 47 }, "roads=sv;areas=off"]);
+    assert.equal(hashWith("#contents&9,47;roads=sv", "", place, "areas=off"), `#contents&${textOf(place)};areas=off`);
+    assert.equal(hashWith("#a=8,46;roads=sv&9,47", "a", place), `#9,47&a=${textOf(place)}`);
   });
 
   test("lengths of the scale are round and no longer than asked", async () => {
@@ -62,8 +68,48 @@ export function tests({ sources }) {
     assert.equal(notches({ deltaY: -100, ctrlKey: true }), 1, "Ctrl and the wheel of a mouse");
   });
 
+  test("what was changed by hand is read from a link as it was written, and bad parts are told", async () => {
+    const { changed, changesText, changesIn, shortList } = await load("hand_made.js");
+    const usual = {
+      roads: "geo",
+      classes: Array(9).fill(true),
+      widths: Array(9).fill(1),
+      style: "road-atlas",
+      photo: 0.5,
+      areas: true,
+      exaggeration: 1,
+      divider: 0.5,
+    };
+    const now = {
+      ...usual,
+      roads: "sv",
+      classes: [true, false, true, false, false, false, false, false, false],
+      widths: [1, 1.5, 1, 1, 1, 1, 1, 1, 0.25],
+      style: "styles/my style;2.toml",
+      photo: null,
+      areas: false,
+      exaggeration: 1.2999999523162842,
+    };
+    assert.equal(changesText(changed(usual, usual)), "", "nothing was changed");
+    const text = changesText(changed(now, usual));
+    assert.equal(
+      text,
+      "roads=sv;map-style=styles/my%20style%3B2.toml;exaggeration=1.3;photo=style;areas=off;classes=0,2;widths=1:1.5,8:0.25",
+    );
+    const { changes, unknown } = changesIn(text, usual);
+    assert.deepEqual(unknown, []);
+    assert.deepEqual({ ...usual, ...Object.assign({}, ...changes.map(([, change]) => change)) }, { ...now, exaggeration: 1.3 });
+    const none = { classes: Array(9).fill(false), widths: Array(9).fill(1) };
+    assert.equal(changesText(none), "classes=none;widths=none");
+    assert.deepEqual(Object.assign({}, ...changesIn("classes=none;widths=none", usual).changes.map(([, change]) => change)), none);
+    const bad = ["neon=1", "exaggeration=high", "classes=0,9", "classes=", "widths=1", "widths=1:x", "map-style=%E0", "constructor=1", "7"];
+    assert.deepEqual(changesIn(bad.join(";"), usual), { changes: [], unknown: bad });
+    assert.equal(shortList(["a=1", "b=2", "c=3"]), "a=1 and 2 more");
+    assert.ok(shortList(["x".repeat(1e5)]).length < 30);
+  });
+
   test("settings come from attributes, and what is no value is left out", async () => {
-    const { settingsOf, changeOf, controlsOf } = await load("attributes.js");
+    const { settingsOf, changeOf, settingOf, controlsOf } = await load("attributes.js");
     const element = (attributes) => ({ getAttribute: (name) => attributes[name] ?? null });
     assert.deepEqual(
       settingsOf(
@@ -72,6 +118,7 @@ export function tests({ sources }) {
       { roads: "sv", style: "dark", exaggeration: 2, areas: false, wireframe: true, photo: 0 },
     );
     assert.equal(changeOf("samples", null), null);
+    assert.deepEqual([settingOf("error-px"), settingOf("label")], ["error_px", undefined]);
     assert.equal(changeOf("samples", " "), null);
     assert.deepEqual(changeOf("photo", "style"), { photo: null });
     assert.deepEqual([...controlsOf("none")], []);

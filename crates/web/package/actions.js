@@ -1,7 +1,6 @@
 // What the buttons and keys do besides moving the camera: flights, pictures, links.
 import { flightRecord, flightText } from "./flights.js";
 import { askForFile, download } from "./dom.js";
-import { hashWith } from "./hash.js";
 import { pictureOf } from "./picture.js";
 
 const now = () => performance.now() / 1000;
@@ -9,7 +8,7 @@ const fileName = (/** @type {string} */ name) => name.replace(/[^\p{L}\p{N}._-]+
 
 /**
  * @param {{ view: any, about: import("./corniche-map.js").About, canvas: HTMLCanvasElement, report: () => import("./corniche-map.js").FrameReport | null,
- *   wake: () => void, tell: (kind: "warn" | "tell", text: string) => void, hashName: () => string | null }} map
+ *   wake: () => void, tell: (kind: "warn" | "tell", text: string) => void, hash: () => string | null }} map `hash`: the fragment with what is seen
  */
 export function makeActions(map) {
   const { view, about, canvas, tell } = map;
@@ -48,9 +47,8 @@ export function makeActions(map) {
 
   /** The address of the page with this view in it; `null` where the page does not keep views. */
   function link() {
-    const name = map.hashName();
-    const place = map.report()?.view;
-    return name === null || !place ? null : new URL(hashWith(location.hash, name, place), location.href).href;
+    const hash = map.hash();
+    return hash === null ? null : new URL(hash, location.href).href;
   }
 
   /** The same, for hands: files are saved and told. */

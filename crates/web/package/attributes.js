@@ -36,12 +36,15 @@ export function settingsOf(/** @type {Element} */ element) {
   return settings;
 }
 
-/** The change of settings that one attribute asks for now; `null` where it is no setting or was taken away. */
+/** The change of settings that one attribute asks for now; `null` where it is no setting or no value of its kind. */
 export function changeOf(/** @type {string} */ attribute, /** @type {string | null} */ text) {
   const known = SETTINGS.find(([name]) => name === attribute);
   const value = known && text !== null ? known[3](text) : undefined;
   return known && value !== undefined ? { [known[2]]: value } : null;
 }
+
+/** The setting of an attribute. */
+export const settingOf = (/** @type {string} */ attribute) => SETTINGS.find(([name]) => name === attribute)?.[2];
 
 const GROUPS = ["panel", "compass", "zoom", "status", "card", "notices"];
 

@@ -1,5 +1,6 @@
 // The kinds of controls of the panel: each shows a value of the settings and sets it.
 import { make, setText } from "./dom.js";
+import { fileOf } from "./own_styles.js";
 
 /**
  * @typedef {{ element: HTMLElement, show: (settings: any) => void }} Control
@@ -74,7 +75,10 @@ export function select(set, name, label, choices, valueOf = (text) => text) {
   return {
     element: make("div", { class: "field" }, make("label", { for: id }, label), input),
     show: (settings) => {
-      input.value = String(settings[name]);
+      const value = String(settings[name]);
+      // What a page has set may be none of the choices: an own style.
+      if (![...input.options].some((option) => option.value === value)) input.append(make("option", { value }, fileOf(value)));
+      input.value = value;
     },
   };
 }

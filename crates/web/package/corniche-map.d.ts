@@ -37,7 +37,7 @@ export interface Settings {
   /** A factor on the width of each class. */
   widths: number[];
   outline: "style" | "none" | "3" | "5";
-  /** One of `About.styles`. */
+  /** One of `About.styles`, or the address of an own style: what holds a slash or ends in `.toml`. An own one is told once its file has been read. */
   style: string;
   /** How strongly photos are seen, 0 to 1; `null` as the style says. */
   photo: number | null;
@@ -149,6 +149,7 @@ export class CornicheMap extends HTMLElement {
   roads: Settings["roads"];
   compare: Settings["compare"];
   divider: number;
+  /** As `Settings.style`. Assigned again, the file of an own style is read again. */
   mapStyle: string;
   outline: Settings["outline"];
   exaggeration: number;
@@ -160,7 +161,7 @@ export class CornicheMap extends HTMLElement {
   boundaries: boolean;
   wireframe: boolean;
   inertia: boolean;
-  /** All settings. Those in an object that is assigned are changed, the others stay; a value that cannot be throws a RangeError. */
+  /** All settings. Those in an object that is assigned are changed, the others stay; a value that cannot be throws a RangeError. A file of a style that cannot be read is told in a notice. */
   get settings(): Settings;
   set settings(change: Partial<Settings>);
   /** What the package is; `null` before `ready`. */
@@ -186,7 +187,7 @@ export class CornicheMap extends HTMLElement {
   picture(): Promise<Blob>;
   /** The pixels as shown last: RGBA, rows from the top, without credits. */
   readPixels(): Promise<{ width: number; height: number; data: Uint8Array }>;
-  /** Fulfilled when nothing moves and all tiles of the view are there. */
+  /** Fulfilled when nothing moves, all tiles of the view are there, and the file of an own style has been read. */
   settled(): Promise<void>;
 
   addEventListener<K extends keyof CornicheMapEventMap>(

@@ -1,15 +1,19 @@
 // The custom element: attributes, properties, methods and events around an opened package.
-import { SETTINGS, changeOf, controlsOf, settingsOf } from "./attributes.js";
+import { SETTINGS, changeOf, controlsOf, settingOf } from "./attributes.js";
 import { Failure, failureOf } from "./engine.js";
 import { makeFailure } from "./failures.js";
-import { hashWith, placeInHash, placeOf } from "./hash.js";
+import { attributeText } from "./hand_made.js";
+import { changesAfter, hashWith, partInHash, placeBefore, placeOf } from "./hash.js";
 import { makeLayout } from "./layout.js";
 import { look } from "./look.js";
 import { openSession } from "./session.js";
+import { Settings } from "./settings.js";
 
 const REOPEN_AFTER_MS = 4000;
 const REOPEN_TIMES = 3;
 const REOPEN_WITHIN_MS = 60_000;
+/** Browsers allow only so many changes of the address in a time, and a slider makes many. */
+const WRITE_HASH_AFTER_MS = 400;
 const NARROW = 560;
 const WIDE = 720;
 /** Points of the screen that the panel covers, with the space beside it. */
@@ -18,10 +22,11 @@ const USUAL_CREDIT = "© OpenStreetMap contributors";
 
 /** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
 export class CornicheMap extends HTMLElement {
-  static observedAttributes = ["src", "look-at", "label", "controls", "hash", ...SETTINGS.map(([attribute]) => attribute)];
+  static observedAttributes = ["src", "look-at", "label", "controls", "gestures", "hash", ...SETTINGS.map(([attribute]) => attribute)];
 
   /** @type {ReturnType<typeof makeLayout>} */
   #layout;
+  #settings = new Settings(this, (text) => this.#layout.notices.add("warn", text));
   /** @type {any} */
   #session = null;
   /** @type {AbortController | null} */
@@ -30,8 +35,7 @@ export class CornicheMap extends HTMLElement {
   /** @type {number[]} */
   #lost = [];
   #lostTimer = 0;
-  /** Settings that were set before the package was open. @type {Record<string, unknown>} */
-  #wanted = {};
+  #hashTimer = 0;
   /** @type {AbortController | null} */
   #connected = null;
 
@@ -61,14 +65,19 @@ export class CornicheMap extends HTMLElement {
       },
       { signal },
     );
-    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session?.set(this.#motion()), { signal });
+    matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", () => this.#session && this.#settings.set(this.#motion()), {
+      signal,
+    });
+    document.addEventListener("fullscreenchange", () => this.#gestures(), { signal });
     this.#label();
     this.#controls();
+    this.#gestures();
     this.#open();
   }
 
   disconnectedCallback() {
     this.#connected?.abort();
+    clearTimeout(this.#hashTimer);
     this.#close();
   }
 
@@ -78,11 +87,13 @@ export class CornicheMap extends HTMLElement {
     if (name === "src") this.#open();
     else if (name === "label") this.#label();
     else if (name === "controls") this.#controls();
+    else if (name === "gestures") this.#gestures();
     else if (name === "look-at") {
       const place = placeOf(text);
       if (place && this.#session) this.#session.lookAt(place);
     } else {
-      const change = changeOf(name, text);
+      const setting = settingOf(name);
+      const change = text === null && setting ? this.#without(setting) : changeOf(name, text);
       if (change) this.settings = change;
     }
   }
@@ -99,15 +110,12 @@ export class CornicheMap extends HTMLElement {
 
   /** All settings; those assigned are changed, the others stay. */
   get settings() {
-    return structuredClone(this.#session ? this.#session.settings() : { ...settingsOf(this), ...this.#wanted });
+    return structuredClone(this.#settings.shown);
   }
 
   set settings(change) {
-    if (!this.#session) Object.assign(this.#wanted, change);
-    else {
-      const why = this.#session.set(change);
-      if (why !== "") throw new RangeError(why);
-    }
+    const why = this.#settings.set(change);
+    if (why !== "") throw new RangeError(why);
   }
 
   /** What the package is; `null` before it is open. */
@@ -176,9 +184,10 @@ export class CornicheMap extends HTMLElement {
     return this.#need().readPixels();
   }
 
-  /** Fulfilled when nothing moves and all tiles of the view are there. */
+  /** Fulfilled when nothing moves, all tiles of the view are there, and an own style has been read. */
   settled() {
-    return this.#need().settled();
+    const session = this.#need();
+    return this.#settings.styled.then(() => session.settled());
   }
 
   /** Properties that were assigned before this class was there hide those of the class. */
@@ -211,6 +220,11 @@ export class CornicheMap extends HTMLElement {
     if (!controlsOf(this.getAttribute("controls")).has("panel")) this.#showPanel(false);
   }
 
+  /** A map that fills the screen has no page to scroll. */
+  #gestures() {
+    this.#layout.cooperate(this.getAttribute("gestures") === "cooperative" && document.fullscreenElement === null);
+  }
+
   /** Whether the panel is shown at first: where there is room beside it. */
   #opensPanel() {
     const wish = this.getAttribute("panel");
@@ -227,6 +241,11 @@ export class CornicheMap extends HTMLElement {
     };
   }
 
+  /** What the attribute of a setting leaves where it is taken away: the usual value. */
+  #without(/** @type {string} */ setting) {
+    return setting === "inertia" ? this.#motion() : { [setting]: this.#settings.usual(setting) };
+  }
+
   /** Several attributes that are set in one turn open the package once. */
   #open() {
     if (this.#isAsked) return;
@@ -234,15 +253,15 @@ export class CornicheMap extends HTMLElement {
     queueMicrotask(() => {
       this.#isAsked = false;
       if (!this.isConnected) return;
-      const name = this.#hashName();
-      const place = (name === null ? null : placeInHash(location.hash, name)) ?? placeOf(this.getAttribute("look-at"));
+      const part = this.#partOfHash();
+      const place = placeBefore(part) ?? placeOf(this.getAttribute("look-at"));
       this.#close();
-      void this.#start({ ...settingsOf(this), ...this.#motion(), ...this.#wanted }, place);
+      void this.#start({ ...this.#motion(), ...this.#settings.wanted }, place, changesAfter(part ?? ""));
     });
   }
 
-  /** @param {Record<string, unknown>} settings @param {any} place */
-  async #start(settings, place) {
+  /** @param {Record<string, unknown>} settings those of the page @param {any} place @param {string} link what was changed by hand, as text */
+  async #start(settings, place, link) {
     const { src } = this;
     if (src === "") return;
     const opening = new AbortController();
@@ -250,6 +269,7 @@ export class CornicheMap extends HTMLElement {
     const layout = this.#layout;
     layout.fail(null);
     layout.opening(true);
+    const asked = this.#settings.opening(settings, link);
     /** @type {any} */
     let session = null;
     try {
@@ -257,12 +277,18 @@ export class CornicheMap extends HTMLElement {
         src,
         layout,
         signal: opening.signal,
-        settings,
+        settings: asked.of,
+        changed: (change) => {
+          this.#settings.changedByHand(change);
+          clearTimeout(this.#hashTimer);
+          this.#hashTimer = setTimeout(() => this.#writeHash(), WRITE_HASH_AFTER_MS);
+        },
         place,
         covered: this.#opensPanel() ? PANEL : 0,
         workers: Number(this.getAttribute("workers")) || null,
         memory: Number(this.getAttribute("memory")) || null,
         hashName: () => this.#hashName(),
+        hash: () => this.#hash(),
         failed: (failure, from) => this.#lose(failure, from),
         emit: (name, detail, cancelable) => this.#emit(name, detail, cancelable),
         showCard: () => controlsOf(this.getAttribute("controls")).has("card"),
@@ -274,10 +300,8 @@ export class CornicheMap extends HTMLElement {
     }
     if (opening.signal.aborted || !session) return;
     this.#session = session;
-    // What was set while the package was being opened.
-    const late = { ...this.#wanted };
-    this.#wanted = {};
-    if (Object.keys(late).length > 0) session.set(late);
+    const why = asked.done(session);
+    if (why !== "") session.tell("warn", why);
     layout.opening(false);
     this.#showPanel(this.#opensPanel());
     // With the first frame, the camera is known.
@@ -290,6 +314,7 @@ export class CornicheMap extends HTMLElement {
     this.#opening?.abort();
     this.#opening = null;
     this.#session = null;
+    this.#settings.closed();
     const layout = this.#layout;
     layout.opening(false);
     layout.fail(null);
@@ -300,7 +325,7 @@ export class CornicheMap extends HTMLElement {
 
   /** The view cannot go on. A device that was lost comes back: the view is opened again where it was, but not again and again. */
   #lose(/** @type {import("./engine.js").Failure} */ failure, /** @type {any} */ session) {
-    const settings = session.settings();
+    const { settings, link } = this.#settings.kept;
     const place = session.report()?.view ?? null;
     this.#close();
     const now = performance.now();
@@ -318,7 +343,7 @@ export class CornicheMap extends HTMLElement {
     const last = this.#lost.at(-1) ?? -Infinity;
     this.#lost.push(now);
     this.#layout.notices.add("tell", "The graphics device was lost. The map is opened again.");
-    this.#lostTimer = setTimeout(() => void this.#start(settings, place), Math.max(0, last + REOPEN_AFTER_MS - now));
+    this.#lostTimer = setTimeout(() => void this.#start(settings, place, link), Math.max(0, last + REOPEN_AFTER_MS - now));
   }
 
   #fail(/** @type {import("./engine.js").Failure} */ failure) {
@@ -341,18 +366,32 @@ export class CornicheMap extends HTMLElement {
     return this.dispatchEvent(new CustomEvent(name, { detail, cancelable }));
   }
 
-  #writeHash() {
+  /** The part of the page's address that is this map's. */
+  #partOfHash() {
+    const name = this.#hashName();
+    return name === null ? null : partInHash(location.hash, name);
+  }
+
+  /** The fragment with the camera and with what was changed by hand; `null` where the page does not keep them. */
+  #hash() {
     const name = this.#hashName();
     const place = this.camera;
-    if (name === null || !place) return;
-    const hash = hashWith(location.hash, name, place);
-    if (hash !== location.hash) history.replaceState(history.state, "", hash);
+    if (name === null || !place) return null;
+    return hashWith(location.hash, name, place, this.#settings.link);
+  }
+
+  #writeHash() {
+    const hash = this.#hash();
+    if (hash !== null && hash !== location.hash) history.replaceState(history.state, "", hash);
   }
 
   #followHash() {
-    const name = this.#hashName();
-    const place = name === null ? null : placeInHash(location.hash, name);
+    const part = this.#partOfHash();
+    const place = placeBefore(part);
     if (place) this.#session?.lookAt(place, true);
+    // A link to a place alone leaves the settings as they are.
+    const link = changesAfter(part ?? "");
+    if (link !== "") this.#settings.takeLink(link);
   }
 
   #showPanel(/** @type {boolean} */ isShown) {
@@ -406,7 +445,7 @@ for (const [attribute, property, setting] of SETTINGS) {
       return this.settings[setting];
     },
     set(value) {
-      this.setAttribute(attribute, value === false ? "off" : value === true ? "on" : value === null ? "style" : String(value));
+      this.setAttribute(attribute, typeof value === "number" ? String(value) : attributeText(value));
     },
   });
 }

@@ -1,5 +1,5 @@
 // The camera in the fragment of the page's address: #lon,lat,distance,heading,pitch, or #NAME=… where a page has several maps. From above with parallel
-// rays it is #lon,lat,metres in a pixel,heading,0,above.
+// rays it is #lon,lat,metres in a pixel,heading,0,above. What was changed by hand follows after semicolons: #9.52,47.14,6000,30,60;roads=sv
 
 const NUMBER = /^[+-]?\d+(\.\d+)?$/;
 
@@ -41,19 +41,28 @@ export function textOf(place) {
 
 const partsOf = (/** @type {string} */ hash) => hash.replace(/^#/, "").split("&").filter(Boolean);
 
-/** The place in a fragment, under a name or, with "", alone. */
-export function placeInHash(/** @type {string} */ hash, /** @type {string} */ name) {
-  for (const part of partsOf(hash)) {
-    if (name === "") {
-      const place = placeOf(part);
-      if (place) return place;
-    } else if (part.startsWith(`${name}=`)) return placeOf(part.slice(name.length + 1));
-  }
-  return null;
+/** The part of a fragment that is a map's own: under its name or, with "", the first that is a place; `null` where there is none. */
+export function partInHash(/** @type {string} */ hash, /** @type {string} */ name) {
+  const part = partsOf(hash).find((one) => (name === "" ? placeOf(placeText(one)) : one.startsWith(`${name}=`)));
+  return part === undefined ? null : part.slice(name === "" ? 0 : name.length + 1);
 }
 
-/** The fragment with the place in it; parts that belong to others stay. */
-export function hashWith(/** @type {string} */ hash, /** @type {string} */ name, /** @type {import("./corniche-map.js").Place} */ place) {
-  const others = partsOf(hash).filter((part) => (name === "" ? !placeOf(part) : !part.startsWith(`${name}=`)));
-  return "#" + [...others, name === "" ? textOf(place) : `${name}=${textOf(place)}`].join("&");
+/** A part without its changes, and the changes. */
+const placeText = (/** @type {string} */ part) => part.split(";", 1)[0];
+export const changesAfter = (/** @type {string} */ part) => part.slice(placeText(part).length + 1);
+
+/** The place in a map's own part. */
+export const placeBefore = (/** @type {string | null} */ part) => (part === null ? null : placeOf(placeText(part)));
+
+/**
+ * The fragment with the place in it, and changes of settings as text; parts that belong to others stay.
+ *
+ * @param {string} hash
+ * @param {string} name
+ * @param {import("./corniche-map.js").Place} place
+ */
+export function hashWith(hash, name, place, changes = "") {
+  const others = partsOf(hash).filter((part) => (name === "" ? !placeOf(placeText(part)) : !part.startsWith(`${name}=`)));
+  const own = [textOf(place), changes].filter(Boolean).join(";");
+  return "#" + [...others, name === "" ? own : `${name}=${own}`].join("&");
 }

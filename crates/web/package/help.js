@@ -16,7 +16,7 @@ export function makeHelp() {
     make(
       "dl",
       { tabIndex: 0, "aria-label": "Mouse, touch and keys" },
-      ...HELP.flatMap(([what, does]) => [make("dt", {}, what), make("dd", {}, does)]),
+      ...HELP.flatMap(([what, does, when = ""]) => [make("dt", { class: when }, what), make("dd", { class: when }, does)]),
     ),
   );
   // A click beside the dialog closes it.

@@ -16,14 +16,17 @@ export const COMMANDS = {
   Escape: "close",
 };
 
-/** What the dialog of keys says. */
+/** What the dialog of keys says; the third word: only where gestures are so. */
 export const HELP = [
   ["Drag", "move the map with the pointer"],
   ["Right drag, Ctrl and drag", "turn and tilt about the middle"],
   ["Middle drag", "turn and tilt about the ground under the pointer"],
-  ["Wheel, double click", "zoom at the pointer; with Shift, a double click zooms out"],
-  ["One finger", "move the map"],
-  ["Two fingers", "pinch to zoom, turn, move up and down to tilt"],
+  ["Wheel, double click", "zoom at the pointer; with Shift, a double click zooms out", "greedy"],
+  ["Ctrl (⌘) and wheel, double click", "zoom at the pointer; with Shift, a double click zooms out", "cooperative"],
+  ["One finger", "move the map", "greedy"],
+  ["Two fingers", "pinch to zoom, turn, move up and down to tilt", "greedy"],
+  ["Two fingers", "move the map, pinch to zoom, turn", "cooperative"],
+  ["Three fingers", "move up and down to tilt", "cooperative"],
   ["Click, tap, Enter", "what road is here; Enter asks in the middle of the map"],
   ["Right click, long press", "coordinates and height of the place"],
   ["Arrows", "move; with Shift turn and tilt"],

@@ -3,6 +3,7 @@ import { makeCompass } from "./compass.js";
 import { makeDivider } from "./divider.js";
 import { drawing, make, setText } from "./dom.js";
 import { makeHelp } from "./help.js";
+import { makeHint } from "./hint.js";
 import { icons } from "./icons.js";
 import { makeNotices } from "./notices.js";
 import { makePlaceCard } from "./place_card.js";
@@ -39,6 +40,7 @@ export function makeLayout(shadow, map) {
   const place = makePlaceCard();
   const divider = makeDivider(map.set);
   const dialog = makeHelp();
+  const hint = makeHint();
   const credit = make("div", { class: "credit pill", part: "credit", hidden: true });
   const bar = make("div");
   const progress = make(
@@ -90,7 +92,7 @@ export function makeLayout(shadow, map) {
   /** @type {HTMLElement | null} */
   let failed = null;
   let canvas = newCanvas();
-  root.append(canvas, cross, help, opening, divider.element, over, progress, dialog);
+  root.append(canvas, cross, help, opening, divider.element, over, hint.element, progress, dialog);
   shadow.append(root);
 
   /** A canvas is bound to the device with which it was drawn: after a device is lost, another one is needed. */
@@ -106,6 +108,7 @@ export function makeLayout(shadow, map) {
     place,
     divider,
     dialog,
+    hint,
     over,
     panelButton,
     canvas: () => canvas,
@@ -119,6 +122,9 @@ export function makeLayout(shadow, map) {
       if (hadFocus) canvas.focus({ preventScroll: true });
       return canvas;
     },
+    /** Whether the page keeps the wheel and one finger. */
+    isCooperative: () => root.classList.contains("cooperative"),
+    cooperate: (/** @type {boolean} */ isSo) => root.classList.toggle("cooperative", isSo),
     label: (/** @type {string} */ text) => canvas.setAttribute("aria-label", text),
     credit(/** @type {string[]} */ credits) {
       credit.hidden = credits.length === 0;

@@ -26,6 +26,8 @@ const css = `
 [hidden] { display: none !important; }
 .root { position: absolute; inset: 0; container: map / size; background: var(--ground); }
 canvas { display: block; inline-size: 100%; block-size: 100%; touch-action: none; outline: none; -webkit-user-select: none; user-select: none; -webkit-touch-callout: none; cursor: grab; }
+.cooperative canvas { touch-action: pan-x pan-y; }
+.cooperative :is(dt, dd).greedy, .root:not(.cooperative) :is(dt, dd).cooperative { display: none; }
 canvas:active { cursor: grabbing; }
 canvas:focus-visible { outline: 3px solid var(--accent); outline-offset: -3px; }
 .cross { position: absolute; inset: 0; margin: auto; inline-size: 22px; block-size: 22px; pointer-events: none; display: none; fill: none; stroke: var(--accent); stroke-width: 2; filter: drop-shadow(0 0 1px #fff); }
@@ -127,6 +129,10 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .progress.opening div { inline-size: 30%; animation: opening 1.4s ease-in-out infinite alternate; }
 @keyframes opening { to { margin-inline-start: 70%; } }
 .opening-text { position: absolute; inset: 0; display: grid; place-items: center; pointer-events: none; color: var(--quiet); }
+.hint { position: absolute; inset: 0; display: grid; place-items: center; padding: 1rem; pointer-events: none; opacity: 0; transition: opacity 0.25s; background: rgb(0 0 0 / 30%); }
+.hint.shown { opacity: 1; }
+.hint .card { padding: 0.6rem 1rem; font-size: 1rem; text-align: center; text-wrap: balance; }
+.hint .card:empty { display: none; }
 
 .divider { position: absolute; inset-block: 0; inline-size: 24px; margin-inline-start: -12px; cursor: ew-resize; touch-action: none; outline: none; }
 .divider::before { content: ""; position: absolute; inset: 0 auto 0 11px; inline-size: 2px; background: #fff; box-shadow: 0 0 0 1px rgb(0 0 0 / 45%); }

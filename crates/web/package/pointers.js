@@ -1,4 +1,5 @@
-// Mouse, wheel and fingers. One finger is the left button; two fingers pinch, turn and tilt.
+// Mouse, wheel and fingers. One finger is the left button; two fingers pinch, turn and tilt. Where gestures are cooperative, the wheel and one finger are left
+// to the page, which scrolls: Ctrl and the wheel zoom, two fingers move, pinch and turn, three tilt.
 
 const CLICK_MOVES = 5;
 const TAP_AGAIN_MS = 350;
@@ -9,6 +10,8 @@ const POINTS_PER_NOTCH = 100;
 /** A pinch on a touch pad comes as a wheel with Control and a delta of 100 ln(scale); three notches of the view halve the distance. */
 const NOTCHES_PER_PINCH = 3 / (100 * Math.LN2);
 const MOST_NOTCHES = 5;
+/** Two fingers that first go so far sideways do not tilt. */
+const SIDEWAYS = 30;
 
 /** Notches of a wheel, positive away from the hand. */
 export function notchesOf(/** @type {WheelEvent} */ event) {
@@ -26,7 +29,8 @@ const now = () => performance.now() / 1000;
 
 /**
  * @param {HTMLCanvasElement} canvas
- * @param {{ view: () => any, wake: () => void, clicked: (x: number, y: number) => void, asked: (x: number, y: number) => void }} to
+ * @param {{ view: () => any, wake: () => void, clicked: (x: number, y: number) => void, asked: (x: number, y: number) => void,
+ *   isCooperative: () => boolean, hint: { show: (how: "wheel" | "finger") => void, hide: () => void } }} to
  *   `clicked` after a click or a tap, `asked` after a long press or a click of the right button; device pixels
  */
 export function watchPointers(canvas, to) {
@@ -91,6 +95,12 @@ export function watchPointers(canvas, to) {
 
   function pinch() {
     const [a, b] = [...fingers.values()];
+    if (!isPinching && fingers.size === 2 && to.isCooperative()) {
+      // Up and down they are to move the map, as one finger does elsewhere. A step sideways, taken back before anything is drawn, says so.
+      const aside = SIDEWAYS * perPoint();
+      to.view()?.two_fingers(a.x, a.y, b.x, b.y, now());
+      to.view()?.two_fingers(a.x + aside, a.y, b.x + aside, b.y, now());
+    }
     isPinching = true;
     to.view()?.two_fingers(a.x, a.y, b.x, b.y, now());
     to.wake();
@@ -104,11 +114,13 @@ export function watchPointers(canvas, to) {
   }
 
   function fingerDown(/** @type {PointerEvent} */ event) {
-    if (fingers.size >= 2) return;
+    if (fingers.size >= (to.isCooperative() ? 3 : 2)) return;
     let place = at(event);
     fingers.set(event.pointerId, place);
-    if (fingers.size === 2) {
+    if (fingers.size >= 2) {
       release(false);
+      endPinch();
+      to.hint.hide();
       isWaiting = false;
       pinch();
       return;
@@ -123,7 +135,7 @@ export function watchPointers(canvas, to) {
     const before = fingers.get(event.pointerId);
     if (!before) return;
     const place = at(event);
-    if (isWaiting && far(before, place, 2 * CLICK_MOVES)) {
+    if (isWaiting && !to.isCooperative() && far(before, place, 2 * CLICK_MOVES)) {
       isWaiting = false;
       press(before, 0, event, true);
       if (held) held.isStill = false;
@@ -131,12 +143,23 @@ export function watchPointers(canvas, to) {
     if (isWaiting) return;
     fingers.set(event.pointerId, place);
     if (isPinching) pinch();
+    else if (to.isCooperative()) scrolled(held !== null && held.isStill && far(held, place, CLICK_MOVES));
     // The small movements of a tap must not pan.
     else if (held && (!held.isStill || far(held, place, CLICK_MOVES))) move(place);
   }
 
+  /** One finger scrolls the page. */
+  function scrolled(/** @type {boolean} */ isSo) {
+    if (!isSo) return;
+    clearTimeout(longPress);
+    if (held) held.isStill = false;
+    to.hint.show("finger");
+  }
+
   function fingerUp(/** @type {PointerEvent} */ event, isClick = true) {
     if (!fingers.delete(event.pointerId)) return;
+    // The browser takes the finger away when it begins to scroll.
+    scrolled(!isClick && !isPinching && fingers.size === 0 && to.isCooperative());
     if (isPinching) {
       endPinch();
       isWaiting = fingers.size === 1;
@@ -175,11 +198,23 @@ export function watchPointers(canvas, to) {
     to.view()?.leave();
     to.wake();
   });
+  // What the browser may scroll with, it may scroll with two fingers as well.
+  for (const name of ["touchstart", "touchmove"]) {
+    on(
+      name,
+      (event) => {
+        if (event.targetTouches.length > 1 && event.cancelable && to.isCooperative()) event.preventDefault();
+      },
+      { passive: false },
+    );
+  }
   on("contextmenu", (event) => event.preventDefault());
   on(
     "wheel",
     (event) => {
+      if (to.isCooperative() && !event.ctrlKey && !event.metaKey) return to.hint.show("wheel");
       event.preventDefault();
+      to.hint.hide();
       const place = at(event);
       to.view()?.wheel(notchesOf(event), place.x, place.y, now());
       to.wake();

@@ -38,8 +38,8 @@ function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSign
 /**
  * Opens a package.
  *
- * @param {{ src: string, settings: Record<string, unknown>, place: any, covered: number, workers: number | null, memory: number | null,
- *   layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal, hashName: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
+ * @param {{ src: string, settings: (glue: any) => Promise<Record<string, unknown>>, changed: (change: Record<string, unknown>) => void, place: any, covered: number, workers: number | null, memory: number | null,
+ *   layout: ReturnType<typeof import("./layout.js").makeLayout>, signal: AbortSignal, hashName: () => string | null, hash: () => string | null, failed: (failure: Failure, session: any) => void, emit: (name: string, detail: any, cancelable?: boolean) => boolean,
  *   showCard: () => boolean, command: (name: string) => boolean }} from
  */
 export async function openSession(from) {
@@ -111,6 +111,7 @@ export async function openSession(from) {
     end();
     throw error;
   }
+  const asked = await from.settings(glue);
   const [width, height, ratio] = await size;
   if (signal.aborted) return null;
   canvas.width = width;
@@ -130,7 +131,7 @@ export async function openSession(from) {
   // What workers had under way when they were ended is told as failed, or it would be waited for.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
   const options = {
-    settings: from.settings,
+    settings: asked,
     view: from.place ?? undefined,
     size_px: [width, height],
     pixels_per_point: ratio,
@@ -182,6 +183,7 @@ export async function openSession(from) {
   function setByHand(/** @type {Record<string, unknown>} */ change) {
     const why = set(change);
     if (why !== "") tell("warn", why);
+    else from.changed(change);
   }
 
   function command(/** @type {string} */ name) {
@@ -295,6 +297,8 @@ export async function openSession(from) {
   const input = { view: () => view, wake };
   const pointers = watchPointers(canvas, {
     ...input,
+    isCooperative: layout.isCooperative,
+    hint: layout.hint,
     clicked: (x, y) => void pickByHand(x, y, false),
     asked: (x, y) => void pickByHand(x, y, true),
   });
@@ -316,7 +320,7 @@ export async function openSession(from) {
   layout.credit(about.attribution);
   show();
 
-  const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hashName: from.hashName });
+  const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hash: from.hash });
   if (about.is_software) tell("tell", "No graphics card was found: the processor draws");
   const session = {
     end,

@@ -52,11 +52,8 @@ impl Map {
             if problem.kind == "changed" {
                 return Err(problem);
             }
-            let Problem { message, advice, .. } = problem;
-            let text = format!(
-                "Tiles cannot be loaded; they are asked for again from time to time. {message} {advice}"
-            );
-            self.notices.push(Notice::warning(text.trim()));
+            let text = format!("Tiles are asked for again. {}", problem.message);
+            self.notices.push(Notice::warning(text));
         }
         self.last_s = now_s;
         self.fly(now_s);
@@ -119,7 +116,7 @@ impl Map {
         self.canvas.change(&changes.evict, &changes.upload);
         self.tiles.keep_ground(changes.upload);
         if self.tiles.take_first_time_full() {
-            let text = "The memory allowed for tiles is full: this view is drawn more coarsely than asked.";
+            let text = "The memory for tiles is full: this view is coarser than asked.";
             self.notices.push(Notice::warning(text));
         }
         changes.is_under_way

@@ -57,7 +57,7 @@ pub(crate) struct Settings {
     /// Factors on the style's widths, class 0 first.
     pub(crate) widths: [f32; FunctionalRoadClass::COUNT],
     pub(crate) outline: Edge,
-    /// The name of a style that comes with the program.
+    /// The name of a style that comes with the program, or the address of an own one that the page keeps.
     pub(crate) style: String,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub(crate) photo: Option<f32>,

@@ -1,4 +1,6 @@
-//! Styles and labels that come with the program, as the build script has read them.
+//! Styles and labels that come with the program, as the build script has read them; own styles of the page.
+
+use std::cell::RefCell;
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
@@ -6,6 +8,11 @@ use serde::de::DeserializeOwned;
 
 const STYLES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/styles.bin"));
 const LABELS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/labels.bin"));
+
+thread_local! {
+    /// Own styles, by their addresses, for all maps of the page.
+    static OWN: RefCell<Vec<(String, Style)>> = RefCell::default();
+}
 
 /// A table of named values; the build script wrote it.
 fn table<T: DeserializeOwned>(bytes: &[u8]) -> Vec<(String, T)> {
@@ -18,9 +25,26 @@ pub(crate) fn style_names() -> Vec<String> {
     table::<Style>(STYLES).into_iter().map(|(name, _)| name).collect()
 }
 
-/// The style of this name.
+/// The style of this name, among those of the program and those that the page keeps.
 pub(crate) fn style(name: &str) -> Option<Style> {
-    table(STYLES).into_iter().find(|(known, _)| known == name).map(|(_, style)| style)
+    let own = OWN.with_borrow(Clone::clone);
+    table(STYLES).into_iter().chain(own).find(|(known, _)| known == name).map(|(_, style)| style)
+}
+
+/// Keeps the styles of a table that `corniche-web-styles` has made, in place of those of the same names.
+///
+/// # Errors
+/// In words, when it is no such table.
+pub(crate) fn keep(styles: &[u8]) -> Result<(), String> {
+    let styles = table::<Style>(styles);
+    if styles.is_empty() {
+        return Err("the files of corniche-map are of different versions".to_owned());
+    }
+    OWN.with_borrow_mut(|own| {
+        own.retain(|(name, _)| !styles.iter().any(|(new, _)| new == name));
+        own.extend(styles);
+    });
+    Ok(())
 }
 
 /// What the roads of each class are called, 0 first, with the FRC table of this name.

@@ -21,6 +21,8 @@ use crate::{
     pick::road_at,
     problem::Problem,
     report::{Notice, Pick},
+    settings::Settings,
+    tables,
     timer::pause,
 };
 
@@ -41,6 +43,25 @@ impl MapView {
         host: Host,
     ) -> Result<MapView, JsValue> {
         Box::pin(open(canvas, src, &options, host)).await.map(MapView).map_err(JsValue::from)
+    }
+
+    /// The usual settings, as JSON.
+    #[must_use]
+    pub fn usual_settings() -> String {
+        json(&Settings::default())
+    }
+
+    /// Whether the usual settings could be changed so: JSON as for `set`. Returns an empty text, or why not.
+    #[must_use]
+    pub fn fault_of(settings: &str) -> String {
+        Settings::default().changed_by(settings).err().unwrap_or_default()
+    }
+
+    /// Keeps an own style for all maps of the page, under the address of its file; `table` is from the module for own styles. Returns an empty
+    /// text, or why not.
+    #[must_use]
+    pub fn keep_style(table: &[u8]) -> String {
+        tables::keep(table).err().unwrap_or_default()
     }
 
     /// The canvas has this size in pixels of the screen now.

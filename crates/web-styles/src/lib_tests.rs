@@ -1,0 +1,38 @@
+use corniche_styles::{style_preset, style_preset_names};
+
+use super::*;
+
+/// Reads a table as `corniche-web` does.
+fn read(table: &[u8]) -> Vec<(String, Style)> {
+    let config = bincode::config::legacy();
+    let (read, bytes) = bincode::serde::decode_from_slice(table, config).unwrap();
+    assert_eq!(bytes, table.len(), "nothing is left");
+    read
+}
+
+#[test]
+fn a_style_arrives_as_it_was_written() {
+    for name in style_preset_names() {
+        let text = style_preset(name).unwrap();
+        let table = style_table("styles/mine.toml", text).unwrap();
+        assert_eq!(read(&table), [("styles/mine.toml".to_owned(), parse_style(text).unwrap())]);
+    }
+}
+
+#[test]
+fn what_is_no_style_is_told_as_by_the_program() {
+    let text = style_preset("dark").unwrap();
+    let unknown = format!("neon = true\n{text}");
+    let out_of_range = text.replacen("outline_px = 1", "outline_px = 9", 1);
+    let too_long = format!("{text}\n#{}", " ".repeat(1 << 20));
+    for (text, told) in [
+        ("a page, not a style", "TOML parse error at line 1"),
+        (&unknown, "unknown field `neon`"),
+        (&out_of_range, "outline_px of 9 is out of range; it must be 0 to 4"),
+        (&too_long, "far more than any settings"),
+    ] {
+        let why = style_table("mine.toml", text).unwrap_err();
+        assert!(why.contains(told), "{why}");
+        assert_eq!(why, parse_style(text).unwrap_err().to_string());
+    }
+}

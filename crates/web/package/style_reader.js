@@ -1,0 +1,81 @@
+// Reads own styles: fetched with the first of them, together with a module that reads TOML.
+import init, { style_table } from "./corniche_web_styles.js";
+
+/** As much as the module reads at most; a file without end is not waited for. */
+const MOST_BYTES = 1 << 20;
+const MODULE = "corniche_web_styles_bg.wasm";
+
+/** @type {Promise<unknown> | null} */
+let module = null;
+
+async function load() {
+  const answer = await fetch(new URL(`./${MODULE}`, import.meta.url));
+  if (!answer.ok) throw new Error(`the server answers ${answer.status}`);
+  await init({ module_or_path: answer });
+}
+
+/** A module that failed to load is asked for again with the next style. */
+function loadModule() {
+  module ??= load().catch((error) => {
+    module = null;
+    console.warn(error);
+    throw new Error(`${MODULE} of corniche-map is missing`);
+  });
+  return module;
+}
+
+async function bytesOf(/** @type {string} */ address) {
+  let answer;
+  try {
+    answer = await fetch(new URL(address, document.baseURI));
+  } catch (error) {
+    throw new Error(`it cannot be fetched: ${/** @type {Error} */ (error).message}`);
+  }
+  if (!answer.ok || !answer.body) throw new Error(`the server answers ${answer.status}`);
+  const parts = [];
+  let length = 0;
+  for (const reader = answer.body.getReader(); ; ) {
+    const { done, value } = await reader.read().catch((error) => {
+      throw new Error(`it breaks off: ${error.message}`);
+    });
+    if (done) return new Blob(parts).arrayBuffer();
+    parts.push(value);
+    length += value.length;
+    if (length > MOST_BYTES) {
+      void reader.cancel();
+      throw new Error(`it is longer than ${MOST_BYTES} bytes`);
+    }
+  }
+}
+
+function textOf(/** @type {ArrayBuffer} */ bytes) {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    throw new Error("it is no text in UTF-8");
+  }
+}
+
+/** The reason in a line: a reader of TOML draws the place and lists all entries that it knows. */
+function inShort(/** @type {string} */ why) {
+  const [, line, reason] = /^TOML parse error at line (\d+)[^]*\|[^\n]*\n([^]+)/.exec(why) ?? [];
+  if (!line) return why;
+  const [short, list = ""] = reason.trim().split(/, (?=expected one of)/);
+  return `line ${line}: ${list.length < 40 ? reason.trim() : short}`;
+}
+
+/**
+ * @param {string} address
+ * @param {string} what the style, for people
+ */
+export async function readStyle(address, what) {
+  try {
+    const [bytes] = await Promise.all([bytesOf(address), loadModule()]);
+    return style_table(address, textOf(bytes));
+  } catch (error) {
+    const why = typeof error === "string" ? error : /** @type {Error} */ (error).message;
+    const short = inShort(why);
+    if (short !== why) console.warn(`${what}: ${why}`);
+    throw new Error(`${what}: ${short}`);
+  }
+}

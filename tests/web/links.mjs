@@ -1,0 +1,160 @@
+// Links keep what was changed by hand; attributes that are taken away leave nothing behind.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { addMap, ask, checkFaults, openMap, openPage, settled } from "./browser.mjs";
+
+const VIEW = "9.51,46.91,4000,10,50";
+const SIZE = { width: 1280, height: 800 };
+const CLIPBOARD = { ...SIZE, permissions: ["clipboard-read", "clipboard-write"] };
+
+/** A page that is opened with a fragment, and its map. */
+async function opened(browser, server, fragment, attributes = {}, options = SIZE) {
+  const page = await openPage(browser, server, `/blank.html${fragment}`, options);
+  const { ready } = await addMap(page, { src: "/packages/pass.pmtiles", samples: "1", hash: "", ...attributes }, { height: `${options.height}px` });
+  assert.ok(ready, "the map did not open");
+  await settled(page);
+  return page;
+}
+
+const settings = (page) => ask(page, (map) => map.settings);
+const hashEnds = (page, end) => page.waitForFunction((end) => location.hash.endsWith(end), end);
+const copied = async (page) => {
+  await page.locator("corniche-map canvas").focus();
+  await page.keyboard.press("v");
+  await page.locator("corniche-map .notice").filter({ hasText: "copied" }).waitFor();
+  return page.evaluate(() => navigator.clipboard.readText());
+};
+
+export function tests({ browser, server }) {
+  test("a copied link shows what was changed by hand, and is short where nothing was", async () => {
+    server.behave();
+    // What the page asks for is no change by hand.
+    const attributes = { "look-at": VIEW, exaggeration: "1.5", outline: "none" };
+    const page = await opened(browser, server, "", attributes, CLIPBOARD);
+    await ask(page, (map) => {
+      map.settings = { error_px: 3 };
+    });
+    const short = await copied(page);
+    assert.ok(short.endsWith(`/blank.html#${VIEW}`), short);
+    const panel = page.locator("corniche-map .panel");
+    await panel.getByRole("radio", { name: "SV", exact: true }).check();
+    await panel.locator(".legend input").nth(3).uncheck();
+    await panel.locator("select").first().selectOption("dark");
+    const heights = panel.locator(".slider").filter({ hasText: "Heights" }).locator("input");
+    await heights.evaluate((input) => {
+      input.value = "2";
+      input.dispatchEvent(new Event("input"));
+    });
+    await page.waitForTimeout(50);
+    const link = await copied(page);
+    // Where heights are exaggerated otherwise, the camera goes up with the ground.
+    assert.match(link, /#9\.5\d+,46\.9\d+,[34]\d{3},10,50;roads=sv;map-style=dark;exaggeration=2;classes=0,1,2,4,5,6,7,8$/);
+    await hashEnds(page, link.slice(link.indexOf(";")));
+    const before = await settings(page);
+    await page.end();
+    const other = await opened(browser, server, new URL(link).hash, attributes, CLIPBOARD);
+    assert.deepEqual(await settings(other), { ...before, error_px: 2 });
+    const there = await ask(other, (map) => map.camera);
+    const [lon, lat] = new URL(link).hash.slice(1).split(",").map(Number);
+    assert.ok(Math.abs(there.lon - lon) < 1e-5 && Math.abs(there.lat - lat) < 1e-5, `${JSON.stringify(there)} ${link}`);
+    assert.equal(await other.locator("corniche-map .notice.warn").count(), 0);
+    assert.equal(new URL(await copied(other)).hash.split(";", 2)[1], "roads=sv", "and it is passed on");
+    checkFaults(other);
+    await other.end();
+  });
+
+  test("a link that is followed in the page shows what it says, and the address stays with the map", async () => {
+    const page = await opened(browser, server, `#${VIEW};roads=sv;areas=off`);
+    assert.deepEqual([(await settings(page)).roads, (await settings(page)).areas], ["sv", false]);
+    await page.evaluate((view) => {
+      location.hash = `#${view};compare=split;divider=0.3`;
+    }, VIEW.replace("4000", "3000"));
+    await page.waitForFunction(() => document.querySelector("corniche-map").settings.compare === "split");
+    await settled(page);
+    const { roads, areas, divider } = await settings(page);
+    assert.deepEqual([roads, areas, +divider.toFixed(3)], ["geo", true, 0.3]);
+    assert.ok(Math.abs((await ask(page, (map) => map.camera)).distance - 3000) < 30);
+    await page.keyboard.press("Tab");
+    await ask(page, (map) => map.lookAt({ lon: 9.515, lat: 46.905 }, { jump: true }));
+    await hashEnds(page, ",50;compare=split;divider=0.3");
+    // A place alone is no change of settings.
+    await page.evaluate((view) => {
+      location.hash = `#${view}`;
+    }, VIEW);
+    await page.waitForFunction(() => Math.abs(document.querySelector("corniche-map").camera.lon - 9.51) < 1e-4);
+    assert.equal((await settings(page)).compare, "split");
+    checkFaults(page);
+    await page.end();
+  });
+
+  test("bad parts of a link are left out and told in two lines; the others are shown", async () => {
+    const size = { width: 360, height: 600 };
+    for (const [part, shown] of [
+      ["roads=both;areas=off", "roads=both"],
+      ["neon=1;areas=off;exaggeration=-3", "neon=1 and 1 more"],
+      [`areas=off;map-style=https://elsewhere.example/a.toml`, "map-style=https://e…"],
+      [`areas=off;classes=77;widths=0:1e9;roads=${"x".repeat(3000)}`, "classes=77 and 2 more"],
+      [`%E0%A4%A=%;areas=off;${"<img src=x onerror=alert(1)>"}`, null],
+    ]) {
+      const page = await opened(browser, server, `#${VIEW};${part}`, {}, size);
+      assert.equal((await settings(page)).areas, false, part);
+      const notice = page.locator("corniche-map .notice.warn span");
+      assert.equal(await notice.count(), 1, part);
+      const text = await notice.textContent();
+      assert.match(text, /^Left out of the link: /);
+      if (shown) assert.equal(text, `Left out of the link: ${shown}${shown.endsWith("…") ? "" : "."}`);
+      const lines = await notice.evaluate((span) => {
+        const style = getComputedStyle(span);
+        return Math.round((span.clientHeight - 2 * parseFloat(style.paddingTop)) / parseFloat(style.lineHeight));
+      });
+      assert.ok(lines <= 2, `${lines} lines: ${text}`);
+      checkFaults(page);
+      await page.end();
+    }
+  });
+
+  test("maps of one page keep their changes apart", async () => {
+    const page = await openPage(browser, server, `/blank.html#a=${VIEW};roads=sv&chapter-2&b=${VIEW};map-style=dark`, SIZE);
+    for (const hash of ["a", "b"]) await addMap(page, { src: "/packages/pass.pmtiles", samples: "1", hash }, { height: "300px" });
+    const seen = await page.evaluate(() => [...document.querySelectorAll("corniche-map")].map((map) => [map.settings.roads, map.settings.style]));
+    assert.deepEqual(seen, [
+      ["sv", "road-atlas"],
+      ["geo", "dark"],
+    ]);
+    await page.evaluate(() => document.querySelector("corniche-map").lookAt({ lon: 9.515, lat: 46.905 }, { jump: true }));
+    await page.waitForFunction(() => /a=9\.515,/.test(location.hash));
+    const parts = (await page.evaluate(() => location.hash)).slice(1).split("&").sort();
+    assert.equal(parts.length, 3, String(parts));
+    assert.match(parts[0], /^a=9\.515,46\.905,[^;]*;roads=sv$/);
+    assert.match(parts[1], /^b=9\.51\d*,46\.91\d*,[^;]*;map-style=dark$/);
+    assert.equal(parts[2], "chapter-2");
+    checkFaults(page);
+    await page.end();
+  });
+
+  test("an attribute that is taken away leaves the usual value", async () => {
+    const attributes = { roads: "sv", "map-style": "dark", exaggeration: "2", classes: "x", photo: "0.2", samples: "3", inertia: "off" };
+    const page = await openMap(browser, server, attributes, { width: 400, height: 300 });
+    const usual = { roads: "geo", style: "road-atlas", exaggeration: 1, photo: null, samples: 2, inertia: true };
+    const before = await settings(page);
+    for (const [setting, value] of Object.entries(usual)) assert.notDeepEqual(before[setting], value, setting);
+    for (const name of Object.keys(attributes)) await ask(page, (map, name) => map.removeAttribute(name), name);
+    const after = await settings(page);
+    for (const [setting, value] of Object.entries(usual)) assert.deepEqual(after[setting], value, setting);
+    await page.end();
+    // While the map is being opened.
+    const early = await openPage(browser, server, "/blank.html", { width: 400, height: 300 });
+    const roads = await early.evaluate(async () => {
+      const map = document.createElement("corniche-map");
+      for (const [name, value] of Object.entries({ src: "/packages/pass.pmtiles", samples: "1", roads: "sv", areas: "off" })) map.setAttribute(name, value);
+      document.querySelector("main").append(map);
+      await new Promise((done) => setTimeout(done, 20));
+      map.removeAttribute("roads");
+      await new Promise((done) => map.addEventListener("ready", done, { once: true }));
+      return [map.settings.roads, map.settings.areas];
+    });
+    assert.deepEqual(roads, ["geo", false]);
+    checkFaults(early);
+    await early.end();
+  });
+}
