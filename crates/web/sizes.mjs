@@ -6,8 +6,11 @@ import zlib from "node:zlib";
 const [folder] = process.argv.slice(2);
 const brotli = (bytes) =>
   zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_QUALITY]: 11, [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } });
-/** What a page fetches with its first own style, and never without one. */
-const OWN_STYLES = new Set(["style_reader.js", "corniche_web_styles_bg.wasm"]);
+/** What a page fetches only when it is needed. */
+const LATER = new Map([
+  ["only with an own style", ["style_reader.js", "corniche_web_styles_bg.wasm"]],
+  ["only where a flight is played", ["toml_reader.js"]],
+]);
 const row = (name, sizes) => console.log(name.padEnd(32), ...sizes.map((size) => size.toLocaleString("en").padStart(11)));
 
 function list(head, names, sum) {
@@ -26,6 +29,9 @@ const names = fs
   .readdirSync(folder)
   .sort()
   .filter((name) => fs.statSync(path.join(folder, name)).isFile() && !name.endsWith(".d.ts") && /\.(js|css|wasm|html)$/.test(name));
-list("every map", names.filter((name) => !OWN_STYLES.has(name)), "all of it");
-console.log();
-list("only with an own style", names.filter((name) => OWN_STYLES.has(name)), "all of it");
+const later = [...LATER.values()].flat();
+list("every map", names.filter((name) => !later.includes(name)), "all of it");
+for (const [when, files] of LATER) {
+  console.log();
+  list(when, files, "all of it");
+}

@@ -229,9 +229,9 @@ export function tests({ browser, server, other, site, sources, package: file }) 
       Math.abs(played.lon - after.lon) < 1e-4 && Math.abs(played.lat - after.lat) < 1e-4,
       `${JSON.stringify(played)} ${JSON.stringify(after)}`,
     );
-    const why = await ask(page, (map) => {
+    const why = await ask(page, async (map) => {
       try {
-        map.play("no flight");
+        await map.play("no flight");
         return "";
       } catch (error) {
         return error.message;

@@ -33,10 +33,11 @@ export function makeActions(map) {
     return flight;
   }
 
-  function play(/** @type {string} */ flight) {
+  /** Plays a flight; in words, why not. */
+  async function play(/** @type {string} */ flight) {
     let record;
     try {
-      record = flightRecord(flight);
+      record = await flightRecord(flight);
     } catch (error) {
       return `this is no flight: ${/** @type {Error} */ (error).message.split("\n")[0]}`;
     }
@@ -72,7 +73,7 @@ export function makeActions(map) {
     async play() {
       const file = await askForFile(".toml");
       if (!file) return;
-      const why = play(await file.text());
+      const why = await play(await file.text());
       if (why !== "") tell("warn", `${file.name}: ${why}`);
     },
     async link() {

@@ -181,8 +181,8 @@ export class CornicheMap extends HTMLElement {
   startRecording(): void;
   /** Ends the recording and returns the flight as TOML. */
   stopRecording(): string;
-  /** Flies a flight. */
-  play(flight: string): void;
+  /** Flies a flight; fulfilled when it has begun. */
+  play(flight: string): Promise<void>;
   /** The map as a PNG with its credits. */
   picture(): Promise<Blob>;
   /** The pixels as shown last: RGBA, rows from the top, without credits. */

@@ -169,8 +169,8 @@ export class CornicheMap extends HTMLElement {
   }
 
   /** Flies a recorded flight. @param {string} flight */
-  play(flight) {
-    const why = this.#need().actions.play(flight);
+  async play(flight) {
+    const why = await this.#need().actions.play(flight);
     if (why !== "") throw new RangeError(why);
   }
 

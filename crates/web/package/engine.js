@@ -102,7 +102,7 @@ async function start(/** @type {Promise<WebAssembly.Module>} */ module) {
     );
   });
   // The browser sets up its graphics meanwhile. Whether there is an adapter is told later, by the renderer.
-  navigator.gpu?.requestAdapter().catch(() => {});
+  /** @type {any} */ (navigator).gpu?.requestAdapter().catch(() => {});
   const [compiled, glue] = await Promise.all([module, script]);
   await glue.default({ module_or_path: compiled });
   return glue;

@@ -1,8 +1,11 @@
 // Flights as text, and as the renderer takes them: `corniche fly` reads and writes the same TOML.
-import { parse, stringify } from "smol-toml";
+import { stringify } from "smol-toml";
 
 /** The text of a flight that the renderer has recorded. */
 export const flightText = (/** @type {string} */ recorded) => (recorded === "" ? "" : stringify(JSON.parse(recorded)));
 
-/** A flight for the renderer. Throws where the text is no TOML. */
-export const flightRecord = (/** @type {string} */ text) => JSON.stringify(parse(text));
+/** A flight for the renderer. Fails where the text is no TOML. Few maps play flights, so what reads them is fetched when one does. */
+export async function flightRecord(/** @type {string} */ text) {
+  const { parse } = await import("./toml_reader.js");
+  return JSON.stringify(parse(text));
+}

@@ -40,7 +40,7 @@ pub(crate) mod plain {
 
 /// Lists of what is [`Recorded`].
 pub(crate) mod records {
-    use super::{Deserializer, Error, Recorded, Serializer, plain};
+    use super::{Deserializer, Recorded, Records, Serializer, plain};
 
     pub(crate) fn serialize<T: Recorded, S: Serializer>(
         list: &[T],
@@ -53,9 +53,7 @@ pub(crate) mod records {
     pub(crate) fn deserialize<'de, T: Recorded, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {
-        let words: Vec<T::Words> = plain::deserialize(deserializer)?;
-        let list: Option<Vec<T>> = words.iter().map(T::of_words).collect();
-        list.ok_or_else(|| D::Error::custom("a record that nothing has"))
+        deserializer.deserialize_byte_buf(Records::new())
     }
 }
 
@@ -105,6 +103,40 @@ impl<T: Pod> Visitor<'_> for Block<T> {
         if !bytes.len().is_multiple_of(size_of::<T>()) {
             return Err(E::invalid_length(bytes.len(), &self));
         }
-        Ok(bytemuck::pod_collect_to_vec(bytes))
+        // Bytes that lie where such values may lie are copied at once.
+        Ok(match bytemuck::try_cast_slice(bytes) {
+            Ok(list) => list.to_vec(),
+            Err(_) => bytemuck::pod_collect_to_vec(bytes),
+        })
+    }
+}
+
+/// Reads a block of records.
+struct Records<T>(PhantomData<T>);
+
+impl<T> Records<T> {
+    fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<T: Recorded> Visitor<'_> for Records<T> {
+    type Value = Vec<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "records of {} bytes each", size_of::<T::Words>())
+    }
+
+    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<T>, E> {
+        let length = size_of::<T::Words>();
+        if !bytes.len().is_multiple_of(length) {
+            return Err(E::invalid_length(bytes.len(), &self));
+        }
+        let mut list = Vec::with_capacity(bytes.len() / length);
+        for record in bytes.chunks_exact(length) {
+            let words = bytemuck::pod_read_unaligned(record);
+            list.push(T::of_words(&words).ok_or_else(|| E::custom("a record of nothing"))?);
+        }
+        Ok(list)
     }
 }

@@ -8,23 +8,6 @@ use super::{
     super::blocks::Recorded, Bed, NearHeights, RoadLook, RoadSegment, RoadVolume, dashes::DashPlace,
 };
 
-/// Takes words one after the other.
-struct Words<'a>(std::slice::Iter<'a, u32>);
-
-impl Words<'_> {
-    fn next(&mut self) -> Option<u32> {
-        self.0.next().copied()
-    }
-
-    fn number(&mut self) -> Option<f32> {
-        self.next().map(f32::from_bits)
-    }
-
-    fn pair(&mut self) -> Option<[f32; 2]> {
-        Some([self.number()?, self.number()?])
-    }
-}
-
 /// Collects words.
 struct Written<const N: usize> {
     words: [u32; N],
@@ -68,8 +51,7 @@ fn described<const N: usize>(
 type Described<const FLAGS: usize> = (FunctionalRoadClass, OwnWidth, RoadLook, [bool; FLAGS]);
 
 /// What [`described`] has written.
-fn description<const FLAGS: usize>(words: &mut Words<'_>) -> Option<Described<FLAGS>> {
-    let [first, value, last] = [words.next()?, words.next()?, words.next()?];
+fn description<const FLAGS: usize>([first, value, last]: [u32; 3]) -> Option<Described<FLAGS>> {
     let class = FunctionalRoadClass::new((first & 0xFF) as u8)?;
     let own_width = match first >> 8 {
         0 => OwnWidth::Unknown,
@@ -107,14 +89,14 @@ impl Recorded for RoadSegment {
     }
 
     fn of_words(words: &Self::Words) -> Option<Self> {
-        let mut words = Words(words.iter());
-        let [start_in_tile, end_in_tile, shares] = [words.pair()?, words.pair()?, words.pair()?];
-        let [height_in_tile, width_factor] = words.pair()?;
-        let (slopes, rises) = (words.pair()?, words.pair()?);
-        let most_m = [words.pair()?, words.pair()?, words.pair()?];
-        let dash = DashPlace::of_numbers(words.pair()?);
-        let part_m = words.number()?;
-        let (class, own_width, look, flags) = description(&mut words)?;
+        let (numbers, described) = words.split_at(21);
+        let number = |at: usize| f32::from_bits(numbers[at]);
+        let pair = |at: usize| [number(2 * at), number(2 * at + 1)];
+        let [start_in_tile, end_in_tile, shares] = [pair(0), pair(1), pair(2)];
+        let ([height_in_tile, width_factor], slopes, rises) = (pair(3), pair(4), pair(5));
+        let (most_m, dash) = ([pair(6), pair(7), pair(8)], DashPlace::of_numbers(pair(9)));
+        let part_m = number(20);
+        let (class, own_width, look, flags) = description(described.try_into().ok()?)?;
         let [cap_start, cap_end, flat_start, flat_end, near, far, farthest] = flags;
         let leaves_tile = [near, far, farthest];
         Some(Self {
@@ -157,13 +139,14 @@ impl Recorded for RoadVolume {
     }
 
     fn of_words(words: &Self::Words) -> Option<Self> {
-        let mut words = Words(words.iter());
-        let [start_in_tile, end_in_tile] = [words.pair()?, words.pair()?];
-        let [height_range_in_tile, range_in_tile] = [words.pair()?, words.pair()?];
-        let [rise, width_factor] = words.pair()?;
-        let dash = DashPlace::of_numbers(words.pair()?);
-        let part_m = words.number()?;
-        let (class, own_width, look, flat_ends) = description(&mut words)?;
+        let (numbers, described) = words.split_at(13);
+        let number = |at: usize| f32::from_bits(numbers[at]);
+        let pair = |at: usize| [number(2 * at), number(2 * at + 1)];
+        let [start_in_tile, end_in_tile] = [pair(0), pair(1)];
+        let ([height_range_in_tile, range_in_tile], [rise, width_factor]) =
+            ([pair(2), pair(3)], pair(4));
+        let (dash, part_m) = (DashPlace::of_numbers(pair(5)), number(12));
+        let (class, own_width, look, flat_ends) = description(described.try_into().ok()?)?;
         Some(Self {
             start_in_tile,
             end_in_tile,

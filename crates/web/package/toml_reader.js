@@ -1,0 +1,2 @@
+// Reads TOML, where a flight is played.
+export { parse } from "smol-toml";
