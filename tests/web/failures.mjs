@@ -21,6 +21,22 @@ async function failing(browser, server, other, failure, options = {}) {
   return { page, opened };
 }
 
+/** Pictures of a failure on desktop and phone, in both colour schemes. */
+async function takeAll(page, pictures, name) {
+  const before = page.viewportSize();
+  for (const [screen, size] of [
+    ["desktop", before],
+    ["phone", { width: 360, height: 640 }],
+  ]) {
+    await page.setViewportSize(size);
+    for (const colorScheme of ["light", "dark"]) {
+      await page.emulateMedia({ colorScheme });
+      await page.screenshot({ path: path.join(pictures, `failure-${name.replace(/\W+/g, "-")}-${screen}-${colorScheme}.png`) });
+    }
+  }
+  await page.setViewportSize(before);
+}
+
 export function tests({ browser, server, other, packages, corniche, pictures }) {
   for (const failure of FAILURES) {
     test(`told in words: ${failure.name}`, async () => {
@@ -39,10 +55,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       assert.deepEqual(page.faults.errors, []);
       const panics = page.faults.console.filter((text) => /panicked/.test(text));
       assert.deepEqual(panics, []);
-      for (const colorScheme of ["light", "dark"]) {
-        await page.emulateMedia({ colorScheme });
-        await page.screenshot({ path: path.join(pictures, `failure-${failure.name.replace(/\W+/g, "-")}-${colorScheme}.png`) });
-      }
+      await takeAll(page, pictures, failure.name);
       await page.end();
       server.behave();
     });
@@ -57,7 +70,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       assert.match(await told.textContent(), failure.says);
       if (failure.stays) assert.ok(colours(await pixelsOf(page)) > 100, "the coarse map is gone");
       assert.deepEqual(page.faults.errors, []);
-      await page.screenshot({ path: path.join(pictures, `failure-${failure.name.replace(/\W+/g, "-")}.png`) });
+      await takeAll(page, pictures, failure.name);
       await page.end();
     });
   }
@@ -91,7 +104,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       assert.ok((await page.locator("corniche-map img.still").getAttribute("src")).endsWith(address));
       assert.match(await page.locator("corniche-map .still-credit").textContent(), /OpenStreetMap contributors/);
       assert.ok(await page.locator("corniche-map .still-credit").isVisible());
-      await page.screenshot({ path: path.join(pictures, "failure-no-WebGPU-with-a-picture.png") });
+      await takeAll(page, pictures, "no WebGPU with a picture");
       await page.end();
     }
     server.behave();
@@ -141,7 +154,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       await page.waitForTimeout(200);
     }
     assert.ok(await page.locator("corniche-map [role=alert]").isVisible());
-    await page.screenshot({ path: path.join(pictures, "failure-device-lost.png") });
+    await takeAll(page, pictures, "device lost");
     await page.end();
   });
 
@@ -158,7 +171,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     });
     const { kind, message } = await failed;
     assert.equal(kind, "out-of-memory", message);
-    await page.screenshot({ path: path.join(pictures, "failure-out-of-memory.png") });
+    await takeAll(page, pictures, "out of memory");
     await page.end();
   });
 
@@ -171,7 +184,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     assert.match(await page.locator("corniche-map .notice.warn").first().textContent(), /no such file|404/);
     await page.waitForTimeout(1500);
     assert.ok((await page.locator("corniche-map .notice.warn").count()) <= 2, "not one for each tile");
-    await page.screenshot({ path: path.join(pictures, "failure-later.png") });
+    await takeAll(page, pictures, "later");
     await page.end();
     server.behave();
   });
