@@ -115,7 +115,7 @@ async function measureIn(page, server, { address, isSilent = false }, view, mute
   };
 }
 
-const median = (values) => values.toSorted((one, other) => one - other)[Math.floor(values.length / 2)];
+const median = (values) => [...values].sort((one, other) => one - other)[Math.floor(values.length / 2)];
 const seconds = (ms) => (ms / 1000).toFixed(2);
 const kB = (bytes) => Math.round(bytes / 1000);
 

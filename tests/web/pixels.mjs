@@ -8,9 +8,9 @@ import { ask, openMap, pixelsOf, settled } from "./browser.mjs";
 import { difference, flown, hasDriver, rendered } from "./rendering.mjs";
 
 const SIZE = { width: 640, height: 400 };
-/** Where to look in perspective: a share of the package's extent, and distance, heading and pitch. */
 /** Packages of which all views are compared; of others the first one and one in perspective. */
 const isWhole = (name) => name === "pass" || process.env.CORNICHE_ALL_VIEWS === "1";
+/** Where to look in perspective: a share of the package's extent, and distance, heading and pitch. */
 const VIEW = { share: [0.52, 0.55], distance: 4000, heading: 30, pitch: 60 };
 
 export function tests({ browser, server, packages, corniche }) {

@@ -39,7 +39,7 @@ export function makeActions(map) {
     try {
       record = await flightRecord(flight);
     } catch (error) {
-      return `this is no flight: ${/** @type {Error} */ (error).message.split("\n")[0]}`;
+      return /** @type {Error} */ (error).message;
     }
     const why = view.play(record, now());
     map.wake();

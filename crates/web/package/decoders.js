@@ -25,8 +25,12 @@ export function startDecoders(module, count, decoded, failed) {
     if (!hasFailed) failed(error);
     hasFailed = true;
   };
-  const workers = Array.from({ length: count }, () => {
+  /** @type {Worker[]} */
+  const workers = [];
+  const end = () => workers.forEach((worker) => worker.terminate());
+  const start = () => {
     const worker = startWorker(script);
+    workers.push(worker);
     worker.onmessage = (event) => {
       if (event.data?.failed) fail(new Error(event.data.failed));
       else decoded(event.data);
@@ -36,12 +40,17 @@ export function startDecoders(module, count, decoded, failed) {
       fail(new Error(event.message || "the worker's script cannot be loaded"));
     };
     module.then((module) => worker.postMessage({ module })).catch(() => {});
-    return worker;
-  });
+  };
+  try {
+    for (let worker = 0; worker < count; worker += 1) start();
+  } catch (error) {
+    end();
+    throw error;
+  }
   return {
     count,
     post: (/** @type {number} */ index, /** @type {object} */ message, /** @type {ArrayBuffer[]} */ transfer) =>
       workers[index].postMessage(message, transfer),
-    end: () => workers.forEach((worker) => worker.terminate()),
+    end,
   };
 }

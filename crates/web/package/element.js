@@ -93,7 +93,7 @@ export class CornicheMap extends HTMLElement {
       if (place && this.#session) this.#session.lookAt(place);
     } else {
       const setting = settingOf(name);
-      const change = text === null && setting ? this.#without(setting) : changeOf(name, text);
+      const change = setting && (text === null || setting === "inertia") ? this.#without(setting) : changeOf(name, text);
       if (change) this.settings = change;
     }
   }

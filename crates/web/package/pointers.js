@@ -163,6 +163,8 @@ export function watchPointers(canvas, to) {
     if (isPinching) {
       endPinch();
       isWaiting = fingers.size === 1;
+      // Of three fingers two are left: they go on from where they are.
+      if (fingers.size >= 2) pinch();
       return;
     }
     isWaiting = false;

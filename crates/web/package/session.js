@@ -105,13 +105,14 @@ export async function openSession(from) {
     );
   }
   ends.push(decoders.end);
+  let asked;
   try {
     glue = await Promise.race([engine.ready, stopped]);
+    asked = await Promise.race([from.settings(glue), stopped]);
   } catch (error) {
     end();
     throw error;
   }
-  const asked = await from.settings(glue);
   const [width, height, ratio] = await size;
   if (signal.aborted) return null;
   canvas.width = width;
@@ -127,6 +128,9 @@ export async function openSession(from) {
     workers: decoders.count,
     head,
     head_bytes: HEAD_BYTES,
+    get is_over() {
+      return isOver;
+    },
   };
   // What workers had under way when they were ended is told as failed, or it would be waited for.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));

@@ -5,6 +5,15 @@ import { isAddress, readStyle } from "./own_styles.js";
 
 /** @typedef {Record<string, unknown>} Changes */
 
+/** Where an address leads; `null` where it is none. */
+function originOf(/** @type {string} */ address) {
+  try {
+    return new URL(address, document.baseURI).origin;
+  } catch {
+    return null;
+  }
+}
+
 export class Settings {
   /** @type {HTMLElement} */
   #element;
@@ -16,6 +25,8 @@ export class Settings {
   #glue = null;
   /** Those that were set before the package was open. @type {Changes} */
   #wanted = {};
+  /** Those of them that came while it was being opened. @type {Changes} */
+  #late = {};
   /** @type {Changes} */
   #usual = {};
   /** All of them as the program and the page ask for; what differs in the view was changed by hand. @type {Changes} */
@@ -45,6 +56,7 @@ export class Settings {
     const session = this.#session;
     if (!session) {
       Object.assign(this.#wanted, change);
+      Object.assign(this.#late, change);
       return "";
     }
     const { style, ...others } = change;
@@ -102,6 +114,8 @@ export class Settings {
    * @param {string} link what was changed by hand
    */
   opening(asked, link) {
+    // What was set until now is asked for; a link may say otherwise, and what is set from now on has the last word.
+    this.#late = {};
     const settings = Object.fromEntries(Object.entries(asked).filter(([, value]) => value !== undefined));
     const { style } = settings;
     const isNew = isAddress(style) && (!this.#glue || this.#faultOf({ style }) !== "");
@@ -123,8 +137,9 @@ export class Settings {
         this.#session = session;
         this.#asked = { ...session.settings() };
         for (const setting of Object.keys(byHand)) this.#asked[setting] = setting in settings ? settings[setting] : this.#usual[setting];
-        const late = Object.entries(this.#wanted).map(([setting, value]) => [setting, value === undefined ? this.#usual[setting] : value]);
+        const late = Object.entries(this.#late).map(([setting, value]) => [setting, value === undefined ? this.#usual[setting] : value]);
         this.#wanted = {};
+        this.#late = {};
         return late.length > 0 ? this.set(Object.fromEntries(late)) : "";
       },
     };
@@ -153,7 +168,7 @@ export class Settings {
     for (const [part, change] of changes) {
       const { style } = /** @type {any} */ (change);
       // A link may have been written by anyone: it must not make this page ask other hosts.
-      const isOwn = isAddress(style) && URL.parse(style, document.baseURI)?.origin === location.origin;
+      const isOwn = isAddress(style) && originOf(style) === location.origin;
       if (isOwn && this.#faultOf(change) !== "" && !(await this.#keepStyle(style, readStyle(style)))) continue;
       if (this.#faultOf(change) === "") Object.assign(good, change);
       else unknown.push(part);

@@ -3,6 +3,8 @@ import init, { style_table } from "./corniche_web_styles.js";
 
 /** As much as the module reads at most; a file without end is not waited for. */
 const MOST_BYTES = 1 << 20;
+/** A server that does not answer is not waited for longer. */
+const MOST_MS = 20_000;
 const MODULE = "corniche_web_styles_bg.wasm";
 
 /** @type {Promise<unknown> | null} */
@@ -27,7 +29,7 @@ function loadModule() {
 async function bytesOf(/** @type {string} */ address) {
   let answer;
   try {
-    answer = await fetch(new URL(address, document.baseURI));
+    answer = await fetch(new URL(address, document.baseURI), { signal: AbortSignal.timeout(MOST_MS) });
   } catch (error) {
     throw new Error(`it cannot be fetched: ${/** @type {Error} */ (error).message}`);
   }

@@ -6,7 +6,7 @@ use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
 #[wasm_bindgen]
 extern "C" {
     /// The page's side of a map. `wake()` asks for a frame, `post(worker, message, transfer)` hands a message to a worker, `workers` is their number.
-    /// `head` is the answer to the first request, for the first `head_bytes` of the package: the page sends it while this module is on its way.
+    /// `is_over` is true when the map was closed. `head` is the answer to the first request, for the first `head_bytes` of the package: the page sends it while this module is on its way.
     #[derive(Clone)]
     pub type Host;
 
@@ -29,4 +29,8 @@ extern "C" {
     /// How many bytes it asks for.
     #[wasm_bindgen(method, getter)]
     pub fn head_bytes(this: &Host) -> u32;
+
+    /// Whether the map was closed, maybe before it was open.
+    #[wasm_bindgen(method, getter)]
+    pub fn is_over(this: &Host) -> bool;
 }

@@ -77,6 +77,12 @@ impl Map {
         self.settings.exaggeration * self.manifest().point_scale
     }
 
+    /// Somebody moves the map, and has it from now on.
+    pub(crate) fn take_over(&mut self) {
+        self.flights.stop_playing();
+        self.placed = None;
+    }
+
     pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
         let ground = ground(
             &self.tiles,
@@ -158,6 +164,7 @@ impl Map {
         let request = place.request();
         range::check_camera(request).map_err(|error| error.to_string())?;
         let view = self.view_at(request).map_err(|error| error.to_string())?;
+        self.placed = None;
         if jump {
             self.camera.jump_to(view);
             self.placed = Some((request, self.camera.view()));

@@ -17,7 +17,7 @@ use corniche_viewer::{
     stream::StreamBudget,
     tiles::{MapPackage as _, PackageTiles, TileCatalog},
 };
-use futures_util::future::join;
+use futures_util::future::try_join;
 use web_sys::HtmlCanvasElement;
 
 use crate::map::{Map, clamped, decoder_of, fineness_of};
@@ -165,10 +165,9 @@ pub(crate) async fn open(
     let first_look =
         FirstLook { settings: &settings, style: &style, request, covered_px: options.covered_px };
     // The device is waited for while the package is read.
-    let (page_canvas, opened) =
-        join(PageCanvas::new(canvas), Opened::new(&address, &host, &first_look, asked_px)).await;
-    let page_canvas = page_canvas?;
-    let Opened { tileset, loader, ground, home } = opened?;
+    let opened = Opened::new(&address, &host, &first_look, asked_px);
+    let (page_canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
+    let Opened { tileset, loader, ground, home } = opened;
     let package = &tileset.package;
     let manifest = package.manifest();
     let size_px = clamped(asked_px, page_canvas.gpu().max_side_px());

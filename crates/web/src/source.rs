@@ -97,8 +97,21 @@ struct Cache {
 }
 
 impl Cache {
-    /// What there is of some bytes, from the first of them on; maybe nothing.
+    /// What there is of some bytes, from the first of them on; maybe nothing. They may lie in several ranges.
     fn get(&mut self, offset: u64, length: usize) -> Vec<u8> {
+        let mut found = Vec::new();
+        while found.len() < length {
+            let more = self.get_in_one(offset + found.len() as u64, length - found.len());
+            if more.is_empty() {
+                break;
+            }
+            found.extend(more);
+        }
+        found
+    }
+
+    /// The same, as far as one range has them.
+    fn get_in_one(&mut self, offset: u64, length: usize) -> Vec<u8> {
         self.clock += 1;
         let Some((from, (bytes, used))) = self.ranges.range_mut(..=offset).next_back() else {
             return Vec::new();
@@ -147,6 +160,8 @@ impl WebSource {
                 range(address, bytes, &controller()?.signal()).await
             };
             match head {
+                // Nobody waits for the map any more, and its requests were stopped.
+                Err(problem) if host.is_over() => return Err(problem),
                 Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
                 Err(problem) => return Err(diagnosed(address, problem).await),
                 Ok(head) => break head,

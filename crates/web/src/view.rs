@@ -88,7 +88,7 @@ impl MapView {
 
     /// A button goes down: 0 left, 1 middle, 2 right.
     pub fn press(&mut self, button: u8, x: f64, y: f64, shift: bool, control: bool, now_s: f64) {
-        self.0.flights.stop_playing();
+        self.0.take_over();
         let Some(button) = button_of(button) else { return };
         let ground = ground(
             &self.0.tiles,
@@ -119,13 +119,13 @@ impl MapView {
 
     /// The wheel turns by so many notches; positive zooms in.
     pub fn wheel(&mut self, steps: f64, x: f64, y: f64, now_s: f64) {
-        self.0.flights.stop_playing();
+        self.0.take_over();
         self.0.input(&Input::Wheel { steps, at_px: DVec2::new(x, y) }, now_s);
     }
 
     /// Two fingers touch the map, or are elsewhere now.
     pub fn two_fingers(&mut self, ax: f64, ay: f64, bx: f64, by: f64, now_s: f64) {
-        self.0.flights.stop_playing();
+        self.0.take_over();
         self.0.input(&Input::TwoFingers { at_px: [DVec2::new(ax, ay), DVec2::new(bx, by)] }, now_s);
     }
 
@@ -157,7 +157,7 @@ impl MapView {
             return false;
         }
         if is_down {
-            self.0.flights.stop_playing();
+            self.0.take_over();
         }
         let state = if is_down { KeyState::Pressed } else { KeyState::Released };
         self.0.input(&Input::Key { key, state, modifiers }, now_s);
@@ -172,7 +172,7 @@ impl MapView {
     /// Does what a button of the page asks for: `north-up`, `reset`, `toggle-fly`, `toggle-above`, `start-recording`, `stop-recording`. The last
     /// returns the flight as JSON with the fields of its TOML, others an empty text.
     pub fn command(&mut self, name: &str, now_s: f64) -> String {
-        self.0.flights.stop_playing();
+        self.0.take_over();
         match name {
             "north-up" => self.0.input(&Input::NorthUp, now_s),
             "reset" => self.0.input(&Input::Reset, now_s),
@@ -220,7 +220,7 @@ impl MapView {
 
     /// Looks at a place, at once or by a flight there: JSON. Returns an empty text, or why not.
     pub fn look_at(&mut self, place: &str, now_s: f64, jump: bool) -> String {
-        self.0.flights.stop_playing();
+        self.0.take_over();
         self.0.go(place, now_s, jump).err().unwrap_or_default()
     }
 
@@ -230,7 +230,7 @@ impl MapView {
         let ground = ground(&self.0.tiles, &self.0.settings, manifest, self.0.height_range_m);
         match place_in_world(lon_lat, manifest, &ground) {
             Ok(target_in_world) => {
-                self.0.flights.stop_playing();
+                self.0.take_over();
                 self.0.input(&Input::GoTo { target_in_world }, now_s);
                 String::new()
             }
