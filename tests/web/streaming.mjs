@@ -114,12 +114,11 @@ export function tests({ browser, server }) {
       .map(({ range }) => range.slice("bytes=".length).split("-").map(Number))
       .sort(([a], [b]) => a - b);
     assert.ok(ranges.length > 6, `${ranges.length} ranges`);
-    // Neighbours that are fetched as one may have a little between them that was read before.
-    const gap = 4096;
-    ranges.slice(1).forEach(([first], place) => {
-      const [, last] = ranges[place];
-      assert.ok(last - first < gap, `bytes ${first} to ${last} were asked for twice`);
-    });
+    // A request may be stopped when its answer is on its way already, and what lies between neighbours is fetched with them: a little comes twice.
+    const all = ranges.reduce((sum, [first, last]) => sum + last - first + 1, 0);
+    const twice = ranges.slice(1).reduce((sum, [first], place) => sum + Math.max(0, ranges[place][1] - first + 1), 0);
+    console.log(`# ${twice} of ${all} bytes were asked for twice`);
+    assert.ok(twice < 0.15 * all, `${twice} of ${all} bytes were asked for twice`);
     await page.end();
   });
 }
