@@ -132,6 +132,21 @@ export function tests({ browser, server }) {
     await page.end();
   });
 
+  test("a link shows what was changed, also on a map that stands in the page's own text", async () => {
+    server.behave();
+    const map = `<corniche-map src="/packages/pass.pmtiles" roads="geo" map-style="relief" samples="1" exaggeration="1.5" hash style="height: 400px"></corniche-map>`;
+    const text = `<!doctype html><html lang="en"><title>A map</title><main>${map}</main><script type="module" src="/corniche-map.js"></script></html>`;
+    server.state.replaced.set("/text.html", { bytes: Buffer.from(text), type: "text/html" });
+    const page = await openPage(browser, server, `/text.html#${VIEW};roads=sv;map-style=dark`, SIZE);
+    await page.waitForFunction(() => document.querySelector("corniche-map")?.about);
+    await settled(page);
+    const { roads, style, exaggeration } = await settings(page);
+    assert.deepEqual([roads, style, exaggeration], ["sv", "dark", 1.5]);
+    checkFaults(page);
+    await page.end();
+    server.behave();
+  });
+
   test("an attribute that is taken away leaves the usual value", async () => {
     const attributes = { roads: "sv", "map-style": "dark", exaggeration: "2", classes: "x", photo: "0.2", samples: "3", inertia: "off" };
     const page = await openMap(browser, server, attributes, { width: 400, height: 300 });
