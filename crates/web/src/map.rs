@@ -23,7 +23,7 @@ use crate::{
     canvas::PageCanvas,
     flights::Flights,
     loader::{PageLoader, Tileset},
-    place::{Place, view_of},
+    place::{Place, view_on},
     report::{About, ClassEntry, GroundPlace, Has, Notice},
     settings::{Compare, Settings},
     tables,
@@ -191,9 +191,7 @@ impl Map {
                 known_m.or_else(|| is_inside.then(|| f64::midpoint(low_m, high_m)))
             }),
         };
-        let camera = request.camera(manifest, sighted, scale, self.size_px)?;
-        let heights = self.height_range_m.map(|height_m| height_m * scale);
-        Ok(view_of(request, &camera, manifest, heights))
+        view_on(request, manifest, sighted, scale, self.size_px)
     }
 
     /// Looks again at the place that was jumped to, as long as nothing else moves the camera: finer ground has come, at another height.

@@ -29,7 +29,7 @@ use crate::{
     foresight::foreseen,
     host::Host,
     loader::{PageLoader, Tileset},
-    place::{Place, view_of},
+    place::{Place, view_on},
     problem::Problem,
     settings::{Changes, Settings},
     source::WebSource,
@@ -86,9 +86,7 @@ impl FirstLook<'_> {
         let scale = self.settings.exaggeration * manifest.point_scale;
         match self.request {
             CameraRequest::FromAbove { .. } => {
-                let heights = ground.heights_m.map(|height_m| height_m * scale);
-                let camera = self.request.camera(manifest, ground, scale, size_px);
-                camera.map(|camera| view_of(self.request, &camera, manifest, heights))
+                view_on(self.request, manifest, ground, scale, size_px)
             }
             _ => first_view(self.request, manifest, ground, scale, size_px, self.covered_px),
         }

@@ -3,7 +3,7 @@
 use corniche_live::controls::View;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    CameraRequest,
+    CameraRequest, OffGround, SightedGround,
     camera::{Camera, Orientation},
 };
 use glam::DVec3;
@@ -90,8 +90,24 @@ impl Place {
     }
 }
 
+/// The view that a request asks for, over this ground. World heights are `vertical_scale` times true ones.
+///
+/// # Errors
+/// When the place has no ground, and no height is given.
+pub(crate) fn view_on(
+    request: CameraRequest,
+    manifest: &Manifest,
+    ground: SightedGround,
+    vertical_scale: f64,
+    size_px: [u32; 2],
+) -> Result<View, OffGround> {
+    let camera = request.camera(manifest, ground, vertical_scale, size_px)?;
+    let heights = ground.heights_m.map(|height_m| height_m * vertical_scale);
+    Ok(view_of(request, &camera, manifest, heights))
+}
+
 /// The view of a request from above, or of the camera that a request gave.
-pub(crate) fn view_of(
+fn view_of(
     request: CameraRequest,
     camera: &Camera,
     manifest: &Manifest,
