@@ -36,7 +36,7 @@ thread_local! {
     };
     static TABLE: LazyCell<FrcTable> = const {
         LazyCell::new(|| {
-            parse_frc_table(include_str!("../../crates/presets/frc/default.toml")).expect("a preset is right")
+            parse_frc_table(corniche_presets::frc_preset("default").expect("it is there")).expect("a preset is right")
         })
     };
 }

@@ -4,27 +4,14 @@
 # Sets `dask_env` to a virtual environment with corniche-dask and pytest. Says so and fails where there are no packages to be had; in CI that ends
 # the script if only ours cannot be installed.
 make_dask_environment() {
-    local python package=python/corniche-dask new
+    local package=python/corniche-dask
     dask_env=${CARGO_TARGET_DIR:-target}/dask-env
-    python=$(python_for_environments) || { install_missing missing_for_dask && python=$(python_for_environments); } ||
-        fail 1 "there is no python3 of version 3.10 or newer with the module venv"
-    new=$("$python" -c 'import sys; print(sys.version)' && cat $package/pyproject.toml)
-    if [ "$(cat "$dask_env/made-of" 2>/dev/null)" = "$new" ]; then return 0; fi
-    rm -rf "$dask_env"
-    "$python" -m venv "$dask_env"
-    if "$dask_env/bin/python" -m pip install --quiet --disable-pip-version-check -e "$package[test]"; then
-        printf '%s\n' "$new" >"$dask_env/made-of"
-        return 0
-    fi
+    if python_folder "$dask_env" $package/lock.txt -e "$package[test]"; then return 0; fi
     if [ "${CI:-}" = true ] && "$dask_env/bin/python" -m pip install --quiet --disable-pip-version-check distributed; then
         fail 1 "corniche-dask cannot be installed, though its dependencies can; see above"
     fi
     say "skipped: Python packages cannot be installed here, so corniche-dask is not tested"
     return 1
-}
-
-missing_for_dask() {
-    python_for_environments >/dev/null || echo python3-venv
 }
 
 missing_for_examples() {

@@ -1,6 +1,9 @@
 # Sourced by scripts/demo, scripts/test and .ci/run: finds missing packages and installs them.
 # shellcheck shell=bash
 
+# shellcheck source=scripts/lib/environments.sh
+. "$(dirname "${BASH_SOURCE[0]}")/environments.sh"
+
 say() { printf '%s\n' "$*" >&2; }
 
 fail() {
@@ -92,24 +95,12 @@ python_with() {
     return 1
 }
 
-# Prints a Python interpreter of version 3.10 or newer that can make virtual environments.
-python_for_environments() {
-    local found
-    found=$(python_with venv ensurepip) && "$found" -c 'import sys; sys.exit(sys.version_info < (3, 10))' && echo "$found"
-}
-
 # Prints a Python interpreter that has moto's server, which stands in for object storage in tests. Where there is none, a virtual environment is
 # made in the target folder, once. Fails, and says why, where that cannot be done.
 object_storage_python() {
-    local folder=${CARGO_TARGET_DIR:-target}/object-storage base
+    local folder=${CARGO_TARGET_DIR:-target}/object-storage
     python_with moto.server && return 0
-    if "$folder/bin/python" -c "import moto.server" 2>/dev/null; then
-        echo "$(cd "$folder" && pwd)/bin/python"
-        return 0
-    fi
-    base=$(python_for_environments) || { say "no python3 can make a virtual environment (Debian: python3-venv)"; return 1; }
-    say "installing moto's server into $folder"
-    "$base" -m venv "$folder" >&2 && "$folder/bin/python" -m pip install -q 'moto[server]==5.2.5' >&2 || return 1
+    python_folder "$folder" tests/object-storage-lock.txt || return 1
     echo "$(cd "$folder" && pwd)/bin/python"
 }
 

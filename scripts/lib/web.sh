@@ -1,4 +1,4 @@
-# Sourced by scripts/web and scripts/test-web: a compiler for WebAssembly, and a folder with packages of npm.
+# Sourced by scripts/web and scripts/test-web: a compiler for WebAssembly, and what the tests of the page need.
 # shellcheck shell=bash
 
 WASM=wasm32-unknown-unknown
@@ -24,24 +24,6 @@ missing_for_debian_web() {
     [ -x /usr/bin/cargo ] || echo cargo-web
     [ -d /usr/lib/rustlib/src ] || [ -d /usr/src/rustc-web ] || echo rust-web-src
     command -v wasm-ld >/dev/null || echo lld
-}
-
-missing_for_node() {
-    command -v node >/dev/null || echo nodejs
-    command -v npm >/dev/null || echo npm
-}
-
-# npm_folder FOLDER PACKAGE.json: a folder with the packages that a file names, made once. Fails, and says so, where there are none to be had.
-npm_folder() {
-    local folder=$1 wanted new
-    wanted=$2
-    (install_missing missing_for_node) || return 1
-    mkdir -p "$folder"
-    new=$(cat "$wanted")
-    if [ "$(cat "$folder/made-of" 2>/dev/null)" = "$new" ]; then return 0; fi
-    cp "$wanted" "$folder/package.json"
-    (cd "$folder" && npm install --ignore-scripts --no-audit --no-fund --loglevel=error --engine-strict=false) >&2 || return 1
-    printf '%s\n' "$new" >"$folder/made-of"
 }
 
 missing_for_page_tests() {

@@ -3,7 +3,7 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use crate::skipped;
+use crate::skip;
 
 /// A server is tried so often.
 const STARTS: u32 = 5;
@@ -33,7 +33,7 @@ impl Display {
         for program in ["Xvfb", "xdotool"] {
             let found = Command::new(program).arg("-version").stdin(Stdio::null()).output();
             if found.is_err() {
-                skipped(&format!("{program} is not installed"));
+                skip(&format!("{program} is not installed"));
                 return None;
             }
         }

@@ -1,5 +1,6 @@
 //! Harness of the scenarios: runs the real binary on real and made-up inputs.
 
+mod binary;
 #[cfg(target_os = "linux")]
 mod display;
 pub mod ground;
@@ -9,40 +10,25 @@ pub mod photo;
 pub mod web_servers;
 
 use std::{
+    collections::BTreeMap,
     fs,
     io::Read as _,
     path::{Path, PathBuf},
     process::{Child, Command, Output},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
     thread,
     time::{Duration, Instant},
 };
 
+pub use binary::binary;
 pub use corniche_testing::{
-    extract_with_areas, extract_with_boundaries, extract_with_coast, real_data, root, sample,
+    cases, extract_with_areas, extract_with_boundaries, extract_with_coast, is_full, real_data, root, sample, skip,
 };
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
 pub use job::{Job, When};
 pub use object_storage::{ObjectStorage, Proxy};
 use serde_json::Value;
-
-/// The binary under test, built before the scenarios by cargo in the same target folder.
-///
-/// # Panics
-/// When it is not there: `cargo test --workspace` builds it, `cargo test -p e2e` alone does not.
-#[must_use]
-pub fn binary() -> PathBuf {
-    // Tests run from target/<profile>/deps; binaries lie one folder up.
-    let tests = std::env::current_exe().unwrap_or_default();
-    let folder = tests.parent().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
-    let binary = folder.join(format!("corniche{}", std::env::consts::EXE_SUFFIX));
-    assert!(
-        binary.exists(),
-        "{} is missing; run cargo build -p corniche-cli first",
-        binary.display()
-    );
-    binary
-}
 
 /// The result of a run of the binary.
 #[derive(Debug)]
@@ -142,12 +128,6 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Says that a test was skipped, and why.
-#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
-pub fn skipped(why: &str) {
-    eprintln!("skipped: {why}");
-}
-
 /// Whether a command failed for want of a graphics adapter, which is no failure unless `CORNICHE_REQUIRE_GPU` is set; says
 /// so. Any other failure is one.
 #[must_use]
@@ -156,7 +136,7 @@ pub fn lacks_adapter(ran: &Ran) -> bool {
         && ran.err.contains("no graphics adapter found")
         && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none();
     if lacks {
-        skipped(&ran.err);
+        skip(&ran.err);
     }
     lacks
 }
@@ -234,6 +214,29 @@ pub fn write_ascii_grid(
 pub fn build_pass(package: &Path, options: &[&str]) {
     let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
     build_from([&dem, &osm], package, options);
+}
+
+/// Packages of the sample that were built in this process, by their options. What `build` makes of the same options is the
+/// same bytes, which `packages` and `kills` test.
+static PASSES: Mutex<BTreeMap<Vec<String>, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
+
+/// Puts the package of the `pass` sample with these options at `package`; it is built once in a process.
+///
+/// # Panics
+/// When the build fails, or the file cannot be written.
+pub fn copy_pass(package: &Path, options: &[&str]) {
+    let key = options.iter().map(|&option| option.to_owned()).collect();
+    let built = {
+        let mut passes = PASSES.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(passes.entry(key).or_default())
+    };
+    let bytes = built.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let package = folder.path().join("pass.pmtiles");
+        build_pass(&package, options);
+        fs::read(package).expect("the build left a package")
+    });
+    fs::write(package, bytes).unwrap_or_else(|error| panic!("{}: {error}", package.display()));
 }
 
 /// Builds `package` from elevation and an extract, with more `options`.

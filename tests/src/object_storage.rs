@@ -14,7 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{binary, skipped};
+use crate::{binary, skip};
 
 /// Moto's server with an empty bucket `maps`; it ends with this.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub(crate) fn python_with_moto() -> Option<String> {
         return Some(python);
     }
     assert!(env::var_os("CI").is_none(), "CI needs moto[server] for {python}");
-    skipped("moto[server] is not installed (scripts/test installs it)");
+    skip("moto[server] is not installed (scripts/test installs it)");
     None
 }
 

@@ -15,7 +15,7 @@ use std::{
 use crate::{
     binary,
     object_storage::{python_with_moto, start_moto},
-    skipped,
+    skip,
 };
 
 /// A server; it ends with this.
@@ -43,7 +43,7 @@ impl WebServer {
         let found = Command::new("busybox").args(["httpd", "--help"]).output();
         if found.is_err() {
             assert!(env::var_os("CI").is_none(), "CI needs busybox");
-            skipped("busybox is not installed (scripts/test installs it)");
+            skip("busybox is not installed (scripts/test installs it)");
             return None;
         }
         // It does not tell a port that it chose, so the port is chosen here, and may be taken by others in between.
@@ -75,7 +75,7 @@ impl WebServer {
         command.args(["-u", "-m", "http.server", "0", "--bind", "127.0.0.1", "--directory"]);
         let server = command.arg(folder).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let Ok(mut server) = server else {
-            skipped("python3 is not installed");
+            skip("python3 is not installed");
             return None;
         };
         let mut said = String::new();

@@ -10,7 +10,7 @@ import { difference, hasDriver, rendered } from "./rendering.mjs";
 /** A style that no preset is: the roads of the sample are wide and green. */
 const MINE = (sources) =>
   fs
-    .readFileSync(path.join(sources, "../../styles/sheets/dark.toml"), "utf8")
+    .readFileSync(path.join(sources, "../../../config/styles/dark.toml"), "utf8")
     .replace(/^outline_px = .*$/m, "outline_px = 2")
     .replace(/^color = .*$/gm, 'color = "#1db954"')
     .replace(/^width_m = .*$/gm, "width_m = 30.0");

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use petgraph::{algo::tarjan_scc, graphmap::DiGraphMap};
+use petgraph::{algo::tarjan_scc, graph::DiGraph};
 
 use crate::{
     source::Crate,
@@ -146,15 +146,17 @@ impl Graph {
 
     /// Strongly connected components, each sorted; those that are used come before those that use them (Tarjan 1972).
     fn components(&self) -> Vec<Vec<String>> {
-        let mut graph = DiGraphMap::<&str, ()>::new();
-        for node in &self.nodes {
-            graph.add_node(node);
-        }
+        let ends = self.edges.keys().flat_map(|(from, to)| [from, to]);
+        let names: BTreeSet<&str> = self.nodes.iter().chain(ends).map(String::as_str).collect();
+        let mut graph = DiGraph::<&str, ()>::new();
+        let indices: BTreeMap<&str, _> =
+            names.into_iter().map(|name| (name, graph.add_node(name))).collect();
         for (from, to) in self.edges.keys() {
-            graph.add_edge(from, to, ());
+            graph.add_edge(indices[from.as_str()], indices[to.as_str()], ());
         }
-        let owned = |nodes: Vec<&str>| {
-            let mut nodes: Vec<String> = nodes.into_iter().map(str::to_owned).collect();
+        let owned = |nodes: Vec<_>| {
+            let mut nodes: Vec<String> =
+                nodes.into_iter().map(|node| graph[node].to_owned()).collect();
             nodes.sort();
             nodes
         };

@@ -21,3 +21,65 @@ fn a_memory_that_the_command_line_overrides_does_not_matter() {
     let merged = given.or(of_file);
     assert_eq!(resources(None, merged.memory.as_deref()).unwrap().memory_bytes, 512 << 20);
 }
+
+/// The settings file that comes with the program, with the keys uncommented for which `is_wanted` says so of a line.
+fn uncommented(is_wanted: impl Fn(&str) -> bool) -> String {
+    let lines = corniche_config::BUILD_SETTINGS.lines().map(|line| match line.strip_prefix('#') {
+        Some(key) if is_key(line) && is_wanted(key) => key,
+        _ => line,
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Whether this line is a key that is commented out: no space follows its `#`.
+fn is_key(line: &str) -> bool {
+    line.strip_prefix('#').is_some_and(|key| key.starts_with(char::is_alphabetic))
+}
+
+/// What a settings file says, as settings; without its inputs, outputs and what depends on the machine.
+fn settings_of(text: &str) -> String {
+    let Config { terrain, roads, areas, photo, .. } = Config::parse(text).unwrap();
+    let cut = Cut { bounds_deg: None, polygon: None };
+    let credits = terrain.attribution.clone();
+    let terrain = terrain_settings(terrain, usual_terrain().terrain, cut, false).unwrap();
+    let photo = photo_choice(&[PathBuf::from("a.tif")], &photo).unwrap();
+    let areas = (area_table(&areas, &[]).unwrap(), boundaries(&areas, &[]).unwrap());
+    format!("{credits:?} {terrain:?} {:?} {areas:?} {photo:?}", road_settings(roads).unwrap())
+}
+
+/// Every key of the settings file is known, and where it has a default, that is the default.
+#[test]
+fn the_settings_file_has_the_defaults() {
+    // Two pairs of keys exclude each other only when a build begins, so all can be read at once.
+    Config::parse(&uncommented(|_| true)).unwrap();
+    let without = settings_of("");
+    let mut compared = 0;
+    for line in corniche_config::BUILD_SETTINGS.lines().filter(|line| is_key(line)) {
+        let text = uncommented(|key| Some(key) == line.strip_prefix('#'));
+        if !line.ends_with("# example") {
+            assert_eq!(settings_of(&text), without, "{line}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 8, "only {compared} keys have a default");
+}
+
+/// The settings file has every key: those that the reader names when it meets one that it does not know.
+#[test]
+fn the_settings_file_has_every_key() {
+    let known = |text: &str| -> Vec<String> {
+        let error = Config::parse(text).unwrap_err().to_string();
+        let (_, names) = error.split_once("expected one of").or_else(|| error.split_once("expected")).unwrap();
+        names.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+    };
+    let whole: toml::Table = uncommented(|_| true).parse().unwrap();
+    let sections = known("nothing-of-ours = 1");
+    assert_eq!(sections.len(), whole.len());
+    for section in sections {
+        let mut keys: Vec<String> = whole[&section].as_table().unwrap().keys().cloned().collect();
+        let mut wanted = known(&format!("[{section}]\nnothing-of-ours = 1"));
+        keys.sort();
+        wanted.sort();
+        assert_eq!(keys, wanted, "[{section}]");
+    }
+}

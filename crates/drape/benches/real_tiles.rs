@@ -106,7 +106,7 @@ fn tiles(folder: &Path) -> BTreeMap<u8, Vec<Tile>> {
 
 fn bench(c: &mut Criterion) {
     let Some(folder) = std::env::var_os("CORNICHE_TILES") else {
-        eprintln!("skipped: set CORNICHE_TILES to a folder of tiles as JSON");
+        corniche_testing::skip("set CORNICHE_TILES to a folder of tiles as JSON");
         return;
     };
     for (level, tiles) in tiles(Path::new(&folder)) {

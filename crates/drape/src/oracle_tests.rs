@@ -273,10 +273,13 @@ fn agrees_with_brute_force() {
     }
 }
 
-/// `cargo test --release -p corniche-drape -- --ignored --nocapture`; `CORNICHE_DRAPE_CASES` sets how many.
+/// `CORNICHE_DRAPE_CASES` sets how many.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "slow: minutes of brute force"]
 fn agrees_with_brute_force_a_million_times() {
+    if !corniche_testing::is_full("minutes of brute force") {
+        return;
+    }
     let count = std::env::var("CORNICHE_DRAPE_CASES").ok().and_then(|text| text.parse().ok());
     let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
     let share = count.unwrap_or(1_200_000_u64).div_ceil(threads);

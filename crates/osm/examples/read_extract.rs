@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let threads: usize = threads.first().map_or(Ok(2), |text| text.parse())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let table = parse_frc_table(include_str!("../../presets/frc/default.toml"))?;
+    let table = parse_frc_table(corniche_presets::frc_preset("default").unwrap())?;
     let scratch = FileScratch::new()?;
     let request = ReadRequest {
         path: file.as_ref(),

@@ -6,6 +6,7 @@
     reason = "a test may unwrap and says what it skips"
 )]
 
+#[path = "it/common/mod.rs"]
 mod common;
 
 use std::{fs, time::Instant};
@@ -40,7 +41,7 @@ fn check(what: &str, bytes: &[u8], words: Option<&str>, most_mib: u64) {
     }
     println!("{what}: {} KiB, {:.2?}", bytes.len() / 1024, start.elapsed());
     let Some((before, peak)) = before.zip(memory_mib("VmHWM:")) else {
-        println!("skipped: the peak; this system does not tell that of a process, or not anew");
+        corniche_testing::skip("this system does not tell the peak memory of a process, or cannot reset it");
         return;
     };
     let grown = peak.saturating_sub(before);

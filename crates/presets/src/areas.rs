@@ -1,10 +1,8 @@
 use corniche_areas::{AreaClass, AreaTable};
+use corniche_config::AREA_TABLES;
 use serde::Deserialize;
 
 use crate::{PresetError, error::bounded};
-
-/// Area tables that come with the program.
-const PRESETS: [(&str, &str); 1] = [("default", include_str!("../areas/default.toml"))];
 
 /// An area table as TOML.
 #[derive(Debug, Deserialize)]
@@ -25,13 +23,13 @@ struct AreaEntry {
 
 /// Names of the area tables that come with the program.
 pub fn area_preset_names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|(name, _)| *name)
+    AREA_TABLES.iter().map(|(name, _)| *name)
 }
 
 /// The text of the table of this name that comes with the program, for [`parse_area_table`].
 #[must_use]
 pub fn area_preset(name: &str) -> Option<&'static str> {
-    PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
+    AREA_TABLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
 }
 
 /// Reads an area table's text.

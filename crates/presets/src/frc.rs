@@ -1,18 +1,10 @@
 use std::collections::BTreeMap;
 
+use corniche_config::FRC_TABLES;
 use corniche_roads::FrcTable;
 use serde::Deserialize;
 
 use crate::{PresetError, error::bounded};
-
-/// FRC tables that come with the program.
-const PRESETS: [(&str, &str); 5] = [
-    ("default", include_str!("../frc/default.toml")),
-    ("valhalla", include_str!("../frc/valhalla.toml")),
-    ("fraunhofer", include_str!("../frc/fraunhofer.toml")),
-    ("itinero", include_str!("../frc/itinero.toml")),
-    ("here5", include_str!("../frc/here5.toml")),
-];
 
 /// An FRC table as TOML.
 #[derive(Debug, Deserialize)]
@@ -27,13 +19,13 @@ struct FrcFile {
 
 /// Names of the FRC tables that come with the program.
 pub fn frc_preset_names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|(name, _)| *name)
+    FRC_TABLES.iter().map(|(name, _)| *name)
 }
 
 /// The text of the table of this name that comes with the program, for [`parse_frc_table`].
 #[must_use]
 pub fn frc_preset(name: &str) -> Option<&'static str> {
-    PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
+    FRC_TABLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
 }
 
 /// Reads an FRC table's text.

@@ -1,6 +1,7 @@
 //! Alone in its process: a child that is about to begin shares the locks of other tests for a moment.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
+#[path = "it/common.rs"]
 mod common;
 
 use std::{

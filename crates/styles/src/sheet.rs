@@ -18,7 +18,7 @@ use crate::{
 /// Longest text that is read. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
 
-/// A style in the units and types of its text, checked. `sheets/road-atlas.toml` tells what each entry means.
+/// A style in the units and types of its text, checked. `config/styles/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.

@@ -7,6 +7,8 @@ use std::{
 
 use corniche_geom::HeightGrid;
 
+use crate::skip;
+
 /// The repository's root.
 #[must_use]
 pub fn root() -> PathBuf {
@@ -21,7 +23,7 @@ pub fn sample(path: &str) -> PathBuf {
 }
 
 /// A file of the real data, which are not part of the repository: under the folder that `CORNICHE_DATA` names, else
-/// under `../shared/data`. Where it does not exist, the result is `None`, and a line on standard error says so.
+/// under `../shared/data`. Where it does not exist, the result is `None`, and the test counts as skipped.
 #[must_use]
 pub fn real_data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
@@ -32,7 +34,7 @@ pub fn real_data(path: &str) -> Option<PathBuf> {
     if file.exists() {
         return Some(file);
     }
-    eprintln!("skipped: {} is not here; set CORNICHE_DATA to a folder that has it", file.display());
+    skip(&format!("{} is not here; set CORNICHE_DATA to a folder that has it", file.display()));
     None
 }
 

@@ -33,6 +33,8 @@ mod projection;
 mod random;
 #[cfg(feature = "rasters")]
 mod raster;
+mod skip;
+mod tier;
 
 pub use area_extract::extract_with_areas;
 pub use boundary_extract::extract_with_boundaries;
@@ -44,3 +46,5 @@ pub use projection::FlatProjection;
 pub use random::Random;
 #[cfg(feature = "rasters")]
 pub use raster::{Raster, raster_creation_options};
+pub use skip::skip;
+pub use tier::{Tier, cases, is_full};

@@ -20,7 +20,7 @@ pub(crate) fn canvas() -> Option<Canvas> {
         Ok(gpu) => Some(Canvas::new(gpu, wgpu::TextureFormat::Bgra8Unorm)),
         Err(error) => {
             assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
-            eprintln!("skipped: {error}");
+            corniche_testing::skip(&error.to_string());
             None
         }
     }

@@ -11,7 +11,7 @@ fn bands_add_up_to_the_picture() {
         Ok(gpu) => gpu,
         Err(error @ GpuError::NoAdapter { .. }) => {
             assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
-            eprintln!("skipped: {error}");
+            corniche_testing::skip(&error.to_string());
             return;
         }
         Err(error) => panic!("{error}"),

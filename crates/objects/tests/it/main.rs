@@ -1,0 +1,6 @@
+//! Integration tests of `corniche-objects`, in one binary. The first line of each module says what holds.
+
+mod place;
+mod reading;
+mod support;
+mod writing;

@@ -1,0 +1,185 @@
+//! Files become objects as a whole or not at all, and nothing is left of what was stopped.
+#![allow(clippy::unwrap_used, reason = "tests may unwrap")]
+
+
+use std::{cell::Cell, fs, path::PathBuf};
+
+use corniche_objects::{Bucket, Existing, ObjectError, Upload};
+use corniche_testing::Random;
+use crate::support::{
+    bucket,
+    request::Request,
+    server::{Fault, Server, first},
+    told,
+};
+use tempfile::TempDir;
+
+/// Sent in one request, and in three parts.
+const SIZES: [usize; 2] = [30_000, 20 << 20];
+
+struct Sent {
+    server: Server,
+    bucket: Bucket,
+    folder: TempDir,
+    file: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl Sent {
+    fn new(size: usize) -> Self {
+        let mut random = Random::new(11);
+        let bytes: Vec<u8> = (0..size).map(|_| random.bits() as u8).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("package");
+        fs::write(&file, &bytes).unwrap();
+        let server = Server::start();
+        let bucket = bucket(&server);
+        Self { server, bucket, folder, file, bytes }
+    }
+
+    fn upload(&self, existing: Existing) -> Result<u64, ObjectError> {
+        self.upload_unless(existing, &|| false)
+    }
+
+    fn upload_unless(
+        &self,
+        existing: Existing,
+        should_stop: &dyn Fn() -> bool,
+    ) -> Result<u64, ObjectError> {
+        self.bucket.upload(&Upload { file: &self.file, key: "package", existing, should_stop })
+    }
+
+    /// The object is the file, and nothing else is left.
+    fn check_whole(&self) {
+        assert!(self.server.content("package") == Some(self.bytes.clone()));
+        self.check_clean();
+    }
+
+    fn check_clean(&self) {
+        assert_eq!(self.server.state().uploads.len(), 0, "an upload is left");
+        assert_eq!(fs::read_dir(self.folder.path()).unwrap().count(), 1, "a note is left");
+    }
+}
+
+fn is_end(request: &Request) -> bool {
+    let ends_upload = request.method == "POST" && request.query.contains_key("uploadId");
+    ends_upload || request.method == "PUT" && !request.query.contains_key("uploadId")
+}
+
+#[test]
+fn a_small_object_is_created_once() {
+    let server = Server::start();
+    let bucket = bucket(&server);
+    assert!(bucket.create("plan.json", b"{}".to_vec()).unwrap());
+    assert!(!bucket.create("plan.json", b"other".to_vec()).unwrap());
+    assert_eq!(server.content("plan.json").unwrap(), b"{}");
+}
+
+#[test]
+fn a_file_is_sent_as_a_whole_in_one_request_or_in_parts() {
+    for (size, requests) in SIZES.into_iter().zip([1, 5]) {
+        let sent = Sent::new(size);
+        assert_eq!(sent.upload(Existing::Keep).unwrap(), size as u64);
+        sent.check_whole();
+        assert_eq!(sent.server.take_log().len(), requests);
+    }
+}
+
+/// Also where it came there between the first look and the end of the upload.
+#[test]
+fn an_object_that_is_there_is_kept_or_replaced_as_asked() {
+    for size in SIZES {
+        let sent = Sent::new(size);
+        sent.server.put("package", "another's");
+        let error = sent.upload(Existing::Keep).unwrap_err();
+        assert!(matches!(error, ObjectError::Exists { .. }), "{}", told(&error));
+        assert_eq!(sent.server.content("package").unwrap(), b"another's");
+        sent.check_clean();
+        sent.upload(Existing::Replace).unwrap();
+        sent.check_whole();
+    }
+}
+
+#[test]
+fn sending_goes_on_after_what_fails_for_a_moment() {
+    for size in SIZES {
+        for fault in [Fault::Error(503, "SlowDown", "Slow down."), Fault::Cut] {
+            let sent = Sent::new(size);
+            sent.server.break_with(first(3, fault, |request| request.method != "HEAD"));
+            sent.upload(Existing::Keep).unwrap();
+            sent.check_whole();
+        }
+    }
+}
+
+/// The server did what was asked, and the answer was lost: when it is asked again, it says that there is such an object already, or
+/// no such upload any more.
+#[test]
+fn an_answer_that_is_lost_is_no_failure() {
+    for size in SIZES {
+        for existing in [Existing::Keep, Existing::Replace] {
+            let sent = Sent::new(size);
+            sent.server.break_with(first(1, Fault::Lost, is_end));
+            sent.upload(existing).unwrap();
+            sent.check_whole();
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_sent_leaves_nothing() {
+    for size in SIZES {
+        let sent = Sent::new(size);
+        sent.server.break_with(|request| {
+            is_end(request).then_some(Fault::Error(503, "SlowDown", "Slow down."))
+        });
+        let error = sent.upload(Existing::Keep).unwrap_err();
+        let message = told(&error);
+        assert!(message.contains("cannot write s3://maps/package"), "{message}");
+        assert!(message.contains("SlowDown"), "{message}");
+        assert_eq!(sent.server.content("package"), None);
+        sent.check_clean();
+        sent.server.repair();
+        sent.upload(Existing::Keep).unwrap();
+        sent.check_whole();
+    }
+}
+
+#[test]
+fn a_stop_while_parts_are_sent_ends_the_upload() {
+    let sent = Sent::new(SIZES[1]);
+    let asked = Cell::new(0);
+    let stop = || {
+        asked.set(asked.get() + 1);
+        asked.get() > 1
+    };
+    let error = sent.upload_unless(Existing::Keep, &stop).unwrap_err();
+    assert!(matches!(error, ObjectError::Stopped { .. }), "{}", told(&error));
+    assert_eq!(sent.server.content("package"), None);
+    sent.check_clean();
+}
+
+/// A process that is killed ends no upload. The next one that sends the file does.
+#[test]
+fn the_upload_of_a_killed_process_is_ended_by_the_next() {
+    let sent = Sent::new(SIZES[1]);
+    // As a kill leaves it: the upload cannot be ended, so that its note stays.
+    sent.server.break_with(|request| {
+        let is_part = request.method == "PUT" && request.query["partNumber"] == "3";
+        (is_part || request.method == "DELETE").then_some(Fault::Error(403, "AccessDenied", "no"))
+    });
+    sent.upload(Existing::Keep).unwrap_err();
+    assert_eq!(sent.server.state().uploads.len(), 1);
+    let note = sent.folder.path().join("package.upload");
+    let text = fs::read_to_string(&note).unwrap();
+    assert!(text.starts_with("package\nupload-"), "{text}");
+    sent.server.repair();
+    sent.upload(Existing::Keep).unwrap();
+    sent.check_whole();
+    // A note that is not whole, or of an upload that is gone, is no matter.
+    for text in [text.as_str(), "package\nupl", ""] {
+        fs::write(&note, text).unwrap();
+        sent.upload(Existing::Replace).unwrap();
+        assert!(sent.server.content("package") == Some(sent.bytes.clone()), "{text:?}");
+    }
+}

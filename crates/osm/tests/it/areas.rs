@@ -1,0 +1,239 @@
+//! Areas of small extracts made here: what is kept, what is lost and why.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+
+use std::fs;
+
+use crate::common::to_lattice;
+use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
+use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadOsmError, ReadRequest, read_areas};
+use corniche_presets::{area_preset, parse_area_table};
+use corniche_store::MemoryScratch;
+use corniche_testing::pbf::{Block, deltas, field, file, number};
+
+struct Found {
+    areas: Vec<Area>,
+    defects: Vec<Defect>,
+    summary: AreaSummary,
+}
+
+fn table() -> AreaTable {
+    parse_area_table(area_preset("default").unwrap()).unwrap()
+}
+
+/// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
+fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("made.osm.pbf");
+    fs::write(&path, bytes).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    let scratch = MemoryScratch::default();
+    let frc_table = crate::common::default_table();
+    let request = ReadRequest {
+        path: &path,
+        others: &[],
+        table: &frc_table,
+        place: &to_lattice,
+        pool: &pool,
+        memory_bytes,
+        scratch: &scratch,
+        on_progress: None,
+    };
+    let (mut areas, mut defects) = (Vec::new(), Vec::new());
+    let summary = read_areas(
+        &request,
+        &table(),
+        &mut |area| areas.push(area),
+        &mut |defect| defects.push(defect),
+        &|| false,
+    )?;
+    summary.check_invariants();
+    Ok(Found { areas, defects, summary })
+}
+
+type Tags<'a> = &'a [(&'a str, &'a str)];
+
+/// A 10 × 10 lattice of nodes, these ways, these relations of ways.
+fn made(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, &[i64])]) -> Vec<u8> {
+    let mut block = Block::new();
+    let node = |n: i64| (n + 1, 470_000_000 + 10_000 * (n / 10), 95_000_000 + 10_000 * (n % 10));
+    block.dense(&(0..100).map(node).collect::<Vec<_>>());
+    for (id, tags, node_ids) in ways {
+        block.way(*id, tags, node_ids);
+    }
+    for (id, tags, way_ids) in relations {
+        // Ways with numbers above 1000 are holes.
+        let role = |id: i64| if id > 1000 { "inner" } else { "outer" };
+        let members: Vec<(i64, &str)> = way_ids.iter().map(|&id| (id, role(id))).collect();
+        block.relation(*id, tags, &members);
+    }
+    file(&block)
+}
+
+fn read(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, &[i64])]) -> Found {
+    read_within(&made(ways, relations), 1 << 24).unwrap()
+}
+
+const LAKE: Tags<'_> = &[("natural", "water"), ("name", "Bodensee")];
+const FOREST: Tags<'_> = &[("type", "multipolygon"), ("landuse", "forest")];
+const PLAIN: Tags<'_> = &[];
+
+/// What a square of the lattice measures, m².
+fn cell_m2() -> f64 {
+    corniche_geom::wgs84::area_m2(&[[9.5, 47.0], [9.501, 47.0], [9.501, 47.001], [9.5, 47.001]])
+}
+
+#[test]
+fn closed_ways_and_relations_are_areas() {
+    let found = read(
+        &[
+            (1, LAKE, &[1, 2, 12, 11, 1]),
+            (2, PLAIN, &[23, 27, 67]),
+            (3, PLAIN, &[67, 63, 23]),
+            (4, PLAIN, &[34, 35, 45, 44, 34]),
+        ],
+        &[(9, FOREST, &[2, 3, 4])],
+    );
+    assert_eq!(found.defects, []);
+    let [lake, forest] = &found.areas[..] else { panic!("{:?}", found.areas) };
+    assert_eq!((lake.object, lake.class), (AreaObject::Way(1), AreaClass::Water));
+    assert_eq!(lake.name.as_deref(), Some("Bodensee"));
+    assert!((lake.area_m2 / cell_m2() - 1.0).abs() < 1e-4, "{}", lake.area_m2);
+    assert_eq!((forest.object, forest.class), (AreaObject::Relation(9), AreaClass::Forest));
+    assert_eq!(forest.polygons[0].holes().len(), 1);
+    assert!((forest.area_m2 / cell_m2() - 15.0).abs() < 1e-2, "{}", forest.area_m2 / cell_m2());
+    let kept = found.summary.kept[&AreaClass::Forest];
+    assert_eq!((kept.areas, kept.polygons, kept.points), (1, 1, 8));
+}
+
+#[test]
+fn each_object_is_an_area_or_lost_for_a_reason() {
+    let found = read(
+        &[
+            (1, LAKE, &[1, 2, 12]),
+            (2, LAKE, &[1, 2, 12, 11, 1]),
+            (2, LAKE, &[1, 2, 12, 11, 1]),
+            (3, LAKE, &[1, 2, 12, 111, 1]),
+            (4, LAKE, &[1, 12, 2, 11, 1]),
+            (5, LAKE, &[1, 2, 1, 1]),
+            (6, &[("natural", "water"), ("area", "no")], &[1, 2, 12, 11, 1]),
+            (7, PLAIN, &[1, 2, 12]),
+            (1001, PLAIN, &[34, 35, 45, 44, 34]),
+            (8, &[("highway", "service"), ("area", "yes")], &[1, 2, 12, 11, 1]),
+        ],
+        &[
+            (10, FOREST, &[7]),
+            (11, FOREST, &[7, 70]),
+            (12, FOREST, &[]),
+            // The way is there, and a hole is not.
+            (13, FOREST, &[2, 1071]),
+            // A hole is there, and the way around it is not.
+            (15, FOREST, &[71, 1001]),
+            (14, &[("type", "route"), ("landuse", "forest")], &[2]),
+        ],
+    );
+    let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
+    let relation = |id, loss| Defect::LostArea { is_relation: true, id, loss };
+    let mut defects = found.defects;
+    defects.retain(|defect| matches!(defect, Defect::LostArea { .. } | Defect::MissingWays { .. }));
+    assert_eq!(
+        defects,
+        [
+            way(1, AreaLoss::OpenWay),
+            way(2, AreaLoss::Duplicate),
+            way(3, AreaLoss::MissingNodes),
+            way(4, AreaLoss::CrossingOutline),
+            way(5, AreaLoss::NoOutline),
+            relation(10, AreaLoss::OpenOutline),
+            relation(11, AreaLoss::MissingWays),
+            relation(12, AreaLoss::NoOutline),
+            Defect::MissingWays { relation_id: 13, ways: 1 },
+            relation(15, AreaLoss::MissingWays),
+        ]
+    );
+    let kept: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
+    assert_eq!(kept, [AreaObject::Way(2), AreaObject::Relation(13)]);
+    assert_eq!(found.summary.objects, 11);
+}
+
+/// With memory for a few ways at a time, everything comes out as with memory for all.
+#[test]
+fn little_memory_gives_the_same() {
+    let ids: Vec<i64> = (1..=60).collect();
+    let squares: Vec<[i64; 5]> = ids
+        .iter()
+        .map(|n| {
+            let at = n + (n - 1) / 9;
+            [at, at + 1, at + 11, at + 10, at]
+        })
+        .collect();
+    let ways: Vec<(i64, Tags<'_>, &[i64])> =
+        ids.iter().zip(&squares).map(|(&id, square)| (id, LAKE, &square[..])).collect();
+    let relations: Vec<(i64, Tags<'_>, &[i64])> =
+        (0..20).map(|n| (n + 1, FOREST, &ids[n as usize * 3..][..3])).collect();
+    let bytes = made(&ways, &relations);
+    let all = read_within(&bytes, 1 << 24).unwrap();
+    assert_eq!(all.areas.len(), 80);
+    for memory_bytes in [1 << 10, 1 << 12, 1 << 16] {
+        let found = read_within(&bytes, memory_bytes).unwrap();
+        assert_eq!(found.areas, all.areas);
+        assert_eq!(found.defects, all.defects);
+        assert_eq!(found.summary, all.summary);
+    }
+}
+
+/// A relation that contradicts itself makes the file a damaged one, as ways do.
+#[test]
+fn damaged_relations_are_refused() {
+    let relation = |fields: &[Vec<u8>]| {
+        let mut block = Block::with_row_of_nodes(3);
+        block.groups.push(field(4, &[number(1, 9), fields.concat()].concat()));
+        read_within(&file(&block), 1 << 24).map(|found| found.areas).unwrap_err().to_string()
+    };
+    let [roles, ids] = [field(8, &[0]), field(9, &deltas(&[1]))];
+    for (fields, reason) in [
+        (vec![roles.clone(), ids.clone(), field(10, &[3])], "a member of relation 9 is of kind 3"),
+        (vec![roles.clone(), ids, field(10, &[1, 1])], "1 members, 1 roles and 2 kinds"),
+        (vec![roles, field(9, &deltas(&[i64::MAX, 1, i64::MIN])), field(10, &[1; 3])], "overflow"),
+        (vec![field(2, &[0])], "relation 9 has 1 keys and 0 values"),
+        (vec![field(2, &[0]), field(3, &[100])], "a tag of relation 9 is string 100"),
+    ] {
+        let message = relation(&fields);
+        assert!(message.contains(reason), "{message}");
+    }
+}
+
+const COAST: Tags<'_> = &[("natural", "coastline")];
+
+#[test]
+fn coastlines_are_handed_on_in_order_of_their_points() {
+    let found = read(
+        &[
+            (1, COAST, &[1, 2, 12]),
+            // An island that is a wood.
+            (2, &[("natural", "coastline"), ("landuse", "forest")], &[34, 35, 45, 44, 34]),
+            // One with a tag of areas that is not closed.
+            (3, &[("natural", "coastline"), ("landuse", "forest")], &[12, 13]),
+            (4, COAST, &[13, 111]),
+            (5, LAKE, &[1, 2, 12, 11, 1]),
+        ],
+        &[],
+    );
+    let coasts = &found.summary.coastlines;
+    let ways: Vec<(i64, usize)> =
+        coasts.iter().map(|coast| (coast.way_id, coast.points.len())).collect();
+    assert_eq!(ways, [(1, 3), (2, 5), (3, 2)]);
+    let lattice = |node: i64| {
+        let n = node - 1;
+        to_lattice(&[[9.5 + 0.001 * (n % 10) as f64, 47.0 + 0.001 * (n / 10) as f64]])[0].unwrap()
+    };
+    assert_eq!(coasts[0].points, [1, 2, 12].map(lattice));
+    let objects: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
+    assert_eq!(objects, [AreaObject::Way(2), AreaObject::Way(5)]);
+    // Coastlines that are no areas do not count as objects, unless they are lost.
+    assert_eq!(found.summary.objects, 4);
+    let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
+    let expected = [way(3, AreaLoss::OpenWay), way(4, AreaLoss::MissingNodes)];
+    assert_eq!(found.defects, expected);
+}

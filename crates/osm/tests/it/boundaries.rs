@@ -1,0 +1,167 @@
+//! Boundaries of small extracts made here: each way once, in the most important class.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+
+use std::fs;
+
+use crate::common::to_lattice;
+use corniche_areas::BoundaryClass;
+use corniche_osm::{Boundary, BoundaryLoss, BoundarySummary, Defect, ReadRequest, read_boundaries};
+use corniche_store::MemoryScratch;
+use corniche_testing::pbf::{Block, file};
+
+struct Found {
+    boundaries: Vec<Boundary>,
+    defects: Vec<Defect>,
+    summary: BoundarySummary,
+}
+
+/// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
+fn read(bytes: &[u8], memory_bytes: u64) -> Found {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("made.osm.pbf");
+    fs::write(&path, bytes).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    let scratch = MemoryScratch::default();
+    let frc_table = crate::common::default_table();
+    let request = ReadRequest {
+        path: &path,
+        others: &[],
+        table: &frc_table,
+        place: &to_lattice,
+        pool: &pool,
+        memory_bytes,
+        scratch: &scratch,
+        on_progress: None,
+    };
+    let (mut boundaries, mut defects) = (Vec::new(), Vec::new());
+    let summary = read_boundaries(
+        &request,
+        &mut |boundary| boundaries.push(boundary),
+        &mut |defect| defects.push(defect),
+        &|| false,
+    )
+    .unwrap();
+    summary.check_invariants();
+    Found { boundaries, defects, summary }
+}
+
+type Tags<'a> = &'a [(&'a str, &'a str)];
+type Members<'a> = &'a [(i64, &'a str)];
+
+fn made(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, Members<'_>)]) -> Vec<u8> {
+    let mut block = Block::new();
+    let node = |n: i64| (n + 1, 470_000_000 + 10_000 * (n / 10), 95_000_000 + 10_000 * (n % 10));
+    block.dense(&(0..100).map(node).collect::<Vec<_>>());
+    for (id, tags, node_ids) in ways {
+        block.way(*id, tags, node_ids);
+    }
+    for (id, tags, members) in relations {
+        block.relation(*id, tags, members);
+    }
+    file(&block)
+}
+
+const COUNTRY: Tags<'_> =
+    &[("type", "boundary"), ("boundary", "administrative"), ("admin_level", "2")];
+const DISTRICT: Tags<'_> =
+    &[("type", "boundary"), ("boundary", "administrative"), ("admin_level", "6")];
+const PARK: Tags<'_> = &[("type", "boundary"), ("boundary", "protected_area")];
+
+fn classes(found: &Found) -> Vec<(i64, BoundaryClass)> {
+    found.boundaries.iter().map(|boundary| (boundary.way_id, boundary.class)).collect()
+}
+
+#[test]
+fn a_shared_border_comes_once_in_the_most_important_class() {
+    let ways: [(i64, Tags<'_>, &[i64]); 3] =
+        [(1, &[], &[1, 2, 3]), (2, &[], &[3, 13, 23]), (3, &[], &[23, 22, 21, 1])];
+    let relations: [(i64, Tags<'_>, Members<'_>); 3] = [
+        (10, DISTRICT, &[(1, "outer"), (2, "outer"), (3, "outer")]),
+        (11, COUNTRY, &[(2, ""), (1, "inner")]),
+        (12, PARK, &[(3, "outer"), (2, "outer")]),
+    ];
+    let found = read(&made(&ways, &relations), 1 << 24);
+    assert_eq!(
+        classes(&found),
+        [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin2), (3, BoundaryClass::Admin6)]
+    );
+    assert!(found.defects.is_empty(), "{:?}", found.defects);
+    assert_eq!((found.summary.objects, found.summary.ways), (3, 3));
+}
+
+#[test]
+fn ways_with_tags_count_by_themselves_and_other_roles_do_not() {
+    let own: Tags<'_> = &[("boundary", "administrative"), ("admin_level", "8")];
+    let ways: [(i64, Tags<'_>, &[i64]); 3] =
+        [(1, own, &[1, 2]), (2, own, &[2, 3, 13, 2]), (3, &[], &[5, 6])];
+    let relations: [(i64, Tags<'_>, Members<'_>); 2] = [
+        (10, COUNTRY, &[(1, "outer"), (3, "label")]),
+        // No boundary by its type.
+        (
+            11,
+            &[("type", "route"), ("boundary", "administrative"), ("admin_level", "2")],
+            &[(3, "")],
+        ),
+    ];
+    let found = read(&made(&ways, &relations), 1 << 24);
+    assert_eq!(classes(&found), [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin8)]);
+}
+
+/// The ends, and where two boundaries meet.
+#[test]
+fn junctions_are_fixed() {
+    let ways: [(i64, Tags<'_>, &[i64]); 2] = [(1, &[], &[1, 2, 3, 4, 5]), (2, &[], &[3, 13, 23])];
+    let found = read(&made(&ways, &[(10, COUNTRY, &[(1, "outer"), (2, "outer")])]), 1 << 24);
+    assert_eq!(found.boundaries[0].fixed, [0, 2, 4]);
+    assert_eq!(found.boundaries[1].fixed, [0, 2]);
+}
+
+#[test]
+fn what_is_lost_is_counted_by_reason() {
+    let ways: [(i64, Tags<'_>, &[i64]); 4] = [
+        (1, &[], &[1, 2, 3]),
+        // In the middle a node is missing: two parts.
+        (2, &[], &[1, 2, 900, 12, 13]),
+        (3, &[], &[900, 1, 901]),
+        (4, &[], &[7, 7]),
+    ];
+    let members: Members<'_> =
+        &[(1, "outer"), (2, "outer"), (3, "outer"), (4, "outer"), (5, "outer")];
+    let found = read(&made(&ways, &[(10, COUNTRY, members)]), 1 << 24);
+    assert_eq!(classes(&found).iter().map(|(id, _)| *id).collect::<Vec<_>>(), [1, 2, 2]);
+    let lost: Vec<(i64, BoundaryLoss)> = found
+        .defects
+        .iter()
+        .filter_map(|defect| match defect {
+            Defect::LostBoundary { way_id, loss } => Some((*way_id, *loss)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(
+        lost,
+        [
+            (3, BoundaryLoss::MissingNodes),
+            (4, BoundaryLoss::OutsideProjection),
+            (5, BoundaryLoss::MissingWay)
+        ]
+    );
+    assert!(found.defects.contains(&Defect::MissingNodes { way_id: 2, points: 1 }));
+    assert_eq!(found.summary.ways, 5);
+}
+
+/// With little memory everything is sorted on disk, and comes out the same.
+#[test]
+fn little_memory_changes_nothing() {
+    let ways: Vec<(i64, Tags<'_>, Vec<i64>)> =
+        (1..=90).map(|id| (id, &[] as Tags<'_>, vec![id, id + 1, id + 10])).collect();
+    let ways: Vec<(i64, Tags<'_>, &[i64])> =
+        ways.iter().map(|(id, tags, nodes)| (*id, *tags, nodes.as_slice())).collect();
+    let members: Vec<(i64, &str)> = (1..=90).map(|id| (id, "outer")).collect();
+    let bytes = made(&ways, &[(10, COUNTRY, &members), (11, PARK, &members)]);
+    let (one, other) = (read(&bytes, 1 << 24), read(&bytes, 1 << 19));
+    assert_eq!(one.boundaries, other.boundaries);
+    assert_eq!(one.summary, other.summary);
+    assert_eq!(one.boundaries.len(), 90);
+}

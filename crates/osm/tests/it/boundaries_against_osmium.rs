@@ -1,0 +1,124 @@
+//! Boundaries of real extracts against the objects that osmium lists (`osmium cat -f opl`).
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+
+use std::{collections::BTreeMap, path::Path, process::Command};
+
+use crate::common::{default_table, to_lattice};
+use corniche_areas::BoundaryClass;
+use corniche_osm::{BoundaryLoss, Defect, ReadRequest, read_boundaries};
+use corniche_store::MemoryScratch;
+use corniche_testing::real_data;
+
+/// The class that tags give, told here once more: `Tkey=value,key=value`.
+fn class_of(fields: &str) -> Option<BoundaryClass> {
+    let tags: BTreeMap<&str, &str> =
+        fields.split(',').filter_map(|tag| tag.split_once('=')).collect();
+    match *tags.get("boundary")? {
+        "administrative" => {
+            BoundaryClass::from_name(&format!("admin-{}", tags.get("admin_level")?))
+        }
+        "protected_area" | "national_park" => Some(BoundaryClass::Protected),
+        _ => None,
+    }
+}
+
+/// By way: its class, and whether the extract has it.
+fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
+    let mut command = Command::new("osmium");
+    command.args(["cat", "-f", "opl", "-o", "-", "-t", "way", "-t", "relation"]).arg(extract);
+    let done = command.output().ok()?;
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let text = String::from_utf8(done.stdout).unwrap();
+    let mut ways: BTreeMap<i64, BoundaryClass> = BTreeMap::new();
+    let mut present = std::collections::BTreeSet::new();
+    let mut name = |way_id: i64, class: BoundaryClass| {
+        let known = ways.entry(way_id).or_insert(class);
+        *known = (*known).min(class);
+    };
+    for line in text.lines() {
+        let mut fields = line.split(' ');
+        let object = fields.next().unwrap();
+        let id: i64 = object[1..].parse().unwrap();
+        let fields: Vec<&str> = fields.collect();
+        let field = |letter: char| {
+            fields.iter().find(|field| field.starts_with(letter)).map_or("", |field| &field[1..])
+        };
+        let class = class_of(field('T'));
+        if object.starts_with('w') {
+            present.insert(id);
+            if let Some(class) = class {
+                name(id, class);
+            }
+            continue;
+        }
+        let kind = field('T').split(',').find_map(|tag| tag.strip_prefix("type="));
+        let (Some(class), Some("boundary" | "multipolygon")) = (class, kind) else { continue };
+        for member in field('M').split(',').filter_map(|member| member.strip_prefix('w')) {
+            let (way, role) = member.split_once('@').unwrap();
+            if ["", "outer", "inner"].contains(&role) {
+                name(way.parse().unwrap(), class);
+            }
+        }
+    }
+    Some(ways.into_iter().map(|(id, class)| (id, (class, present.contains(&id)))).collect())
+}
+
+#[test]
+fn boundaries_are_the_ways_that_osmium_lists() {
+    for name in [
+        "liechtenstein/liechtenstein-2013-08-03.osm.pbf",
+        "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
+        "portland/portland-central-filtered.osm.pbf",
+        "swellendam/swellendam-roads.osm.pbf",
+    ] {
+        let Some(extract) = real_data(name) else { return };
+        let Some(expected) = of_osmium(&extract) else {
+            return corniche_testing::skip("there is no program osmium (Debian: osmium-tool)");
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let request = ReadRequest {
+            path: &extract,
+            others: &[],
+            table: &default_table(),
+            place: &to_lattice,
+            pool: &pool,
+            memory_bytes: 1 << 26,
+            scratch: &MemoryScratch::default(),
+            on_progress: None,
+        };
+        let (mut kept, mut lost) = (BTreeMap::new(), BTreeMap::new());
+        let summary = read_boundaries(
+            &request,
+            &mut |boundary| {
+                kept.insert(boundary.way_id, boundary.class);
+            },
+            &mut |defect| {
+                if let Defect::LostBoundary { way_id, loss } = defect {
+                    lost.insert(way_id, loss);
+                }
+            },
+            &|| false,
+        )
+        .unwrap();
+        summary.check_invariants();
+        assert_eq!(summary.ways, expected.len() as u64, "{name}");
+        for (way_id, (class, is_present)) in &expected {
+            if *is_present {
+                assert!(
+                    kept.get(way_id) == Some(class)
+                        || lost.get(way_id) == Some(&BoundaryLoss::MissingNodes),
+                    "{name}: way {way_id} {class}"
+                );
+            } else {
+                assert_eq!(
+                    lost.get(way_id),
+                    Some(&BoundaryLoss::MissingWay),
+                    "{name}: way {way_id}"
+                );
+            }
+        }
+        println!("{name}: {} ways, {} kept, {} lost", expected.len(), kept.len(), lost.len());
+    }
+}

@@ -1,0 +1,182 @@
+//! What the tests of this crate share: the default table, a plain projection, a reader that gathers everything.
+
+#![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+pub(crate) mod made;
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    io::Cursor,
+    path::{Path, PathBuf},
+    sync::LazyLock,
+};
+
+use corniche_geom::LatticePoint;
+use corniche_osm::{
+    Defect, ExtractSummary, Kept, KeptKinds, Place, ReadOsmError, ReadRequest, read_roads,
+    read_roads_from,
+};
+use corniche_presets::parse_frc_table;
+use corniche_roads::{FrcTable, Road};
+use corniche_store::{MemoryScratch, MemoryStore, Scratch};
+use rayon::ThreadPool;
+
+/// The preset `config/frc/default.toml`.
+pub(crate) fn default_table() -> FrcTable {
+    parse_frc_table(corniche_presets::frc_preset("default").unwrap()).unwrap()
+}
+
+/// A store for what shares keep.
+pub(crate) fn kept(store: &MemoryStore) -> Kept<'_> {
+    let kinds = KeptKinds {
+        ways: 10,
+        located: 11,
+        defects: 12,
+        ways_records: 13,
+        places: 14,
+        nodes_records: 15,
+    };
+    Kept { store, kinds }
+}
+
+/// A lattice of 1e-7 degrees, so that every point shows the coordinates of its node.
+pub(crate) fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>> {
+    let round = |deg: f64| (deg * 1e7).round() as i64;
+    positions_deg
+        .iter()
+        .map(|&[lon, lat]| Some(LatticePoint::new(round(lon), round(lat))))
+        .collect()
+}
+
+/// The whole result of reading an extract.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Extract {
+    pub(crate) roads: Vec<Road>,
+    pub(crate) defects: Vec<Defect>,
+    pub(crate) summary: ExtractSummary,
+}
+
+impl Extract {
+    /// How often each reason occurs.
+    pub(crate) fn reasons(&self) -> BTreeMap<&'static str, usize> {
+        let mut reasons = BTreeMap::new();
+        for defect in &self.defects {
+            *reasons.entry(defect.reason()).or_default() += 1;
+        }
+        reasons
+    }
+
+    pub(crate) fn check_invariants(&self) {
+        self.summary.check_invariants();
+        assert_eq!(self.summary.roads, self.roads.len() as u64);
+        assert!(self.roads.is_sorted_by_key(|road| road.way_id));
+        for road in &self.roads {
+            let last = road.line.points().len() as u32 - 1;
+            assert!(road.fixed.is_sorted_by(|a, b| a < b), "way {}", road.way_id);
+            assert_eq!((road.fixed.first(), road.fixed.last()), (Some(&0), Some(&last)));
+        }
+        // Every way that was lost stands in exactly one defect that says so, and no way is both lost and a road, unless its
+        // id is used twice.
+        let lost = |defect: &&Defect| defect.is_loss_of_way();
+        let left_out = self.summary.left_out;
+        let expected =
+            left_out.unknown + left_out.area + left_out.duplicate + left_out.without_line;
+        assert_eq!(self.defects.iter().filter(lost).count() as u64, expected);
+        let ids: BTreeSet<i64> = self.roads.iter().map(|road| road.way_id).collect();
+        assert_eq!(self.summary.road_ways, ids.len() as u64);
+        for defect in self.defects.iter().filter(lost) {
+            if matches!(defect, Defect::TooFewNodes { .. } | Defect::NoLine { .. }) {
+                assert!(!ids.contains(&defect.object().1), "{defect:?}");
+            }
+        }
+    }
+}
+
+pub(crate) fn read_with(
+    path: &Path,
+    threads: usize,
+    place: &Place<'_>,
+) -> Result<Extract, ReadOsmError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    read_in(path, &pool, place)
+}
+
+fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract, ReadOsmError> {
+    let scratch = MemoryScratch::default();
+    let request = request(path, pool, place, &scratch);
+    gather(|sink, on_defect| read_roads(&request, sink, on_defect, &|| false))
+}
+
+/// With memory for everything.
+pub(crate) fn request<'a>(
+    path: &'a Path,
+    pool: &'a ThreadPool,
+    place: &'a Place<'a>,
+    scratch: &'a dyn Scratch,
+) -> ReadRequest<'a> {
+    let (table, memory_bytes) = (&*TABLE, 1 << 30);
+    ReadRequest { path, others: &[], table, place, pool, memory_bytes, scratch, on_progress: None }
+}
+
+pub(crate) static POOL: LazyLock<ThreadPool> =
+    LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
+static TABLE: LazyLock<FrcTable> = LazyLock::new(default_table);
+
+/// Reads with two threads, which all tests share.
+pub(crate) fn read(path: &Path) -> Result<Extract, ReadOsmError> {
+    read_in(path, &POOL, &to_lattice)
+}
+
+/// Reads from memory; `made.osm.pbf` is the name in messages.
+pub(crate) fn read_bytes(bytes: &[u8]) -> Result<Extract, ReadOsmError> {
+    read_bytes_in(&POOL, bytes)
+}
+
+/// The same with other threads.
+pub(crate) fn read_bytes_in(pool: &ThreadPool, bytes: &[u8]) -> Result<Extract, ReadOsmError> {
+    let scratch = MemoryScratch::default();
+    let request = request(Path::new("made.osm.pbf"), pool, &to_lattice, &scratch);
+    gather(|sink, on_defect| {
+        read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
+    })
+}
+
+/// The same with this much memory for ways and nodes.
+pub(crate) fn read_bytes_within(
+    memory_bytes: u64,
+    scratch: &dyn Scratch,
+    bytes: &[u8],
+) -> Result<Extract, ReadOsmError> {
+    let path = Path::new("made.osm.pbf");
+    let request = ReadRequest { memory_bytes, ..request(path, &POOL, &to_lattice, scratch) };
+    gather(|sink, on_defect| {
+        read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
+    })
+}
+
+pub(crate) fn gather(
+    read: impl FnOnce(
+        &mut dyn FnMut(Road),
+        &mut dyn FnMut(Defect),
+    ) -> Result<ExtractSummary, ReadOsmError>,
+) -> Result<Extract, ReadOsmError> {
+    let (mut roads, mut defects) = (Vec::new(), Vec::new());
+    let summary = read(&mut |road| roads.push(road), &mut |defect| defects.push(defect))?;
+    let extract = Extract { roads, defects, summary };
+    extract.check_invariants();
+    Ok(extract)
+}
+
+pub(crate) fn fixture(name: &str) -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures")).join(name)
+}
+
+/// The bytes as a file, which is deleted together with the folder.
+pub(crate) fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    (folder, path)
+}

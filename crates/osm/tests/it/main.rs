@@ -1,0 +1,17 @@
+//! Integration tests of `corniche-osm`, in one binary. The first line of each module says what holds.
+
+mod areas;
+mod areas_against_osmium;
+mod boundaries;
+mod boundaries_against_osmium;
+mod common;
+mod fixtures;
+mod formats;
+mod history;
+mod hostile;
+mod losses;
+mod real_data;
+mod seeds;
+mod several;
+mod shares;
+mod within_memory;

@@ -1,0 +1,26 @@
+//! Integration tests of `corniche-pipeline`, in one binary. The first line of each module says what holds.
+
+mod around_the_globe;
+mod bounds;
+mod crossings;
+mod faults;
+mod inputs;
+mod plan;
+mod plan_remote;
+mod polygon;
+mod promises;
+mod recorded_terrain;
+mod rectangles;
+mod seams;
+mod several_extracts;
+mod skirts;
+mod support;
+mod true_lengths;
+mod verify_areas;
+mod verify_fields;
+mod verify_header;
+mod verify_payload;
+mod verify_photos;
+mod verify_roads;
+mod verify_sees;
+mod voids;

@@ -1,0 +1,3 @@
+//! Integration tests of `corniche-serve`, in one binary. The first line of each module says what holds.
+
+mod serving;

@@ -1,0 +1,6 @@
+//! Integration tests of `corniche-store`, in one binary. The first line of each module says what holds.
+
+mod common;
+mod faults;
+mod local_store;
+mod parts;

@@ -1,0 +1,160 @@
+//! A package whose tiles stay loaded while it is looked at from many sides.
+
+use std::{collections::BTreeMap, path::Path};
+
+use corniche_geom::TileId;
+use corniche_styles::Style;
+use corniche_tileset::{FilePackage, Sections};
+use corniche_viewer::{
+    RoadMethod, RoadOptions,
+    camera::Camera,
+    eye_height::clearance_m,
+    for_tests::{Owner, is_tunnel, settle},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
+    lod::Quality,
+    tiles::{PackageSource, TileStore},
+};
+use glam::DVec3;
+
+use super::{
+    reference::{PixelOracle, Verdict},
+    support::{
+        Drawing,
+        scene::{Scene, Tile},
+        scenes::by_own_widths,
+    },
+    views::{Place, Seen, View},
+};
+
+const SIZE: [u32; 2] = [640, 480];
+const BAND_PX: f64 = 0.05;
+const QUALITY: Quality = Quality::by_error(2.0, 1.0);
+
+/// A package and the GPU buffers of the tiles that were used so far.
+pub(crate) struct Atlas<'a> {
+    gpu: &'a Gpu,
+    renderer: Renderer,
+    package: FilePackage,
+    store: TileStore<'a>,
+    buffers: BTreeMap<TileId, TileBuffers>,
+    /// For the reference.
+    tiles: BTreeMap<TileId, Tile>,
+}
+
+impl<'a> Atlas<'a> {
+    pub(crate) fn open(gpu: &'a Gpu, path: &Path, source: &'a PackageSource) -> Self {
+        Self {
+            gpu,
+            renderer: Renderer::new(gpu),
+            package: FilePackage::open(path).unwrap(),
+            store: TileStore::new(source),
+            buffers: BTreeMap::new(),
+            tiles: BTreeMap::new(),
+        }
+    }
+
+    /// The middles of the segments of all roads on the finest level.
+    pub(crate) fn places(&self) -> Vec<Place> {
+        let manifest = self.package.manifest();
+        let ids = self.package.tile_ids().unwrap();
+        let finest = ids.iter().map(|id| id.z()).max().unwrap();
+        let mut places = Vec::new();
+        for id in ids.into_iter().filter(|id| id.z() == finest) {
+            let bounds = manifest.frame.tile_bounds(id);
+            let payload = self.package.payload(id, Sections::ALL).unwrap().unwrap();
+            for pair in payload.roads_sv.iter().flat_map(|road| road.line.points.windows(2)) {
+                let [p, q] = [pair[0], pair[1]].map(|point| manifest.frame.position_m(point));
+                let at_m = [0, 1].map(|axis| f64::midpoint(p[axis], q[axis]));
+                let [x, y] = at_m;
+                // Each tile has the roads around it too.
+                if (bounds.min_x..bounds.max_x).contains(&x)
+                    && (bounds.min_y..bounds.max_y).contains(&y)
+                {
+                    let lon_lat_deg = manifest.coordinates.wgs84_from_working(at_m);
+                    places.push(Place { at_m, lon_lat_deg });
+                }
+            }
+        }
+        places
+    }
+
+    /// `None` where there is no ground or the eye would be in it.
+    pub(crate) fn camera(&mut self, view: &View) -> Option<Camera> {
+        let store = &mut self.store;
+        let [x, y] = view.place.at_m;
+        let target = DVec3::new(x, y, store.ground_height_m([x, y]).unwrap()?);
+        let camera = Camera::look_at(target, view.distance_m, view.orientation, SIZE);
+        let eye = camera.eye_in_world();
+        let ground_m = store.ground_height_m([eye.x, eye.y]).unwrap();
+        ground_m.is_none_or(|ground_m| eye.z >= ground_m + clearance_m(1.0)).then_some(camera)
+    }
+
+    /// GEO against SV.
+    pub(crate) fn compare(&mut self, camera: &Camera) -> Seen {
+        self.compare_with(camera, RoadOptions::of(RoadMethod::Geometry))
+    }
+
+    /// A drawing with these options against SV with round caps.
+    pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> Seen {
+        let drawn = settle(&mut self.store, camera, QUALITY, &|| false).unwrap();
+        for drawn in &drawn {
+            let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap(), None);
+            self.buffers.entry(drawn.id).or_insert_with(upload);
+        }
+        let style = by_own_widths(&Style::road_atlas());
+        let draw = |options| {
+            let tiles: Vec<DrawTile<'_>> = drawn
+                .iter()
+                .map(|drawn| DrawTile {
+                    buffers: &self.buffers[&drawn.id],
+                    skirt_depth_m: drawn.skirt_depth_m,
+                })
+                .collect();
+            let targets = Targets::new(self.gpu, SIZE, 1).unwrap();
+            let view = Scene::view(camera, &style, options);
+            self.renderer.draw(self.gpu, &view, &tiles, &targets);
+            Drawing::read(self.gpu, &targets)
+        };
+        let volumes = RoadOptions::of(RoadMethod::ShadowVolumes);
+        let (ours, theirs) = (draw(options), draw(volumes));
+        let differing: Vec<usize> = (0..theirs.labels.len())
+            .filter(|index| road_of(ours.labels[*index]) != road_of(theirs.labels[*index]))
+            .collect();
+        let of_roads = theirs.labels.iter().filter(|label| **label != 0).count();
+
+        // Tiles for the reference are dear: only those in which anything differs.
+        for index in &differing {
+            let Owner::Ground(tile) = theirs.owners[*index] else { continue };
+            let id = drawn[tile].id;
+            if !self.tiles.contains_key(&id) {
+                self.tiles.insert(id, self.tile(id));
+            }
+        }
+        let oracle = PixelOracle {
+            style: &style,
+            camera,
+            options: volumes,
+            drawing: &theirs,
+            band_px: BAND_PX,
+        };
+        let differing: Vec<usize> = differing
+            .into_iter()
+            .filter(|index| {
+                let Owner::Ground(tile) = theirs.owners[*index] else { return true };
+                oracle.verdict(*index, &self.tiles[&drawn[tile].id]) != Verdict::InBand
+            })
+            .collect();
+        let missing = differing.iter().filter(|index| ours.labels[**index] == 0).count();
+        Seen { of_roads, differing: differing.len(), missing }
+    }
+
+    fn tile(&self, id: TileId) -> Tile {
+        Tile::of_package(&self.package, id, 0.0)
+    }
+}
+
+/// What a label says of the road. Where the dashes of a tunnel begin and end is a matter of rounding to f32, about which the
+/// reference knows nothing.
+fn road_of(label: u8) -> u8 {
+    if is_tunnel(label) { label | 1 } else { label }
+}

@@ -1,0 +1,13 @@
+//! Integration tests of `corniche-viewer`, in one binary. The first line of each module says what holds.
+
+mod flights;
+mod geo_against_sv;
+mod golden;
+mod gpu;
+mod oracle;
+mod outlines;
+mod package_tiles;
+mod pictures;
+mod render;
+mod streaming;
+mod support;

@@ -1,0 +1,55 @@
+# Sourced by scripts/lib/setup.sh: folders with packages of npm and of Python, in the target folder, each made once from a lock file.
+# shellcheck shell=bash
+
+missing_for_node() {
+    command -v node >/dev/null || echo nodejs
+    command -v npm >/dev/null || echo npm
+}
+
+missing_for_environments() {
+    python_for_environments >/dev/null || echo python3-venv
+}
+
+# Prints a Python interpreter of version 3.10 or newer that can make virtual environments.
+python_for_environments() {
+    local found
+    found=$(python_with venv ensurepip) && "$found" -c 'import sys; sys.exit(sys.version_info < (3, 10))' && echo "$found"
+}
+
+# hash_of FILE…: of their contents, in this order.
+hash_of() { cat "$@" | { sha256sum 2>/dev/null || shasum -a 256; } | cut -d' ' -f1; }
+
+# is_made_of FOLDER HASH: whether a folder was made, whole, from what has this hash.
+is_made_of() { [ "$(cat "$1/made-of" 2>/dev/null)" = "$2" ]; }
+
+# npm_folder FOLDER PACKAGE.json: a folder with the packages that PACKAGE-lock.json pins. Fails, and says so, where there are none to be had.
+npm_folder() {
+    local folder=$1 manifest=$2 lock=${2%.json}-lock.json new
+    (install_missing missing_for_node) || return 1
+    new=$(hash_of "$manifest" "$lock")
+    if is_made_of "$folder" "$new"; then return 0; fi
+    mkdir -p "$folder"
+    cp "$manifest" "$folder/package.json"
+    cp "$lock" "$folder/package-lock.json"
+    # Node 20 of some systems is older than cesium's own tools want; the library itself does not care.
+    (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error --engine-strict=false) >&2 || return 1
+    printf '%s\n' "$new" >"$folder/made-of"
+}
+
+# python_folder FOLDER LOCK [ARGUMENT OF PIP…]: a virtual environment with the packages that LOCK pins, or with the packages that are named, in the versions
+# that LOCK pins. Fails, and says so, where there are none to be had.
+python_folder() {
+    local folder=$1 lock=$2 base new
+    shift 2
+    (install_missing missing_for_environments) && base=$(python_for_environments) || {
+        say "there is no python3 of version 3.10 or newer with the module venv"
+        return 1
+    }
+    new=$("$base" -c 'import sys; print(sys.version_info[:2])') && new="$new $* $(hash_of "$lock")"
+    if is_made_of "$folder" "$new"; then return 0; fi
+    rm -rf "$folder"
+    if [ $# -gt 0 ]; then set -- -c "$lock" "$@"; else set -- -r "$lock"; fi
+    "$base" -m venv "$folder" >&2 &&
+        "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@" >&2 || return 1
+    printf '%s\n' "$new" >"$folder/made-of"
+}

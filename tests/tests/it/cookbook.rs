@@ -1,0 +1,71 @@
+//! The commands of `docs/cookbook.md` run as they stand, on the bundled sample in place of what they download.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{fs, path::Path, process::Command};
+
+/// The blocks of `sh` of a page, with what the comment in their first line says that they need.
+fn blocks(page: &str) -> Vec<(Option<&str>, &str)> {
+    let blocks =
+        page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
+    blocks
+        .map(|block| (block.lines().next().and_then(|line| line.strip_prefix("# ")), block))
+        .collect()
+}
+
+/// Whether what a block needs is here.
+fn has(need: &str) -> bool {
+    let program = match need {
+        "osmium-tool" => "osmium",
+        "gdal-bin" => "ogr2ogr",
+        // Downloads are replaced by the sample.
+        "curl" => return false,
+        _ => panic!("a block needs {need}, of which this test knows nothing"),
+    };
+    Command::new(program).arg("--version").output().is_ok()
+}
+
+/// What the downloads of the page would have made.
+fn lay_inputs(folder: &Path) {
+    let (dem, osm) = (e2e::sample("pass/pass-dem.tif"), e2e::sample("pass/pass.osm.pbf"));
+    for name in ["heights", "alti"] {
+        fs::create_dir(folder.join(name)).unwrap();
+        fs::copy(&dem, folder.join(name).join("pass.tif")).unwrap();
+    }
+    fs::write(folder.join("copernicus.txt"), format!("# of the test\n{}\n", dem.display()))
+        .unwrap();
+    fs::copy(&osm, folder.join("switzerland-latest.osm.pbf")).unwrap();
+}
+
+#[test]
+fn the_commands_of_the_cookbook_run_as_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    lay_inputs(folder.path());
+    let page = fs::read_to_string(e2e::root().join("docs/cookbook.md")).unwrap();
+    let blocks = blocks(&page);
+    assert!(blocks.iter().filter(|(need, _)| need.is_none()).count() >= 8, "{blocks:?}");
+    for (need, block) in blocks {
+        if let Some(need) = need.filter(|need| !has(need)) {
+            e2e::skip(&format!("a block of the cookbook needs {need}"));
+            continue;
+        }
+        // Pictures need a graphics adapter, which other tests ask for.
+        let drawn = block
+            .lines()
+            .filter(|line| !line.starts_with("corniche render"))
+            .collect::<Vec<_>>()
+            .join("\n");
+        let ran = e2e::shell(&drawn, folder.path());
+        assert_eq!(ran.code, 0, "{block}\n{}", ran.err);
+    }
+    for made in [
+        "grisons.pmtiles",
+        "copernicus.pmtiles",
+        "alti.pmtiles",
+        "valley.pmtiles",
+        "roads.gpkg",
+        "growth.csv",
+    ] {
+        assert!(folder.path().join(made).is_file(), "{made}");
+    }
+}

@@ -1,0 +1,325 @@
+//! `export quantized-mesh`: decoded by a reader of our own, carried to the package's CRS by PROJ and compared with its ground.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+mod checks;
+mod terrain;
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use checks::{
+    check_borders, check_header, check_heights, check_mesh, check_normals, check_tree,
+    normals_against_the_vertical,
+};
+use corniche_testing::{Raster, real_data};
+use e2e::{build_from, copy_pass, corniche, ground::Region, manifest, names, sample, text};
+use serde_json::Value;
+use tempfile::TempDir;
+use terrain::{LAST, Name, Terrain};
+
+/// The sample, with heights above EGM96, whose grid comes with PROJ.
+fn pass() -> Region {
+    Region {
+        crs: "EPSG:32632+5773".to_owned(),
+        metres_per_unit: [1.0; 2],
+        dem: sample("pass/pass-dem.tif"),
+    }
+}
+
+fn built(folder: &TempDir) -> PathBuf {
+    let package = folder.path().join("pass.pmtiles");
+    copy_pass(&package, &["--quiet", "--dem-vertical-crs", "EPSG:5773", "--relief", "off"]);
+    package
+}
+
+/// Exports a package beside it.
+fn export(package: &Path, name: &str, options: &[&str]) -> PathBuf {
+    let folder = package.with_file_name(name);
+    let words = ["export", "quantized-mesh", text(package), "-o", text(&folder)];
+    let ran = corniche(words.iter().chain(options));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    folder
+}
+
+#[expect(clippy::print_stdout, reason = "figures for whoever runs it with --nocapture")]
+fn check_all(terrain: &Terrain, package: &Path, region: &Region) {
+    check_tree(terrain).unwrap();
+    for (name, tile) in &terrain.tiles {
+        check_mesh(tile).unwrap_or_else(|error| panic!("{name:?}: {error}"));
+        check_header(tile).unwrap_or_else(|error| panic!("{name:?}: {error}"));
+        check_normals(tile).unwrap_or_else(|error| panic!("{name:?}: {error}"));
+    }
+    check_borders(terrain).unwrap();
+    let turns = normals_against_the_vertical(terrain);
+    assert!(turns < 0.5, "normals explain the triangles no better than the vertical: {turns}");
+    let levels = check_heights(terrain, package, region);
+    for (level, found) in levels.iter().enumerate().filter(|(_, found)| found.places > 0) {
+        let told = &terrain.layer["corniche"]["levels"][level];
+        println!("level {level}: {found:?}, told: {told}");
+        found.check(told).unwrap_or_else(|error| panic!("level {level}: {error}"));
+    }
+    assert!(levels.iter().map(|found| found.vertices).sum::<u64>() > 1000);
+    assert!(levels.iter().map(|found| found.places).sum::<u64>() > 20_000);
+}
+
+/// In both grids: the ground of the package within each level's error, closed, the same on both sides of borders.
+#[test]
+fn tiles_are_the_package_s_ground() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    for (tiling, level) in [("geographic", "13"), ("web-mercator", "13")] {
+        let options = ["--tiling", tiling, "--max-level", level];
+        let terrain = Terrain::read(&export(&package, tiling, &options));
+        assert_eq!(terrain.levels(), 14);
+        check_all(&terrain, &package, &pass());
+    }
+}
+
+/// The same on real elevation, in degrees and with voids.
+#[test]
+fn real_regions_are_the_package_s_ground() {
+    for (dem, osm, level) in [
+        ("liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf", "10"),
+        ("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", "13"),
+    ] {
+        let [Some(dem), Some(osm)] = [dem, osm].map(real_data) else { return };
+        let folder = TempDir::new().unwrap();
+        let package = folder.path().join("region.pmtiles");
+        let options = ["--quiet", "--dem-vertical-crs", "EPSG:5773", "--relief", "off"];
+        build_from([&dem, &osm], &package, &options);
+        let manifest = manifest(&package);
+        let metres_per_unit = [0, 1].map(|k| manifest["metres_per_unit"][k].as_f64().unwrap());
+        let crs = format!("{}+5773", manifest["crs"].as_str().unwrap());
+        let region = Region { crs, metres_per_unit, dem: dem.clone() };
+        let terrain = Terrain::read(&export(&package, "terrain", &["--max-level", level]));
+        check_all(&terrain, &package, &region);
+    }
+}
+
+/// The checks see what is wrong.
+#[test]
+fn wrong_terrain_is_seen() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let right = export(&package, "terrain", &["--max-level", "12"]);
+    let is_wrong = |terrain: &Terrain, region: &Region| {
+        let levels = check_heights(terrain, &package, region);
+        let told = |level: usize| &terrain.layer["corniche"]["levels"][level];
+        levels
+            .iter()
+            .enumerate()
+            .any(|(level, found)| found.places > 0 && found.check(told(level)).is_err())
+    };
+    assert!(!is_wrong(&Terrain::read(&right), &pass()));
+    let mut flipped = Terrain::read(&right);
+    for tile in flipped.tiles.values_mut() {
+        tile.uv.iter_mut().for_each(|[_, v]| *v = LAST - *v);
+        tile.triangles.iter_mut().for_each(|corners| corners.swap(0, 1));
+    }
+    assert!(is_wrong(&flipped, &pass()), "v flipped");
+    let ellipsoidal = Region { crs: "EPSG:32632+4979".to_owned(), ..pass() };
+    let without_geoid = Region { crs: "EPSG:32632".to_owned(), ..ellipsoidal };
+    assert!(is_wrong(&Terrain::read(&right), &without_geoid), "the geoid left out");
+    let mut halved = Terrain::read(&right);
+    for level in halved.layer["corniche"]["levels"].as_array_mut().unwrap() {
+        for name in ["deviation_m", "assumed_error_m"] {
+            level[name] = (level[name].as_f64().unwrap_or_default() / 2.0).into();
+        }
+    }
+    assert!(is_wrong(&halved, &pass()), "deviations halved");
+    let mut upright = Terrain::read(&right);
+    for tile in upright.tiles.values_mut() {
+        tile.normals = (0..tile.uv.len()).map(|vertex| tile.up(vertex)).collect();
+    }
+    assert!(normals_against_the_vertical(&upright) > 0.99, "normals that stand upright");
+    let mut moved = Terrain::read(&right);
+    let tile = moved.tiles.values_mut().next_back().unwrap();
+    let border = tile.edges[0][tile.edges[0].len() / 2];
+    tile.steps[border] = tile.steps[border].wrapping_add(900);
+    let beside = check_borders(&moved).is_err() || is_wrong(&moved, &pass());
+    assert!(beside, "a vertex on a border moved");
+    let mut open = Terrain::read(&right);
+    let tile = open.tiles.values_mut().next_back().unwrap();
+    tile.triangles.pop();
+    assert!(check_mesh(tile).is_err(), "a triangle left out");
+    let mut gone = Terrain::read(&right);
+    gone.tiles.remove(&[0, 0, 0]);
+    assert!(check_tree(&gone).is_err(), "a root left out");
+}
+
+/// Builds a package of a raster alone.
+fn built_of(folder: &TempDir, dem: &Path) -> PathBuf {
+    let package = folder.path().join("raster.pmtiles");
+    let ran = corniche(["build", "--dem", text(dem), "-o", text(&package), "--relief", "off"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    package
+}
+
+/// Flat ground has no error that a level could reach; there are no more levels than its cells need.
+#[test]
+fn flat_ground_has_few_levels() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(32632, [65, 65], [560_000.0, 500.0, 0.0, 5_230_000.0, 0.0, -500.0]);
+    let dem = raster.write(folder.path(), "flat.tif", |_| 400.0_f32);
+    let package = built_of(&folder, &dem);
+    let terrain = Terrain::read(&export(&package, "terrain", &["--heights", "as-is"]));
+    assert_eq!(terrain.levels(), 13, "tiles of 16 cells of some 300 m");
+    check_tree(&terrain).unwrap();
+    // Too many tiles are refused, before anything is made.
+    let output = folder.path().join("fine");
+    let words = ["export", "quantized-mesh", text(&package), "-o", text(&output)];
+    let ran = corniche(words.iter().chain(&["--heights", "as-is", "--max-level", "24"]));
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--max-level"), "{}", ran.err);
+    assert!(!output.exists());
+}
+
+/// Ground that is smaller than the places of a coarse level are apart is not lost.
+#[test]
+fn small_ground_is_on_coarse_levels() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let terrain = Terrain::read(&export(&package, "terrain", &["--max-level", "3"]));
+    assert_eq!(terrain.levels(), 4);
+    let told = &terrain.layer["corniche"]["levels"][3];
+    assert!(told["deviation_m"].as_f64().unwrap() > 0.0, "{told}");
+}
+
+/// On both sides of 180° as anywhere, in both grids.
+#[test]
+fn terrain_goes_on_across_the_antimeridian() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(32660, [81, 61], [824_800.0, 100.0, 0.0, 1_110_000.0, 0.0, -100.0]);
+    let hills =
+        |[x, y]: [f64; 2]| (300.0 + 80.0 * (x / 900.0).sin() + 60.0 * (y / 700.0).cos()) as f32;
+    let dem = raster.write(folder.path(), "across.tif", hills);
+    let package = built_of(&folder, &dem);
+    let region =
+        Region { crs: "EPSG:32660".to_owned(), metres_per_unit: [1.0; 2], dem: dem.clone() };
+    for tiling in ["geographic", "web-mercator"] {
+        let options = ["--tiling", tiling, "--max-level", "12", "--heights", "as-is"];
+        let terrain = Terrain::read(&export(&package, tiling, &options));
+        let last = terrain.tiles.keys().map(|name| name[1]).max().unwrap();
+        assert!(terrain.tiles.contains_key(&[0, 0, 0]) && last > 2000, "nothing in the west");
+        check_tree(&terrain).unwrap();
+        check_borders(&terrain).unwrap();
+        let levels = check_heights(&terrain, &package, &region);
+        for (level, found) in levels.iter().enumerate().filter(|(_, found)| found.places > 0) {
+            found.check(&terrain.layer["corniche"]["levels"][level]).unwrap();
+        }
+        assert!(levels[12].places > 1000, "{:?}", levels[12]);
+        let both =
+            [0, last].map(|x| terrain.tiles.keys().any(|name| name[0] == 12 && name[1] == x));
+        assert_eq!(both, [true; 2], "tiles on both sides");
+    }
+}
+
+/// Web Mercator ends before the poles.
+#[test]
+fn data_beyond_the_grid_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(4326, [41, 21], [10.0, 0.01, 0.0, 85.15, 0.0, -0.01]);
+    let dem = raster.write(folder.path(), "north.tif", |[lon, _]| (100.0 * lon) as f32);
+    let package = built_of(&folder, &dem);
+    let output = folder.path().join("terrain");
+    let run = |tiling: &str| {
+        let words = ["export", "quantized-mesh", text(&package), "-o", text(&output)];
+        corniche(words.iter().chain(&[
+            "--heights",
+            "as-is",
+            "--max-level",
+            "8",
+            "--tiling",
+            tiling,
+        ]))
+    };
+    let ran = run("web-mercator");
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--tiling geographic"), "{}", ran.err);
+    assert!(!output.exists());
+    assert_eq!(run("geographic").code, 0);
+}
+
+/// Where tiles tell of tiles, they tell of all, and layer.json says so.
+#[test]
+fn availability_in_tiles_is_that_of_layer_json() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let [layer, tiles] = ["layer", "tiles"].map(|place| {
+        Terrain::read(&export(&package, place, &["--max-level", "12", "--availability", place]))
+    });
+    assert!(layer.tiles.values().all(|tile| tile.metadata.is_none()));
+    assert!(layer.layer.get("metadataAvailability").is_none());
+    assert!(tiles.layer.get("available").is_none());
+    let depth = tiles.layer["metadataAvailability"].as_u64().unwrap() as u32;
+    let mut told: BTreeSet<Name> =
+        tiles.tiles.keys().filter(|name| name[0] == 0).copied().collect();
+    for ([level, x, y], tile) in &tiles.tiles {
+        let metadata = tile.metadata.as_ref();
+        assert_eq!(metadata.is_some(), level % depth == 0, "{level}/{x}/{y}");
+        let levels = metadata.and_then(|metadata| metadata["available"].as_array());
+        for (down, blocks) in levels.into_iter().flatten().enumerate() {
+            told.extend(checks::tiles_of(blocks, level + 1 + down as u32));
+        }
+    }
+    assert_eq!(told, layer.tiles.keys().copied().collect());
+    assert!(told.len() > 20);
+}
+
+/// The same bytes with any number of threads; compressed, the same tiles.
+#[test]
+fn bytes_do_not_depend_on_threads() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let of = |name: &str, options: &[&str]| {
+        export(&package, name, &[&["--max-level", "12"], options].concat())
+    };
+    let [one, three] = ["1", "3"].map(|count| of(count, &["--threads", count]));
+    let packed = of("packed", &["--compress", "gzip"]);
+    for level in 0..=12 {
+        for x in names(&one.join(level.to_string())) {
+            for y in names(&one.join(format!("{level}/{x}"))) {
+                let [one, three, packed] = [&one, &three, &packed]
+                    .map(|folder| fs::read(folder.join(format!("{level}/{x}/{y}"))).unwrap());
+                assert_eq!(one, three);
+                assert!(packed.starts_with(&[0x1f, 0x8b]) && packed.len() < one.len() + 40);
+            }
+        }
+    }
+    let [one, packed] = [one, packed].map(|folder| Terrain::read(&folder));
+    assert_eq!(one.layer, packed.layer);
+    assert!(one.tiles.iter().zip(&packed.tiles).all(|(one, other)| one.1.uv == other.1.uv));
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let unknown = folder.path().join("unknown.pmtiles");
+    copy_pass(&unknown, &["--quiet", "--relief", "off"]);
+    let output = folder.path().join("terrain");
+    let run = |options: &[&str]| {
+        let words = ["export", "quantized-mesh", text(&unknown), "-o", text(&output)];
+        corniche(words.iter().chain(options))
+    };
+    let ran = run(&[]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--heights as-is"), "{}", ran.err);
+    assert_eq!(names(folder.path()), ["unknown.pmtiles"]);
+    let as_is = ["--heights", "as-is", "--max-level", "9", "--quiet"];
+    assert_eq!(run(&as_is).code, 0);
+    let layer: Value =
+        serde_json::from_slice(&fs::read(output.join("layer.json")).unwrap()).unwrap();
+    assert!(layer["description"].as_str().unwrap().contains("unknown"), "{layer}");
+    // An earlier export is replaced on demand, another folder never.
+    assert_eq!(run(&as_is).code, 3);
+    assert_eq!(run(&[&as_is[..], &["-O"]].concat()).code, 0);
+    fs::remove_dir_all(&output).unwrap();
+    fs::create_dir(&output).unwrap();
+    fs::write(output.join("mine.txt"), "mine").unwrap();
+    assert_eq!(run(&[&as_is[..], &["-O"]].concat()).code, 2);
+    assert_eq!(names(&output), ["mine.txt"]);
+}

@@ -1,0 +1,91 @@
+//! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
+
+use std::{collections::BTreeSet, fs, path::PathBuf};
+
+use corniche_tidy::{crates_of, files_below, root};
+
+/// Lines beyond which a file is split.
+const MAX_FILE_LINES: usize = 600;
+
+fn all_rust_files() -> Vec<PathBuf> {
+    let files = files_below(&root(), "rs").expect("the repository can be listed");
+    assert!(files.len() > 100, "the workspace has more files than {}", files.len());
+    files
+}
+
+/// Unit tests lie in `NAME_tests.rs` beside the code, integration tests in `tests/`.
+#[test]
+fn unit_tests_lie_beside_the_code() {
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        let inline = text.lines().any(|line| line.trim_start().starts_with("mod tests {"));
+        assert!(!inline, "{} has a module of tests inside", file.display());
+    }
+}
+
+/// Inside a crate things are visible everywhere, `pub(crate)`, or nowhere.
+#[test]
+fn visibility_inside_a_crate_has_one_form() {
+    let others = [concat!("pub(", "super)"), concat!("pub(", "in ")];
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(
+            !others.iter().any(|form| text.contains(form)),
+            "{}: use pub(crate)",
+            file.display()
+        );
+    }
+}
+
+#[test]
+fn files_stay_short() {
+    for file in all_rust_files() {
+        let lines = fs::read_to_string(&file).unwrap().lines().count();
+        assert!(lines <= MAX_FILE_LINES, "{} has {lines} lines", file.display());
+    }
+}
+
+/// What a crate includes lies in its own folder, so that `cargo package` takes it along.
+#[test]
+fn included_files_lie_in_the_crate_that_includes_them() {
+    let mut checked = 0;
+    let mut included = BTreeSet::new();
+    let config = root().join("config");
+    let mut folders = crates_of(&root()).unwrap();
+    folders.push(config.clone());
+    for file in all_rust_files() {
+        let Some(package) = folders.iter().find(|folder| file.starts_with(folder)) else { continue };
+        if *package != config && !file.starts_with(package.join("src")) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        for included in text.split("include_str!(\"").chain(text.split("include_bytes!(\"")).skip(1)
+        {
+            let Some((name, _)) = included.split_once('"') else { continue };
+            let path = file.parent().unwrap().join(name);
+            let Ok(path) = path.canonicalize() else { continue };
+            checked += 1;
+            assert!(path.starts_with(package), "{} includes {}", file.display(), path.display());
+            included.insert(path);
+        }
+    }
+    assert!(checked > 10, "only {checked} files are included");
+    for text in files_below(&config, "toml").unwrap() {
+        let is_manifest = text.ends_with("config/Cargo.toml");
+        assert!(is_manifest || included.contains(&text), "config/lib.rs lacks {}", text.display());
+    }
+}
+
+/// The image is built from the workspace's members: each may pass `.dockerignore`, and nothing else but manifests.
+#[test]
+fn an_image_is_built_from_the_members() {
+    let manifest: toml::Table =
+        fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let members = manifest["workspace"]["members"].as_array().unwrap();
+    let members = members.iter().map(|member| member.as_str().unwrap().trim_end_matches("/*"));
+    let wanted: BTreeSet<String> =
+        members.chain(["Cargo.toml", "Cargo.lock"]).map(|name| format!("!{name}")).collect();
+    let list = fs::read_to_string(root().join(".dockerignore")).unwrap();
+    let passing = list.lines().filter(|line| line.starts_with('!')).map(str::to_owned).collect();
+    assert_eq!(wanted, passing);
+}

@@ -1,0 +1,111 @@
+//! Modules and crates use each other in one direction: the rule, held against the workspace itself.
+
+use std::fs;
+
+use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
+
+/// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
+const MAY_USE: [(&str, &[&str]); 26] = [
+    (
+        "cli",
+        &[
+            "window", "viewer", "pipeline", "presets", "export", "matching", "overlay", "remote",
+            "serve",
+        ],
+    ),
+    ("serve", &[]),
+    ("remote", &["tileset"]),
+    ("window", &["live"]),
+    ("web", &["live", "presets"]),
+    ("web-styles", &["styles"]),
+    ("live", &["viewer"]),
+    ("viewer", &["tileset", "styles"]),
+    ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
+    ("export", &["tileset", "dem", "store", "styles"]),
+    ("matching", &["tileset", "photo"]),
+    ("overlay", &["tileset", "dem"]),
+    ("tileset", &["drape", "tin", "roads", "areas"]),
+    ("osm", &["roads", "areas", "store", "objects"]),
+    ("photo", &["dem"]),
+    ("dem", &["geom"]),
+    ("presets", &["config", "roads", "areas"]),
+    ("styles", &["config", "roads", "areas"]),
+    ("config", &[]),
+    ("drape", &["tin", "geom"]),
+    ("areas", &["geom"]),
+    ("roads", &["geom"]),
+    ("tin", &["geom"]),
+    ("geom", &[]),
+    ("objects", &["store"]),
+    ("store", &[]),
+];
+
+fn all_below<'a>(name: &'a str, found: &mut Vec<&'a str>) {
+    if found.contains(&name) {
+        return;
+    }
+    found.push(name);
+    let (_, direct) =
+        MAY_USE.iter().find(|(of, _)| *of == name).expect("the crate is in the table");
+    for below in *direct {
+        all_below(below, found);
+    }
+}
+
+/// The crates of the workspace on which a manifest depends outside tests, on any platform.
+fn workspace_dependencies(manifest: &toml::Table) -> Vec<&str> {
+    let platforms = manifest.get("target").and_then(toml::Value::as_table);
+    let platforms = platforms.into_iter().flat_map(toml::Table::values);
+    let tables = platforms.filter_map(toml::Value::as_table).chain([manifest]);
+    tables
+        .flat_map(|table| ["dependencies", "build-dependencies"].map(|name| table.get(name)))
+        .filter_map(|dependencies| dependencies?.as_table())
+        .flat_map(toml::Table::keys)
+        .filter_map(|key| key.strip_prefix("corniche-"))
+        .collect()
+}
+
+/// No two modules of a crate use each other, neither files nor folders.
+#[test]
+fn modules_use_each_other_in_one_direction() {
+    let mut cycles = Vec::new();
+    let mut edges = 0;
+    let mut folders = crates_of(&root()).unwrap();
+    folders.extend(["tests", "fuzz", "tidy"].map(|package| root().join(package)));
+    for folder in folders {
+        let read = read_crate(&folder).unwrap();
+        let found = uses(&read);
+        let files = Graph::of_files(&read, &found);
+        edges += files.edges.len();
+        cycles.extend(files.cycles());
+        cycles.extend(Graph::of_children(&read, &found).iter().flat_map(Graph::cycles));
+    }
+    assert!(edges > 500, "only {edges} uses were found");
+    let texts: Vec<String> = cycles.iter().map(ToString::to_string).collect();
+    assert!(texts.is_empty(), "modules use each other:\n{}", texts.join("\n"));
+}
+
+/// Each crate depends on what `ARCHITECTURE.md` draws below it, and on nothing else of the workspace.
+#[test]
+fn crates_depend_on_what_is_drawn_below_them() {
+    let mut folders = crates_of(&root()).unwrap();
+    folders.push(root().join("config"));
+    for folder in &folders {
+        let name = folder.file_name().unwrap().to_string_lossy().into_owned();
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = manifest.parse().unwrap();
+        let mut allowed = Vec::new();
+        let is_development = name == "testing";
+        if !is_development {
+            let (name, _) = MAY_USE.iter().find(|(of, _)| *of == name).unwrap_or_else(|| {
+                panic!("{name} is a new crate: add it to this table and to ARCHITECTURE.md")
+            });
+            all_below(name, &mut allowed);
+        }
+        for used in workspace_dependencies(&manifest) {
+            assert!(used != "testing", "{name} is a product and depends on `testing`");
+            assert!(used != "tidy", "{name} depends on `tidy`");
+            assert!(is_development || allowed.contains(&used), "{name} may not use {used}");
+        }
+    }
+}
