@@ -1,6 +1,6 @@
 //! Builds and verifies packages: the order of the stages, their threads, memory, defects and progress.
 //!
-//! This crate never parses arguments and never prints. It is the only one that spawns threads.
+//! This crate never parses arguments and never prints.
 
 mod areas;
 mod artifacts;
