@@ -1,6 +1,6 @@
 //! Builds and verifies packages: the order of the stages, their threads, memory, defects and progress.
 //!
-//! This crate never parses arguments and never prints.
+//! This crate never parses arguments and never prints. It is the only one that spawns threads.
 
 mod areas;
 mod artifacts;
