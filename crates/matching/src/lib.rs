@@ -9,7 +9,7 @@
 //!
 //! It measures and changes nothing: roads of a package are those of the extract.
 //!
-//! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*, section 8 and
+//! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*, section 7 and
 //! Figure 16: roads and terrain come from different sources, and may not fit.
 
 mod error;
