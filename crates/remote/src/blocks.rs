@@ -11,7 +11,7 @@ use bytes::Bytes;
 /// Bytes of a block; the last one of a file has fewer.
 ///
 /// The first one holds header, root directory and manifest of most packages, so one request opens them. In the packages that were measured
-/// a tile has 10 to 350 kB. With smaller blocks a picture takes more requests, with larger ones more bytes (`docs/remote.md`).
+/// a tile has 10 to 350 kB. With smaller blocks a picture takes more requests, with larger ones more bytes (`docs/lab/remote.md`).
 pub(crate) const BLOCK_BYTES: u64 = 64 << 10;
 /// The most blocks of one request: 4 MiB, a second at 32 Mbit/s.
 const MOST_BLOCKS: u64 = 64;

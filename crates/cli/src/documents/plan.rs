@@ -62,7 +62,7 @@ pub(crate) struct MemoryDocument {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RatesDocument {
-    /// From builds of other data on another machine, as `docs/build-costs.md` says.
+    /// From builds of other data on another machine, as `docs/lab/build-costs.md` says.
     Recorded,
     /// From some tiles of these data, triangulated on this machine.
     Sampled {

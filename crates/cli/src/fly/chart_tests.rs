@@ -97,7 +97,7 @@ fn runs_of(list: &str) -> Vec<MeasuredRun> {
 /// The chart in the documentation is that of the list beside it, as `fly` draws it. `CORNICHE_BLESS=1` draws it again.
 #[test]
 fn the_chart_in_the_docs_is_that_of_its_list() {
-    let docs: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs"].iter().collect();
+    let docs: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs", "lab"].iter().collect();
     let list = fs::read_to_string(docs.join("flight-liechtenstein.csv")).unwrap();
     let runs = runs_of(&list);
     assert_eq!(runs.iter().map(|run| run.frames.len()).collect::<Vec<_>>(), [60; 5]);

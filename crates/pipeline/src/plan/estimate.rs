@@ -65,7 +65,7 @@ pub struct MemoryEstimate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// From builds of other data on another machine, as `docs/build-costs.md` says.
+    /// From builds of other data on another machine, as `docs/lab/build-costs.md` says.
     Recorded,
     /// From so many tiles of these data, triangulated on this machine.
     Sampled {
@@ -80,7 +80,7 @@ impl Rates {
     pub fn text(self) -> String {
         match self {
             Self::Recorded => {
-                "from recorded rates of other data on another machine (docs/build-costs.md)"
+                "from recorded rates of other data on another machine (docs/lab/build-costs.md)"
                     .to_owned()
             }
             Self::Sampled { tiles } => {

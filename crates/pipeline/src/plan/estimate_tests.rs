@@ -64,7 +64,7 @@ fn the_extract_takes_disk_too() {
     assert!(put(extract).package_bytes > put(0).package_bytes + extract / 4);
 }
 
-/// The packages that the rates were taken from (docs/build-costs.md): nodes, triangles of all levels and bytes of ground.
+/// The packages that the rates were taken from (docs/lab/build-costs.md): nodes, triangles of all levels and bytes of ground.
 #[test]
 fn recorded_rates_fit_what_they_were_taken_from() {
     for (name, nodes, ratio, triangles, bytes) in [

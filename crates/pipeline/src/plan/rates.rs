@@ -1,5 +1,5 @@
 //! What a build costs per tile, thread and byte, as measured. All constants of the estimates are here;
-//! `docs/build-costs.md` says how they were measured.
+//! `docs/lab/build-costs.md` says how they were measured.
 
 use corniche_geom::TILE_CELLS;
 use corniche_tileset::PHOTO_BORDER;

@@ -277,7 +277,7 @@ fn an_outline_along_a_border_is_one_of_one_tile() {
     }
 }
 
-/// The manifest's rows of `docs/fields.md` that are about areas.
+/// The manifest's rows of `docs/lab/fields.md` that are about areas.
 #[test]
 fn fields_of_areas_in_the_manifest() {
     type Change = fn(&mut Manifest);

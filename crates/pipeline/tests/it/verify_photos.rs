@@ -321,7 +321,7 @@ fn photos_beside_a_package_without_any_are_refused() {
     assert!(matches!(error, VerifyError::NoPhotos), "{error}");
 }
 
-/// The manifest's rows of `docs/fields.md` that are about photos.
+/// The manifest's rows of `docs/lab/fields.md` that are about photos.
 #[test]
 fn fields_of_photos_in_the_manifest() {
     type Change = fn(&mut Manifest);
