@@ -13,7 +13,7 @@ use std::{
     collections::BTreeMap,
     fs,
     io::Read as _,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Child, Command, Output},
     sync::{Arc, Mutex, OnceLock, PoisonError},
     thread,
@@ -22,7 +22,8 @@ use std::{
 
 pub use binary::binary;
 pub use corniche_testing::{
-    cases, extract_with_areas, extract_with_boundaries, extract_with_coast, is_full, real_data, root, sample, skip,
+    cases, extract_with_areas, extract_with_boundaries, extract_with_coast, is_full, real_data,
+    root, sample, skip,
 };
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};

@@ -6,7 +6,10 @@ use std::{
     path::Path,
 };
 
-use petgraph::{algo::tarjan_scc, graph::DiGraph};
+use petgraph::{
+    algo::tarjan_scc,
+    graph::{DiGraph, NodeIndex},
+};
 
 use crate::{
     source::Crate,
@@ -154,7 +157,7 @@ impl Graph {
         for (from, to) in self.edges.keys() {
             graph.add_edge(indices[from.as_str()], indices[to.as_str()], ());
         }
-        let owned = |nodes: Vec<_>| {
+        let owned = |nodes: Vec<NodeIndex>| {
             let mut nodes: Vec<String> =
                 nodes.into_iter().map(|node| graph[node].to_owned()).collect();
             nodes.sort();

@@ -69,7 +69,8 @@ fn the_settings_file_has_the_defaults() {
 fn the_settings_file_has_every_key() {
     let known = |text: &str| -> Vec<String> {
         let error = Config::parse(text).unwrap_err().to_string();
-        let (_, names) = error.split_once("expected one of").or_else(|| error.split_once("expected")).unwrap();
+        let (_, names) =
+            error.split_once("expected one of").or_else(|| error.split_once("expected")).unwrap();
         names.split('`').skip(1).step_by(2).map(str::to_owned).collect()
     };
     let whole: toml::Table = uncommented(|_| true).parse().unwrap();

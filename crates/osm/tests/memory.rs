@@ -41,7 +41,9 @@ fn check(what: &str, bytes: &[u8], words: Option<&str>, most_mib: u64) {
     }
     println!("{what}: {} KiB, {:.2?}", bytes.len() / 1024, start.elapsed());
     let Some((before, peak)) = before.zip(memory_mib("VmHWM:")) else {
-        corniche_testing::skip("this system does not tell the peak memory of a process, or cannot reset it");
+        corniche_testing::skip(
+            "this system does not tell the peak memory of a process, or cannot reset it",
+        );
         return;
     };
     let grown = peak.saturating_sub(before);

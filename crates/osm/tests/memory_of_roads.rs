@@ -101,7 +101,9 @@ fn three_million_nodes_of_roads_are_read_within_eight_mebibytes_and_those_of_blo
     let written_mib = scratch.0.into_inner().unwrap().1 >> 20;
     assert!(written_mib > 50, "it was to lie on disk: {written_mib} MiB");
     let Some((before, peak)) = before.zip(memory_mib("VmHWM:")) else {
-        corniche_testing::skip("this system does not tell the peak memory of a process, or cannot reset it");
+        corniche_testing::skip(
+            "this system does not tell the peak memory of a process, or cannot reset it",
+        );
         return;
     };
     let grown = peak.saturating_sub(before);

@@ -6,8 +6,8 @@ use std::{collections::BTreeMap, fs, path::Path, process::Command};
 
 use corniche_testing::pbf;
 use e2e::{
-    Ran, binary, build_from, build_pass, copy_pass, corniche, json, manifest, names, real_data, root, sample,
-    skip, text, write_ascii_grid,
+    Ran, binary, build_from, build_pass, copy_pass, corniche, json, manifest, names, real_data,
+    root, sample, skip, text, write_ascii_grid,
 };
 use serde_json::Value;
 

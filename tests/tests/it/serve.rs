@@ -387,9 +387,7 @@ fn without_a_folder_the_page_of_the_program_is_taken() {
     let ran = corniche(["serve", text(&place.package()), "--site", text(&site)]);
     if ran.code == 0 {
         assert!(names(&site).contains(&"index.html".to_owned()), "{:?}", names(&site));
-        return skip(
-            "what a program without a page says: this one was built with CORNICHE_PAGE",
-        );
+        return skip("what a program without a page says: this one was built with CORNICHE_PAGE");
     }
     assert_eq!(ran.code, 2, "{}", ran.err);
     for words in

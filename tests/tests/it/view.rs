@@ -324,8 +324,7 @@ fn a_style_that_changes_is_shown_and_a_broken_one_is_not() {
     let folder = tempfile::tempdir().unwrap();
     let style = folder.path().join("mine.toml");
     let preset = |name: &str| {
-        fs::read_to_string(e2e::root().join("config/styles").join(name))
-            .expect("it comes along")
+        fs::read_to_string(e2e::root().join("config/styles").join(name)).expect("it comes along")
     };
     fs::write(&style, preset("dark.toml")).unwrap();
     let Some(desk) = Desk::open(&["--style", style.to_str().expect("paths are UTF-8")]) else {

@@ -49,12 +49,14 @@ fn files_stay_short() {
 #[test]
 fn included_files_lie_in_the_crate_that_includes_them() {
     let mut checked = 0;
-    let mut included = BTreeSet::new();
+    let mut taken = BTreeSet::new();
     let config = root().join("config");
     let mut folders = crates_of(&root()).unwrap();
     folders.push(config.clone());
     for file in all_rust_files() {
-        let Some(package) = folders.iter().find(|folder| file.starts_with(folder)) else { continue };
+        let Some(package) = folders.iter().find(|folder| file.starts_with(folder)) else {
+            continue;
+        };
         if *package != config && !file.starts_with(package.join("src")) {
             continue;
         }
@@ -66,13 +68,13 @@ fn included_files_lie_in_the_crate_that_includes_them() {
             let Ok(path) = path.canonicalize() else { continue };
             checked += 1;
             assert!(path.starts_with(package), "{} includes {}", file.display(), path.display());
-            included.insert(path);
+            taken.insert(path);
         }
     }
     assert!(checked > 10, "only {checked} files are included");
     for text in files_below(&config, "toml").unwrap() {
         let is_manifest = text.ends_with("config/Cargo.toml");
-        assert!(is_manifest || included.contains(&text), "config/lib.rs lacks {}", text.display());
+        assert!(is_manifest || taken.contains(&text), "config/lib.rs lacks {}", text.display());
     }
 }
 

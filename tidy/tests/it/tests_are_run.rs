@@ -12,8 +12,14 @@ use corniche_tidy::{crates_of, files_below, root};
 const ALONE: [(&str, &str); 4] = [
     ("osm/tests/memory", "measures the peak memory of its process"),
     ("osm/tests/memory_of_roads", "measures the peak memory of its process"),
-    ("store/tests/killed", "a child that is about to begin shares the locks of other tests for a moment"),
-    ("tileset/tests/hostile", "owns the allocator, to bound what hostile bytes make the reader allocate"),
+    (
+        "store/tests/killed",
+        "a child that is about to begin shares the locks of other tests for a moment",
+    ),
+    (
+        "tileset/tests/hostile",
+        "owns the allocator, to bound what hostile bytes make the reader allocate",
+    ),
 ];
 
 /// The packages with tests: name of `-p`, and folder.
@@ -84,7 +90,8 @@ fn every_file_of_tests_is_a_module() {
             let root_of = |folder: &Path| {
                 if folder == it { folder.join("main.rs") } else { folder.with_extension("rs") }
             };
-            let above = [root_of(above), above.join("mod.rs")].into_iter().find(|file| file.is_file());
+            let above =
+                [root_of(above), above.join("mod.rs")].into_iter().find(|file| file.is_file());
             let above = above.unwrap_or_else(|| panic!("{} belongs to no module", file.display()));
             let is_declared = declared(&above).iter().any(|declared| **declared == *name);
             assert!(is_declared, "{} does not declare {}", above.display(), file.display());
@@ -98,15 +105,18 @@ fn every_file_of_tests_is_a_module() {
 fn test_names(root_file: &Path) -> Vec<String> {
     let folder = root_file.parent().unwrap();
     let is_folder = root_file.ends_with("main.rs");
-    let files = if is_folder { files_below(folder, "rs").unwrap() } else { vec![root_file.to_owned()] };
+    let files =
+        if is_folder { files_below(folder, "rs").unwrap() } else { vec![root_file.to_owned()] };
     let mut names = Vec::new();
     for file in files {
         let inside = file.strip_prefix(folder).unwrap().with_extension("");
         let modules = inside.iter().map(|part| part.to_string_lossy().into_owned());
-        let module: Vec<String> = modules.filter(|part| is_folder && part != "main" && part != "mod").collect();
+        let module: Vec<String> =
+            modules.filter(|part| is_folder && part != "main" && part != "mod").collect();
         let text = fs::read_to_string(&file).unwrap();
         for line in text.lines() {
-            let function = line.trim_start().strip_prefix("fn ").and_then(|rest| rest.split_once('('));
+            let function =
+                line.trim_start().strip_prefix("fn ").and_then(|rest| rest.split_once('('));
             if let Some((function, _)) = function {
                 names.push([&module[..], &[function.to_owned()]].concat().join("::"));
             }
@@ -137,7 +147,8 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
         chosen = packages.values().collect();
     }
     // The first word that is no option and no option's value filters the names.
-    let takes_value = ["-p", "--package", "--test", "--features", "--target", "--profile", "--example"];
+    let takes_value =
+        ["-p", "--package", "--test", "--features", "--target", "--profile", "--example"];
     let mut filter = None;
     let mut rest = words.iter().skip(2);
     while let Some(word) = rest.next() {
@@ -161,12 +172,21 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
     }
     if targets.is_empty() {
         let files = chosen.iter().flat_map(|folder| files_below(folder, "rs").unwrap());
-        tests = files.flat_map(|file| {
-            let stem = file.file_stem().unwrap().to_string_lossy().trim_end_matches("_tests").to_owned();
-            let text = fs::read_to_string(&file).unwrap();
-            let functions = text.lines().filter_map(|line| line.trim_start().strip_prefix("fn ")?.split_once('('));
-            functions.map(|(name, _)| format!("{stem}::{name}")).collect::<Vec<_>>()
-        }).collect();
+        tests = files
+            .flat_map(|file| {
+                let stem = file
+                    .file_stem()
+                    .unwrap()
+                    .to_string_lossy()
+                    .trim_end_matches("_tests")
+                    .to_owned();
+                let text = fs::read_to_string(&file).unwrap();
+                let functions = text
+                    .lines()
+                    .filter_map(|line| line.trim_start().strip_prefix("fn ")?.split_once('('));
+                functions.map(|(name, _)| format!("{stem}::{name}")).collect::<Vec<_>>()
+            })
+            .collect();
     }
     let filter = filter?;
     let runs = tests.iter().any(|name| name.contains(filter));
@@ -176,7 +196,9 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
 /// The commands `cargo test …` of a text: to the end of the line, or of the code in which they stand.
 fn commands(text: &str) -> Vec<String> {
     let joined = text.replace("\\\n", " ");
-    let lines = joined.lines().flat_map(|line| line.match_indices("cargo test").map(move |(at, _)| &line[at..]));
+    let lines = joined
+        .lines()
+        .flat_map(|line| line.match_indices("cargo test").map(move |(at, _)| &line[at..]));
     let ends = |c: char| "`\"')#|&>;".contains(c);
     lines.map(|line| line.split(ends).next().unwrap_or_default().trim().to_owned()).collect()
 }
@@ -223,7 +245,10 @@ fn wrong_commands_are_seen() {
     ] {
         assert!(wrong(command).is_some_and(|said| said.contains(why)), "{command}");
     }
-    assert_eq!(commands("run `cargo test -p a b` now\ncargo test \\\n -p c"), ["cargo test -p a b", "cargo test   -p c"]);
+    assert_eq!(
+        commands("run `cargo test -p a b` now\ncargo test \\\n -p c"),
+        ["cargo test -p a b", "cargo test   -p c"]
+    );
 }
 
 /// `corniche_testing::skip` counts what is skipped; a line that a test prints by itself is lost.

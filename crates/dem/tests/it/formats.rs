@@ -224,7 +224,8 @@ fn of_several_rasters_in_one_file_one_is_to_be_named() {
 
 #[test]
 fn netcdf_4_gives_the_plane_and_bare_hdf5_has_no_place() {
-    if !corniche_testing::is_full("libhdf5 prints its errors for every attribute that is not there") {
+    if !corniche_testing::is_full("libhdf5 prints its errors for every attribute that is not there")
+    {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -1,20 +1,19 @@
 //! A store of sealed parts in object storage: bound once, filled with whole parts, read by ranges.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{fs, path::Path, sync::Arc, time::Duration};
 
+use crate::support::{
+    request::Request,
+    server::{Fault, Server, first},
+    storage,
+};
 use corniche_objects::{BlockCache, ObjectAddress, ObjectPlace};
 use corniche_store::{
     Artifacts as _, Hold, Key, LocalStore, OwnPart, Place as _, Publish as _, SealedParts,
     StoreError, StoredPlan, SystemDisk,
 };
 use corniche_testing::Random;
-use crate::support::{
-    request::Request,
-    server::{Fault, Server, first},
-    storage,
-};
 
 fn plan() -> StoredPlan {
     StoredPlan { hash: [7; 32], bytes: b"{\"cell\": 30}".to_vec() }

@@ -1,16 +1,15 @@
 //! Objects are read by ranges, whatever the server does in between; what cannot be read is said.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::io::{Read as _, Seek as _, SeekFrom};
 
-use corniche_objects::{ObjectError, ObjectReader, Storage};
-use corniche_testing::Random;
 use crate::support::{
     RETRIES, SECRET, bucket,
     server::{Fault, Server, first},
     settings, storage, told,
 };
+use corniche_objects::{ObjectError, ObjectReader, Storage};
+use corniche_testing::Random;
 
 fn content(bytes: usize) -> Vec<u8> {
     let mut random = Random::new(7);

@@ -1,17 +1,16 @@
 //! Files become objects as a whole or not at all, and nothing is left of what was stopped.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{cell::Cell, fs, path::PathBuf};
 
-use corniche_objects::{Bucket, Existing, ObjectError, Upload};
-use corniche_testing::Random;
 use crate::support::{
     bucket,
     request::Request,
     server::{Fault, Server, first},
     told,
 };
+use corniche_objects::{Bucket, Existing, ObjectError, Upload};
+use corniche_testing::Random;
 use tempfile::TempDir;
 
 /// Sent in one request, and in three parts.

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{collections::BTreeMap, path::Path, process::Command};
 
 use crate::common::{default_table, to_lattice};

@@ -6,7 +6,6 @@
     reason = "a test may unwrap and says what it skips"
 )]
 
-
 use std::{fs, path::Path, process::Command};
 
 use crate::common::{fixture, read, read_bytes, written};

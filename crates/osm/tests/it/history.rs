@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use crate::common::{fixture, read, read_bytes};
 use corniche_osm::{Defect, ReadOsmError};
 use corniche_testing::pbf::{Block, deltas, field, file, number, plain_header, raw};

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::collections::BTreeMap;
 
 use crate::common::{Extract, read, read_with, to_lattice};

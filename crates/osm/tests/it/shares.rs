@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{fs, path::Path};
 
 use crate::common::{

@@ -3,7 +3,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{
     cell::RefCell,
     fs,

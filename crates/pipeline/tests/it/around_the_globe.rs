@@ -3,13 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{path::Path, sync::Mutex};
 
+use crate::support::{Options, settings, write_samples};
 use corniche_geom::Bounds;
 use corniche_pipeline::{Observer, Silent, Stage, VerifySettings, build, verify};
 use corniche_tileset::{FilePackage, Manifest};
-use crate::support::{Options, settings, write_samples};
 
 /// Metres to a degree of the equator.
 const DEGREE_M: f64 = 20_037_508.342_789_244 / 180.0;

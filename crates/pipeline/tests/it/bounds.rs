@@ -3,7 +3,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{
     collections::BTreeMap,
     fs,
@@ -11,6 +10,12 @@ use std::{
     sync::Mutex,
 };
 
+use crate::support::{
+    Options, Raster,
+    extract::{self, StraightRoad, utm_to_degrees},
+    settings, table,
+    terrain::{rough_with_voids, waves},
+};
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_pipeline::{
@@ -18,12 +23,6 @@ use corniche_pipeline::{
     VerifySettings, build, plan, verify,
 };
 use corniche_tileset::{FilePackage, Manifest, Sections};
-use crate::support::{
-    Options, Raster,
-    extract::{self, StraightRoad, utm_to_degrees},
-    settings, table,
-    terrain::{rough_with_voids, waves},
-};
 
 /// What a build told of roads.
 #[derive(Default)]

@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
-
+use crate::support::parts::{Parts, SOUND};
 use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_tin::{Placement, Surface, Tin};
-use crate::support::parts::{Parts, SOUND};
 
 /// A tile's TIN as the format describes it: whole lattice steps and whole height steps.
 struct Nodes<'a> {

@@ -5,7 +5,6 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
-
 use std::{
     error::Error,
     fs,
@@ -13,13 +12,13 @@ use std::{
     time::Duration,
 };
 
+use crate::support::{Options, Raster, extract, settings};
 use corniche_pipeline::{BuildError, BuildSettings, Leftovers, Silent, build_on};
 use corniche_testing::{
     Random,
     disks::{Failure, MemoryDisk},
 };
 use corniche_tileset::FilePackage;
-use crate::support::{Options, Raster, extract, settings};
 use tempfile::TempDir;
 
 /// Every artifact is made durable at once.

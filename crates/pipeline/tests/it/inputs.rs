@@ -2,14 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{fs, path::Path, sync::Mutex};
 
+use crate::support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 use corniche_pipeline::{
     BuildError, Observer, Silent, Stage, VerifyError, VerifySettings, build, verify,
 };
 use corniche_tileset::FilePackage;
-use crate::support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 
 fn hills() -> Raster {
     Raster::new([300, 200], [5, 9], |column, row| 100.0 * waves(column, row))

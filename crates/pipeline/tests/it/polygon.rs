@@ -3,24 +3,23 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-use corniche_drape::DrapedVertex;
-use corniche_pipeline::{
-    BuildPlan, BuildSettings, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport,
-    VerifySettings, build, plan, verify,
-};
-use corniche_tileset::{FilePackage, GeoRoad, Sections};
 use crate::support::{
     Options, Raster,
     extract::{self, StraightRoad, utm_to_degrees},
     settings, table,
     terrain::rough_with_voids,
 };
+use corniche_drape::DrapedVertex;
+use corniche_pipeline::{
+    BuildPlan, BuildSettings, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport,
+    VerifySettings, build, plan, verify,
+};
+use corniche_tileset::{FilePackage, GeoRoad, Sections};
 
 /// A raster of four by three tiles with voids, and roads all over it and beyond.
 struct Files {

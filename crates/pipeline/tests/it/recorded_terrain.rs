@@ -3,20 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{
     fs,
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use corniche_geom::TileId;
-use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, Observer, Silent, Stage, build, plan,
-};
-use corniche_roads::ClassFilter;
-use corniche_testing::Random;
-use corniche_tileset::{Manifest, Sections, pmtiles_order};
 use crate::support::{
     Options, Raster, TILE,
     extract::{self, StraightRoad},
@@ -24,6 +16,13 @@ use crate::support::{
     settings,
     terrain::{TERRAINS, scattered_void},
 };
+use corniche_geom::TileId;
+use corniche_pipeline::{
+    BuildError, BuildSettings, Existing, Leftovers, Observer, Silent, Stage, build, plan,
+};
+use corniche_roads::ClassFilter;
+use corniche_testing::Random;
+use corniche_tileset::{Manifest, Sections, pmtiles_order};
 
 /// Files of one case.
 struct Files {

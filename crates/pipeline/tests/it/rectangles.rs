@@ -2,11 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
-use corniche_geom::Cell;
-use corniche_pipeline::{Silent, VerifyReport, VerifySettings, build, verify};
-use corniche_tileset::{FilePackage, Manifest};
-use proptest::prelude::*;
 use crate::support::{
     Options, Raster,
     agreement::faults,
@@ -14,6 +9,10 @@ use crate::support::{
     extract::StraightRoad,
     terrain::{TERRAINS, scattered_void},
 };
+use corniche_geom::Cell;
+use corniche_pipeline::{Silent, VerifyReport, VerifySettings, build, verify};
+use corniche_tileset::{FilePackage, Manifest};
+use proptest::prelude::*;
 
 /// East and north: standing, lying, and a square beside them.
 const CELLS: [[f64; 2]; 3] = [[10.0, 15.0], [15.0, 10.0], [12.0, 12.0]];
@@ -102,7 +101,8 @@ fn normals_are_those_of_metres_not_of_cells() {
             let [x_m, y_m] = [column as f64 * cell_m[0], -row as f64 * cell_m[1]];
             (1500.0 + slope[0] * x_m + slope[1] * y_m) as f32
         });
-        let built = crate::support::build_raster(&raster.with_cells(cell_m), Options::plain(0.5)).unwrap();
+        let built =
+            crate::support::build_raster(&raster.with_cells(cell_m), Options::plain(0.5)).unwrap();
         let mut count = 0;
         for (id, ground) in built.grounds() {
             for normal in &ground.normals {
@@ -126,7 +126,8 @@ fn the_shorter_side_stands_for_the_cell() {
         let folder = tempfile::tempdir().unwrap();
         let [dem, package] = ["dem.tif", "a.pmtiles"].map(|name| folder.path().join(name));
         raster.write(&dem);
-        let mut settings = crate::support::settings(dem, None, package.clone(), Options::plain(1.0));
+        let mut settings =
+            crate::support::settings(dem, None, package.clone(), Options::plain(1.0));
         settings.plan.terrain.max_error_m = None;
         build(&settings, &Silent).unwrap();
         let manifest = manifest(&package);

@@ -3,14 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
-use corniche_tin::{Tin, TinVertex};
 use crate::support::{
     Built, Options, Raster,
     agreement::{faults, nesting, shared_borders, shared_vertices},
     build_raster,
     terrain::{TERRAINS, scattered_void},
 };
+use corniche_tin::{Tin, TinVertex};
 
 /// A way to lay a raster over tiles: samples, cells from a tile corner, and the cell asked for.
 struct Tiling {

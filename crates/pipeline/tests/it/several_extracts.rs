@@ -6,7 +6,6 @@
     reason = "a test may unwrap, and says what it skips"
 )]
 
-
 use std::{
     collections::BTreeMap,
     fs,
@@ -15,6 +14,7 @@ use std::{
     process::Command,
 };
 
+use crate::support::{Options, Raster, extract::utm_to_degrees, settings, table, terrain::waves};
 use corniche_geom::TileId;
 use corniche_pipeline::{
     BuildPlan, BuildSettings, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build,
@@ -25,7 +25,6 @@ use corniche_testing::{
     real_data,
 };
 use corniche_tileset::{Counts, FilePackage};
-use crate::support::{Options, Raster, extract::utm_to_degrees, settings, table, terrain::waves};
 
 /// A raster, and roads with ids from 1 to 60 that share nodes; files hold some of them.
 struct Files {

@@ -4,7 +4,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::{TILE_CELLS, TileId};

@@ -1,7 +1,6 @@
 //! What the tests of this crate share: rasters with known heights, packages built from them by the true pipeline and
 //! taken apart, and plain arithmetic on what is found.
 
-#![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
 pub(crate) mod agreement;

@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
+use crate::support::{Built, Options, build_files, extract, write_samples};
 use corniche_pipeline::{Silent, VerifySettings, verify};
 use corniche_tileset::FilePackage;
 use geo::{Distance, Geodesic, Point};
-use crate::support::{Built, Options, build_files, extract, write_samples};
 
 /// Where the DEMs lie: longitudes and latitudes.
 const WEST_DEG: f64 = 9.0;

@@ -2,9 +2,13 @@
 //! the expected checks are broken.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{collections::BTreeMap, path::PathBuf};
 
+use crate::support::{
+    Options,
+    parts::{Against, MAX_ERROR_M, assert_broken, encode_in, rehash, report_on, sample},
+    settings,
+};
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 use corniche_pipeline::{
@@ -13,11 +17,6 @@ use corniche_pipeline::{
 use corniche_tileset::{
     AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
     payload_sizes, pmtiles_order, with_areas,
-};
-use crate::support::{
-    Options,
-    parts::{Against, MAX_ERROR_M, assert_broken, encode_in, rehash, report_on, sample},
-    settings,
 };
 use tempfile::TempDir;
 

@@ -4,13 +4,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
-
 use std::fmt::Write as _;
 
-use corniche_pipeline::CheckId as C;
-use corniche_tileset::Manifest;
-use serde_json::{Value, json};
-use sha2::{Digest as _, Sha256};
 use crate::support::{
     parts::{Against, Parts, SOUND},
     seen::{
@@ -18,6 +13,10 @@ use crate::support::{
         check, row,
     },
 };
+use corniche_pipeline::CheckId as C;
+use corniche_tileset::Manifest;
+use serde_json::{Value, json};
+use sha2::{Digest as _, Sha256};
 
 /// A leaf of the manifest, another value of it, and what sees that.
 struct Change {

@@ -2,14 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
-
 use std::{fs, io::Read as _, ops::Range, path::Path};
 
+use crate::support::parts::{Against, SOUND, assert_broken, report_on, verify_against};
 use corniche_pipeline::{CheckId, VerifyError};
 use corniche_testing::pmtiles::gzip;
 use flate2::read::GzDecoder;
 use serde_json::{Value, json};
-use crate::support::parts::{Against, SOUND, assert_broken, report_on, verify_against};
 
 /// Offset and length of the metadata in the header.
 const METADATA: Range<usize> = 24..40;

@@ -4,18 +4,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
-
 use std::{
     collections::BTreeMap,
     num::{NonZeroU8, NonZeroU32},
 };
 
-use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
-use corniche_geom::{HeightGrid, LatticePoint};
-use corniche_pipeline::CheckId as C;
-use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
-use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, Terrain, TilePayload};
-use corniche_tin::{Tin, TinVertex};
 use crate::support::{
     parts::{Parts, SOUND},
     seen::{
@@ -23,6 +16,12 @@ use crate::support::{
         check, row,
     },
 };
+use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
+use corniche_geom::{HeightGrid, LatticePoint};
+use corniche_pipeline::CheckId as C;
+use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, Terrain, TilePayload};
+use corniche_tin::{Tin, TinVertex};
 
 /// Lists fields of types by patterns that name all of them: one that is added does not compile until it is named.
 macro_rules! fields {

@@ -2,12 +2,16 @@
 //! the expected checks are broken.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 
+use crate::support::{
+    EPSG, Options, Raster,
+    parts::{Against, assert_broken, rehash, report_on},
+    settings,
+};
 use corniche_geom::TileId;
 use corniche_pipeline::{
     CheckId, Needs, PhotoChoice, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings,
@@ -17,11 +21,6 @@ use corniche_testing::ColourImage;
 use corniche_tileset::{
     FilePackage, Manifest, Photo, PhotoSection, Sections, TilePayload, Writer, decode_photo,
     encode_photo, photo_section, pmtiles_order, with_photo,
-};
-use crate::support::{
-    EPSG, Options, Raster,
-    parts::{Against, assert_broken, rehash, report_on},
-    settings,
 };
 use tempfile::TempDir;
 

@@ -1,18 +1,17 @@
 //! `verify` sees each kind of broken promise: a sound package is taken apart, one thing in it is made wrong, and
 //! it is put together again with matching checksums. Then exactly the expected checks are broken.
 
-
 use std::fs;
 
-use corniche_geom::TileId;
-use corniche_pipeline::{CheckId, Silent, VerifySettings, build, verify};
-use corniche_tileset::FilePackage;
-use corniche_tin::{NO_TWIN, Tin, TinVertex};
 use crate::support::{
     Options,
     parts::{Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, report_on, write},
     settings, write_degrees,
 };
+use corniche_geom::TileId;
+use corniche_pipeline::{CheckId, Silent, VerifySettings, build, verify};
+use corniche_tileset::FilePackage;
+use corniche_tin::{NO_TWIN, Tin, TinVertex};
 
 #[test]
 fn no_check_is_broken_when_nothing_was_changed() {

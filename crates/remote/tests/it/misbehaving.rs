@@ -1,14 +1,13 @@
 //! Servers that misbehave, each in its own way: what is told of them, and how often they are asked.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{
     net::TcpListener,
     time::{Duration, Instant},
 };
 
-use corniche_tileset::{BlockingSource as _, SourceError};
 use crate::support::{Mode, Server, settings, source};
+use corniche_tileset::{BlockingSource as _, SourceError};
 
 /// Some blocks and a part of one.
 const BYTES: usize = 1_000_000;

@@ -1,13 +1,12 @@
 //! What is read of a server that behaves, and with how many requests.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{sync::Arc, thread};
 
+use crate::support::{Server, settings, source};
 use corniche_remote::{HttpAddress, PackagePlace, Requests, Web};
 use corniche_testing::Random;
 use corniche_tileset::{BlockingSource as _, FilePackage};
-use crate::support::{Server, settings, source};
 
 #[test]
 fn any_bytes_come_as_they_are_on_the_server() {

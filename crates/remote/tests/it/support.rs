@@ -1,6 +1,5 @@
 //! A web server on the loopback that misbehaves when it is told to.
 #![allow(
-    dead_code,
     clippy::unwrap_used,
     reason = "each test file uses some of it; tests may unwrap"
 )]

@@ -4,7 +4,6 @@
 //! crash.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{collections::BTreeSet, path::Path, time::Duration};
 
 use crate::common::*;

@@ -1,7 +1,6 @@
 //! A store in a folder: what is put comes back, now, later and after a torn end.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::{
     collections::BTreeMap,
     path::Path,

@@ -1,7 +1,6 @@
 //! Sealed parts: made by several processes, in any order, some twice, and read as one.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
-
 use std::path::{Path, PathBuf};
 
 use crate::common::*;

@@ -1,9 +1,12 @@
 //! What flights report about the graphics card: the bytes of a tile and the times of the passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
-
 use std::time::Instant;
 
+use crate::support::{
+    country::{Country, height_m},
+    gpu,
+};
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
@@ -13,10 +16,6 @@ use corniche_viewer::{
     tiles::TileSource,
 };
 use glam::DVec3;
-use crate::support::{
-    country::{Country, height_m},
-    gpu,
-};
 
 /// The memory budget relies on the number of bytes that is computed before a tile is uploaded.
 #[test]

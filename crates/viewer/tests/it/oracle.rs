@@ -23,6 +23,6 @@ mod measures;
 mod metamorphic;
 mod must_fail;
 mod package;
-mod reference;
+pub(crate) mod reference;
 mod road_widths;
 mod short_parts;

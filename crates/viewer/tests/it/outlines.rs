@@ -3,7 +3,7 @@
 //! Edges are what differs between two pictures of which one was drawn without: their colour is no other's.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
-
+use crate::support::{frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 use corniche_geom::TileId;
 use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
@@ -14,7 +14,6 @@ use corniche_viewer::{
     tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;
-use crate::support::{frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 
 /// As in `shaders/composite.wgsl`.
 const FARTHER: f32 = 1.1;

@@ -1,7 +1,6 @@
 //! Tiles from bytes that arrive later, as from a server: no call waits for them.
 #![allow(clippy::unwrap_used, reason = "this is test code, helpers included")]
 
-
 use std::{
     cell::Cell,
     collections::BTreeMap,
@@ -10,6 +9,7 @@ use std::{
     task::{Context, Poll, Waker},
 };
 
+use crate::support::package::package;
 use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
@@ -23,7 +23,6 @@ use corniche_viewer::{
         TileStore,
     },
 };
-use crate::support::package::package;
 
 /// What becomes of bytes that are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! Operations on whole pictures: averaged samples, differences, wireframes, and the times of passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
-
 use std::time::{Duration, Instant};
 
+use crate::support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 use corniche_geom::TileId;
 use corniche_roads::OwnWidth;
 use corniche_styles::Style;
@@ -18,7 +18,6 @@ use corniche_viewer::{
     tiles::{RoadLook, TileGeometry, TileLines},
 };
 use glam::DVec2;
-use crate::support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 
 const SIZE: [u32; 2] = [200, 150];
 

@@ -1,19 +1,18 @@
 //! A package on disk to a picture: the whole way of `corniche render`.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
-
 use std::{cell::Cell, path::Path};
 
+use crate::support::{
+    gpu,
+    package::{LEVELS, METRES_PER_DEGREE, ORIGIN_DEG, package},
+};
 use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions, Wireframe,
     camera::Orientation, tiles::PackageSource,
 };
 use image::RgbaImage;
-use crate::support::{
-    gpu,
-    package::{LEVELS, METRES_PER_DEGREE, ORIGIN_DEG, package},
-};
 
 fn request(package: &Path) -> RenderRequest {
     RenderRequest {

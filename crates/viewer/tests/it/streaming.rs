@@ -1,7 +1,11 @@
 //! From heights and roads to a settled picture: triangulated, draped, selected, drawn; no package in between.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
-
+use crate::support::{
+    Drawing,
+    country::{CELL_M, Country, MAX_ERROR_M, height_m, interpolation_error_m},
+    gpu,
+};
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
@@ -13,11 +17,6 @@ use corniche_viewer::{
     tiles::TileStore,
 };
 use glam::{DVec2, DVec3};
-use crate::support::{
-    Drawing,
-    country::{CELL_M, Country, MAX_ERROR_M, height_m, interpolation_error_m},
-    gpu,
-};
 
 const SIZE: [u32; 2] = [640, 480];
 

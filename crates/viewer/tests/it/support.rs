@@ -1,5 +1,4 @@
 //! Scenes made of closed forms, and references that do not use the code under test.
-#![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,

@@ -22,7 +22,10 @@ fn golden() -> Golden {
 fn is_pinned(gpu: &Gpu) -> bool {
     let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
     if !is_pinned {
-        corniche_testing::skip(&format!("these pictures are llvmpipe's, not {}'s", gpu.adapter_name()));
+        corniche_testing::skip(&format!(
+            "these pictures are llvmpipe's, not {}'s",
+            gpu.adapter_name()
+        ));
     }
     is_pinned
 }

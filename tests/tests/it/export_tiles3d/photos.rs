@@ -29,7 +29,8 @@ fn photos_lie_where_they_should() {
     let bounds = ["min_x", "min_y", "max_x", "max_y"].map(|key| bounds[key].as_f64().unwrap());
     let with = export(&package, "with", &["--style", "photo", "--roads", "none"]);
     let tiles = Tiles::read(&with, &package);
-    let to_degrees = FromEarth::to(&crate::export_tiles3d::Region { crs: "EPSG:4979".to_owned(), ..pass() });
+    let to_degrees =
+        FromEarth::to(&crate::export_tiles3d::Region { crs: "EPSG:4979".to_owned(), ..pass() });
     let (mut compared, mut off) = (0, 0);
     for (name, path) in files_of(&with).into_iter().filter(|(name, _)| has_ending(name, "glb")) {
         let glb = Glb::read(&path);
