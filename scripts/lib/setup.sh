@@ -58,10 +58,6 @@ missing_for_view() {
     has_library libxkbcommon-x11.so.0 || echo libxkbcommon-x11-0
 }
 
-missing_for_download() {
-    command -v curl >/dev/null || { echo curl; echo ca-certificates; }
-}
-
 # Whether a shared library is installed. Only Linux has `ldconfig` to tell; elsewhere the answer is yes.
 has_library() {
     local libraries

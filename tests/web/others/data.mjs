@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import zlib from "node:zlib";
 import { PNG } from "pngjs";
 
-/** The square of heights: west, south, east, north. */
+/** The square that the heights are of, or a part of it: west, south, east, north. */
 const SQUARE = [9, 47, 10, 48];
 const TILE_PX = 512;
 /** On the finest zoom a pixel is 52 m wide in Liechtenstein; the samples are 63 × 93 m. */
@@ -73,7 +73,7 @@ function makeRoads(corniche, packagePath, extract, work, file) {
   fs.writeFileSync(file, JSON.stringify({ type: "FeatureCollection", features: roads }));
 }
 
-/** Tiles of 512 pixels in Terrarium's code: metres + 32768 as red · 256 + green, in whole metres as the samples are. Outside of the square the height is 0. */
+/** Tiles of 512 pixels in Terrarium's code: metres + 32768 as red · 256 + green, in whole metres as the samples are. Where there are no heights, it is 0. */
 function makeDemTiles(heights, work, to) {
   const filled = path.join(work, "filled.tif");
   run("gdal_fillnodata.py", "-q", "-md", "200", heights, filled);

@@ -1,0 +1,297 @@
+//! A package that an earlier version of the program wrote, with every kind of section of that time, is opened, verified, drawn and exported as it was then.
+//!
+//! `tests/golden/README.md` says how it was made. When one of these tests fails, packages that people have are read in another way.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::Read as _,
+    path::{Path, PathBuf},
+};
+
+use corniche_testing::pictures::Golden;
+use e2e::{corniche, draw, json, manifest, root, skipped, text};
+use gdal::{Dataset, vector::LayerAccess as _};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Kinds of sections, and in how many of the five tiles they are.
+const KINDS: [(u16, &str, usize); 9] = [
+    (1, "terrain", 5),
+    (4, "road attributes", 5),
+    (5, "road tags", 5),
+    (6, "relief", 5),
+    (7, "photo", 5),
+    (9, "boundaries", 5),
+    (10, "coded GEO roads", 5),
+    (11, "coded SV roads", 5),
+    (12, "coded areas", 4),
+];
+/// Kinds that roads have in packages in metres, which another recorded package has.
+const KINDS_IN_METRES: [(u16, &str); 2] = [(2, "GEO roads"), (3, "SV roads")];
+
+/// A tile, what it holds (vertices, triangles, GEO lines, SV lines, ways, areas) and the checksum of all numbers in it.
+const TILES: [(&str, [usize; 6], u32); 5] = [
+    ("0/0/0", [791, 1522, 75, 88, 88, 18], 1_253_906_107),
+    ("1/0/0", [1015, 1956, 454, 690, 652, 40], 1_750_483_359),
+    ("1/0/1", [717, 1371, 521, 731, 714, 29], 736_148_464),
+    ("1/1/0", [427, 796, 1, 6, 4, 0], 1_445_455_419),
+    ("1/1/1", [291, 536, 24, 53, 42, 2], 3_552_441_388),
+];
+
+const CREDITS: [&str; 2] =
+    ["Colours by height, made of SRTM", "© OpenStreetMap contributors, ODbL 1.0"];
+
+fn recorded() -> PathBuf {
+    root().join("tests/golden/all-sections.pmtiles")
+}
+
+fn recorded_in_metres() -> PathBuf {
+    root().join("crates/tileset/tests/data/version-1.pmtiles")
+}
+
+/// A number of seven bits per byte, the lowest first, from the front of `bytes`.
+fn varint(bytes: &mut &[u8]) -> usize {
+    let mut value = 0;
+    for shift in (0..).step_by(7) {
+        let byte = usize::from(bytes.split_off_first().copied().unwrap());
+        value |= (byte & 0x7f) << shift;
+        if byte < 0x80 {
+            break;
+        }
+    }
+    value
+}
+
+/// How many tiles have each kind of section, read by `FORMAT.md` alone. The package is so small that its directory has no leaves.
+fn kinds(package: &Path) -> BTreeMap<u16, usize> {
+    let bytes = fs::read(package).unwrap();
+    let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let [entries, leaves, tiles] = [8, 40, 56].map(|at| number(at)..number(at) + number(at + 8));
+    assert!(leaves.is_empty());
+    let mut directory = Vec::new();
+    flate2::read::GzDecoder::new(&bytes[entries]).read_to_end(&mut directory).unwrap();
+    let rest = &mut &directory[..];
+    let count = varint(rest);
+    // Steps of ids, lengths of runs, lengths in bytes, offsets. Tiles follow each other without gaps.
+    let columns = [(); 4].map(|()| (0..count).map(|_| varint(rest)).collect::<Vec<_>>());
+    let (mut kinds, mut left) = (BTreeMap::new(), &bytes[tiles]);
+    for &length in &columns[2] {
+        let payload = left.split_off(..length).unwrap();
+        assert!(payload.starts_with(b"CRNT"));
+        for section in payload[16..].chunks(20).take(payload[6].into()) {
+            *kinds.entry(u16::from_le_bytes([section[0], section[1]])).or_default() += 1;
+        }
+    }
+    assert!(left.is_empty());
+    kinds
+}
+
+/// All numbers of arrays in arrays, in their order, as little-endian f64.
+fn add(sum: &mut crc32fast::Hasher, value: &Value) {
+    match value {
+        Value::Array(values) => values.iter().for_each(|value| add(sum, value)),
+        number => sum.update(&number.as_f64().unwrap().to_le_bytes()),
+    }
+}
+
+/// Adds named members of each object of a list.
+fn add_each(sum: &mut crc32fast::Hasher, list: &[Value], members: &[&str]) {
+    for object in list {
+        members.iter().for_each(|&member| add(sum, &object[member]));
+    }
+}
+
+/// Runs `corniche export` with the package; the path of what it wrote into a folder.
+fn export(folder: &TempDir, what: &str, name: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    let ran = corniche(["export", what, text(&recorded()), "-q", "-o", text(&path)]);
+    assert_eq!(ran.code, 0, "{what}: {}{}", ran.out, ran.err);
+    path
+}
+
+/// The files with an ending below a folder.
+fn files_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files_below(&path, ending));
+        } else if path.extension().is_some_and(|extension| extension == ending) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn every_kind_of_section_is_recorded() {
+    let expected = KINDS.map(|(kind, _, tiles)| (kind, tiles));
+    assert_eq!(kinds(&recorded()), BTreeMap::from(expected), "{KINDS:?}");
+    let in_metres = kinds(&recorded_in_metres());
+    for (kind, name) in KINDS_IN_METRES {
+        assert!(in_metres.contains_key(&kind), "{name}: {in_metres:?}");
+    }
+}
+
+#[test]
+fn it_opens_and_tells_what_it_is() {
+    let package = recorded();
+    let manifest = manifest(&package);
+    assert_eq!(manifest["format_version"], 1);
+    assert_eq!(manifest["generator"], "corniche 0.1.0, GDAL 3.6.2, PROJ 9.1.1");
+    assert_eq!(manifest["attribution"], serde_json::json!(CREDITS));
+    let counts = &manifest["counts"];
+    assert_eq!([&counts["roads_in"], &counts["roads_kept"]], [2749, 963]);
+    assert_eq!(manifest["areas"]["objects"], 229);
+    assert_eq!(manifest["boundaries"]["ways"], 1602);
+    let ran = corniche(["info", text(&package)]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let growth = json(&["growth", text(&package), "--json"]);
+    let vertices = growth["rows"].as_array().unwrap().iter();
+    assert_eq!(vertices.map(|row| row["geo_vertices"].as_u64().unwrap()).sum::<u64>(), 14_278);
+}
+
+#[test]
+fn it_keeps_its_promises() {
+    for package in [recorded(), recorded_in_metres()] {
+        let report = json(&["verify", text(&package), "--json", "-q"]);
+        assert_eq!(report["holds"], true, "{report}");
+    }
+    // A check that holds means nothing if it had nothing to check.
+    let report = json(&["verify", text(&recorded()), "--json", "-q"]);
+    let checks = report["checks"].as_array().unwrap();
+    for id in [
+        "tiles.whole",
+        "P1",
+        "P3",
+        "sv.range",
+        "roads.attributes",
+        "relief.seams",
+        "photo.levels",
+        "areas.seams",
+        "boundaries.places",
+    ] {
+        let check = checks.iter().find(|check| check["id"] == id).expect(id);
+        assert!(check["checked"].as_u64().unwrap() > 0, "{check}");
+    }
+}
+
+#[test]
+fn its_tiles_are_decoded_to_the_same_numbers() {
+    let package = recorded();
+    for (id, expected, expected_sum) in TILES {
+        let tile = json(&["tile", text(&package), id, "--json"]);
+        let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+        let tin = &tile["tin"];
+        let [geo, sv, ways, areas] =
+            ["roads_geo", "roads_sv", "attributes", "areas"].map(|name| list(&tile[name]));
+        let [vertices, triangles] = ["vertices", "triangles"].map(|name| list(&tin[name]));
+        let found = [&vertices, &triangles, &geo, &sv, &ways, &areas].map(Vec::len);
+        assert_eq!(found, expected, "{id}");
+        let mut sum = crc32fast::Hasher::new();
+        ["vertices", "normals", "triangles"].iter().for_each(|&name| add(&mut sum, &tin[name]));
+        add_each(&mut sum, &geo, &["way_id", "part", "frc", "line"]);
+        add_each(&mut sum, &sv, &["way_id", "part", "frc", "line", "ground_range_m"]);
+        add_each(&mut sum, &areas, &["id", "polygons"]);
+        assert_eq!(sum.finalize(), expected_sum, "{id}");
+    }
+    // Texts of a road, an area and a track.
+    let tile = json(&["tile", text(&package), "1/0/0", "--json"]);
+    let has = |list: &str, name: &str, value: &str| {
+        tile[list].as_array().unwrap().iter().any(|object| object[name] == value)
+    };
+    assert!(has("attributes", "name", "Dorfstrasse") && has("attributes", "highway", "tertiary"));
+    assert!(has("attributes", "tracktype", "grade2") && has("areas", "class", "forest"));
+}
+
+#[test]
+fn it_is_drawn_as_it_was() {
+    let folder = TempDir::new().unwrap();
+    let golden = Golden::of_crate(text(&root()), option_env!("CARGO_TARGET_TMPDIR"));
+    for roads in ["sv", "geo"] {
+        let png = folder.path().join(format!("{roads}.png"));
+        let options = ["--size", "320x240", "--roads", roads];
+        let Some(ran) = draw("render", &recorded(), &png, &options) else { return };
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        if !["llvmpipe", "vulkan"].iter().all(|part| ran.err.contains(part)) {
+            skipped(&format!("these pictures are llvmpipe's, and this is {}", ran.err));
+            return;
+        }
+        let picture = image::open(&png).unwrap().to_rgba8();
+        golden.check(&format!("all-sections-{roads}"), &picture);
+    }
+}
+
+#[test]
+fn its_roads_and_areas_are_exported() {
+    let folder = TempDir::new().unwrap();
+    for (what, features) in [("roads", 963), ("areas", 66)] {
+        let file = export(&folder, what, &format!("{what}.gpkg"));
+        let dataset = Dataset::open(&file).unwrap();
+        assert_eq!(dataset.layer(0).unwrap().feature_count(), features, "{what}");
+    }
+}
+
+#[test]
+fn its_ground_is_exported_as_a_raster_and_as_a_model() {
+    let folder = TempDir::new().unwrap();
+    let raster = Dataset::open(export(&folder, "geotiff", "heights.tif")).unwrap();
+    assert_eq!(raster.raster_size(), (157, 85));
+    let heights = raster.rasterband(1).unwrap().read_band_as::<f64>().unwrap();
+    let range = heights.data().iter().fold([f64::MAX, f64::MIN], |[low, high], &height_m| {
+        [low.min(height_m), high.max(height_m)]
+    });
+    assert_eq!(range.map(|height_m| height_m as i32), [442, 2242], "whole metres here");
+
+    let model = fs::read_to_string(export(&folder, "mesh", "model.obj")).unwrap();
+    let lines = ["v ", "f ", "l "]
+        .map(|begin| model.lines().filter(|line| line.starts_with(begin)).count());
+    assert_eq!(lines, [16_159, 4659, 1000], "vertices, triangles, lines of roads");
+}
+
+#[test]
+fn it_is_exported_as_3d_tiles() {
+    let folder = TempDir::new().unwrap();
+    let tiles = export(&folder, "3dtiles", "tiles");
+    let tileset: Value =
+        serde_json::from_slice(&fs::read(tiles.join("tileset.json")).unwrap()).unwrap();
+    assert_eq!(tileset["asset"]["copyright"], CREDITS.join("; "));
+    let files = files_below(&tiles, "glb");
+    assert_eq!(files.len(), 5);
+    let mut triangles = 0;
+    for file in files {
+        // A header, the length of the document, its kind, the document.
+        let bytes = fs::read(file).unwrap();
+        let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        let document: Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+        assert_eq!(document["images"].as_array().map(Vec::len), Some(2), "photo and relief");
+        for mesh in document["meshes"].as_array().unwrap() {
+            for primitive in mesh["primitives"].as_array().unwrap() {
+                let indices = primitive["indices"].as_u64().unwrap() as usize;
+                triangles += document["accessors"][indices]["count"].as_u64().unwrap() / 3;
+            }
+        }
+    }
+    assert_eq!(triangles, 86_286, "ground, walls and roads");
+}
+
+#[test]
+fn it_is_exported_as_quantized_mesh() {
+    let folder = TempDir::new().unwrap();
+    let terrain = export(&folder, "quantized-mesh", "terrain");
+    let layer: Value =
+        serde_json::from_slice(&fs::read(terrain.join("layer.json")).unwrap()).unwrap();
+    assert_eq!(layer["attribution"], CREDITS.join("; "));
+    let levels = layer["available"].as_array().unwrap();
+    let tiles = levels.iter().flat_map(|level| level.as_array().unwrap()).map(|tiles| {
+        let count = |low: &str, high: &str| {
+            tiles[high].as_u64().unwrap() - tiles[low].as_u64().unwrap() + 1
+        };
+        count("startX", "endX") * count("startY", "endY")
+    });
+    assert_eq!((levels.len(), tiles.sum::<u64>()), (14, 50));
+    assert_eq!(files_below(&terrain, "terrain").len(), 50);
+}
