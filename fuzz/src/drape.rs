@@ -1,3 +1,5 @@
+//! Lines of any bytes are laid on ground of any bytes, and the result keeps every promise of draping.
+
 use arbitrary::{Result, Unstructured};
 use corniche_drape::{
     DrapedLine, DrapedVertex, Neighbours, OwnedBorders, check, clip, clip_closed, extrude,

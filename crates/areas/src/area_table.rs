@@ -1,3 +1,5 @@
+//! A table says which tags make which class of area; it is checked when it is made.
+
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::AreaClass;

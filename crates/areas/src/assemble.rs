@@ -1,3 +1,5 @@
+//! Ways of an outline, in any order and direction, become polygons with holes.
+
 use std::collections::HashMap;
 
 use corniche_geom::LatticePoint;

@@ -1,3 +1,5 @@
+//! The classes of boundaries, from countries to protected areas, and the tags that make them.
+
 use std::fmt;
 
 /// What a boundary divides.

@@ -1,3 +1,5 @@
+//! A polygon is divided by an upright or level line, and both sides get the same new points.
+
 use corniche_geom::LatticePoint;
 
 use crate::{

@@ -1,3 +1,5 @@
+//! The exit codes of the program and the words for them in error documents.
+
 use std::process;
 
 /// How the program ends; the numbers are part of its interface.

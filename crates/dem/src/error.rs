@@ -1,3 +1,5 @@
+//! Errors of opening, planning and reading elevation files.
+
 use std::path::PathBuf;
 
 use corniche_geom::{Cell, FrameError};

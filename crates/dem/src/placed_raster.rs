@@ -1,3 +1,5 @@
+//! Any raster with its place on the earth, such as a photo, and the way from its pixels to working metres and back.
+
 use std::path::{Path, PathBuf};
 
 use corniche_geom::GeoTransform;

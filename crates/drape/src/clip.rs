@@ -1,3 +1,5 @@
+//! Lines are clipped to a rectangle of the lattice, with the rule for what runs exactly along its borders.
+
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TILE_CELLS};
 
 use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};

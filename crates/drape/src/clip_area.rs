@@ -1,3 +1,5 @@
+//! Lines are clipped to an area of any outline.
+
 use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, cross};
 
 use crate::clip::{ClippedPart, Inside, Parts};

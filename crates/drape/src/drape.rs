@@ -1,3 +1,5 @@
+//! A line is laid on a TIN, with a vertex at each edge that it crosses.
+
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, cross};
 use corniche_tin::{NO_TWIN, Surface};
 

@@ -1,3 +1,5 @@
+//! Which stretches of its borders a tile owns, so that a line along a border is kept exactly once.
+
 use corniche_geom::{TILE_CELLS, TileId};
 
 /// Which stretches of its four borders a tile owns: what runs exactly along a border of two tiles must be kept

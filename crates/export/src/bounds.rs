@@ -1,3 +1,5 @@
+//! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to it.
+
 /// A rectangle of longitudes and latitudes, degrees (WGS84); it may cross the antimeridian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DegreeBounds {

@@ -1,3 +1,5 @@
+//! What a user asks for when roads or areas become features of a vector file.
+
 use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 

@@ -1,3 +1,5 @@
+//! Rectangles along the axes, with f64 coordinates or on the lattice.
+
 use serde::{Deserialize, Serialize};
 
 use crate::LatticePoint;

@@ -1,3 +1,5 @@
+//! The size of a grid cell of the finest level, east and north, and the lattice that follows from it.
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};

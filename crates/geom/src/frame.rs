@@ -1,3 +1,5 @@
+//! The global grid of a package: its tiles, its lattice, and the conversions between them and working metres.
+
 use serde::{Deserialize, Serialize};
 
 use crate::node::{NodeIndex, NodeWindow};

@@ -1,3 +1,5 @@
+//! A position in plan, in whole steps of a package's lattice.
+
 use serde::{Deserialize, Serialize};
 
 /// A position in plan, in whole lattice steps of a [`Frame`](crate::Frame): `u` east, `v` north.

@@ -1,3 +1,5 @@
+//! A region of the lattice with any outline, with fast tests of which points lie inside.
+
 use crate::index_lists::IndexLists;
 use crate::node::NodeWindow;
 use crate::{LatticeBounds, LatticePoint, cross};

@@ -1,3 +1,5 @@
+//! The exact test on which side of a line a point lies.
+
 use crate::LatticePoint;
 
 /// On which side of a directed line a point lies.

@@ -1,3 +1,5 @@
+//! Roads of the finest level are compared with a photo or with the slope of the ground, and their offsets are measured.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;

@@ -1,3 +1,5 @@
+//! Errors of object storage, told without passwords.
+
 use std::{io, path::PathBuf};
 
 use corniche_store::StoreError;

@@ -1,3 +1,5 @@
+//! A sealed part of a store that lies in object storage.
+
 use std::{
     path::{Path, PathBuf},
     sync::Arc,

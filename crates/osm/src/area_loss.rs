@@ -1,3 +1,5 @@
+//! Reasons for which an object with the tags of an area is left out.
+
 use serde::{Deserialize, Serialize};
 
 /// Why an object with the tags of an area became none.

@@ -1,3 +1,5 @@
+//! Reasons for which a way that is a boundary is left out.
+
 use serde::{Deserialize, Serialize};
 
 /// Why a way that is a boundary is left out.

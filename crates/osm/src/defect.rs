@@ -1,3 +1,5 @@
+//! Defects of an extract that were survived: each names its object and its reason.
+
 use serde::{Deserialize, Serialize};
 
 use crate::{area_loss::AreaLoss, boundary_loss::BoundaryLoss};

@@ -1,3 +1,5 @@
+//! The request to read an extract: which file, which table, how much memory, and who is told of progress.
+
 use std::{
     fmt,
     path::{Path, PathBuf},

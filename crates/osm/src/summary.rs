@@ -1,3 +1,5 @@
+//! How many ways an extract had, how many became roads, and why the others did not.
+
 use std::collections::BTreeMap;
 
 use corniche_roads::FunctionalRoadClass;

@@ -1,3 +1,5 @@
+//! Heights of a package are carried to the ellipsoid of WGS84, which GeoJSON wants.
+
 use corniche_dem::{RecordedCrs, RecordedHeights};
 use corniche_tileset::Manifest;
 

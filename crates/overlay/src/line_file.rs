@@ -1,3 +1,5 @@
+//! The GeoJSON file of the lines and areas that a person draws: read, changed and written back.
+
 use std::{fs, io::Read as _, path::Path};
 
 use serde_json::{Map, Value, json};

@@ -1,3 +1,5 @@
+//! Lines of a file are placed on the lattice of a package.
+
 use corniche_dem::RecordedCrs;
 use corniche_geom::{LatticePoint, Projection as _};
 use corniche_tileset::Manifest;

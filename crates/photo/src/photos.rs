@@ -1,3 +1,5 @@
+//! Photo files that are described but not held open, and the choice of how fine their texels become.
+
 use std::path::PathBuf;
 
 use corniche_dem::{FileBlocks, GridPlan};

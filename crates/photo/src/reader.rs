@@ -1,3 +1,5 @@
+//! The reader of texels: each one is the mean of the light of the photo's pixels under it.
+
 use corniche_geom::Bounds;
 use gdal::Dataset;
 

@@ -1,3 +1,5 @@
+//! The grid of texels over the finest tiles, and windows of it.
+
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 
 use crate::PhotoError;

@@ -1,3 +1,5 @@
+//! A rectangle of texels, of which some may have no photo.
+
 /// A rectangle of texels, row by row from the north.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texels {

@@ -1,3 +1,5 @@
+//! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
+
 use serde::{Deserialize, Serialize};
 
 /// Bad input that was skipped and counted, or what was lost by it.

@@ -1,3 +1,5 @@
+//! The interface by which a run reports its stages and progress and learns that it should stop.
+
 use std::path::Path;
 
 use crate::Defect;

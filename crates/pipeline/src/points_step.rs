@@ -1,3 +1,5 @@
+//! The spacing of the lattice on which points of areas and boundaries lie on each level.
+
 use corniche_geom::Frame;
 
 /// On the finest level, points of areas and boundaries lie on a lattice of at most this spacing, metres: what is drawn there can be looked at

@@ -1,3 +1,5 @@
+//! The settings of a build: inputs, outputs and everything that decides what is made.
+
 use std::path::PathBuf;
 
 use corniche_areas::AreaTable;

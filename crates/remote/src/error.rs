@@ -1,3 +1,5 @@
+//! Errors of reading from a web server, and which of them may pass.
+
 use std::time::Duration;
 
 use corniche_tileset::SourceError;

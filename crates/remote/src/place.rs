@@ -1,3 +1,5 @@
+//! Where a package is: in a file or at an address on a web server.
+
 use std::{
     ffi::OsString,
     fmt,

@@ -1,3 +1,5 @@
+//! A table says which value of `highway` has which functional road class; it is checked when it is made.
+
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::FunctionalRoadClass;

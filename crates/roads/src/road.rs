@@ -1,3 +1,5 @@
+//! A road: its way, its functional road class, its attributes and its line.
+
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,

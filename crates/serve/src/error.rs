@@ -1,3 +1,5 @@
+//! Errors that keep packages from being served.
+
 use std::{io, net::SocketAddr};
 
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! Errors of keeping and reading back, with advice where there is a remedy.
+
 use std::{io, path::PathBuf};
 
 /// Why something could not be kept or read back.

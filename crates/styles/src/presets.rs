@@ -1,3 +1,5 @@
+//! The styles that come with the program.
+
 /// Styles that come with the program, the default one first.
 const PRESETS: [(&str, &str); 4] = [
     ("road-atlas", include_str!("../sheets/road-atlas.toml")),

@@ -1,3 +1,5 @@
+//! What a caller asks of a window: package, styles, layers, and how files are written.
+
 use std::{collections::BTreeSet, io, path::PathBuf};
 
 use corniche_roads::FunctionalRoadClass;

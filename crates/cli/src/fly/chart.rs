@@ -1,3 +1,5 @@
+//! The chart of a flight: frame times, road segments and tiles over the time, one curve for each run.
+
 use std::ops::Range;
 
 use corniche_viewer::{FrameRecord, gpu::PassTimes};

@@ -1,3 +1,5 @@
+//! A horizontal coordinate system, kept as text because the objects of PROJ belong to one thread.
+
 use std::sync::Arc;
 
 use corniche_geom::wgs84;

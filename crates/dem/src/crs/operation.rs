@@ -1,3 +1,5 @@
+//! Coordinate operations between two systems, made for one area of interest and kept for each thread.
+
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;

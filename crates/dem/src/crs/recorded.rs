@@ -1,3 +1,5 @@
+//! The working CRS of a package, made from what the package records and without its elevation files.
+
 use corniche_geom::Bounds;
 
 use crate::crs::horizontal::Crs;

@@ -1,3 +1,5 @@
+//! The plan of a package's grid: its nodes, its CRS, and what each mosaic does for its heights.
+
 use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, Frame, LatticeArea, NodeIndex};

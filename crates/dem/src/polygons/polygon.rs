@@ -1,3 +1,5 @@
+//! Polygons with holes, read from a vector file, that say which part of the elevation data is wanted.
+
 use std::{
     fmt,
     path::{Path, PathBuf},

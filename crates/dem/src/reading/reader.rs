@@ -1,3 +1,5 @@
+//! The reader of windows of heights; each thread has one of its own.
+
 use corniche_geom::{HeightGrid, NodeWindow};
 
 use crate::mosaics::mosaic::Mosaic;

@@ -1,3 +1,5 @@
+//! What a user asks for when a package becomes a raster.
+
 use corniche_dem::{Dem, GridPlan};
 
 use crate::bounds::DegreeBounds;

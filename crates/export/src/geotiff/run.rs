@@ -1,3 +1,5 @@
+//! The heights of a level are written as a GeoTIFF, and on request their difference from the elevation files.
+
 use std::path::Path;
 
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};

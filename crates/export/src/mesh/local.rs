@@ -1,3 +1,5 @@
+//! Local coordinates of a model: true metres from an origin, so that numbers stay small.
+
 use corniche_geom::Bounds;
 use corniche_tileset::Manifest;
 

@@ -1,3 +1,5 @@
+//! What a user asks for when a package becomes a model: its format, its axes, its roads and its colours.
+
 use std::{fmt::Write as _, path::Path};
 
 use corniche_roads::FunctionalRoadClass;

@@ -1,3 +1,5 @@
+//! The ground of a level is written as one model, with its roads as lines or as surfaces.
+
 use std::{fs::File, io::BufWriter, path::Path};
 
 use corniche_geom::{Bounds, TileId};

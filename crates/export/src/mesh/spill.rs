@@ -1,3 +1,5 @@
+//! Bytes wait in a file without a name until what must stand before them is known.
+
 use std::{
     fs::File,
     io::{self, BufWriter, Seek as _, SeekFrom, Write},

@@ -1,3 +1,5 @@
+//! What a user asks for when a package becomes quantized-mesh terrain tiles.
+
 use super::tiling::Tiling;
 use crate::request::Coordinates;
 

@@ -1,3 +1,5 @@
+//! A package is written as quantized-mesh terrain tiles into an empty folder.
+
 use std::{
     collections::BTreeSet,
     fs,

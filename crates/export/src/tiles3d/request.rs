@@ -1,3 +1,5 @@
+//! What a user asks for when a package becomes 3D Tiles.
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 

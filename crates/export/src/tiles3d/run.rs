@@ -1,3 +1,5 @@
+//! A package is written as 3D Tiles into an empty folder.
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,

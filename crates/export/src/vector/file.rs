@@ -1,3 +1,5 @@
+//! A vector file is written through GDAL, layer and features, and read again at the end.
+
 use std::path::{Path, PathBuf};
 
 use gdal::{

@@ -1,3 +1,5 @@
+//! The view of the camera, and what controls must know of the ground that it looks at.
+
 use corniche_viewer::{
     camera::{Camera, Orientation},
     eye_height,

@@ -1,3 +1,5 @@
+//! The tiles of a level in which data can lie, as runs of columns.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};

@@ -1,3 +1,5 @@
+//! The inputs of a build are opened, and what follows from them before any height is read is worked out.
+
 use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};

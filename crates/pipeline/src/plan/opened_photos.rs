@@ -1,3 +1,5 @@
+//! The photos of a build are opened and placed on the grid, or taken from another package.
+
 use corniche_dem::{FileBlocks, GridPlan};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;

@@ -1,3 +1,5 @@
+//! The sealed parts of a store that lie in a folder.
+
 use std::{
     path::{Path, PathBuf},
     sync::Arc,

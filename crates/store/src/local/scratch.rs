@@ -1,3 +1,5 @@
+//! Scratch space in a file of a store, removed when it is no longer needed.
+
 use std::{
     io,
     sync::{

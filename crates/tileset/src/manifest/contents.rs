@@ -1,3 +1,5 @@
+//! The manifest of a package: everything that a reader must know before it reads a tile.
+
 use corniche_geom::{Bounds, Cell, CoordinateTable, Frame, NodeIndex};
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! Counts in the manifest: what came in, what was kept, what was lost and why.
+
 use serde::{Deserialize, Serialize};
 
 /// What came in, what was kept, what was lost and why.

@@ -1,3 +1,5 @@
+//! What the manifest records of each level: its tiles, its errors and its sizes.
+
 use corniche_geom::Cell;
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! The bounds, steps and scales that give numbers in a payload their meaning.
+
 use corniche_geom::{Frame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
 

@@ -1,3 +1,5 @@
+//! A payload is decoded: the sections that the caller wants.
+
 use corniche_geom::{Frame, TileId};
 use corniche_tin::Surface;
 

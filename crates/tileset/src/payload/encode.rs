@@ -1,3 +1,5 @@
+//! A tile is encoded as a payload: all its sections, with their sizes.
+
 use corniche_geom::{Frame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;

@@ -1,3 +1,5 @@
+//! Flights are read from text and written to it, in the coordinates of a CRS.
+
 use corniche_geom::CoordinateTable;
 use corniche_tileset::Manifest;
 use serde::{Deserialize, Serialize};

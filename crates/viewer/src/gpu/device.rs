@@ -1,3 +1,5 @@
+//! The graphics device: how it is opened, what it can do, and how its faults are noticed.
+
 use std::sync::{
     Arc, Mutex, PoisonError,
     atomic::{AtomicBool, Ordering},

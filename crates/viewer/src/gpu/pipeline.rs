@@ -1,3 +1,5 @@
+//! Render pipelines are made of recipes, and shaders are joined from their files.
+
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
     FrontFace, PrimitiveTopology, RenderPipeline, VertexBufferLayout,

@@ -1,3 +1,5 @@
+//! Textures are read back from the graphics card, in bands where they are large.
+
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout};

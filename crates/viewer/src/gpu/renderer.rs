@@ -1,3 +1,5 @@
+//! The renderer draws tiles into targets, pass by pass, and holds nothing of any frame.
+
 use std::sync::OnceLock;
 
 use wgpu::{CommandEncoder, LoadOp};

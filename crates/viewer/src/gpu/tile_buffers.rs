@@ -1,3 +1,5 @@
+//! The buffers of a tile on the graphics card, and how many bytes they take.
+
 use corniche_geom::TileId;
 use glam::DVec3;
 

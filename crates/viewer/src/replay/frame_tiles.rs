@@ -1,3 +1,5 @@
+//! The tiles of one frame of a flight, and what it took to have them.
+
 use crate::lod::Drawn;
 
 /// The tiles of one frame, and what was done to have them.

@@ -1,3 +1,5 @@
+//! The times of the frames of a flight.
+
 use crate::flight::Flight;
 
 /// When each frame of a flight is.

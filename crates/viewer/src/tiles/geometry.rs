@@ -1,3 +1,5 @@
+//! A decoded tile that is ready for the graphics card.
+
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;

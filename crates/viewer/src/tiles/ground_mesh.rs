@@ -1,3 +1,5 @@
+//! The mesh of a tile's ground, with skirts and with walls along voids.
+
 use bytemuck::{Pod, Zeroable};
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};

@@ -1,3 +1,5 @@
+//! The tiles of a package for threads that may wait, from a file or a similar source.
+
 use std::{path::Path, sync::Arc};
 
 use corniche_geom::{Frame, TileId};

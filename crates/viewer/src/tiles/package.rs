@@ -1,3 +1,5 @@
+//! The tiles of a package are loaded from any source of bytes, without blocking a thread.
+
 use std::{collections::BTreeSet, sync::Arc};
 
 use corniche_geom::{Frame, TileId};

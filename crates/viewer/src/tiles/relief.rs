@@ -1,3 +1,5 @@
+//! What the roads of a tile ask of its ground when they are placed.
+
 use corniche_drape::{RoadPiece, near_ground, road_bed};
 use corniche_geom::{Bounds, Frame, TileId};
 use corniche_tin::Surface;

@@ -1,3 +1,5 @@
+//! The slopes of a tile's ground as texels for shading.
+
 use corniche_geom::{Cell, TILE_NODES};
 use corniche_tileset::Relief;
 use half::f16;

@@ -1,3 +1,5 @@
+//! The ground of a tile in squares: the mean slope of each, and how far the ground departs from it.
+
 use std::ops::RangeInclusive;
 
 use corniche_geom::{Bounds, Frame};

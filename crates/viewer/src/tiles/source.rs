@@ -1,3 +1,5 @@
+//! Interfaces of what has tiles: which tiles there are, and how threads load them.
+
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::Manifest;
 

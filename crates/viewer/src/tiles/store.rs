@@ -1,3 +1,5 @@
+//! The tiles that were loaded so far, for a picture that needs all of them at once.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TileId};

@@ -1,3 +1,5 @@
+//! The ground of a tile that is shown, on which lines can be laid later.
+
 use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};

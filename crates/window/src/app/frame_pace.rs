@@ -1,3 +1,5 @@
+//! When the next frame is due, and how long frames take.
+
 use crate::frame_times::FrameTimes;
 
 /// After a pause longer than this between two frames, the second does not tell how long a frame takes.

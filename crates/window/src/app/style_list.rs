@@ -1,3 +1,5 @@
+//! The styles of a window, of which the first may be read again while the window is open.
+
 use corniche_styles::Style;
 
 use crate::{NamedStyle, Reload};

@@ -1,3 +1,5 @@
+//! Reasons for which a drawn line was not changed as a person asked.
+
 /// Why a line was not changed as asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unchanged {

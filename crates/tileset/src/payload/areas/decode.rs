@@ -1,3 +1,5 @@
+//! The areas section is decoded, and damage is found before memory is taken for it.
+
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint};
 

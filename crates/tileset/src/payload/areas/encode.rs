@@ -1,3 +1,5 @@
+//! The areas of a tile are encoded as a section.
+
 use corniche_areas::AreaObject;
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 

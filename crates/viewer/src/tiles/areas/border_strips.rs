@@ -1,3 +1,5 @@
+//! Areas are continued into a strip around their tile, so that no gap shows between tiles.
+
 use corniche_geom::{LatticeBounds, LatticePoint};
 
 /// The strip around a tile into which its areas are continued.

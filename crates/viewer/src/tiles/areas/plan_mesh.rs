@@ -1,3 +1,5 @@
+//! The inside of rings becomes triangles in plan.
+
 use corniche_geom::LatticePoint;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 

@@ -1,3 +1,5 @@
+//! Lines of people's files are laid on the ground of a tile.
+
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};

@@ -1,3 +1,5 @@
+//! The roads of a decoded tile as lines: on the ground for GEO, in plan for SV.
+
 use corniche_drape::BadLine;
 use corniche_geom::Frame;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};

@@ -1,3 +1,5 @@
+//! Kinds of roads that are drawn differently within their class: slip roads, tunnels and service roads.
+
 use corniche_roads::{Form, RoadAttributes, Structure};
 use serde::{Deserialize, Serialize};
 
