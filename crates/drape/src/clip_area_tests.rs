@@ -1,3 +1,5 @@
+//! Lines that are cut at an area of any outline add up, inside and outside, to the whole.
+
 use proptest::prelude::*;
 
 use super::*;

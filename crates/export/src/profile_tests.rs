@@ -1,3 +1,5 @@
+//! Ways of a profile are turned so that they go on, and grades are taken over twenty metres.
+
 use super::*;
 
 fn line(points: &[[f64; 2]]) -> Line {

@@ -1,3 +1,5 @@
+//! The grid covers its extent with aligned tiles, and neighbours share their borders to the last bit.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! An area contains exactly the points that a look at all its edges finds.
+
 use proptest::prelude::*;
 
 use super::*;

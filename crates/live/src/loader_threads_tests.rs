@@ -1,3 +1,5 @@
+//! Threads load tiles in the order asked, and a damaged tile stops no other.
+
 use std::{
     sync::atomic::{AtomicUsize, Ordering},
     time::{Duration, Instant},

@@ -1,3 +1,5 @@
+//! The tiles of a live map are those that its views need, and damage or loss of the device is survived.
+
 use std::{
     num::NonZeroUsize,
     time::{Duration, Instant},

@@ -1,3 +1,5 @@
+//! A tile with all its sections comes back whole, and any damage is noticed.
+
 use std::num::{NonZeroU8, NonZeroU32};
 use std::sync::LazyLock;
 

@@ -1,3 +1,5 @@
+//! Streaming ends with the tiles that the view needs, within its budget.
+
 use corniche_geom::{Frame, NodeIndex};
 use glam::DVec3;
 use proptest::prelude::*;

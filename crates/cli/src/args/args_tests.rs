@@ -1,3 +1,5 @@
+//! Every option of the command line is parsed, documented and refused as it should be.
+
 use std::path::PathBuf;
 
 use corniche_remote::PackagePlace;

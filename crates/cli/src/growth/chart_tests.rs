@@ -1,3 +1,5 @@
+//! Curves in charts of growth can be told apart without colours, and too many packages are refused.
+
 use corniche_testing::package;
 use corniche_tileset::GrowthRow;
 

@@ -1,3 +1,5 @@
+//! Records of areas come back as they were written.
+
 use std::fmt::Debug;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! The parts of an area add up on every level, and neighbours share their borders.
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};

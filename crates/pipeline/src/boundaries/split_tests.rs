@@ -1,3 +1,5 @@
+//! Every tile has the segments of boundaries that come near it, and junctions stay.
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::{Frame, NodeIndex};

@@ -1,3 +1,5 @@
+//! Tiles that data only touch at a border are not counted.
+
 use super::*;
 
 fn node(i: i64, j: i64) -> NodeIndex {

@@ -1,3 +1,5 @@
+//! Neither threads nor memory change the pieces of roads, and nothing is read twice.
+
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -1,3 +1,5 @@
+//! The check of area seams finds an area that a tile lacks, and no outline along a border.
+
 use corniche_areas::AreaClass;
 use corniche_geom::NodeIndex;
 use corniche_tileset::AreaRings;

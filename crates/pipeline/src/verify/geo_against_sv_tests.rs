@@ -1,3 +1,5 @@
+//! The check of GEO against SV finds a missing line, inside the tile only.
+
 use corniche_geom::{Frame, NodeIndex, TileId};
 
 use super::*;

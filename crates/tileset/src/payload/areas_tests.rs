@@ -1,3 +1,5 @@
+//! Areas come back from both of their encodings, and damaged sections are refused.
+
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint, NodeIndex};
 use proptest::prelude::*;

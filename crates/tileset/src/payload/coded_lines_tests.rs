@@ -1,3 +1,5 @@
+//! Range-coded lines come back, and what has no code is refused.
+
 use std::sync::LazyLock;
 
 use corniche_geom::{Frame, NodeIndex};

@@ -1,3 +1,5 @@
+//! Photos come back within their loss, with their coverage exact, and hostile sections are refused.
+
 use super::image::side;
 use super::*;
 use crate::limits::MAX_PHOTO_LEVELS;

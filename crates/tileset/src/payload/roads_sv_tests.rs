@@ -1,3 +1,5 @@
+//! SV lines come back with the ground around them.
+
 use std::sync::LazyLock;
 
 use corniche_geom::NodeIndex;

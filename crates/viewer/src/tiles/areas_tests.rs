@@ -1,3 +1,5 @@
+//! Prisms over areas are closed, and areas reach a little beyond their tile.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::{Cell, NodeIndex};

@@ -1,3 +1,5 @@
+//! Vertices are relative to the reference point, and skirts hang from the borders alone.
+
 use corniche_geom::NodeIndex;
 use corniche_tin::TinVertex;
 

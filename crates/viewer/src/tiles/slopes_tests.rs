@@ -1,3 +1,5 @@
+//! No ground departs from a plane by more than the bounds from its slopes.
+
 use corniche_geom::{Cell, NodeIndex, TILE_CELLS, TileId};
 use corniche_tin::{Placement, Tin, TinVertex};
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! No text of the window is cut off or hidden, however small the window is.
+
 use corniche_live::{GroundPoint, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{

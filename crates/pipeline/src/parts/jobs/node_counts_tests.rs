@@ -1,3 +1,5 @@
+//! Every node of the elevation files counts for one tile.
+
 use super::*;
 
 fn node(i: i64, j: i64) -> NodeIndex {

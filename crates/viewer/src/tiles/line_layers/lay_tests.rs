@@ -1,3 +1,5 @@
+//! Lines of files lie on the ground, and dashes are as long on slopes as on level ground.
+
 use corniche_geom::NodeIndex;
 use corniche_tin::{Placement, Tin, TinVertex};
 

@@ -1,3 +1,5 @@
+//! A tile gets all segments of overlays that are near it.
+
 use corniche_geom::NodeIndex;
 use proptest::prelude::*;
 
