@@ -1,11 +1,13 @@
 //! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
 
-use std::{fs, path::PathBuf};
+use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use corniche_tidy::{files_below, root};
 
 /// Lines beyond which a file is split.
 const MAX_FILE_LINES: usize = 600;
+/// Words that a file's first line has at least.
+const LEAST_WORDS: usize = 4;
 
 fn all_rust_files() -> Vec<PathBuf> {
     let files = files_below(&root(), "rs").expect("the repository can be listed");
@@ -42,6 +44,24 @@ fn files_stay_short() {
     for file in all_rust_files() {
         let lines = fs::read_to_string(&file).unwrap().lines().count();
         assert!(lines <= MAX_FILE_LINES, "{} has {lines} lines", file.display());
+    }
+}
+
+/// Whoever opens a file meets its purpose first: what is in it, or, of a module of tests, what holds. No two files say the same.
+#[test]
+fn each_file_begins_with_what_it_is_for() {
+    let mut seen = BTreeMap::new();
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        let first = text.lines().next().unwrap_or_default();
+        let purpose = first.strip_prefix("//! ").unwrap_or_else(|| {
+            panic!("{}: the first line is no `//!` that says what is in the file", file.display())
+        });
+        let words = purpose.split_whitespace().count();
+        assert!(words >= LEAST_WORDS, "{}: {purpose:?} says too little", file.display());
+        if let Some(other) = seen.insert(purpose.to_owned(), file.clone()) {
+            panic!("{} and {} begin with the same line", other.display(), file.display());
+        }
     }
 }
 
