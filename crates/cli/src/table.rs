@@ -1,4 +1,4 @@
-//! Plain text tables.
+//! Tables as plain text.
 
 use std::{fmt::Write as _, io::IsTerminal, ops::Range};
 

@@ -1,4 +1,4 @@
-//! Places along roads.
+//! Samples along roads, with the direction of the road at each.
 
 /// Metres between samples.
 const SPACING_M: f64 = 4.0;

@@ -1,4 +1,4 @@
-//! Texts of single values.
+//! Single values in settings files and on the command line, such as amounts of memory and cells.
 
 use bytesize::ByteSize;
 

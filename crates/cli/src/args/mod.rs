@@ -1,4 +1,4 @@
-//! The command line.
+//! The command line: every command with its options.
 
 mod build;
 mod camera;

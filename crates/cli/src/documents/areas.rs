@@ -1,4 +1,4 @@
-//! Areas, in documents of several commands.
+//! Areas in the JSON documents of several commands.
 
 use corniche_areas::AreaClass;
 use corniche_geom::Frame;

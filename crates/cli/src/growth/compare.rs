@@ -1,4 +1,4 @@
-//! Several packages beside each other.
+//! The tables of growth of several packages, one beside the other.
 
 use std::fmt::Write as _;
 

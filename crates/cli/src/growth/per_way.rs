@@ -1,4 +1,4 @@
-//! A line for each way.
+//! The list of growth with one line for each way (CSV).
 
 use std::{fmt::Write as _, io::Write as _, path::Path};
 

@@ -1,4 +1,4 @@
-//! One tile of a model.
+//! One tile of a model: its corners, triangles and roads, its photo and its relief.
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;

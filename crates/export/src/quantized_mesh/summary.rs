@@ -1,4 +1,4 @@
-//! What an export tells.
+//! What an export of terrain tiles tells of itself.
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]

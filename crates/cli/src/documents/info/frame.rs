@@ -1,4 +1,4 @@
-//! Where a package lies.
+//! Where a package lies, in the document of `corniche info`.
 
 use corniche_geom::{Bounds, Frame, NodeIndex};
 use corniche_tileset::ClipRecord;
