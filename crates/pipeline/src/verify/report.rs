@@ -1,4 +1,4 @@
-//! What verification found.
+//! The report of `corniche verify`: what each check found.
 
 use corniche_tileset::{Distribution, SampleErrorRecord};
 
