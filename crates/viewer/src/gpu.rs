@@ -49,7 +49,7 @@
 //! tiles too. But it can tell only 255 tiles apart, and a pass cannot write the stencil of a texture whose depth it reads.
 //! Comparing the number of the owner costs one texture read.
 //!
-//! How a new kind of thing is drawn is described in `drawables/mod.rs`.
+//! How a new kind of thing is drawn is described in `drawables.rs`.
 
 mod adapter;
 mod area_buffers;

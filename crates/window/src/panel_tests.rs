@@ -17,7 +17,7 @@ use crate::{
     settings::{Compare, usual},
 };
 
-#[path = "golden_tests.rs"]
+#[path = "panel/golden_tests.rs"]
 mod golden;
 
 /// Everything there is to tell, and all of it long.

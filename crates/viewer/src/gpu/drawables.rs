@@ -48,5 +48,5 @@ pub(crate) mod sv_roads;
 pub(crate) mod terrain;
 
 #[cfg(test)]
-#[path = "shader_tests.rs"]
+#[path = "drawables/shader_tests.rs"]
 mod tests;
