@@ -25,6 +25,21 @@ fn unit_tests_lie_beside_the_code() {
     }
 }
 
+/// The file of the module `name` is `name.rs`, and its children lie in the folder `name/`. In the folders of integration tests
+/// `mod.rs` is allowed, because cargo takes each other file at the top of `tests/` for a test.
+#[test]
+fn modules_of_products_have_files_of_their_own_name() {
+    for file in all_rust_files() {
+        let in_repository = file.strip_prefix(root()).unwrap();
+        let is_product = in_repository.components().any(|part| part.as_os_str() == "src");
+        assert!(
+            !(is_product && file.ends_with("mod.rs")),
+            "{}: name the file after its folder and put it beside that",
+            file.display()
+        );
+    }
+}
+
 /// Inside a crate things are visible everywhere, `pub(crate)`, or nowhere.
 #[test]
 fn visibility_inside_a_crate_has_one_form() {
