@@ -11,8 +11,8 @@ pub enum Unit {
     Bytes,
     /// Blocks of the DEM's samples.
     Blocks,
-    /// Areas of the grid: the finest tiles of one window of the DEM.
-    Areas,
+    /// Patches of the grid: the finest tiles of one window of the DEM.
+    Patches,
     /// Tiles of the package.
     Tiles,
 }
@@ -112,7 +112,7 @@ impl Stage {
         match self {
             Self::Hash | Self::MapAreas | Self::Boundaries | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
-            Self::Heights => Unit::Areas,
+            Self::Heights => Unit::Patches,
             Self::Photos
             | Self::CoarseTins
             | Self::Deviations

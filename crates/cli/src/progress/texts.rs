@@ -90,7 +90,7 @@ fn plural(unit: Unit) -> &'static str {
     match unit {
         Unit::Bytes => "bytes",
         Unit::Blocks => "blocks",
-        Unit::Areas => "areas",
+        Unit::Patches => "areas",
         Unit::Tiles => "tiles",
     }
 }

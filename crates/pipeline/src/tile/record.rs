@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     BuildError,
     artifacts::{self, Kind},
-    heights::area::union,
+    heights::patch::union,
     roads::lay::{ClassSums, RoadFate},
 };
 

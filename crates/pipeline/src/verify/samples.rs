@@ -39,16 +39,16 @@ pub(crate) fn measure(
     observer: &dyn Observer,
 ) -> Result<Vec<SampleSums>, VerifyError> {
     let manifest = package.manifest();
-    let areas = dem.sample_areas(plan)?;
+    let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);
-    observer.begin(Stage::Samples, Some(areas.len() as u64));
+    observer.begin(Stage::Samples, Some(ranges.len() as u64));
     workers::in_order_unless_cancelled(
         observer,
         settings.threads,
-        areas.len(),
+        ranges.len(),
         || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
         |(reader, grounds), index| {
-            let block = reader.used_samples(&areas[index])?;
+            let block = reader.used_samples(&ranges[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
                 // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides

@@ -1,11 +1,11 @@
-//! An area: the tiles whose heights are read from the DEM at once.
+//! A patch: the tiles whose heights are read from the DEM at once.
 //!
 //! ```text
 //!  DEM ─► samples looked at ─► window of nodes ─► heights of finest tiles
 //!                                             └─► rasters of the two levels above
 //! ```
 //!
-//! An area is a tile two levels above the finest, so its window has at most 1027 × 1027 nodes (4 MB), and the halo for filling
+//! A patch is a tile two levels above the finest, so its window has at most 1027 × 1027 nodes (4 MB), and the halo for filling
 //! voids is small beside it.
 
 use corniche_dem::{AuditBlock, AuditPart, Auditor, Dem, DemWindow, GridPlan, Reader};
@@ -23,18 +23,18 @@ use crate::{
     artifacts::{self, Kind},
 };
 
-/// Levels from an area down to the finest.
-const AREA_LEVELS: u8 = 2;
+/// Levels from a patch down to the finest.
+const PATCH_LEVELS: u8 = 2;
 
-/// The level of areas beneath or at `scope`.
-pub(crate) fn area_level(frame: &Frame, scope: TileId) -> u8 {
-    frame.max_level().saturating_sub(AREA_LEVELS).max(scope.z())
+/// The level of patches beneath or at `scope`.
+pub(crate) fn patch_level(frame: &Frame, scope: TileId) -> u8 {
+    frame.max_level().saturating_sub(PATCH_LEVELS).max(scope.z())
 }
 
-/// What is known of an area once its heights are read. All of it can be merged in any order.
+/// What is known of a patch once its heights are read. All of it can be merged in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct AreaRecord {
-    /// Nodes that have a height; each node of the data belongs to one area.
+pub(crate) struct PatchRecord {
+    /// Nodes that have a height; each node of the data belongs to one patch.
     pub(crate) with_height: u64,
     /// Those of them that are filled voids.
     pub(crate) filled: u64,
@@ -43,8 +43,8 @@ pub(crate) struct AreaRecord {
     pub(crate) audit: Vec<AuditPart>,
 }
 
-impl AreaRecord {
-    /// Adds another area's record.
+impl PatchRecord {
+    /// Adds another patch's record.
     pub(crate) fn merge(&mut self, other: Self) {
         self.with_height += other.with_height;
         self.filled += other.filled;
@@ -52,8 +52,8 @@ impl AreaRecord {
         other.audit.into_iter().for_each(|part| merge_audit(&mut self.audit, part));
     }
 
-    pub(crate) fn get(store: &dyn Artifacts, area: TileId) -> Result<Option<Self>, BuildError> {
-        artifacts::get(store, Kind::Area.of_tile(area))
+    pub(crate) fn get(store: &dyn Artifacts, patch: TileId) -> Result<Option<Self>, BuildError> {
+        artifacts::get(store, Kind::Patch.of_tile(patch))
     }
 }
 
@@ -74,32 +74,32 @@ fn merge_audit(parts: &mut Vec<AuditPart>, part: AuditPart) {
     parts.extend(left);
 }
 
-/// Which area looks at which samples: each block belongs to the area in which its middle lies, or the nearest.
+/// Which patch looks at which samples: each block belongs to the patch in which its middle lies, or the nearest.
 pub(crate) fn audit_blocks_of(
     dem: &Dem,
     plan: &GridPlan,
-    area_level: u8,
+    patch_level: u8,
 ) -> Result<Vec<(TileId, AuditBlock)>, BuildError> {
     let data = DataTiles::of(plan);
     let mut blocks = Vec::new();
     for block in dem.audit_blocks(plan)? {
         let middle_m = dem.audit_block_middle_m(&block, plan)?;
         let point = plan.frame.snap(middle_m).unwrap_or_else(|| data.bounds(&plan.frame).min);
-        blocks.push((data.owner(&plan.frame, point).ancestor(area_level), block));
+        blocks.push((data.owner(&plan.frame, point).ancestor(patch_level), block));
     }
-    blocks.sort_by_key(|&(area, _)| area);
+    blocks.sort_by_key(|&(patch, _)| patch);
     Ok(blocks)
 }
 
-/// What reads one area after the other; each thread has its own.
-pub(crate) struct AreaReader<'a> {
+/// What reads one patch after the other; each thread has its own.
+pub(crate) struct PatchReader<'a> {
     reader: Reader<'a>,
     auditor: Auditor<'a>,
     plan: &'a GridPlan,
     store: &'a dyn Artifacts,
 }
 
-impl<'a> AreaReader<'a> {
+impl<'a> PatchReader<'a> {
     /// `allowed_m` are the lowest and the highest height that samples may have.
     pub(crate) fn new(
         dem: &'a Dem,
@@ -110,15 +110,15 @@ impl<'a> AreaReader<'a> {
         Self { reader: dem.reader(plan), auditor: dem.auditor(allowed_m), plan, store }
     }
 
-    /// Looks at `blocks`, reads the area's heights and keeps them, those of the levels above up to the area's too, and its
+    /// Looks at `blocks`, reads the patch's heights and keeps them, those of the levels above up to the patch's too, and its
     /// record last.
-    pub(crate) fn make(&mut self, area: TileId, blocks: &[AuditBlock]) -> Result<(), BuildError> {
-        let mut record = AreaRecord::default();
+    pub(crate) fn make(&mut self, patch: TileId, blocks: &[AuditBlock]) -> Result<(), BuildError> {
+        let mut record = PatchRecord::default();
         for block in blocks {
             merge_audit(&mut record.audit, self.auditor.look(block)?);
         }
         let frame = self.plan.frame;
-        let tiles = DataTiles::of(self.plan).within(area);
+        let tiles = DataTiles::of(self.plan).within(patch);
         if let (Some(&first), Some(&last)) = (tiles.first(), tiles.last()) {
             let window = self.reader.window(window_of(&frame, first, last))?;
             for &id in &tiles {
@@ -129,24 +129,24 @@ impl<'a> AreaReader<'a> {
                 }
                 record.count(&window, id, [left, top]);
             }
-            self.put_rasters(area, first, &window)?;
+            self.put_rasters(patch, first, &window)?;
         }
-        artifacts::put(self.store, Kind::Area.of_tile(area), &record)
+        artifacts::put(self.store, Kind::Patch.of_tile(patch), &record)
     }
 
-    /// Rasters of the levels from the one above the finest up to the area's, from the window that begins with `first`.
+    /// Rasters of the levels from the one above the finest up to the patch's, from the window that begins with `first`.
     fn put_rasters(
         &self,
-        area: TileId,
+        patch: TileId,
         first: TileId,
         window: &DemWindow,
     ) -> Result<(), BuildError> {
         let frame = self.plan.frame;
         let data = DataTiles::of(self.plan);
         let heights = &window.heights;
-        for level in area.z()..frame.max_level() {
+        for level in patch.z()..frame.max_level() {
             let stride = frame.stride(level);
-            for id in data.above(level).within(area) {
+            for id in data.above(level).within(patch) {
                 let (own, window_corner) = (frame.tile_corner(id), frame.tile_corner(first));
                 // The window starts one node before the tile `first`.
                 let (left, top) = (own.i - window_corner.i + 1, window_corner.j - own.j + 1);
@@ -166,7 +166,7 @@ impl<'a> AreaReader<'a> {
     }
 }
 
-impl AreaRecord {
+impl PatchRecord {
     /// Counts the nodes that belong to a tile.
     fn count(&mut self, window: &DemWindow, id: TileId, [left, top]: [usize; 2]) {
         let [columns, rows] = own_size(id);
