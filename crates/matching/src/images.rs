@@ -1,7 +1,7 @@
 //! What roads are compared with, as images around a block of samples.
 
 use corniche_dem::GridPlan;
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, TexelWindow};
 use corniche_tileset::{FilePackage, Manifest, Relief, Sections};
 
@@ -89,7 +89,7 @@ impl<'a> Images<'a> {
         Ok(Grey { first, columns, values })
     }
 
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.package.manifest().frame
     }
 }

@@ -1,6 +1,6 @@
 //! The grid of texels over the finest tiles, and windows of it.
 
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 
 use crate::PhotoError;
 
@@ -13,7 +13,7 @@ pub const MAX_LEVELS: u8 = 4;
 /// tile that holds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelGrid {
-    frame: Frame,
+    frame: GridFrame,
     levels: u8,
 }
 
@@ -35,7 +35,7 @@ impl TexelGrid {
     ///
     /// # Errors
     /// When there are more than [`MAX_LEVELS`].
-    pub fn new(frame: Frame, levels: u8) -> Result<Self, PhotoError> {
+    pub fn new(frame: GridFrame, levels: u8) -> Result<Self, PhotoError> {
         if levels > MAX_LEVELS {
             return Err(PhotoError::Levels { levels, most: MAX_LEVELS });
         }
@@ -43,7 +43,7 @@ impl TexelGrid {
     }
 
     /// With any number of levels, to be read by windows.
-    pub(crate) fn of_any(frame: Frame, levels: u8) -> Self {
+    pub(crate) fn of_any(frame: GridFrame, levels: u8) -> Self {
         Self { frame, levels }
     }
 

@@ -7,7 +7,7 @@ mod support;
 use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_pipeline::{
     CheckId, Needs, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
 };
@@ -168,7 +168,7 @@ struct OnBorder {
 }
 
 impl Tile {
-    fn bytes(&self, frame: &Frame) -> Vec<u8> {
+    fn bytes(&self, frame: &GridFrame) -> Vec<u8> {
         if !self.is_changed {
             return self.whole.clone();
         }

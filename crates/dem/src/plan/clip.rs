@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, Frame, MAX_LATTICE_STEPS, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::crs::full_turns::turns;
 use crate::crs::horizontal::Crs;
@@ -106,7 +106,7 @@ impl Asked {
 }
 
 /// The same nodes, as far as they are on the lattice.
-pub(crate) fn on_lattice(frame: &Frame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
+pub(crate) fn on_lattice(frame: &GridFrame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
     let [most_i, most_j] =
         frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
     nodes.map(|NodeIndex { i, j }| NodeIndex {

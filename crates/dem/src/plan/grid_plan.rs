@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, Frame, LatticeArea, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, LatticeArea, NodeIndex};
 
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
@@ -71,7 +71,7 @@ pub struct Clip {
 #[derive(Debug, Clone)]
 pub struct GridPlan {
     /// Nodes, tiles and levels.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// South-westernmost node at which data can lie.
     pub south_west: NodeIndex,
     /// North-easternmost node at which data can lie.
@@ -132,7 +132,7 @@ pub(crate) enum Method {
 }
 
 /// The rectangle between two nodes, working metres.
-pub(crate) fn bounds_of(frame: &Frame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+pub(crate) fn bounds_of(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
     Bounds {
         min_x: frame.x_m(south_west.i),
         min_y: frame.y_m(south_west.j),

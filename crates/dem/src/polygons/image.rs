@@ -1,6 +1,6 @@
 //! A polygon in the working CRS, and on the lattice of a package.
 
-use corniche_geom::{Bounds, Frame, LatticeArea, LatticePoint};
+use corniche_geom::{Bounds, GridFrame, LatticeArea, LatticePoint};
 
 use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
@@ -41,7 +41,7 @@ impl Image {
 
     fn on_lattice(
         &self,
-        frame: &Frame,
+        frame: &GridFrame,
         polygon: &Polygon,
         working: &Working,
     ) -> Result<LatticeArea, DemError> {
@@ -65,7 +65,7 @@ impl RecordedCrs {
         &self,
         polygon: &Polygon,
         area_deg: Bounds,
-        frame: &Frame,
+        frame: &GridFrame,
     ) -> Result<LatticeArea, DemError> {
         area(polygon, self.working(), area_deg, frame)
     }
@@ -76,7 +76,7 @@ pub(crate) fn area(
     polygon: &Polygon,
     working: &Working,
     area_deg: Bounds,
-    frame: &Frame,
+    frame: &GridFrame,
 ) -> Result<LatticeArea, DemError> {
     let image = Image::new(polygon, working, area_deg, frame.cell().shorter_m())?;
     image.on_lattice(frame, polygon, working)

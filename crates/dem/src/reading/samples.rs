@@ -1,6 +1,6 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
-use corniche_geom::{Frame, LatticeBounds, NodeIndex, NodeWindow};
+use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
 
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
@@ -34,7 +34,7 @@ pub struct SampleBlock {
 
 impl SampleBlock {
     /// Leaves out the samples that do not lie between two nodes, by their places rounded to the lattice.
-    fn keep_within(&mut self, frame: &Frame, nodes: [NodeIndex; 2]) {
+    fn keep_within(&mut self, frame: &GridFrame, nodes: [NodeIndex; 2]) {
         let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
         let bounds = LatticeBounds { min, max };
         let is_inside: Vec<bool> = self

@@ -1,14 +1,14 @@
 //! One area to its parts in the tiles of each level.
 
 use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all};
-use corniche_geom::{Frame, LatticeBounds, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use crate::{heights::data_tiles::DataTiles, points_step::points_step};
 
 /// How areas are split.
 pub(crate) struct Splitting<'a> {
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     pub(crate) data: DataTiles,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
@@ -48,7 +48,7 @@ impl Splitting<'_> {
 
 /// The tiles of a level on which data can lie.
 struct Wanted<'a> {
-    frame: &'a Frame,
+    frame: &'a GridFrame,
     data: DataTiles,
     level: u8,
 }

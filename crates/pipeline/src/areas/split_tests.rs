@@ -10,11 +10,11 @@ use super::*;
 use crate::verify::area_seams::{Beside, Seam};
 
 /// Three levels of tiles, 10 m cells.
-fn frame() -> Frame {
-    Frame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
-fn splitting(frame: &Frame) -> Splitting<'_> {
+fn splitting(frame: &GridFrame) -> Splitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     Splitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
 }
@@ -59,7 +59,7 @@ fn doubled_area(parts: &[AreaRings]) -> i128 {
 }
 
 /// Asserts that neighbours cover the same of the lines between them, but for outlines that run along these.
-fn assert_seams_hold(frame: &Frame, tiles: &BTreeMap<TileId, AreaRecord>) {
+fn assert_seams_hold(frame: &GridFrame, tiles: &BTreeMap<TileId, AreaRecord>) {
     let all = tiles
         .keys()
         .flat_map(|&id| [id, id.neighbour(-1, 0).unwrap_or(id), id.neighbour(0, -1).unwrap_or(id)]);

@@ -9,7 +9,7 @@
 //! voids is small beside it.
 
 use corniche_dem::{AuditBlock, AuditPart, Auditor, Dem, DemWindow, GridPlan, Reader};
-use corniche_geom::{Frame, HeightGrid, NodeIndex, NodeWindow, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, HeightGrid, NodeIndex, NodeWindow, TILE_CELLS, TileId};
 use corniche_store::Artifacts;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ use crate::{
 const PATCH_LEVELS: u8 = 2;
 
 /// The level of patches beneath or at `scope`.
-pub(crate) fn patch_level(frame: &Frame, scope: TileId) -> u8 {
+pub(crate) fn patch_level(frame: &GridFrame, scope: TileId) -> u8 {
     frame.max_level().saturating_sub(PATCH_LEVELS).max(scope.z())
 }
 
@@ -184,7 +184,7 @@ impl PatchRecord {
 }
 
 /// The nodes from one finest tile to another, borders included, with one node of halo.
-fn window_of(frame: &Frame, first: TileId, last: TileId) -> NodeWindow {
+fn window_of(frame: &GridFrame, first: TileId, last: TileId) -> NodeWindow {
     let NodeIndex { i, j } = frame.tile_corner(first);
     let side = |first: u32, last: u32| (last - first + 1) as usize * TILE_CELLS as usize + 1;
     NodeWindow {

@@ -15,7 +15,7 @@ use std::{
 
 use corniche_areas::AreaTable;
 use corniche_geom::{
-    Frame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
+    GridFrame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
 };
 use corniche_osm::{ExtractSummary, ReadOsmError, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
@@ -223,7 +223,7 @@ fn on_extract<T>(
 
 fn place(
     positions_deg: &[[f64; 2]],
-    frame: &Frame,
+    frame: &GridFrame,
     projection: &dyn Projection,
 ) -> Result<Vec<Option<LatticePoint>>, ProjectError> {
     let mut positions = positions_deg.to_vec();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_drape::Neighbours;
-use corniche_geom::{Bounds, CoordinateTable, Frame, HeightGrid, NodeIndex, TILE_CELLS};
+use corniche_geom::{Bounds, CoordinateTable, GridFrame, HeightGrid, NodeIndex, TILE_CELLS};
 use corniche_roads::{ClassFilter, FrcTable, RoadAttributes};
 use corniche_testing::FlatProjection;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad};
@@ -144,7 +144,7 @@ fn worlds() -> impl Strategy<Value = World> {
         |(cell, max_level, corner, gaps, simplify_cells, is_all)| {
             let cell = corniche_geom::Cell::from(cell).fitted();
             let corner = NodeIndex { i: -corner * TILE_CELLS, j: corner * 2 * TILE_CELLS };
-            let frame = Frame::new([5e5, 5e6], cell, corner, max_level).unwrap();
+            let frame = GridFrame::new([5e5, 5e6], cell, corner, max_level).unwrap();
             let settings = RoadSettings {
                 table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
                 filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
@@ -289,7 +289,7 @@ struct Large {
 
 impl Large {
     fn new() -> Self {
-        let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
+        let frame = GridFrame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
         let settings = RoadSettings {
             table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
             filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),

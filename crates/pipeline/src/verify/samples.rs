@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums, Sections};
 
 use super::{
@@ -91,7 +91,7 @@ fn load(package: &FilePackage, id: TileId) -> TriangleSoup {
 
 /// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or
 /// south border, the last tile.
-fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
+fn tile_at(frame: &GridFrame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
     let root = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let column = (x - root.min_x) / root.width() * tiles;
@@ -105,7 +105,7 @@ fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
 }
 
 /// Where a position lies in a tile, in its own cells: column, row.
-fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
+fn cells(frame: &GridFrame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
     let corner = frame.tile_corner(id);
     let cell = frame.level_cell(id.z());
     [(x - frame.x_m(corner.i)) / cell.east_m, (frame.y_m(corner.j) - y) / cell.north_m]

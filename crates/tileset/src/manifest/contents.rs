@@ -1,6 +1,6 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
-use corniche_geom::{Bounds, Cell, CoordinateTable, Frame, NodeIndex};
+use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, NodeIndex};
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
@@ -30,7 +30,7 @@ pub struct Manifest {
     /// The same along each axis, at the centre and over the data's rim.
     pub scale: ScaleRecord,
     /// The grid.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// Rectangle of the DEM's nodes, working metres.
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.

@@ -1,6 +1,6 @@
 //! A tile is encoded as a payload: all its sections, with their sizes.
 
-use corniche_geom::{Frame, LatticePoint};
+use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
@@ -18,7 +18,7 @@ use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terra
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PayloadContext {
     /// The package's grid.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// One step of `height_q`, metres; a power of two.
     pub quantum_m: f64,
     /// Working metres of one unit of the package's CRS, east and north; 1, or some 100 000 where it is in degrees.

@@ -1,6 +1,6 @@
 //! A decoded tile that is ready for the graphics card.
 
-use corniche_geom::{Bounds, Frame, TileId, barycentric};
+use corniche_geom::{Bounds, GridFrame, TileId, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, Terrain, TilePayload};
@@ -92,7 +92,7 @@ impl TileGeometry {
         id: TileId,
         terrain: Option<&Terrain>,
         lines: &TileLines,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
     ) -> Self {
         let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
@@ -106,7 +106,7 @@ impl TileGeometry {
         terrain: Option<&Terrain>,
         surface: Option<&Surface>,
         lines: &TileLines,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
     ) -> Self {
         let bounds = frame.tile_bounds(id);
@@ -164,7 +164,7 @@ impl TileGeometry {
     /// When a road does not fit the ground.
     pub fn from_payload(
         payload: &TilePayload,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
         width_margin_m: f64,
         scale: PlanScale,
@@ -184,7 +184,7 @@ impl TileGeometry {
     ///
     /// # Errors
     /// When an outline crosses itself.
-    pub fn with_areas(self, areas: &[AreaRecord], frame: &Frame) -> Result<Self, BadArea> {
+    pub fn with_areas(self, areas: &[AreaRecord], frame: &GridFrame) -> Result<Self, BadArea> {
         let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
         Ok(Self { areas, ..self })
     }
@@ -285,7 +285,7 @@ pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
 #[derive(Clone, Copy)]
 pub(crate) struct LineGround<'a> {
     pub(crate) terrain: Option<&'a Terrain>,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     /// The height of one step of the TIN's heights.
     pub(crate) quantum_m: f64,
     pub(crate) scale: &'a PlanScale,
@@ -297,7 +297,7 @@ pub(crate) struct LineGround<'a> {
 fn surface(
     id: TileId,
     terrain: Option<&Terrain>,
-    frame: &Frame,
+    frame: &GridFrame,
     quantum_m: f64,
 ) -> Option<Surface> {
     terrain.map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)))

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{AnySource, FilePackage, Manifest, OpenError};
 
@@ -58,7 +58,7 @@ impl PackageSource {
 }
 
 impl TileCatalog for PackageSource {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         self.0.frame()
     }
 

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{
     ByteSource, Manifest, OpenError, Package, Sections, decode, terrain_summary,
@@ -131,7 +131,7 @@ impl<S: ByteSource> PackageTiles<S> {
 }
 
 impl<S: ByteSource> TileCatalog for PackageTiles<S> {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.manifest().frame
     }
 

@@ -1,7 +1,7 @@
 //! Lines of people's files are laid on the ground of a tile.
 
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tin::Surface;
 
@@ -21,7 +21,7 @@ const LONGEST_CELLS: f64 = 8.0;
 pub(crate) struct TileGround<'a> {
     pub(crate) id: TileId,
     pub(crate) surface: &'a Surface,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     /// The tile's reference point.
     pub(crate) reference_m: [f64; 3],
     /// Lines are not drawn beyond this half width, working metres.

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn frame() -> Frame {
-    Frame::new([0.0, 0.0], 10.0, NodeIndex { i: 0, j: 0 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: 0, j: 0 }, 2).unwrap()
 }
 
 fn line(points: Vec<LatticePoint>) -> LayerLine {

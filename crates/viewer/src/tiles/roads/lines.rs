@@ -1,7 +1,7 @@
 //! The roads of a decoded tile as lines: on the ground for GEO, in plan for SV.
 
 use corniche_drape::BadLine;
-use corniche_geom::Frame;
+use corniche_geom::GridFrame;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
@@ -96,7 +96,7 @@ impl TileLines {
     pub(crate) fn of_payload(
         payload: &TilePayload,
         surface: Option<&Surface>,
-        frame: &Frame,
+        frame: &GridFrame,
         width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
         let ground =
@@ -110,7 +110,7 @@ impl TileLines {
 fn ground_lines(
     payload: &TilePayload,
     surface: &Surface,
-    frame: &Frame,
+    frame: &GridFrame,
 ) -> Result<Vec<GroundLine>, BadRoad> {
     let place = |[u, v, height_m]: [f64; 3]| {
         let [x, y] = frame.position_of_fraction_m([u, v]);
@@ -146,7 +146,7 @@ fn tagged(payload: &TilePayload, way_id: i64) -> (OwnWidth, RoadLook) {
         .unwrap_or_default()
 }
 
-fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
+fn plan_lines(payload: &TilePayload, frame: &GridFrame) -> Vec<PlanLine> {
     let place = |road: &corniche_tileset::SvRoad| {
         let (own_width, look) = tagged(payload, road.way_id);
         PlanLine {

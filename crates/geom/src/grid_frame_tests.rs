@@ -3,9 +3,9 @@
 use super::*;
 use proptest::prelude::*;
 
-fn frame() -> Frame {
+fn frame() -> GridFrame {
     let node = |i, j| NodeIndex { i, j };
-    Frame::covering([0.5, 0.25], 1.0, node(563_999, 146_000), node(564_998, 146_999)).unwrap()
+    GridFrame::covering([0.5, 0.25], 1.0, node(563_999, 146_000), node(564_998, 146_999)).unwrap()
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn covers_the_extent_with_aligned_tiles() {
 
 #[test]
 fn an_extent_of_exactly_one_tile_is_one_tile() {
-    let frame = Frame::covering(
+    let frame = GridFrame::covering(
         [0.0, 0.0],
         10.0,
         NodeIndex { i: 256, j: -512 },
@@ -34,7 +34,7 @@ fn an_extent_of_exactly_one_tile_is_one_tile() {
 #[test]
 fn lattice_step_is_at_most_a_millimetre_and_divides_the_cell() {
     for cell_m in [0.25, 1.0, 5.0, 30.0, 92.7, 5000.0] {
-        let frame = Frame::new([0.0; 2], cell_m, NodeIndex { i: 0, j: 0 }, 2).unwrap();
+        let frame = GridFrame::new([0.0; 2], cell_m, NodeIndex { i: 0, j: 0 }, 2).unwrap();
         assert!(frame.lattice_step_m() <= 0.001 && frame.lattice_step_m() > 0.000_49);
     }
 }
@@ -43,35 +43,35 @@ fn lattice_step_is_at_most_a_millimetre_and_divides_the_cell() {
 fn a_cell_is_fitted_to_whole_steps_and_moves_by_less_than_a_millimetre() {
     for sides in [[20.0, 30.0], [63.123_456, 92.654_321], [0.7, 1.0], [1000.1, 0.3]] {
         let cell = Cell::from(sides).fitted();
-        let frame = Frame::new([0.0; 2], cell, NodeIndex { i: 0, j: 0 }, 1).unwrap();
+        let frame = GridFrame::new([0.0; 2], cell, NodeIndex { i: 0, j: 0 }, 1).unwrap();
         assert!((cell.east_m - sides[0]).abs() <= 0.000_5 && cell.north_m == sides[1]);
         let [east, north] = frame.node_steps(1);
         let step_m = frame.lattice_step_m();
         assert_eq!(east as f64 * step_m, cell.east_m);
         assert_eq!(north as f64 * step_m, cell.north_m);
     }
-    let off = Frame::new([0.0; 2], [20.000_1, 30.0], NodeIndex { i: 0, j: 0 }, 1);
-    assert!(matches!(off, Err(FrameError::EastSide { .. })), "{off:?}");
+    let off = GridFrame::new([0.0; 2], [20.000_1, 30.0], NodeIndex { i: 0, j: 0 }, 1);
+    assert!(matches!(off, Err(GridFrameError::EastSide { .. })), "{off:?}");
 }
 
 #[test]
 fn refuses_what_is_out_of_range() {
     let corner = NodeIndex { i: 0, j: 0 };
-    assert!(Frame::new([0.0; 2], f64::NAN, corner, 2).is_err());
-    assert!(Frame::new([f64::INFINITY, 0.0], 1.0, corner, 2).is_err());
-    assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: 3, j: 0 }, 2).is_err());
-    assert!(Frame::new([0.0; 2], 1.0, corner, 23).is_err());
-    assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: i64::MIN, j: 0 }, 2).is_err());
+    assert!(GridFrame::new([0.0; 2], f64::NAN, corner, 2).is_err());
+    assert!(GridFrame::new([f64::INFINITY, 0.0], 1.0, corner, 2).is_err());
+    assert!(GridFrame::new([0.0; 2], 1.0, NodeIndex { i: 3, j: 0 }, 2).is_err());
+    assert!(GridFrame::new([0.0; 2], 1.0, corner, 23).is_err());
+    assert!(GridFrame::new([0.0; 2], 1.0, NodeIndex { i: i64::MIN, j: 0 }, 2).is_err());
 }
 
 #[test]
 fn what_lies_beyond_the_lattice_has_no_place_on_it() {
     let origin = NodeIndex { i: 0, j: 0 };
     for (cell_m, max_level) in [(1e6, 22), (1e6, 13), (30_000.0, 22)] {
-        let frame = Frame::new([0.0; 2], cell_m, origin, max_level);
-        assert!(matches!(frame, Err(FrameError::Extent { .. })), "{cell_m} m, {max_level}");
+        let frame = GridFrame::new([0.0; 2], cell_m, origin, max_level);
+        assert!(matches!(frame, Err(GridFrameError::Extent { .. })), "{cell_m} m, {max_level}");
     }
-    let frame = Frame::new([0.0; 2], 1e6, origin, 8).unwrap();
+    let frame = GridFrame::new([0.0; 2], 1e6, origin, 8).unwrap();
     let farthest_m = (MAX_LATTICE_STEPS - 1) as f64 * frame.lattice_step_m();
     assert!(frame.snap([0.5 * farthest_m, 0.0]).is_some());
     assert_eq!(frame.snap([1.01 * farthest_m, 0.0]), None);
@@ -85,7 +85,7 @@ proptest! {
         north_m in 0.1..1000.0_f64,
     ) {
         let cell = Cell { east_m, north_m }.fitted();
-        let frame = Frame::new([0.07, 0.03], cell, NodeIndex { i: 0, j: 0 }, 4).unwrap();
+        let frame = GridFrame::new([0.07, 0.03], cell, NodeIndex { i: 0, j: 0 }, 4).unwrap();
         let at = frame.position_m(frame.lattice_of_node(NodeIndex { i, j }));
         prop_assert_eq!([at[0].to_bits(), at[1].to_bits()], [frame.x_m(i).to_bits(), frame.y_m(j).to_bits()]);
     }

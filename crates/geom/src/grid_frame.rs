@@ -12,9 +12,9 @@ const MAX_INDEX: i64 = 1 << 32;
 /// positions of crossings need, and products of two differences are far below the limit of 128 bits.
 pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
 
-/// Why numbers do not make a [`Frame`].
+/// Why numbers do not make a [`GridFrame`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FrameError {
+pub enum GridFrameError {
     /// The cell is not of usable lengths.
     #[error("a cell of {cell} is not usable; its sides must be between 0.001 m and 1000 km")]
     Cell {
@@ -71,8 +71,8 @@ pub enum FrameError {
 /// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
 /// one cell of CRS zero), so adjoining regions of one product get the same nodes and the same tile borders.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "FrameRecord", into = "FrameRecord")]
-pub struct Frame {
+#[serde(try_from = "GridFrameRecord", into = "GridFrameRecord")]
+pub struct GridFrame {
     origin_m: [f64; 2],
     cell: Cell,
     root_corner: NodeIndex,
@@ -81,31 +81,31 @@ pub struct Frame {
     steps: [i64; 2],
 }
 
-/// [`Frame`] as it is written down.
+/// [`GridFrame`] as it is written down.
 #[derive(Serialize, Deserialize)]
-struct FrameRecord {
+struct GridFrameRecord {
     origin_m: [f64; 2],
     cell_m: Cell,
     root_corner: NodeIndex,
     max_level: u8,
 }
 
-impl From<Frame> for FrameRecord {
-    fn from(frame: Frame) -> Self {
-        let Frame { origin_m, cell, root_corner, max_level, .. } = frame;
+impl From<GridFrame> for GridFrameRecord {
+    fn from(frame: GridFrame) -> Self {
+        let GridFrame { origin_m, cell, root_corner, max_level, .. } = frame;
         Self { origin_m, cell_m: cell, root_corner, max_level }
     }
 }
 
-impl TryFrom<FrameRecord> for Frame {
-    type Error = FrameError;
+impl TryFrom<GridFrameRecord> for GridFrame {
+    type Error = GridFrameError;
 
-    fn try_from(record: FrameRecord) -> Result<Self, FrameError> {
+    fn try_from(record: GridFrameRecord) -> Result<Self, GridFrameError> {
         Self::new(record.origin_m, record.cell_m, record.root_corner, record.max_level)
     }
 }
 
-impl Frame {
+impl GridFrame {
     /// A frame from its parts, as a package records them.
     ///
     /// # Errors
@@ -116,30 +116,30 @@ impl Frame {
         cell: impl Into<Cell>,
         root_corner: NodeIndex,
         max_level: u8,
-    ) -> Result<Self, FrameError> {
+    ) -> Result<Self, GridFrameError> {
         let cell = cell.into();
         if !cell.is_usable() {
-            return Err(FrameError::Cell { cell });
+            return Err(GridFrameError::Cell { cell });
         }
         if !origin_m.iter().all(|metres| metres.is_finite()) {
-            return Err(FrameError::Origin { origin_m });
+            return Err(GridFrameError::Origin { origin_m });
         }
         let span = TILE_CELLS << max_level.min(MAX_LEVEL);
         let reach =
             root_corner.i.saturating_abs().max(root_corner.j.saturating_abs()).saturating_add(span);
         if max_level > MAX_LEVEL || reach > MAX_INDEX {
-            return Err(FrameError::Extent { columns: span, rows: span, cell });
+            return Err(GridFrameError::Extent { columns: span, rows: span, cell });
         }
         if root_corner.i % TILE_CELLS != 0 || root_corner.j % TILE_CELLS != 0 {
-            return Err(FrameError::Corner { corner: root_corner });
+            return Err(GridFrameError::Corner { corner: root_corner });
         }
         let steps_east = cell.east_m / cell.lattice_step_m();
         if cell.fitted().east_m.to_bits() != cell.east_m.to_bits() {
-            return Err(FrameError::EastSide { cell, steps: steps_east });
+            return Err(GridFrameError::EastSide { cell, steps: steps_east });
         }
         let steps = [steps_east.round() as i64, 1 << cell.lattice_bits()];
         if steps.iter().any(|&steps| reach > MAX_LATTICE_STEPS / steps) {
-            return Err(FrameError::Extent { columns: span, rows: span, cell });
+            return Err(GridFrameError::Extent { columns: span, rows: span, cell });
         }
         Ok(Self { origin_m, cell, root_corner, max_level, steps })
     }
@@ -153,7 +153,7 @@ impl Frame {
         cell: impl Into<Cell>,
         south_west: NodeIndex,
         north_east: NodeIndex,
-    ) -> Result<Self, FrameError> {
+    ) -> Result<Self, GridFrameError> {
         let cell = cell.into();
         let down = |index: i64| index.div_euclid(TILE_CELLS);
         // A border node belongs to both tiles; one tile is enough for an extent that ends on a border.
@@ -168,7 +168,7 @@ impl Frame {
             max_level += 1;
             if max_level > MAX_LEVEL {
                 let (columns, rows) = (north_east.i - south_west.i, north_east.j - south_west.j);
-                return Err(FrameError::Extent { columns, rows, cell });
+                return Err(GridFrameError::Extent { columns, rows, cell });
             }
         }
         Self::new(
@@ -255,7 +255,7 @@ impl Frame {
         LatticePoint::new(node.i * self.steps[0], node.j * self.steps[1])
     }
 
-    /// Position of a lattice point; for a node's point the same bits as [`Frame::x_m`], [`Frame::y_m`].
+    /// Position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`], [`GridFrame::y_m`].
     #[must_use]
     pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {
         self.position_of_fraction_m([point.u as f64, point.v as f64])
@@ -271,7 +271,7 @@ impl Frame {
         ]
     }
 
-    /// A position in lattice steps: the inverse of [`Frame::position_of_fraction_m`].
+    /// A position in lattice steps: the inverse of [`GridFrame::position_of_fraction_m`].
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.steps.map(|steps| steps as f64);
@@ -352,5 +352,5 @@ impl Frame {
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-#[path = "frame_tests.rs"]
+#[path = "grid_frame_tests.rs"]
 mod tests;
