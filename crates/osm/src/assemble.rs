@@ -32,7 +32,7 @@ pub(crate) struct Assembled {
 pub(crate) fn assemble(
     some: &[PlainWay],
     all_stops: &[Stop],
-    place: &Place<'_>,
+    place: &ToLattice<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
     let is_road = |way: &&PlainWay| matches!(way.kind, WayKind::Road(..));

@@ -126,7 +126,7 @@ impl Batch {
     fn assemble(
         &self,
         some: &[PackedWay],
-        place: &Place<'_>,
+        place: &ToLattice<'_>,
     ) -> Result<Vec<Assembled>, HandOutError> {
         let plain = |way: &PackedWay| {
             let kind = take_way(&mut &self.kinds[way.kind.clone()])?;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::place::Place;
+use crate::view_record::ViewRecord;
 
 /// When the next frame is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ pub(crate) struct FrameReport {
     pub(crate) next: Next,
     /// Whether nothing moves and nothing is loaded any more.
     pub(crate) is_settled: bool,
-    pub(crate) view: Option<Place>,
+    pub(crate) view: Option<ViewRecord>,
     pub(crate) cursor: Option<GroundPlace>,
     /// True metres in a pixel in the middle.
     pub(crate) metres_per_pixel: Option<f64>,

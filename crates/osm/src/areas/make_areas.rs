@@ -116,7 +116,7 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
+fn make(known: Known, parts: &[PartRecord], place: &ToLattice<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
@@ -141,7 +141,7 @@ fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
 fn coastlines(
     way_id: i64,
     parts: &[PartRecord],
-    place: &Place<'_>,
+    place: &ToLattice<'_>,
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
@@ -164,7 +164,7 @@ fn coastlines(
 fn try_making(
     (known, class): (Known, AreaClass),
     parts: &[PartRecord],
-    place: &Place<'_>,
+    place: &ToLattice<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
     let Known { object, name, .. } = known;
@@ -246,7 +246,7 @@ fn area_m2(polygon: &Polygon) -> f64 {
 }
 
 /// The same polygon on the package's lattice.
-fn placed(polygon: &Polygon, place: &Place<'_>) -> Option<Polygon> {
+fn placed(polygon: &Polygon, place: &ToLattice<'_>) -> Option<Polygon> {
     let points = polygon.rings().flat_map(Ring::points);
     let positions_deg: Vec<[f64; 2]> = points.copied().map(degrees_of).collect();
     let mut placed = place(&positions_deg).into_iter();

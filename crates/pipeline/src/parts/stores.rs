@@ -8,7 +8,7 @@ use std::{
 
 use corniche_objects::{ObjectPlace, Requests};
 use corniche_store::{
-    Disk, Folder, Hold, LocalStore, OwnPart, Place, Publish as _, SYNC_INTERVAL, SealedParts,
+    Disk, Folder, Hold, LocalStore, OwnPart, PartsPlace, Publish as _, SYNC_INTERVAL, SealedParts,
     StoreError, StoredPlan, SystemDisk,
 };
 use sha2::{Digest as _, Sha256};
@@ -142,7 +142,7 @@ impl<'a> Stores<'a> {
         &self,
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<Option<LocalStore>, BuildError> {
-        let mut places: Vec<&dyn Place> = Vec::new();
+        let mut places: Vec<&dyn PartsPlace> = Vec::new();
         for store in &self.all {
             if store.place().stored_plan()?.is_some() {
                 places.push(store.place());
@@ -162,7 +162,7 @@ impl<'a> Stores<'a> {
         is_needed: &dyn Fn(&str) -> bool,
         hold: Hold,
     ) -> Result<LocalStore, StoreError> {
-        let places: Vec<&dyn Place> = self.all.iter().map(OneStore::place).collect();
+        let places: Vec<&dyn PartsPlace> = self.all.iter().map(OneStore::place).collect();
         let sealed = SealedParts { places: &places, is_needed };
         let own = OwnPart { folder, name, plan: &self.stored, interval: SYNC_INTERVAL };
         let disk = Arc::clone(&self.disk);
@@ -184,7 +184,7 @@ impl<'a> Stores<'a> {
 }
 
 impl OneStore {
-    fn place(&self) -> &dyn Place {
+    fn place(&self) -> &dyn PartsPlace {
         match self {
             Self::Folder(folder) => folder,
             Self::Objects(place) => &**place,

@@ -167,19 +167,19 @@ fn worlds() -> impl Strategy<Value = World> {
 }
 
 /// A coordinate, as a place within the root and as a border and a distance from it.
-type Place = (u8, f64, i64, i64);
+type PointSeed = (u8, f64, i64, i64);
 
-fn places() -> impl Strategy<Value = Place> {
+fn places() -> impl Strategy<Value = PointSeed> {
     (0..12_u8, -0.4..1.4_f64, 0..=4_i64, -1..=1_i64)
 }
 
 /// Roads with points anywhere, on borders of tiles and of margins, a step beside them, and far away; some are rings.
-fn roads() -> impl Strategy<Value = Vec<Vec<(Place, Place)>>> {
+fn roads() -> impl Strategy<Value = Vec<Vec<(PointSeed, PointSeed)>>> {
     vec(vec((places(), places()), 2..14), 1..4)
 }
 
 impl World {
-    fn coordinate(&self, (kind, share, border, step): Place, ends: [i64; 2]) -> i64 {
+    fn coordinate(&self, (kind, share, border, step): PointSeed, ends: [i64; 2]) -> i64 {
         let [min, max] = ends;
         let level = self.levels.frame().max_level().min(kind % 3);
         let margin = self.levels.margin_steps(level);
@@ -201,9 +201,9 @@ impl World {
         }
     }
 
-    fn road(&self, ordinal: u32, points: &[(Place, Place)]) -> Road {
+    fn road(&self, ordinal: u32, points: &[(PointSeed, PointSeed)]) -> Road {
         let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT);
-        let at = |&(u, v): &(Place, Place)| {
+        let at = |&(u, v): &(PointSeed, PointSeed)| {
             let u = self.coordinate(u, [root.min.u, root.max.u]);
             LatticePoint::new(u, self.coordinate(v, [root.min.v, root.max.v]))
         };

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    Disk, OpenMode, PartFile, Place, StoreError, StoredPlan,
+    Disk, OpenMode, PartFile, PartsPlace, StoreError, StoredPlan,
     files::Files,
     local::{binding, binding::FolderState, layout},
 };
@@ -31,7 +31,7 @@ impl Folder {
     }
 }
 
-impl Place for Folder {
+impl PartsPlace for Folder {
     fn name(&self) -> &Path {
         &self.path
     }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Where a map looks: at a place, from a distance in a direction, or straight from above with parallel rays.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Place {
+pub(crate) struct ViewRecord {
     /// Longitude, degrees.
     pub(crate) lon: f64,
     /// Latitude, degrees.
@@ -42,7 +42,7 @@ const USUAL_DISTANCE_M: f64 = 5000.0;
 /// True metres in a pixel from above if nothing else is said.
 const USUAL_PIXEL_M: f64 = 5.0;
 
-impl Place {
+impl ViewRecord {
     /// The place of a request that is no overview.
     pub(crate) fn of(request: CameraRequest) -> Option<Self> {
         match request {

@@ -8,7 +8,7 @@ use std::{
 use crate::{StoreError, StoredPlan};
 
 /// Sealed parts that belong to one plan. A part never changes, and is there as a whole or not at all.
-pub trait Place: fmt::Debug + Send + Sync {
+pub trait PartsPlace: fmt::Debug + Send + Sync {
     /// What the place is called: its folder, or its address.
     fn name(&self) -> &Path;
 
@@ -32,7 +32,7 @@ pub trait Place: fmt::Debug + Send + Sync {
 }
 
 /// A place that sealed parts can be sent to.
-pub trait Publish: Place {
+pub trait Publish: PartsPlace {
     /// Binds the place to a plan, unless it is bound already. Of two processes that do so at once one comes first. Returns the plan that it is
     /// bound to now, which may be another: then nothing was changed.
     ///

@@ -16,7 +16,7 @@ use std::{
 };
 
 use corniche_store::{
-    PARTS_NAME, PLAN_NAME, PartFile, Place, Publish, STORE_NAME, StoreError, StoredPlan,
+    PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError, StoredPlan,
     check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 
@@ -90,7 +90,7 @@ impl ObjectPlace {
     }
 }
 
-impl Place for ObjectPlace {
+impl PartsPlace for ObjectPlace {
     fn name(&self) -> &Path {
         &self.name
     }
