@@ -48,7 +48,7 @@ pub fn divide(polygon: &Polygon, axis: Axis, at: i64) -> Result<[Vec<Polygon>; 2
     } else if points.iter().all(|&point| line.along(point) >= at) {
         Ok([Vec::new(), own()])
     } else {
-        Ok([line.part(polygon, Part::Smaller)?, line.part(polygon, Part::Larger)?])
+        Ok([line.part(polygon, LineSide::Smaller)?, line.part(polygon, LineSide::Larger)?])
     }
 }
 
@@ -59,7 +59,7 @@ struct Line {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Part {
+enum LineSide {
     Smaller,
     Larger,
 }
@@ -79,7 +79,7 @@ impl Line {
         }
     }
 
-    fn part(self, polygon: &Polygon, part: Part) -> Result<Vec<Polygon>, OutlineError> {
+    fn part(self, polygon: &Polygon, part: LineSide) -> Result<Vec<Polygon>, OutlineError> {
         let rings: Vec<Vec<LatticePoint>> =
             polygon.rings().map(|ring| self.part_of_ring(ring, part)).collect();
         let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
@@ -87,10 +87,10 @@ impl Line {
     }
 
     /// The points of a ring on one side of the line, the first once more at the end. Points on the line are on both sides.
-    fn part_of_ring(self, ring: &Ring, part: Part) -> Vec<LatticePoint> {
+    fn part_of_ring(self, ring: &Ring, part: LineSide) -> Vec<LatticePoint> {
         let is_kept = |point: LatticePoint| match part {
-            Part::Smaller => self.along(point) <= self.at,
-            Part::Larger => self.along(point) >= self.at,
+            LineSide::Smaller => self.along(point) <= self.at,
+            LineSide::Larger => self.along(point) >= self.at,
         };
         let mut kept = Vec::with_capacity(ring.points().len() + 8);
         for [from, to] in ring.segments() {

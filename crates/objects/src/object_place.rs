@@ -22,7 +22,7 @@ use corniche_store::{
 
 use crate::{
     BlockCache, Bucket, Existing, Found, ObjectAddress, ObjectError, Storage, Upload,
-    part::ObjectPart,
+    object_part::ObjectPart,
 };
 
 /// The store under a prefix.

@@ -51,7 +51,7 @@ pub(crate) struct BlobFile<R> {
     path: PathBuf,
     source: BufReader<R>,
     len_bytes: u64,
-    data: Vec<Part>,
+    data: Vec<BlobPlace>,
     pub(crate) header: Header,
     pub(crate) blobs_passed_over: u64,
 }
@@ -66,7 +66,7 @@ pub(crate) struct Header {
 
 /// Where a blob lies.
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct BlobPlace {
     /// Of its frame.
     offset: u64,
     /// Of itself.
@@ -150,7 +150,7 @@ impl<R: Read + Seek> BlobFile<R> {
     }
 
     /// Reads the frame before a blob and leaves the source at the start of the blob, which lies inside the file.
-    fn read_frame(&mut self, offset: u64) -> Result<(Part, String), ReadOsmError> {
+    fn read_frame(&mut self, offset: u64) -> Result<(BlobPlace, String), ReadOsmError> {
         let mut size = [0; 4];
         self.check_end(offset, offset + 4)?;
         self.source.read_exact(&mut size).map_err(|source| self.unreadable(source))?;
@@ -166,17 +166,22 @@ impl<R: Read + Seek> BlobFile<R> {
         let BlobHeader { kind, blob_bytes } =
             BlobHeader::parse(&header).map_err(|refusal| self.refused(offset, refusal))?;
         self.check_end(offset, blob_offset + blob_bytes)?;
-        Ok((Part { offset, blob_offset, blob_bytes }, kind))
+        Ok((BlobPlace { offset, blob_offset, blob_bytes }, kind))
     }
 
     /// Reads a blob from where the source is.
-    fn read_part(&mut self, part: Part) -> Result<Vec<u8>, ReadOsmError> {
+    fn read_part(&mut self, part: BlobPlace) -> Result<Vec<u8>, ReadOsmError> {
         let mut blob = vec![0; part.blob_bytes as usize];
         self.source.read_exact(&mut blob).map_err(|source| self.unreadable(source))?;
         Ok(blob)
     }
 
-    fn take_header(&mut self, part: Part, blob: &[u8], is_first: bool) -> Result<(), ReadOsmError> {
+    fn take_header(
+        &mut self,
+        part: BlobPlace,
+        blob: &[u8],
+        is_first: bool,
+    ) -> Result<(), ReadOsmError> {
         let header = unpack(blob, MAX_HEADER_BLOCK_BYTES)
             .and_then(|block| header_block(&block))
             .map_err(|refusal| self.refused(part.offset, refusal))?;

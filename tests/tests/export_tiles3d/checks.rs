@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use corniche_testing::Random;
 use e2e::ground::{FromEarth, Region};
 
-use crate::tiles::{Part, Tile, Tiles};
+use crate::tiles::{NamedTriangles, Tile, Tiles};
 
 /// How far the ground of tiles is from the package's.
 #[derive(Debug, Default)]
@@ -19,7 +19,7 @@ pub(crate) struct Findings {
     pub(crate) off_ground: usize,
 }
 
-fn ground(tile: &Tile) -> impl Iterator<Item = &Part> {
+fn ground(tile: &Tile) -> impl Iterator<Item = &NamedTriangles> {
     tile.parts.iter().filter(|part| part.name != "skirt")
 }
 

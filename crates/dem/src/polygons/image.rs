@@ -6,7 +6,7 @@ use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::data_extent::near_image;
-use crate::polygons::polygon::{Part, Polygon, Ring};
+use crate::polygons::polygon::{Polygon, PolygonRings, Ring};
 use crate::{DemError, PolygonError, RecordedCrs};
 
 /// Edges that are bent in the working CRS are followed this closely, in cells.
@@ -89,7 +89,7 @@ fn outside(polygon: &Polygon, working: &Working) -> DemError {
 
 /// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does not reach or is torn.
 fn of_part(
-    part: &Part,
+    part: &PolygonRings,
     working: &Working,
     area_deg: Bounds,
     tolerance_m: f64,

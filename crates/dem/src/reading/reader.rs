@@ -9,7 +9,7 @@ use crate::plan::alignment::Alignment;
 use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples, Scratch};
 use crate::reading::fill_voids;
-use crate::reading::window_parts::{Part, Target, intersection};
+use crate::reading::window_parts::{Target, WindowPart, intersection};
 use crate::{Dem, DemError, GridPlan};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
@@ -194,7 +194,8 @@ impl Reader<'_> {
                 }
                 Method::Resampled(positions, kernel) => {
                     let at = positions.of(&plan.frame, &part)?;
-                    let all = Part { column: 0, row: 0, columns: part.columns, rows: part.rows };
+                    let all =
+                        WindowPart { column: 0, row: 0, columns: part.columns, rows: part.rows };
                     self.interpolate(mosaic, kernel, &at, &all, &target, &mut heights_m)?;
                 }
             }
@@ -247,7 +248,7 @@ impl Reader<'_> {
         mosaic: &Mosaic,
         kernel: &Kernel,
         at: &[[f64; 2]],
-        area: &Part,
+        area: &WindowPart,
         target: &Target,
         heights_m: &mut [f32],
     ) -> Result<(), DemError> {

@@ -72,21 +72,21 @@ impl Splitting<'_> {
     }
 
     /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
-    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<Part<'r>> {
+    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
         let Some(area) = self.polygon else {
-            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         };
         let parts = corniche_drape::clip_area(&road.line, area);
         if parts.first().is_some_and(|part| part.line == road.line) {
-            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         }
-        parts.into_iter().map(|part| Part::cut(road, part, &segments_um)).collect()
+        parts.into_iter().map(|part| RoadPart::cut(road, part, &segments_um)).collect()
     }
 
     /// The pieces of one level.
     fn split_level(
         &self,
-        parts: &[Part<'_>],
+        parts: &[RoadPart<'_>],
         attributes: &Arc<RoadAttributes>,
         level: u8,
         pieces: &mut Vec<(TileId, RoadPiece)>,
@@ -149,13 +149,13 @@ impl Splitting<'_> {
 }
 
 /// A part of a road in the polygon that was asked for, or the whole road.
-struct Part<'r> {
+struct RoadPart<'r> {
     road: Cow<'r, Road>,
     /// True lengths of its segments.
     segments_um: Vec<u64>,
 }
 
-impl Part<'_> {
+impl RoadPart<'_> {
     /// What was cut out of a road, whose segments have these lengths.
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
         let own_um = pieces_um(&road.line, &part, segments_um).map(|[from, to]| to - from);
@@ -202,7 +202,7 @@ struct LevelLine<'p> {
 }
 
 impl<'p> LevelLine<'p> {
-    fn new(part: &'p Part<'_>, level: u8, levels: &Levels) -> Self {
+    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels) -> Self {
         let line = corniche_roads::simplify(&part.road, levels.simplify_tolerance_steps(level));
         // On the finest level the line is the source line, not simplified.
         let is_finest = level == levels.frame().max_level();
