@@ -7,7 +7,7 @@
 //!                                  │                                                     │
 //!                                  │      blobs with nodes ──► number_nodes, locate_nodes (as for roads)
 //!                                  ▼                                                     ▼
-//!  Area, ways first, by id ◄── make_areas ◄──────────── PartRecord by object ◄────── hand_parts
+//!  Area, ways first, by id ◄── make_areas ◄──────────── OutlineWayRecord by object ◄────── hand_parts
 //! ```
 //!
 //! Everything is sorted and joined within the memory that the caller allows, as for roads.

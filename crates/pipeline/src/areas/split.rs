@@ -7,14 +7,14 @@ use corniche_tileset::{AreaRecord, AreaRings};
 use crate::{heights::data_tiles::DataTiles, points_step::points_step};
 
 /// How areas are split.
-pub(crate) struct Splitting<'a> {
+pub(crate) struct AreaSplitting<'a> {
     pub(crate) frame: &'a GridFrame,
     pub(crate) data: DataTiles,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
 }
 
-impl Splitting<'_> {
+impl AreaSplitting<'_> {
     /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
     pub(crate) fn step(&self, level: u8) -> i64 {
         points_step(self.frame, level)

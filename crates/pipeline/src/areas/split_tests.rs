@@ -14,9 +14,9 @@ fn frame() -> GridFrame {
     GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
-fn splitting(frame: &GridFrame) -> Splitting<'_> {
+fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
-    Splitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
+    AreaSplitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
 }
 
 /// A star around a place, with a hole.
@@ -42,7 +42,10 @@ fn area(polygons: Vec<Polygon>) -> Area {
 }
 
 /// The parts of an area by level and tile.
-fn by_level(splitting: &Splitting<'_>, area: &Area) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
+fn by_level(
+    splitting: &AreaSplitting<'_>,
+    area: &Area,
+) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
     let mut by_level: BTreeMap<u8, BTreeMap<TileId, AreaRecord>> = BTreeMap::new();
     for (id, record) in splitting.split(area).unwrap() {
         by_level.entry(id.z()).or_default().insert(id, record);

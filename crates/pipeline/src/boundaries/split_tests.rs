@@ -16,10 +16,10 @@ fn levels() -> Levels {
     Levels::new(frame, 1.0, &settings, 1.0)
 }
 
-fn splitting(levels: &Levels) -> Splitting<'_> {
+fn splitting(levels: &Levels) -> BoundarySplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    Splitting { levels, data, clip: None }
+    BoundarySplitting { levels, data, clip: None }
 }
 
 /// A wave across the whole of the root, in metres; its middle is a junction.

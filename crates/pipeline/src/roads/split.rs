@@ -15,7 +15,7 @@ use crate::tiles_near::for_each_tile_near;
 use crate::true_lengths::{TrueLengths, pieces_um};
 
 /// What splitting needs.
-pub(crate) struct Splitting<'a> {
+pub(crate) struct RoadSplitting<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
@@ -35,7 +35,7 @@ pub(crate) struct SplitRoad {
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
 }
 
-impl Splitting<'_> {
+impl RoadSplitting<'_> {
     /// The pieces of a road for every level that shows its class, and its true lengths.
     pub(crate) fn split(&self, road: &Road) -> SplitRoad {
         let segments_um = self.lengths.segments_um(&road.line);

@@ -235,7 +235,7 @@ proptest! {
             (0..).zip(&roads).map(|(ordinal, points)| world.road(ordinal, points)).collect();
         let lengths = world.lengths();
         let splitting =
-            Splitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None, polygon: None };
+            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None, polygon: None };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
             for (id, piece) in splitting.split(road).pieces {
@@ -316,7 +316,7 @@ impl Large {
             fixed: vec![0, last],
         };
         let lengths = self.lengths();
-        Splitting {
+        RoadSplitting {
             levels: &self.levels,
             lengths: &lengths,
             data_bounds,
