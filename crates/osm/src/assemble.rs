@@ -6,7 +6,7 @@ use corniche_geom::{LatticePoint, Polyline, wgs84};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location, read_request::Place, records::Stop,
+    Defect, LeftOutReason, ReadOsmError, location, read_request::ToLattice, records::Stop,
     self_crossings::self_crossings, way_bytes::WayKind,
 };
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::{
     ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
-    read_request::Place,
+    read_request::ToLattice,
     reading::{Reading, Step},
     records::Stop,
     spool::{SpoolReader, damaged},

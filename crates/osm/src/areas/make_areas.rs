@@ -18,7 +18,7 @@ use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
     find_ways::check_held,
-    read_request::Place,
+    read_request::ToLattice,
     reading::{Reading, Step},
     spool::SpoolReader,
 };
