@@ -13,11 +13,11 @@
 
 mod block;
 mod file;
+mod geotiff_request;
 mod grid;
-mod request;
-mod run;
+mod write_raster;
 
 pub use self::{
-    request::{Elevation, GeoTiffRequest},
-    run::{GeoTiffSummary, export_geotiff},
+    geotiff_request::{Elevation, GeoTiffRequest},
+    write_raster::{GeoTiffSummary, export_geotiff},
 };

@@ -9,12 +9,12 @@ use corniche_tileset::{FilePackage, Manifest, tile_of_order};
 
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     join::lines,
     measures::Measures,
     observer::{Observer, Stage},
     piece::{Piece, Vertex},
     places::Places,
-    request::Coordinates,
     scratch::FileScratch,
     ways::Ways,
 };

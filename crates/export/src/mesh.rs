@@ -8,16 +8,16 @@
 
 mod glb;
 mod local;
+mod mesh_request;
 mod model;
 mod obj;
 mod ply;
-mod request;
-mod run;
 mod spill;
 mod weld;
+mod write_model;
 mod writer;
 
 pub use self::{
-    request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
-    run::{MeshSummary, export_mesh},
+    mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
+    write_model::{MeshSummary, export_mesh},
 };

@@ -6,6 +6,7 @@ use corniche_tileset::FilePackage;
 
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures},
@@ -13,7 +14,6 @@ use crate::{
     piece::{Piece, Vertex},
     places::Places,
     read,
-    request::Coordinates,
 };
 
 /// The profile of some ways, one after the other.

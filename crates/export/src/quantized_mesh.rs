@@ -17,13 +17,13 @@ mod ground;
 mod horizon;
 mod layer;
 mod mesh;
+mod quantized_mesh_request;
 mod raster;
-mod request;
-mod run;
 mod summary;
 mod tiling;
+mod write_tiles;
 
-pub use request::{Availability, QuantizedMeshRequest};
-pub use run::export_quantized_mesh;
+pub use quantized_mesh_request::{Availability, QuantizedMeshRequest};
 pub use summary::{QuantizedMeshLevel, QuantizedMeshSummary};
 pub use tiling::Tiling;
+pub use write_tiles::export_quantized_mesh;

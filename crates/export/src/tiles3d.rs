@@ -15,11 +15,11 @@ mod content;
 mod glb;
 mod parts;
 mod placed;
-mod request;
-mod run;
 mod skirt;
+mod tiles3d_request;
 mod tree;
 mod vector_style;
+mod write_tileset;
 
-pub use request::{TileRoads, Tiles3dRequest};
-pub use run::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};
+pub use tiles3d_request::{TileRoads, Tiles3dRequest};
+pub use write_tileset::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};

@@ -29,7 +29,6 @@ mod photos;
 mod polygon;
 mod relief;
 mod report;
-mod request;
 mod roads_of_parent;
 mod roads_on_tin;
 mod samples;
@@ -40,6 +39,7 @@ mod tile_sums;
 mod tiles;
 mod tin_against_parent;
 mod triangle_soup;
+mod verify_settings;
 mod vertices_against_dem;
 
 use corniche_tileset::FilePackage;
@@ -51,7 +51,7 @@ pub use self::{
     elevation::RecordedElevation,
     error::VerifyError,
     report::{ErrorFigures, GapFigures, VerifyReport},
-    request::{VerifyOsm, VerifySettings},
+    verify_settings::{VerifyOsm, VerifySettings},
 };
 
 /// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or

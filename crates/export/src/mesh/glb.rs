@@ -12,8 +12,8 @@ use std::{
 use serde_json::{Map, Value, json};
 
 use super::{
+    mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    request::{ModelColors, UpAxis},
     spill::Spill,
     writer::{About, MeshWriter},
 };

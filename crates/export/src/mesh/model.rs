@@ -6,7 +6,7 @@ use corniche_tileset::{FilePackage, Sections};
 
 use super::{
     local::LocalMetres,
-    request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
+    mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
 };
 use crate::{
     cut::cut_at_bounds,

@@ -8,8 +8,8 @@ use std::{
 };
 
 use super::{
+    mesh_request::{UpAxis, group_name},
     model::TileMesh,
-    request::{UpAxis, group_name},
     spill::Spill,
     weld::Welding,
     writer::{About, MeshWriter},

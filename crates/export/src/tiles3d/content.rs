@@ -10,8 +10,8 @@ use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 use super::{
     parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent, y_up},
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
-    request::{TileRoads, Tiles3dRequest},
     skirt::Skirt,
+    tiles3d_request::{TileRoads, Tiles3dRequest},
 };
 use crate::{
     error::ExportError,

@@ -9,8 +9,8 @@ use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums, Sec
 use super::{
     checks::{Check, CheckId},
     error::VerifyError,
-    request::VerifySettings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
+    verify_settings::VerifySettings,
 };
 use crate::{Observer, Stage, workers};
 

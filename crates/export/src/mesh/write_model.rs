@@ -8,18 +8,18 @@ use corniche_tileset::{FilePackage, Manifest};
 use super::{
     glb::GlbWriter,
     local::LocalMetres,
+    mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
     model::TileReading,
     obj::ObjWriter,
     ply::PlyWriter,
-    request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
     writer::{About, MeshWriter},
 };
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
-    request::Coordinates,
     surfaces::{RoadLook, TileLines},
 };
 

@@ -18,17 +18,17 @@ use super::{
     ground::Ground,
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, tin_of},
+    quantized_mesh_request::QuantizedMeshRequest,
     raster::TileRaster,
-    request::QuantizedMeshRequest,
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
     tiling::{FINEST, Nodes, TerrainTile, Tiling},
 };
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     observer::Observer,
     places::Places,
     read,
-    request::Coordinates,
     workers::{Progress, on_all},
 };
 

@@ -15,7 +15,7 @@ use super::{
     glb,
     parts::TileContent,
     placed::{Placing, TileBox, step_m},
-    request::{TileRoads, Tiles3dRequest},
+    tiles3d_request::{TileRoads, Tiles3dRequest},
     tree::{Contents, Tree, content_name},
     vector_style,
 };

@@ -7,15 +7,15 @@ use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};
 use super::{
     block::{self, Block, Tins},
     file::{Number, RasterFacts, RasterFile},
+    geotiff_request::{Elevation, GeoTiffRequest},
     grid::RasterGrid,
-    request::{Elevation, GeoTiffRequest},
 };
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     observer::Observer,
     places::Places,
     read,
-    request::Coordinates,
     workers::{Progress, on_all},
 };
 

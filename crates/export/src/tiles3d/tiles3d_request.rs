@@ -3,7 +3,7 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 
-use crate::{bounds::DegreeBounds, request::Coordinates};
+use crate::{bounds::DegreeBounds, feature_request::Coordinates};
 
 /// What tiles have of roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! What a user asks for when a package becomes quantized-mesh terrain tiles.
 
 use super::tiling::Tiling;
-use crate::request::Coordinates;
+use crate::feature_request::Coordinates;
 
 /// What of a package becomes terrain tiles, and how.
 #[derive(Debug, Clone, PartialEq)]
