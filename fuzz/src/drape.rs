@@ -8,7 +8,7 @@ use corniche_drape::{
 use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 
-/// Of a length: what rounding in f64 may add to it or take away.
+/// How much of a length rounding in f64 may add to it or take away.
 const ROUNDING: f64 = 1e-9;
 
 /// Lines made from these bytes are laid on ground made from these bytes: on the TIN, in order, without repeated or lost parts.

@@ -12,9 +12,9 @@ use crate::{
 /// Along which axis a polygon is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
-    /// By an upright line, into a western and an eastern part.
+    /// An upright line divides into a western and an eastern part.
     East,
-    /// By a level line, into a southern and a northern part.
+    /// A level line divides into a southern and a northern part.
     North,
 }
 

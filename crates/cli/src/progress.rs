@@ -49,7 +49,7 @@ enum Manner {
 }
 
 impl Manner {
-    /// As the voice says.
+    /// Progress in the form that the voice asks for.
     fn of(voice: Voice) -> Self {
         match voice {
             Voice { is_quiet: true, .. } => Self::Quiet,

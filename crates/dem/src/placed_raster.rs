@@ -17,7 +17,7 @@ use crate::{DemError, GridPlan, OpenOptions, library_error};
 pub struct PlacedRaster {
     path: PathBuf,
     size: [usize; 2],
-    /// From pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees to that.
+    /// The map from pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees to that.
     crs_from_pixel: GeoTransform,
     crs: Crs,
 }

@@ -68,7 +68,7 @@ impl Parts {
 /// Where a segment meets outlines, as shares of it: 0 at its start, 1 at its end.
 #[derive(Default)]
 struct Crossings {
-    /// Between 0 and 1, without these; ascending.
+    /// Shares between 0 and 1, without these; ascending.
     shares: Vec<f64>,
     /// Stretches along outlines.
     along: Vec<[f64; 2]>,

@@ -10,11 +10,11 @@ use corniche_tin::{NO_TWIN, Surface};
 pub(crate) enum PlaceOnTin {
     /// Outside the ground.
     Off,
-    /// In the inside of a triangle.
+    /// The point lies in the inside of a triangle.
     Inside(u32),
     /// In the inside of the edge of this half-edge.
     Edge(u32),
-    /// On a TIN vertex.
+    /// The point is a TIN vertex.
     Vertex(u32),
 }
 
@@ -93,7 +93,7 @@ pub(crate) struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// From p.
+    /// The way from p on.
     pub(crate) fn leave_start(&self, place: PlaceOnTin) -> Next {
         match place {
             PlaceOnTin::Off => Next::Ends,

@@ -8,7 +8,7 @@ use crate::{bounds::DegreeBounds, vector::VectorFormat};
 /// What coordinates the features get.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coordinates {
-    /// Those of the package's CRS, with the package's heights: exactly what the tiles hold.
+    /// Coordinates of the package's CRS, with the package's heights: exactly what the tiles hold.
     Package,
     /// Longitude, latitude and height above the ellipsoid of WGS84 (EPSG:4979).
     Wgs84,

@@ -66,7 +66,7 @@ pub fn growth_by_way<E: From<ExportError>>(
     Ok(())
 }
 
-/// Of all pieces of a way, on all levels; `None` of none.
+/// The growth of all pieces of a way, on all levels; `None` without any.
 fn growth_of(
     pieces: Vec<Piece>,
     manifest: &Manifest,

@@ -225,7 +225,7 @@ fn points(part: &ProfileLine, begin_m: f64, places: &Places<'_>) -> Vec<ProfileP
         .collect()
 }
 
-/// Of each point of a profile, whose distances ascend.
+/// The grade at each point of a profile, whose distances ascend.
 fn grades(profile: &[[f64; 2]]) -> Vec<f64> {
     let half_m = LEAST_GRADE_LENGTH_M / 2.0;
     let height_at = |along_m: f64| -> [f64; 2] {

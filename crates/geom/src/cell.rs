@@ -77,7 +77,7 @@ impl From<f64> for Cell {
 }
 
 impl From<[f64; 2]> for Cell {
-    /// From east and north.
+    /// The cell with these sides, east and north.
     fn from([east_m, north_m]: [f64; 2]) -> Self {
         Self { east_m, north_m }
     }

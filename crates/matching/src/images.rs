@@ -43,7 +43,7 @@ enum Source<'a> {
         grid: &'a PhotoGrid,
         reader: PhotoReader<'a>,
     },
-    /// With the tile looked at last: windows come tile by tile.
+    /// The slopes, with the tile looked at last: windows come tile by tile.
     Slope(Option<(TileId, Option<Relief>)>),
 }
 

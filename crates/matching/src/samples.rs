@@ -8,7 +8,7 @@ const SPACING_M: f64 = 4.0;
 pub(crate) struct Sample {
     /// Working metres.
     pub(crate) at: [f64; 2],
-    /// To the left of the road, of length 1.
+    /// The direction to the left of the road, of length 1.
     pub(crate) normal: [f64; 2],
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct PlainWay {
 pub(crate) struct Assembled {
     pub(crate) roads: Vec<Road>,
     pub(crate) defects: Vec<Defect>,
-    /// Of a way that is left out: why, its `highway` value, its length in micrometres.
+    /// Why a way is left out, its `highway` value and its length in micrometres.
     pub(crate) left_out: Option<(LeftOutReason, String, u64)>,
 }
 

@@ -26,17 +26,17 @@ const MAX_HEADER_BLOCK_BYTES: u64 = 1 << 20;
 struct Limits {
     unpacked_bytes: u64,
     decoded_bytes: u64,
-    /// For what is found in it.
+    /// Bytes for what is found in it.
     found_bytes: u64,
 }
 
-/// Of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
+/// Limits of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
 ///
 /// 16 MiB is what the format asks of writers (OSM wiki, *PBF Format*, "File format"); twice that is what it allows.
 const SIDE_BY_SIDE: Limits =
     Limits { unpacked_bytes: 16 << 20, decoded_bytes: 64 << 20, found_bytes: 16 << 20 };
 
-/// Of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
+/// Limits of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
 const ALONE: Limits =
     Limits { unpacked_bytes: MAX_BLOB_BYTES, decoded_bytes: 512 << 20, found_bytes: 256 << 20 };
 
@@ -67,9 +67,9 @@ pub(crate) struct Header {
 /// Where a blob lies.
 #[derive(Debug, Clone, Copy)]
 struct BlobPlace {
-    /// Of its frame.
+    /// Where the blob's frame begins in the file.
     offset: u64,
-    /// Of itself.
+    /// Where the blob itself begins in the file.
     blob_offset: u64,
     blob_bytes: u64,
 }
@@ -379,7 +379,7 @@ pub(crate) fn decode(block: Vec<u8>) -> Result<PrimitiveBlock, BlobRefusal> {
     blob.to_primitiveblock().map_err(of_decoder)
 }
 
-/// For kinds of errors that the decoder does not have yet.
+/// The reason that is given for kinds of errors that the decoder does not have yet.
 const UNREADABLE: &str = "its contents cannot be decoded";
 
 fn of_decoder(error: osmpbf::Error) -> BlobRefusal {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum BoundaryLoss {
     /// A relation names it, and the file does not have it.
     MissingWay,
-    /// So many of its nodes are not in the file that no two that follow each other are left.
+    /// Too few of its nodes are in the file: no two that follow each other are left.
     MissingNodes,
     /// No two nodes that follow each other lie on Earth, at different places.
     OutOfRange,

@@ -115,7 +115,7 @@ pub enum Defect {
         is_relation: bool,
         /// The object.
         id: i64,
-        /// Why.
+        /// Why it is none.
         loss: AreaLoss,
     },
     /// Ways of an area's relation are not in the file; what the others surround stays.
@@ -144,7 +144,7 @@ pub enum Defect {
     LostBoundary {
         /// The way.
         way_id: i64,
-        /// Why.
+        /// Why it is left out.
         loss: BoundaryLoss,
     },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.

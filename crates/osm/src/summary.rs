@@ -54,7 +54,7 @@ pub struct ExtractSummary {
 /// Ways with one `highway` value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HighwayCount {
-    /// Their class; `None` when the table lists the value as no road.
+    /// The class of the ways; `None` when the table lists the value as no road.
     pub class: Option<FunctionalRoadClass>,
     /// How many ways.
     pub ways: u64,
@@ -111,7 +111,7 @@ impl LeftOutReason {
 pub struct LeftOutWays {
     /// How many ways.
     pub ways: u64,
-    /// Their true length in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
+    /// The true length of the ways in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
     pub length_um: u64,
 }
 

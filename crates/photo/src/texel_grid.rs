@@ -31,7 +31,7 @@ pub struct TexelWindow {
 }
 
 impl TexelGrid {
-    /// Of a package's grid.
+    /// The texels over a package's grid.
     ///
     /// # Errors
     /// When there are more than [`MAX_LEVELS`].
@@ -42,7 +42,7 @@ impl TexelGrid {
         Ok(Self { frame, levels })
     }
 
-    /// With any number of levels, to be read by windows.
+    /// The texels of any number of levels, to be read by windows.
     pub(crate) fn of_any(frame: GridFrame, levels: u8) -> Self {
         Self { frame, levels }
     }

@@ -161,7 +161,7 @@ impl HttpError {
         self
     }
 
-    /// As the error of a source: of a read, or of opening where `length` is 0.
+    /// The error as one of a source: of a read, or of opening where `length` is 0.
     pub(crate) fn of_source(&self, name: &str, offset: u64, length: usize) -> SourceError {
         SourceError {
             name: name.to_owned(),

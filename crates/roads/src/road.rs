@@ -124,12 +124,12 @@ listed! {
 /// What the tags of a road say of its width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 pub enum OwnWidth {
-    /// Nothing.
+    /// Nothing is known of the width.
     #[default]
     Unknown,
-    /// So many millimetres.
+    /// The width in millimetres.
     Millimetres(NonZeroU32),
-    /// So many lanes.
+    /// The number of lanes.
     Lanes(NonZeroU8),
 }
 

@@ -21,7 +21,7 @@ pub(crate) enum Hosts {
 }
 
 impl Hosts {
-    /// Those of a server that was told to listen at `named`, which turned out to be `bound`.
+    /// The names of a server that was told to listen at `named`, which turned out to be `bound`.
     pub(crate) fn of(named: &str, bound: SocketAddr) -> Self {
         if bound.ip().is_loopback() {
             Self::Local { named: named.to_lowercase() }

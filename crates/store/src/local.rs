@@ -61,7 +61,7 @@ const BUILD: &str = "build";
 pub struct LocalStore {
     files: Arc<Files>,
     index: RwLock<Index>,
-    /// By their numbers in the index.
+    /// The sealed parts by their numbers in the index.
     sealed: Vec<Box<dyn PartFile>>,
     own: Option<Own>,
 }

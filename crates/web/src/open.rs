@@ -44,7 +44,7 @@ const BUDGET: StreamBudget =
 #[derive(Debug, Clone, Default, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Options {
-    /// Those that are not the usual ones.
+    /// The settings that are not the usual ones.
     settings: Changes,
     /// Where to look; without it, where the roads are.
     view: Option<ViewRecord>,

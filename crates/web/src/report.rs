@@ -7,9 +7,9 @@ use crate::view_record::ViewRecord;
 /// When the next frame is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Next {
-    /// As soon as possible.
+    /// The next frame is due as soon as possible.
     Now,
-    /// When something happens.
+    /// The next frame is due when something happens.
     Asked,
 }
 
@@ -91,7 +91,7 @@ pub(crate) struct FrameReport {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct ClassEntry {
     pub(crate) label: String,
-    /// As in CSS: `#rrggbb`.
+    /// The colour as in CSS: `#rrggbb`.
     pub(crate) color: String,
 }
 

@@ -37,7 +37,7 @@ pub(crate) struct ViewRecord {
     pub(crate) pixel_m: Option<f64>,
 }
 
-/// From how far away a place is looked at if nothing else is said, metres.
+/// The distance from which a place is looked at if nothing else is said, metres.
 const USUAL_DISTANCE_M: f64 = 5000.0;
 /// True metres in a pixel from above if nothing else is said.
 const USUAL_PIXEL_M: f64 = 5.0;

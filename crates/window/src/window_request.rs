@@ -20,9 +20,9 @@ pub struct NamedStyle {
 /// Whether a layer is drawn, where the package has it: areas, or boundaries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Visibility {
-    /// Those that the style draws.
+    /// The classes that the style draws are shown.
     Shown,
-    /// None.
+    /// No class is shown.
     Hidden,
 }
 
@@ -97,7 +97,7 @@ pub struct WindowRequest {
     pub camera: CameraRequest,
     /// How roads are drawn at first.
     pub roads: RoadOptions,
-    /// By which method roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
+    /// The method by which roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
     pub software_method: Option<RoadMethod>,
     /// What people call the roads of each class, 0 first.
     pub class_labels: [String; FunctionalRoadClass::COUNT],

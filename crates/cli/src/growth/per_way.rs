@@ -86,7 +86,7 @@ fn line(way: &WayGrowth) -> String {
 /// Sums over the lines, by class.
 struct Sums {
     source: [u64; FunctionalRoadClass::COUNT],
-    /// By level, then by class.
+    /// Counts of vertices by level, then by class.
     geo: Vec<[u64; FunctionalRoadClass::COUNT]>,
 }
 

@@ -235,7 +235,7 @@ pub(crate) fn needed_samples(
 }
 
 impl Dem {
-    /// For each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
+    /// Tells for each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
     /// plan's bounds were looked into for the grid alone.
     ///
     /// # Errors

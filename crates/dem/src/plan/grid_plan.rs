@@ -121,7 +121,7 @@ pub(crate) struct MosaicRole {
     /// South-western and north-eastern node between which it can have data.
     pub(crate) nodes: [NodeIndex; 2],
     pub(crate) method: Method,
-    /// From the mosaic's CRS to working metres.
+    /// The operation from the mosaic's CRS to working metres.
     pub(crate) working_from_crs: Operation,
 }
 

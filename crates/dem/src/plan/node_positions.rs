@@ -15,7 +15,7 @@ const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
 /// Meshes looked at along each side of the extent when choosing a lattice.
 const TRIAL_MESHES: i64 = 12;
 
-/// From nodes to positions among a mosaic's samples, through PROJ.
+/// Where nodes lie among a mosaic's samples, found through PROJ.
 ///
 /// ```text
 ///   o───·───o───·───o      o  corners: nodes whose indices are multiples of `step`

@@ -170,7 +170,7 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// For each position, working metres, whether a mosaic has all samples around it.
+    /// Tells for each position, in working metres, whether a mosaic has all samples around it.
     fn is_covered(
         &mut self,
         mosaic: usize,

@@ -10,7 +10,7 @@ pub struct GeoTiffRequest<'a> {
     pub level: Option<u8>,
     /// The nodes around this rectangle are taken, rounded outwards.
     pub bounds: Option<DegreeBounds>,
-    /// With it, a second band has the heights of the TINs minus those of these files.
+    /// The files of a second band, which has the heights of the TINs minus those of these files.
     pub elevation: Option<Elevation<'a>>,
     /// How many blocks are made at the same time.
     pub threads: usize,

@@ -21,7 +21,7 @@ use crate::{
 
 /// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
 const BLOCKS_AT_ONCE: usize = 64;
-/// Of a height quantum, what a pixel may lose by its type.
+/// The share of a height quantum that a pixel may lose by its type.
 const LOST_QUANTA: f64 = 0.1;
 
 /// What was exported.

@@ -165,9 +165,9 @@ enum Content<'a> {
         vectors: &'a [[f32; 3]],
         has_range: bool,
     },
-    /// On a picture.
+    /// Places on a picture.
     Places(&'a [[f32; 2]]),
-    /// Of a normal map.
+    /// The tangents of a normal map.
     Tangents(&'a [[f32; 4]]),
     Indices(&'a [u32]),
 }

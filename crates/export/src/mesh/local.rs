@@ -16,7 +16,7 @@ pub(crate) struct LocalMetres {
 }
 
 impl LocalMetres {
-    /// With the origin in the middle of some ground.
+    /// Local metres whose origin is in the middle of some ground.
     pub(crate) fn about(ground: Bounds, manifest: &Manifest) -> Self {
         Self { origin_m: ground.center().map(f64::round), scale: manifest.scale.center }
     }

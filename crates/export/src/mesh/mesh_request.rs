@@ -75,11 +75,11 @@ impl UpAxis {
 /// What a model has of roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelRoads {
-    /// Their centre-lines on the ground.
+    /// Roads are there as their centre-lines on the ground.
     Lines,
     /// Surfaces of their true width, cut into the ground's own triangles; tunnels are left out.
     Surfaces,
-    /// Nothing.
+    /// Roads are left out.
     None,
 }
 
@@ -112,7 +112,7 @@ pub struct MeshRequest {
     pub relief: bool,
     /// Colours of roads, widths of surfaces, and how strong photos are, which GLB has.
     pub style: Style,
-    /// With surfaces in OBJ: the name of the file of materials, which [`MeshRequest::materials`] tells.
+    /// The name of the file of materials that OBJ with surfaces needs; [`MeshRequest::materials`] tells its content.
     pub material_file: Option<String>,
 }
 

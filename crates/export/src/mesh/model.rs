@@ -25,7 +25,7 @@ pub(crate) struct TileMesh {
     pub(crate) corners: Vec<Corner>,
     /// Counter-clockwise from above.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Of each triangle, the class of the road whose surface it is; `None` is ground.
+    /// The class of the road whose surface each triangle is; `None` is ground.
     pub(crate) classes: Vec<Option<FunctionalRoadClass>>,
     pub(crate) roads: Vec<RoadLine>,
     /// The photo of the ground, in formats that have pictures inside.

@@ -23,7 +23,7 @@ pub struct QuantizedMeshRequest {
 /// Where it is told which tiles there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Availability {
-    /// In layer.json, as rectangles of tiles.
+    /// It is told in layer.json, as rectangles of tiles.
     Layer,
     /// In tiles of each tenth level, for those beneath: layer.json stays small with any number of tiles.
     Tiles,

@@ -36,7 +36,7 @@ use crate::{
 const CELLS: [i64; 2] = [16, 128];
 /// The most tiles of the finest level. Some hundred bytes are kept for each.
 const MOST_TILES: i64 = 4_000_000;
-/// Of a level's error: how far apart places along edges are.
+/// How far apart places along edges are, as a share of a level's error.
 const SPACING: f64 = 0.25;
 /// Parts of a cell on borders and where the ground ends, the fewest and the most.
 const PARTS: [f64; 2] = [4.0, 32.0];

@@ -322,7 +322,7 @@ fn color(manifest: &Manifest, request: &Tiles3dRequest, height_m: f64) -> Rgb {
     request.style.tint.color_at(height_m, manifest.vertical.range_m, latitude)
 }
 
-/// That of a tile at its mean height.
+/// The colour of a tile's ground at its mean height.
 fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile) -> Rgb {
     let sum: f64 = placed.vertices.iter().map(|vertex| vertex.height_m).sum();
     color(manifest, request, sum / placed.vertices.len().max(1) as f64)

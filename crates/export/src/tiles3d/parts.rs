@@ -73,7 +73,7 @@ pub(crate) struct RoadRow {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TileContent {
     pub(crate) name: String,
-    /// Of the node, y upwards.
+    /// The translation of the node, y upwards.
     pub(crate) translation: [f64; 3],
     pub(crate) parts: Vec<(PrimitiveKind, Primitive)>,
     pub(crate) roads: Vec<RoadRow>,

@@ -10,11 +10,11 @@ use crate::{bounds::DegreeBounds, feature_request::Coordinates};
 pub enum TileRoads {
     /// Surfaces of their true width, cut into the ground's own triangles.
     Cut,
-    /// Their centre-lines, lifted a little above the ground.
+    /// Roads are there as their centre-lines, lifted a little above the ground.
     Line,
     /// The same as vector content, in a second tileset (`3DTILES_content_gltf_vector`, a draft).
     Vector,
-    /// Nothing.
+    /// Roads are left out.
     None,
 }
 

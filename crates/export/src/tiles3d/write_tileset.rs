@@ -65,7 +65,7 @@ pub struct Tiles3dLevel {
     pub package_triangles: u64,
     /// Triangles that were written, roads included, walls not.
     pub triangles: u64,
-    /// Those of roads.
+    /// Triangles of roads among them.
     pub road_triangles: u64,
     /// Bytes of the tiles' files.
     pub bytes: u64,
@@ -236,7 +236,7 @@ fn level_of(manifest: &Manifest, level: u8, reach_m: f64) -> LevelOfTiles {
 struct Written {
     tile_box: TileBox,
     facts: TileFacts,
-    /// Of its files.
+    /// The size of the tile's files.
     bytes: u64,
     /// Whether its roads are a file of their own.
     has_vector: bool,

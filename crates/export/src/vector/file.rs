@@ -37,7 +37,7 @@ pub(crate) struct Layer {
     pub(crate) shapes: ShapeKind,
     /// WKT2, or a code such as "EPSG:4979".
     pub(crate) crs: String,
-    /// For people.
+    /// The description for people.
     pub(crate) description: String,
     /// Credits to show wherever the features are shown.
     pub(crate) attribution: String,

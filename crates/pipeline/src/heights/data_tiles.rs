@@ -17,13 +17,13 @@ pub(crate) struct DataTiles {
 }
 
 impl DataTiles {
-    /// Those of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
+    /// The tiles of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
     /// its last tiles.
     pub(crate) fn of(plan: &GridPlan) -> Self {
         Self::between(&plan.frame, plan.south_west, plan.north_east)
     }
 
-    /// Those on which the nodes between two corners lie.
+    /// The tiles on which the nodes between two corners lie.
     pub(crate) fn between(frame: &GridFrame, south_west: NodeIndex, north_east: NodeIndex) -> Self {
         let corner = frame.root_corner();
         let last = (1_i64 << frame.max_level()) - 1;

@@ -36,7 +36,7 @@ pub(crate) fn patch_level(frame: &GridFrame, scope: TileId) -> u8 {
 pub(crate) struct PatchRecord {
     /// Nodes that have a height; each node of the data belongs to one patch.
     pub(crate) with_height: u64,
-    /// Those of them that are filled voids.
+    /// How many of them are filled voids.
     pub(crate) filled: u64,
     pub(crate) range_m: Option<[f32; 2]>,
     /// What was seen of samples, one part for each file.

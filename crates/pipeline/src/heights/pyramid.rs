@@ -116,7 +116,7 @@ pub(crate) struct HeightSums {
 }
 
 impl HeightSums {
-    /// Those that a package records.
+    /// The sums that a package records.
     pub(crate) fn recorded(manifest: &Manifest) -> Self {
         // They were 32-bit numbers before they were written.
         let range_m = manifest.vertical.range_m.map(|height_m| height_m as f32);

@@ -38,7 +38,7 @@ impl Stamp {
         Ok(Self::File(path.to_path_buf(), settled(path)?))
     }
 
-    /// Of a name that GDAL's virtual file systems understand.
+    /// The stamp of a name that GDAL's virtual file systems understand.
     pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
         if let Some(container) = path.to_str().and_then(container) {
             return Self::of_file(&container);

@@ -33,9 +33,9 @@ pub struct PartSettings {
     pub tmp: Option<PathBuf>,
     /// The step to do.
     pub step: Step,
-    /// For which tiles, of [steps with subtrees](Step::has_subtrees); `None`: all.
+    /// The subtree, for [steps with subtrees](Step::has_subtrees); `None` means all tiles.
     pub subtree: Option<TileId>,
-    /// For which share of the extract, of [steps with shares](Step::has_shares); `None`: all of it.
+    /// The share of the extract, for [steps with shares](Step::has_shares); `None` means all of it.
     pub share: Option<Share>,
     /// What the run may use.
     pub resources: Resources,

@@ -20,9 +20,9 @@ use crate::{
     objects::{ObjectAccess, address},
 };
 
-/// So many processes of one machine can make the same part at once.
+/// Most processes of one machine that can make the same part at once.
 const MOST_COPIES: u32 = 16;
-/// So often a folder may be removed while it is being opened.
+/// How often a folder may be removed while it is being opened.
 const MOST_TRIES: u32 = 8;
 
 /// What a user says of stores.

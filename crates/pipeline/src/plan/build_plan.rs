@@ -237,7 +237,7 @@ impl BuildPlan {
         if differences.is_empty() { Ok(()) } else { Err(PlanError::Differs { differences }) }
     }
 
-    /// As text, indented; the same for the same plan.
+    /// The plan as text, indented; the same for the same plan.
     ///
     /// # Errors
     /// When a number is not finite.

@@ -11,7 +11,7 @@ pub(crate) enum PhotoSource {
     /// There are none.
     Nothing,
     Files(Box<OpenedPhotos>),
-    /// From the package that gives the terrain, as they are there. It says how they were made.
+    /// Photos come from the package that gives the terrain, as they are there. It says how they were made.
     Package(PhotoRecord),
 }
 

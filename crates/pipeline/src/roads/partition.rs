@@ -67,7 +67,7 @@ pub(crate) struct RoadInput<'a> {
     /// The polygon that was asked for.
     pub(crate) polygon: Option<&'a LatticeArea>,
     pub(crate) pool: &'a rayon::ThreadPool,
-    /// Of the sorting.
+    /// Memory for sorting.
     pub(crate) memory_bytes: u64,
 }
 

@@ -33,7 +33,7 @@ pub(crate) struct RoadPiece {
     pub(crate) source_points: u64,
     /// The same of the level's simplified line.
     pub(crate) simplified_points: u64,
-    /// In the order of the line.
+    /// The runs in the order of the line.
     pub(crate) runs: Vec<Run>,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct TilePieces {
 }
 
 impl TilePieces {
-    /// Those of a tile; none if nothing is in the store.
+    /// The pieces of a tile; none if nothing is in the store.
     pub(crate) fn load(store: &dyn Artifacts, id: TileId) -> Result<Self, BuildError> {
         let key = Kind::RoadPieces.of_tile(id);
         let Some(bytes) = store.get(key)? else { return Ok(Self::default()) };

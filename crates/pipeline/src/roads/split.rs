@@ -31,7 +31,7 @@ pub(crate) struct SplitRoad {
     pub(crate) length: RoadLength,
     pub(crate) class: FunctionalRoadClass,
     pub(crate) bounds: Option<LatticeBounds>,
-    /// By level and tile.
+    /// The pieces with their tiles, on all levels.
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
 }
 

@@ -52,7 +52,7 @@ pub(crate) struct Seam {
     beside: Beside,
     /// The coordinate that all of its points have.
     at: i64,
-    /// From end to end.
+    /// The line from end to end.
     whole: Stretch,
     /// The spacing of the corners of outlines on this level.
     step: i64,

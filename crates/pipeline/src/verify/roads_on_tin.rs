@@ -25,7 +25,7 @@ pub(crate) struct OnTin {
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
-/// By what roads of a section are sorted: class, way id, part.
+/// What roads of a section are sorted by: class, way id, part.
 type Key = (FunctionalRoadClass, i64, u32);
 
 /// The gap that P1 allows on a level with this tolerance.

@@ -6,7 +6,7 @@ use corniche_areas::AreaTable;
 use corniche_dem::Polygon;
 use corniche_roads::FrcTable;
 
-/// With which inputs a package is verified.
+/// The inputs with which a package is verified.
 #[derive(Debug, Clone)]
 pub struct VerifySettings {
     /// The elevation files it was made from, to check errors against; empty leaves that out.

@@ -26,7 +26,7 @@ pub struct PayloadContext {
 }
 
 impl PayloadContext {
-    /// That of a package.
+    /// The context of a package.
     #[must_use]
     pub fn of(manifest: &Manifest) -> Self {
         Self {
@@ -55,7 +55,7 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
     encode_sections(payload, context, None)
 }
 
-/// As [`encode`], for a payload whose ground was decoded from `earlier`, a payload of the same tile in the same context: its terrain
+/// Does the same as [`encode`] for a payload whose ground was decoded from `earlier`, a payload of the same tile in the same context: its terrain
 /// section is taken as it is stored there, which saves the time to compress it. The bytes are those of [`encode`] if it was
 /// stored by this version.
 ///

@@ -35,15 +35,15 @@ pub(crate) struct Route<'a> {
 
 #[derive(Clone, Copy)]
 enum RoutePlace {
-    /// Before the first vertex.
+    /// The route is before the first vertex.
     Start,
     /// At a source point, in this triangle or on its border.
     Triangle(u32),
     /// On an edge, about to enter the triangle of this half-edge.
     HalfEdge(u32),
-    /// At a TIN vertex.
+    /// The route is at a TIN vertex.
     Vertex(u32),
-    /// On the boundary, going out.
+    /// The route is on the boundary, going out.
     Outside,
 }
 
@@ -180,7 +180,7 @@ impl Line<'_> {
         })
     }
 
-    /// From the source point p in `triangle`.
+    /// The vertex that follows the source point p in `triangle`.
     fn after_point(&self, triangle: u32) -> Option<DrapedVertex> {
         let corners = self.corners(triangle);
         if let Some(k) = corners.iter().position(|&corner| corner == self.p) {
@@ -196,7 +196,7 @@ impl Line<'_> {
         }
     }
 
-    /// From a TIN vertex on the line.
+    /// The vertex that follows a TIN vertex on the line.
     fn after_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
         let here = self.surface.points()[vertex as usize];
         let fan = self.surface.fan(vertex);

@@ -44,7 +44,7 @@ impl Flight {
         Self::of_record(&record, working, coordinates)
     }
 
-    /// As [`Self::parse`], of a text that was read already.
+    /// Does the same as [`Self::parse`] for a text that was read already.
     ///
     /// # Errors
     /// When it has impossible values, or is for a package in another CRS.

@@ -71,7 +71,7 @@ impl Gpu {
         }
     }
 
-    /// As [`Gpu::new`], with these backends only.
+    /// Does the same as [`Gpu::new`] with these backends only.
     ///
     /// # Errors
     /// When they have no adapter, or none with the name that the environment asks for, or it gives no device.

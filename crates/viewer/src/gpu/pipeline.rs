@@ -33,7 +33,7 @@ pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthSte
     }
 }
 
-/// In what pipelines differ.
+/// What pipelines differ in.
 #[derive(Clone)]
 pub(crate) struct PipelineRecipe<'a> {
     pub(crate) shader: Shader,

@@ -43,7 +43,7 @@ pub struct PassTimer {
     free: Vec<usize>,
     /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
-    /// For each readable buffer whether its frame has areas.
+    /// Tells for each readable buffer whether its frame has areas.
     has_areas: [bool; FRAMES],
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
@@ -54,7 +54,7 @@ pub struct PassTimer {
 type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
 
 impl PassTimes {
-    /// Of all passes together.
+    /// The time of all passes together.
     #[must_use]
     pub fn total_ms(&self) -> f64 {
         self.terrain_ms + self.areas_ms + self.roads_ms + self.composite_ms

@@ -5,7 +5,7 @@ use crate::lod::Drawn;
 /// The tiles of one frame, and what was done to have them.
 #[derive(Default)]
 pub(crate) struct FrameTiles {
-    /// To draw.
+    /// The tiles to draw.
     pub(crate) drawn: Vec<Drawn>,
     /// How many were read and decoded.
     pub(crate) loaded: usize,

@@ -64,7 +64,7 @@ pub struct AreaWall {
 pub struct AreaCorner {
     /// Metres from the tile's reference point, east and north.
     pub place_in_tile: [f32; 2],
-    /// As in [`AreaWall`].
+    /// The heights as in [`AreaWall`].
     pub heights_in_tile: [f32; 2],
 }
 

@@ -100,7 +100,7 @@ impl TileGeometry {
         Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
     }
 
-    /// As [`TileGeometry::assemble`], on the `surface` of the terrain, which is needed only if there are roads.
+    /// Does the same as [`TileGeometry::assemble`] on the `surface` of the terrain, which is needed only if there are roads.
     fn on_surface(
         id: TileId,
         terrain: Option<&Terrain>,

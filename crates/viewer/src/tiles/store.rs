@@ -17,7 +17,7 @@ pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
 pub struct TileStore<'a> {
     source: &'a dyn TileSource,
     tiles: BTreeMap<TileId, TileGeometry>,
-    /// Of all tiles that were read in any way.
+    /// The summaries of all tiles that were read in any way.
     summaries: BTreeMap<TileId, Option<GroundSummary>>,
     /// Tiles of which nothing but slopes is drawn.
     coarser: BTreeMap<TileId, TileGeometry>,

@@ -45,7 +45,7 @@ pub(crate) struct FrameOutput {
     /// The window's contents, to be painted with [`Canvas::paint`].
     pub(crate) primitives: Vec<egui::ClippedPrimitive>,
     pub(crate) screen: ScreenDescriptor,
-    /// For [`Canvas::free_textures`], after painting.
+    /// The textures that [`Canvas::free_textures`] frees after painting.
     pub(crate) unused_textures: Vec<egui::TextureId>,
     /// What the panel's toolkit wants of the window system, such as a shape of the cursor.
     pub(crate) platform: egui::PlatformOutput,

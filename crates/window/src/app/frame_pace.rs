@@ -8,11 +8,11 @@ const PAUSE_S: f64 = 0.5;
 /// When the next frame is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Redraw {
-    /// As soon as possible.
+    /// The next frame is due as soon as possible.
     Now,
-    /// At a time, unless something happens before.
+    /// The next frame is due at a time, unless something happens before.
     At(f64),
-    /// When something happens.
+    /// The next frame is due when something happens.
     Asked,
 }
 

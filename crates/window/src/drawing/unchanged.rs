@@ -12,7 +12,7 @@ pub(crate) enum Unchanged {
     /// It would have far more points than a person draws.
     #[error("the line has more than {most} points")]
     ManyPoints {
-        /// So many may be rounded.
+        /// How many may be rounded.
         most: usize,
     },
 }

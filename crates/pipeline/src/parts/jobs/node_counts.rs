@@ -36,7 +36,7 @@ pub(crate) fn nodes_by_tile(
     counted
 }
 
-/// Of nodes from `low` to `high` along an axis: how many belong to each tile from `first` to `last`, where it is any.
+/// How many of the nodes from `low` to `high` along an axis belong to each tile from `first` to `last`, where it is any.
 fn overlaps([low, high]: [i64; 2], [first, last]: [u32; 2]) -> Vec<(u32, u64)> {
     let tile_of = |node: i64| node.div_euclid(TILE_CELLS);
     let from = tile_of(low).max(i64::from(first));

@@ -179,7 +179,7 @@ struct Places<S, B> {
     steps: S,
     beside: B,
     step: i64,
-    /// In steps of the coarse lattice.
+    /// The last coordinate, in steps of the coarse lattice.
     last: i64,
 }
 

@@ -189,9 +189,9 @@ struct Columns {
     name_bytes: Vec<u64>,
     names: Vec<u8>,
     polygons: Vec<u64>,
-    /// Of each polygon, without the outer one.
+    /// The number of rings of each polygon, without the outer one.
     rings: Vec<u64>,
-    /// Of each ring, less three.
+    /// The number of points of each ring, less three.
     points: Vec<u64>,
     all_points: Vec<LatticePoint>,
     last_id: i64,

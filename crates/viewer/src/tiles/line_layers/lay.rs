@@ -163,7 +163,7 @@ fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGrou
     Laid { lines, places }
 }
 
-/// For each piece of a draped line, the number of the path's segment that it is a piece of. `sources` are segments of `part`, in order.
+/// The number of the path's segment that each piece of a draped line is a piece of. `sources` are segments of `part`, in order.
 fn segments_of(sources: &[[LatticePoint; 2]], part: &ClippedPart) -> Vec<usize> {
     let points = part.line.points();
     let mut at = 0;

@@ -13,7 +13,7 @@ const RUN: usize = 64;
 /// Lines of people's own files, prepared for each level of a package.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
-    /// By level.
+    /// The lines of each level.
     levels: Vec<Vec<LevelLine>>,
 }
 

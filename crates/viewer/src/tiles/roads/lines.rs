@@ -21,7 +21,7 @@ pub struct GroundLine {
     pub look: RoadLook,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
-    /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
+    /// Both ends in plan of the segment of the source line that each piece between two vertices is a piece of.
     /// Between two pieces of one segment the road is straight.
     pub sources_m: Vec<[[f64; 2]; 2]>,
     /// Where dashes are, for the start of each segment of the source line that has pieces; `None`: as for roads.
@@ -59,7 +59,7 @@ pub struct PlanLine {
     pub look: RoadLook,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
-    /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
+    /// The lowest and highest true height of the tile's ground within the width margin of each segment.
     pub ground_range_m: Vec<[f64; 2]>,
     /// Where dashes are, for the start of each segment; `None`: as for roads.
     pub dashes: Option<Vec<DashPlace>>,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// What a road is, as far as it changes how it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RoadLook {
-    /// As its class is.
+    /// The road looks as its class does.
     #[default]
     Plain,
     /// A slip road: narrower, without the bands that take less than half of the width.
@@ -43,7 +43,7 @@ impl RoadLook {
         }
     }
 
-    /// That of a number.
+    /// The look of a number.
     pub(crate) fn of_number(number: u32) -> Option<Self> {
         [Self::Plain, Self::Link, Self::Tunnel, Self::Service]
             .into_iter()

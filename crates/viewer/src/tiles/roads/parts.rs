@@ -30,7 +30,7 @@ pub(crate) struct KnownNet {
     pub(crate) near_m: f64,
 }
 
-/// For each line, the length of the part of the network to which it belongs among lines of its class and more important
+/// The length of the part of the network to which each line belongs among lines of its class and more important
 /// ones, working metres. [`OPEN_M`] if that part may go on where this tile knows no lines.
 ///
 /// ```text
@@ -101,7 +101,7 @@ struct Net {
 struct ForestLine {
     /// Another line of the same part, itself at the root.
     parent: usize,
-    /// Of all lines; known at the root.
+    /// The length of all lines of the part; known at the root.
     length_m: f64,
 }
 
