@@ -15,7 +15,7 @@ use crate::{
 /// The polygons that an outline surrounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assembled {
-    /// In order of their outer rings. No two have inner points in common.
+    /// The polygons in order of their outer rings. No two have inner points in common.
     pub polygons: Vec<Polygon>,
     /// Segments that were there more than once; of an even number nothing is left.
     pub repeated_segments: u64,

@@ -42,7 +42,7 @@ enum Manner {
     Quiet,
     Bars,
     Lines,
-    /// `--json-progress`.
+    /// Records for programs: `--json-progress`.
     Json,
     /// `--log-format json`.
     Events,

@@ -8,11 +8,11 @@ use corniche_tin::{NO_TWIN, Surface};
 /// Where on the ground a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlaceOnTin {
-    /// Outside the ground.
+    /// The point lies outside the ground.
     Off,
     /// The point lies in the inside of a triangle.
     Inside(u32),
-    /// In the inside of the edge of this half-edge.
+    /// The point lies in the inside of the edge of this half-edge.
     Edge(u32),
     /// The point is a TIN vertex.
     Vertex(u32),
@@ -103,7 +103,7 @@ impl Ray<'_> {
         }
     }
 
-    /// On from a triangle just entered across its own `half_edge`, whose start lies on the left of the
+    /// The way on from a triangle just entered across its own `half_edge`, whose start lies on the left of the
     /// segment and whose end on the right.
     #[inline]
     pub(crate) fn entered(&self, half_edge: u32) -> Next {
@@ -118,7 +118,7 @@ impl Ray<'_> {
         }
     }
 
-    /// On from a TIN vertex that lies on the segment, q beyond it.
+    /// The way on from a TIN vertex that lies on the segment, q beyond it.
     pub(crate) fn leave_vertex(&self, vertex: u32) -> Next {
         let hub = self.point(vertex);
         for &out in self.surface.fan(vertex) {
@@ -157,7 +157,7 @@ impl Ray<'_> {
         }
     }
 
-    /// On through the inside of a triangle that holds p in its inside or on an edge.
+    /// The way on through the inside of a triangle that holds p in its inside or on an edge.
     fn through(&self, triangle: u32) -> Next {
         let corners = self.surface.triangles()[triangle as usize];
         let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));

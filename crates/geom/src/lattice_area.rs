@@ -41,7 +41,7 @@ struct Edge {
 }
 
 impl LatticeArea {
-    /// From polygons: of each its outer ring and its holes. Rings may be closed or open, in either direction; those that enclose
+    /// Takes polygons, each as its outer ring and its holes. Rings may be closed or open, in either direction; those that enclose
     /// nothing on the lattice are left out. `None` where nothing is left.
     #[must_use]
     pub fn new(polygons: &[Vec<Vec<LatticePoint>>]) -> Option<Self> {

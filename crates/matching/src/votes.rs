@@ -71,7 +71,7 @@ impl Search {
 /// The sum of votes for each shift, and of the directions of the roads that gave them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Votes {
-    /// In the order of [`Search::shifts`]; empty before the first.
+    /// The sums in the order of [`Search::shifts`]; empty before the first.
     sums: Vec<f32>,
     pub(crate) samples: u64,
     /// Sums of the products of the normals' parts: east · east, east · north, north · north.

@@ -46,7 +46,7 @@ impl AreaLoss {
         Self::ContradictingCoastline,
     ];
 
-    /// In words: the name to count it under.
+    /// The name to count it under, in words.
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {

@@ -21,7 +21,7 @@ impl BoundaryLoss {
     pub const ALL: [Self; 4] =
         [Self::MissingWay, Self::MissingNodes, Self::OutOfRange, Self::OutsideProjection];
 
-    /// In words: the name to count it under.
+    /// The name to count it under, in words.
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {

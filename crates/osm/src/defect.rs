@@ -39,7 +39,7 @@ pub enum Defect {
     TagTakenOtherwise {
         /// The way.
         way_id: i64,
-        /// `key=value`.
+        /// The tag as `key=value`.
         tag: String,
     },
     /// A way of one node or none; it is left out.

@@ -69,7 +69,7 @@ pub struct LeftOut {
     pub class_off: u64,
     /// The table does not know the value.
     pub unknown: u64,
-    /// `area=yes`.
+    /// Ways with `area=yes`.
     pub area: u64,
     /// Another way of the file has the same id.
     pub duplicate: u64,

@@ -15,7 +15,7 @@ pub(crate) enum Hosts {
     Any,
     /// Addresses of numbers, `localhost`, and the one that was named.
     Local {
-        /// In lower case; a number, too, if that was given.
+        /// The name in lower case; a number, too, if that was given.
         named: String,
     },
 }

@@ -17,7 +17,7 @@ use crate::{frame_times::FrameTimes, notices::Notice};
 pub(crate) struct Has {
     /// Water, forest and so on.
     pub(crate) areas: bool,
-    /// Boundaries.
+    /// Whether the package has boundaries.
     pub(crate) boundaries: bool,
 }
 

@@ -30,7 +30,7 @@ const BURST: f64 = 1e-3;
 /// The steps of one stage over time.
 #[derive(Debug, Clone)]
 pub(crate) struct Pace {
-    /// In order of time. The first is the last one before the window, or the begin.
+    /// The moments in order of time. The first is the last one before the window, or the begin.
     kept: VecDeque<Moment>,
     /// When the latest step was made, and how much was done then.
     last: Moment,

@@ -49,7 +49,7 @@ impl Reading {
         parts.join(", ")
     }
 
-    /// When the stage has ended, without its title.
+    /// What is told when the stage has ended, without its title.
     pub(crate) fn ended(&self, digits: Digits) -> String {
         let seconds = self.elapsed.as_secs_f64();
         match (self.done, self.already) {

@@ -65,7 +65,7 @@ impl Number for f64 {
 
 /// What a raster says of itself.
 pub(crate) struct RasterFacts {
-    /// WKT2.
+    /// The CRS as WKT2.
     pub(crate) crs: String,
     pub(crate) crs_from_pixel: [f64; 6],
     /// The description of each band.

@@ -25,6 +25,6 @@ pub struct QuantizedMeshRequest {
 pub enum Availability {
     /// It is told in layer.json, as rectangles of tiles.
     Layer,
-    /// In tiles of each tenth level, for those beneath: layer.json stays small with any number of tiles.
+    /// It is told in tiles of each tenth level, for those beneath: layer.json stays small with any number of tiles.
     Tiles,
 }

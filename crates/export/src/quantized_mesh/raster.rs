@@ -331,7 +331,7 @@ impl Samples {
 enum Around {
     /// The point lies at a node.
     Node(usize),
-    /// In the cell whose north-western node this is.
+    /// The point lies in the cell whose north-western node this is.
     Cell(usize),
     /// The point lies on a border, between these nodes.
     Side([usize; 2]),

@@ -215,7 +215,7 @@ impl OpenStores<'_> {
         Ok(sent)
     }
 
-    /// After a failure: what was done stays. The user is told where, if that is not the store.
+    /// Leaves the store after a failure: what was done stays. The user is told where, if that is not the store.
     pub(crate) fn leave(self, observer: &dyn Observer) {
         if let Some((_, folder)) = &self.sent {
             tell_of_what_is_kept(folder, observer);

@@ -13,7 +13,7 @@ use crate::{
 
 /// What a build may use.
 pub(crate) struct Room {
-    /// `--memory`.
+    /// The memory of `--memory`.
     pub(crate) memory_bytes: u64,
     /// The machine's; `None` where it is not known.
     pub(crate) machine_bytes: Option<u64>,

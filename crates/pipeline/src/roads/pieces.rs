@@ -41,7 +41,7 @@ pub(crate) struct RoadPiece {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Run {
     pub(crate) line: Polyline,
-    /// On the finest level, the true length of each segment in micrometres; empty on other levels.
+    /// The true length of each segment in micrometres on the finest level; empty on other levels.
     pub(crate) segments_um: Vec<u64>,
 }
 

@@ -21,7 +21,7 @@ pub struct LocalScratch {
 }
 
 impl LocalScratch {
-    /// In a file that is empty and owned.
+    /// Scratch space in a file that is empty and owned.
     pub(crate) fn new(file: OpenFile, total_bytes: Arc<AtomicU64>) -> Self {
         Self { file, end: AtomicU64::new(0), total_bytes }
     }

@@ -39,7 +39,7 @@ enum RoutePlace {
     Start,
     /// At a source point, in this triangle or on its border.
     Triangle(u32),
-    /// On an edge, about to enter the triangle of this half-edge.
+    /// The route is on an edge, about to enter the triangle of this half-edge.
     HalfEdge(u32),
     /// The route is at a TIN vertex.
     Vertex(u32),

@@ -18,11 +18,11 @@ const FRAMES: usize = 4;
 /// Milliseconds that the passes of a frame took on the graphics card.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassTimes {
-    /// Terrain.
+    /// The pass of the terrain.
     pub terrain_ms: f64,
     /// Areas; 0 where none were drawn.
     pub areas_ms: f64,
-    /// Roads.
+    /// The passes of roads.
     pub roads_ms: f64,
     /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
     pub composite_ms: f64,

@@ -86,7 +86,7 @@ pub struct ClassVolumes {
 /// All volumes of a tile, by class.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AreaVolumes {
-    /// Walls.
+    /// The walls of the volumes.
     #[serde(with = "blocks::plain")]
     pub walls: Vec<AreaWall>,
     /// Corners of caps.

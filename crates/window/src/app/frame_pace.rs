@@ -17,7 +17,7 @@ pub(crate) enum Redraw {
 }
 
 impl Redraw {
-    /// After the shortest of these times; without any, when something happens.
+    /// The next frame is due after the shortest of these times; without any, when something happens.
     pub(crate) fn after<const N: usize>(now_s: f64, rests_s: [Option<f64>; N]) -> Self {
         let soonest_s = rests_s.into_iter().flatten().reduce(f64::min);
         soonest_s.map_or(Self::Asked, |rest_s| Self::At(now_s + rest_s))

@@ -26,7 +26,7 @@ enum Followed {
     None,
     /// The point before was there already, with this number.
     From(usize),
-    /// So was the one before it, beside it in the same ring: the way leads on or back.
+    /// The point before that one was there already, too, beside it in the same ring: the way leads on or back.
     Along(usize, Way),
 }
 

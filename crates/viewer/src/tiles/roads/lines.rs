@@ -68,9 +68,9 @@ pub struct PlanLine {
 /// The roads of a tile.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TileLines {
-    /// On the ground; empty if that section was not read.
+    /// Roads on the ground; empty if that section was not read.
     pub ground: Vec<GroundLine>,
-    /// In plan; empty if that section was not read.
+    /// Roads in plan; empty if that section was not read.
     pub plan: Vec<PlanLine>,
     /// How far the plan lines reach beyond the tile; roads are not drawn beyond this half width.
     pub width_margin_m: f64,

@@ -11,7 +11,7 @@ pub enum RoadLook {
     Plain,
     /// A slip road: narrower, without the bands that take less than half of the width.
     Link,
-    /// Under the ground: pale, with a dashed edge, and hidden by every road that is not.
+    /// A road under the ground: pale, with a dashed edge, and hidden by every road that is not.
     Tunnel,
     /// A service road: driveways, parking aisles, ways to yards and barns. Narrower, of one colour, shown one zoom step later than
     /// the rest of its class, and hidden by every other road on the ground.
