@@ -16,7 +16,7 @@ mod height_grid;
 // A plain container that knows nothing of triangles, though `tin` is its only user.
 mod index_lists;
 mod lattice;
-mod lattice_area;
+mod lattice_region;
 mod node;
 mod orientation;
 mod polyline;
@@ -34,7 +34,7 @@ pub use grid_frame::{GridFrame, GridFrameError, MAX_LATTICE_STEPS};
 pub use height_grid::HeightGrid;
 pub use index_lists::IndexLists;
 pub use lattice::LatticePoint;
-pub use lattice_area::LatticeArea;
+pub use lattice_region::LatticeRegion;
 pub use node::{NodeIndex, NodeWindow};
 pub use orientation::{Side, cross, side};
 pub use polyline::{Polyline, PolylineError};

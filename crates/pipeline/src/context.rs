@@ -1,7 +1,7 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{CoordinateTable, GridFrame, LatticeArea, LatticeBounds, TileId};
+use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
 use corniche_store::Artifacts;
 
 use crate::{
@@ -78,7 +78,7 @@ impl<'a> Context<'a> {
     }
 
     /// The polygon that was asked for.
-    pub(crate) fn polygon(&self) -> Option<&LatticeArea> {
+    pub(crate) fn polygon(&self) -> Option<&LatticeRegion> {
         self.grid.polygon.as_deref()
     }
 

@@ -15,7 +15,7 @@ use crate::mosaics::mosaic::{Mosaic, Placed};
 use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
 use crate::plan::layout::Layout;
-use crate::polygons::image::{Image, area};
+use crate::polygons::image::{Image, region};
 use crate::polygons::polygon::Polygon;
 use crate::{Dem, DemError};
 
@@ -277,8 +277,8 @@ impl GridPlan {
     /// # Errors
     /// When the polygon has no place in the working CRS, or encloses nothing.
     pub fn within(mut self, polygon: &Polygon) -> Result<Self, DemError> {
-        let area = area(polygon, &self.working, self.area_deg(), &self.frame)?;
-        self.polygon = Some(Arc::new(area));
+        let region = region(polygon, &self.working, self.area_deg(), &self.frame)?;
+        self.polygon = Some(Arc::new(region));
         Ok(self)
     }
 }

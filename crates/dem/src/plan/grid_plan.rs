@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, GridFrame, LatticeArea, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, LatticeRegion, NodeIndex};
 
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
@@ -90,7 +90,7 @@ pub struct GridPlan {
     /// The part that is asked for; `None`: all of it.
     pub clip: Option<Clip>,
     /// The polygon that was asked for, on the lattice.
-    pub polygon: Option<Arc<LatticeArea>>,
+    pub polygon: Option<Arc<LatticeRegion>>,
     /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
     pub data_bounds: Bounds,
     /// Rectangle around the files, or around the part that is asked for, in WGS84 degrees. Past the antimeridian longitudes go on

@@ -1,6 +1,6 @@
 //! A polygon in the working CRS, and on the lattice of a package.
 
-use corniche_geom::{Bounds, GridFrame, LatticeArea, LatticePoint};
+use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion};
 
 use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
@@ -44,7 +44,7 @@ impl Image {
         frame: &GridFrame,
         polygon: &Polygon,
         working: &Working,
-    ) -> Result<LatticeArea, DemError> {
+    ) -> Result<LatticeRegion, DemError> {
         let ring = |ring: &Ring| -> Option<Vec<LatticePoint>> {
             ring.iter().map(|&corner| frame.snap(corner)).collect()
         };
@@ -52,7 +52,7 @@ impl Image {
             self.parts.iter().map(|rings| rings.iter().map(ring).collect()).collect();
         let parts = parts.ok_or_else(|| outside(polygon, working))?;
         let no_area = || PolygonError::NoArea { path: polygon.path().to_path_buf() };
-        Ok(LatticeArea::new(&parts).ok_or_else(no_area)?)
+        Ok(LatticeRegion::new(&parts).ok_or_else(no_area)?)
     }
 }
 
@@ -66,18 +66,18 @@ impl RecordedCrs {
         polygon: &Polygon,
         area_deg: Bounds,
         frame: &GridFrame,
-    ) -> Result<LatticeArea, DemError> {
-        area(polygon, self.working(), area_deg, frame)
+    ) -> Result<LatticeRegion, DemError> {
+        region(polygon, self.working(), area_deg, frame)
     }
 }
 
 /// A polygon on the lattice of `frame`.
-pub(crate) fn area(
+pub(crate) fn region(
     polygon: &Polygon,
     working: &Working,
     area_deg: Bounds,
     frame: &GridFrame,
-) -> Result<LatticeArea, DemError> {
+) -> Result<LatticeRegion, DemError> {
     let image = Image::new(polygon, working, area_deg, frame.cell().shorter_m())?;
     image.on_lattice(frame, polygon, working)
 }

@@ -15,7 +15,7 @@ use std::{
 
 use corniche_areas::AreaTable;
 use corniche_geom::{
-    GridFrame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
+    GridFrame, LatticeBounds, LatticePoint, LatticeRegion, ProjectError, Projection, TileId,
 };
 use corniche_osm::{ExtractSummary, ReadOsmError, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
@@ -65,7 +65,7 @@ pub(crate) struct RoadInput<'a> {
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for.
-    pub(crate) polygon: Option<&'a LatticeArea>,
+    pub(crate) polygon: Option<&'a LatticeRegion>,
     pub(crate) pool: &'a rayon::ThreadPool,
     /// Memory for sorting.
     pub(crate) memory_bytes: u64,

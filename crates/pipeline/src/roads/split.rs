@@ -3,7 +3,7 @@
 use std::{borrow::Cow, sync::Arc};
 
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use super::{
@@ -23,7 +23,7 @@ pub(crate) struct RoadSplitting<'a> {
     /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for: roads end at its outline.
-    pub(crate) polygon: Option<&'a LatticeArea>,
+    pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
 /// A road, split.
@@ -73,10 +73,10 @@ impl RoadSplitting<'_> {
 
     /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
     fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
-        let Some(area) = self.polygon else {
+        let Some(region) = self.polygon else {
             return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         };
-        let parts = corniche_drape::clip_area(&road.line, area);
+        let parts = corniche_drape::clip_region(&road.line, region);
         if parts.first().is_some_and(|part| part.line == road.line) {
             return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         }

@@ -23,7 +23,7 @@ const MOST_ENTRIES_PER_EDGE: usize = 8;
 ///
 /// Source: D. Sunday 2021, *Practical Geometry Algorithms*, "Winding number".
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LatticeArea {
+pub struct LatticeRegion {
     edges: Vec<Edge>,
     bounds: LatticeBounds,
     /// Rows of lattice points to a band.
@@ -40,7 +40,7 @@ struct Edge {
     winding: i32,
 }
 
-impl LatticeArea {
+impl LatticeRegion {
     /// Takes polygons, each as its outer ring and its holes. Rings may be closed or open, in either direction; those that enclose
     /// nothing on the lattice are left out. `None` where nothing is left.
     #[must_use]
@@ -127,10 +127,10 @@ impl LatticeArea {
         winding > 0
     }
 
-    /// Which nodes of a window of stride 1 are corners of cells that share more than a point of their border with the area. `steps` are
+    /// Which nodes of a window of stride 1 are corners of cells that share more than a point of their border with the region. `steps` are
     /// lattice steps to a cell, east and north. Nodes come row by row from the north.
     ///
-    /// So the ground between these nodes covers the area, and reaches less than a cell beyond it. Whether a node counts does not depend on
+    /// So the ground between these nodes covers the region, and reaches less than a cell beyond it. Whether a node counts does not depend on
     /// the window.
     #[must_use]
     pub fn nodes(&self, steps: [i64; 2], window: &NodeWindow) -> Vec<bool> {
@@ -149,7 +149,7 @@ impl LatticeArea {
         inside
     }
 
-    /// Which cells of a row share more than their border with the area: `columns` of them from the cell between node `first` and
+    /// Which cells of a row share more than their border with the region: `columns` of them from the cell between node `first` and
     /// the one north-east of it.
     fn cells(&self, first: [i64; 2], columns: usize, [east, north]: [i64; 2]) -> Vec<bool> {
         let mut inside = vec![false; columns];
@@ -190,7 +190,7 @@ impl LatticeArea {
         })
     }
 
-    /// Asserts what every area promises; for tests.
+    /// Asserts what every region promises; for tests.
     ///
     /// # Panics
     /// When it does not hold.
@@ -284,5 +284,5 @@ fn twice_signed_area(ring: &[LatticePoint]) -> i128 {
 }
 
 #[cfg(test)]
-#[path = "lattice_area_tests.rs"]
+#[path = "lattice_region_tests.rs"]
 mod tests;

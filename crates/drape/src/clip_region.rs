@@ -1,10 +1,10 @@
-//! Lines are clipped to an area of any outline.
+//! Lines are clipped to a region of any outline.
 
-use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, cross};
 
 use crate::clip::{ClippedPart, Inside, Parts};
 
-/// The parts of `line` in an area of any outline, in order, and where in the line they come from.
+/// The parts of `line` in a region of any outline, in order, and where in the line they come from.
 ///
 /// ```text
 ///            ┌─────────┐
@@ -15,9 +15,9 @@ use crate::clip::{ClippedPart, Inside, Parts};
 /// Which edges a segment crosses is decided exactly. Where it crosses is rounded to the nearest lattice step. What runs along an outline is
 /// inside. A stretch of less than two lattice steps between two crossings may go to either side.
 #[must_use]
-pub fn clip_area(line: &Polyline, area: &LatticeArea) -> Vec<ClippedPart> {
+pub fn clip_region(line: &Polyline, region: &LatticeRegion) -> Vec<ClippedPart> {
     let around = LatticeBounds::of(line.points());
-    if around.is_none_or(|around| !around.intersects(&area.bounds())) {
+    if around.is_none_or(|around| !around.intersects(&region.bounds())) {
         return Vec::new();
     }
     let mut parts = Parts::default();
@@ -26,9 +26,9 @@ pub fn clip_area(line: &Polyline, area: &LatticeArea) -> Vec<ClippedPart> {
     for (index, pair) in line.points().windows(2).enumerate() {
         parts.segment = index;
         let segment = [pair[0], pair[1]];
-        let crossings = Crossings::of(segment, area);
+        let crossings = Crossings::of(segment, region);
         if crossings.is_none() {
-            let is_inside = last_inside.unwrap_or_else(|| area.contains(segment[0]));
+            let is_inside = last_inside.unwrap_or_else(|| region.contains(segment[0]));
             last_inside = Some(is_inside);
             parts.take(segment, is_inside.then_some([0.0, 1.0]));
             continue;
@@ -36,7 +36,7 @@ pub fn clip_area(line: &Polyline, area: &LatticeArea) -> Vec<ClippedPart> {
         last_inside = None;
         let mut kept: Option<[f64; 2]> = None;
         for [from, to] in crossings.stretches() {
-            if crossings.is_inside(segment, [from, to], area) {
+            if crossings.is_inside(segment, [from, to], region) {
                 kept = Some(kept.map_or([from, to], |[start, _]| [start, to]));
             } else {
                 parts.take(segment, kept.take());
@@ -77,10 +77,10 @@ struct Crossings {
 }
 
 impl Crossings {
-    fn of([p, q]: [LatticePoint; 2], area: &LatticeArea) -> Self {
+    fn of([p, q]: [LatticePoint; 2], region: &LatticeRegion) -> Self {
         let mut found = Self::default();
         let Some(near) = LatticeBounds::of(&[p, q]) else { return found };
-        for [a, b] in area.edges_near(&near) {
+        for [a, b] in region.edges_near(&near) {
             let (of_p, of_q) = (cross(a, b, p), cross(a, b, q));
             if of_p == 0 && of_q == 0 {
                 let ends = [share([p, q], a), share([p, q], b)];
@@ -119,7 +119,7 @@ impl Crossings {
         &self,
         [p, q]: [LatticePoint; 2],
         [from, to]: [f64; 2],
-        area: &LatticeArea,
+        region: &LatticeRegion,
     ) -> bool {
         let middle = f64::midpoint(from, to);
         if self.along.iter().any(|[from, to]| (*from..=*to).contains(&middle)) {
@@ -127,7 +127,7 @@ impl Crossings {
         }
         // In half steps of the lattice.
         let at = |p: i64, q: i64| 2 * p + ((q - p) as f64 * 2.0 * middle).round() as i64;
-        area.contains_half([at(p.u, q.u), at(p.v, q.v)])
+        region.contains_half([at(p.u, q.u), at(p.v, q.v)])
     }
 }
 
@@ -142,5 +142,5 @@ fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "clip_area_tests.rs"]
+#[path = "clip_region_tests.rs"]
 mod tests;
