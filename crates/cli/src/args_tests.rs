@@ -1,4 +1,4 @@
-//! Every option of the command line is parsed, documented and refused as it should be.
+//! The command line is consistent: its options exclude each other, leave positional arguments alone and give tips.
 
 use std::path::PathBuf;
 

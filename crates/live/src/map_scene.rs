@@ -1,4 +1,4 @@
-//! What a map shows: camera, style and layers, in one picture or in several.
+//! What a map shows: camera, style, roads and tiles, in one picture or in several.
 
 use corniche_styles::Style;
 use corniche_viewer::{FrameView, RoadOptions, Wireframe, camera::Camera, lod::Drawn};

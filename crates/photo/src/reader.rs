@@ -1,4 +1,4 @@
-//! The reader of texels: each one is the mean of the light of the photo's pixels under it.
+//! The reader of texels: windows of them are made of the pixels of photos, block by block.
 
 use corniche_geom::Bounds;
 use gdal::Dataset;

@@ -1,4 +1,4 @@
-//! The bounds, steps and scales that give numbers in a payload their meaning.
+//! The corner, the placement and the scale that give numbers in a payload their meaning.
 
 use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
