@@ -1,3 +1,5 @@
+//! Settings files, FRC tables and styles of any bytes are read or refused.
+
 use corniche_presets::{Config, class_filter, parse_frc_table};
 use corniche_styles::parse_style;
 

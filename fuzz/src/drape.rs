@@ -1,3 +1,5 @@
+//! Lines of any bytes are laid on ground of any bytes, and the result keeps every promise of draping.
+
 use arbitrary::{Result, Unstructured};
 use corniche_drape::{
     DrapedLine, DrapedVertex, Neighbours, OwnedBorders, check, clip, clip_closed, extrude,
@@ -6,7 +8,7 @@ use corniche_drape::{
 use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 
-/// Of a length: what rounding in f64 may add to it or take away.
+/// How much of a length rounding in f64 may add to it or take away.
 const ROUNDING: f64 = 1e-9;
 
 /// Lines made from these bytes are laid on ground made from these bytes: on the TIN, in order, without repeated or lost parts.

@@ -1,3 +1,5 @@
+//! Extracts of any bytes are read or refused, and every way is accounted for.
+
 use std::{cell::LazyCell, collections::BTreeSet, io::Cursor, path::Path};
 
 use corniche_geom::LatticePoint;

@@ -1,3 +1,5 @@
+//! Packages of any bytes are opened or refused, and so are their tiles.
+
 use std::sync::LazyLock;
 
 use corniche_testing::{

@@ -1,3 +1,5 @@
+//! Payloads of any bytes are decoded or refused, and what is decoded encodes to itself.
+
 use corniche_geom::TileId;
 use corniche_testing::{
     package::{QUANTUM_M, context},

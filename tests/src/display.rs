@@ -1,3 +1,5 @@
+//! A display without a screen (Xvfb) for tests that open windows, with keys and mouse.
+
 use std::{
     io::{BufRead as _, BufReader},
     process::{Child, Command, Stdio},

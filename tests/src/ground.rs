@@ -134,7 +134,7 @@ pub fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     parts.map(|part| part / whole)
 }
 
-/// From the earth's coordinates to a CRS with heights: two steps of PROJ, through EPSG:4979.
+/// The way from the earth's coordinates to a CRS with heights: two steps of PROJ, through EPSG:4979.
 pub struct FromEarth {
     to_degrees: CoordTransform,
     to_crs: CoordTransform,
@@ -153,7 +153,7 @@ pub struct Region {
 }
 
 impl FromEarth {
-    /// To working metres and heights.
+    /// The way to working metres and heights.
     ///
     /// # Panics
     /// When PROJ does not know the CRS.

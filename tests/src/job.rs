@@ -25,7 +25,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// With more options.
+    /// A job with more options.
     ///
     /// # Panics
     /// When there is no place for it.
@@ -106,7 +106,7 @@ impl Job {
         let _ = self.said(more);
     }
 
-    /// As [`Job::succeed`]; what it said.
+    /// Does the same as [`Job::succeed`]; what it said.
     ///
     /// # Panics
     /// When it fails.
@@ -211,7 +211,7 @@ fn files_of(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
 /// When a build is stopped.
 #[derive(Debug, Clone, Copy)]
 pub enum When {
-    /// After so long.
+    /// The build is stopped after so long.
     After(Duration),
     /// When more durable work is there than at its start.
     Worked,

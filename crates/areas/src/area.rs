@@ -1,3 +1,5 @@
+//! An area of the map: the OSM object that it was, its name, its polygons and its true size.
+
 use std::fmt;
 
 use crate::{AreaClass, Polygon};

@@ -1,3 +1,5 @@
+//! The classes of areas, such as water or forest, with their numbers and names.
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -1,3 +1,5 @@
+//! A table says which tags make which class of area; it is checked when it is made.
+
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::AreaClass;
@@ -10,7 +12,7 @@ use crate::AreaClass;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AreaTable {
     name: String,
-    /// By the order in which keys were named first: key, then value → class.
+    /// Key, then value → class; keys stand in the order in which they were named first.
     keys: Vec<(String, BTreeMap<String, AreaClass>)>,
     has_sea: bool,
 }

@@ -1,3 +1,5 @@
+//! Area tables decide by the key that they name first, and refuse entries that contradict each other.
+
 use super::*;
 
 fn table(tags: &[(&str, AreaClass)]) -> Result<AreaTable, AreaTableError> {

@@ -1,3 +1,5 @@
+//! Ways of an outline, in any order and direction, become polygons with holes.
+
 use std::collections::HashMap;
 
 use corniche_geom::LatticePoint;
@@ -13,7 +15,7 @@ use crate::{
 /// The polygons that an outline surrounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assembled {
-    /// In order of their outer rings. No two have inner points in common.
+    /// The polygons in order of their outer rings. No two have inner points in common.
     pub polygons: Vec<Polygon>,
     /// Segments that were there more than once; of an even number nothing is left.
     pub repeated_segments: u64,

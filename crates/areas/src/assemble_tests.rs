@@ -1,3 +1,5 @@
+//! Outlines of any order and direction become polygons with holes, and open or crossing ones are refused.
+
 use geo::Validation as _;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! The classes of boundaries, from countries to protected areas, and the tags that make them.
+
 use std::fmt;
 
 /// What a boundary divides.
@@ -5,15 +7,15 @@ use std::fmt;
 pub enum BoundaryClass {
     /// Countries: `admin_level=2`.
     Admin2,
-    /// `admin_level=3`.
+    /// Units of `admin_level=3`, between countries and states.
     Admin3,
     /// States, provinces, cantons: `admin_level=4`.
     Admin4,
-    /// `admin_level=5`.
+    /// Units of `admin_level=5`, between states and counties.
     Admin5,
     /// Counties, districts: `admin_level=6`.
     Admin6,
-    /// `admin_level=7`.
+    /// Units of `admin_level=7`, between counties and municipalities.
     Admin7,
     /// Municipalities: `admin_level=8`.
     Admin8,

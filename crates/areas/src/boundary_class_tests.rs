@@ -1,3 +1,5 @@
+//! Administrative levels and protected areas have boundary classes, and names and numbers lead back to them.
+
 use super::*;
 
 fn of(tags: &[(&str, &str)]) -> Option<BoundaryClass> {

@@ -1,3 +1,5 @@
+//! Polygons are put on a coarser lattice, which may join or divide them, and stay free of crossings.
+
 use corniche_geom::LatticePoint;
 
 use crate::{

@@ -1,3 +1,5 @@
+//! Coarse polygons are valid and near to the fine ones, and shared borders stay shared.
+
 use std::collections::BTreeSet;
 
 use geo::Validation as _;

@@ -1,3 +1,5 @@
+//! Coastlines in any order are joined to chains and rings and cut where they cross the edge.
+
 use super::*;
 
 fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {

@@ -1,3 +1,5 @@
+//! Polygons are cut to a rectangle, one side after the other.
+
 use corniche_geom::LatticeBounds;
 
 use crate::{Axis, OutlineError, Polygon, divide};

@@ -1,3 +1,5 @@
+//! A polygon is divided by an upright or level line, and both sides get the same new points.
+
 use corniche_geom::LatticePoint;
 
 use crate::{
@@ -10,9 +12,9 @@ use crate::{
 /// Along which axis a polygon is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
-    /// By an upright line, into a western and an eastern part.
+    /// An upright line divides into a western and an eastern part.
     East,
-    /// By a level line, into a southern and a northern part.
+    /// A level line divides into a southern and a northern part.
     North,
 }
 
@@ -46,7 +48,7 @@ pub fn divide(polygon: &Polygon, axis: Axis, at: i64) -> Result<[Vec<Polygon>; 2
     } else if points.iter().all(|&point| line.along(point) >= at) {
         Ok([Vec::new(), own()])
     } else {
-        Ok([line.part(polygon, Part::Smaller)?, line.part(polygon, Part::Larger)?])
+        Ok([line.part(polygon, LineSide::Smaller)?, line.part(polygon, LineSide::Larger)?])
     }
 }
 
@@ -57,7 +59,7 @@ struct Line {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Part {
+enum LineSide {
     Smaller,
     Larger,
 }
@@ -77,7 +79,7 @@ impl Line {
         }
     }
 
-    fn part(self, polygon: &Polygon, part: Part) -> Result<Vec<Polygon>, OutlineError> {
+    fn part(self, polygon: &Polygon, part: LineSide) -> Result<Vec<Polygon>, OutlineError> {
         let rings: Vec<Vec<LatticePoint>> =
             polygon.rings().map(|ring| self.part_of_ring(ring, part)).collect();
         let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
@@ -85,10 +87,10 @@ impl Line {
     }
 
     /// The points of a ring on one side of the line, the first once more at the end. Points on the line are on both sides.
-    fn part_of_ring(self, ring: &Ring, part: Part) -> Vec<LatticePoint> {
+    fn part_of_ring(self, ring: &Ring, part: LineSide) -> Vec<LatticePoint> {
         let is_kept = |point: LatticePoint| match part {
-            Part::Smaller => self.along(point) <= self.at,
-            Part::Larger => self.along(point) >= self.at,
+            LineSide::Smaller => self.along(point) <= self.at,
+            LineSide::Larger => self.along(point) >= self.at,
         };
         let mut kept = Vec::with_capacity(ring.points().len() + 8);
         for [from, to] in ring.segments() {

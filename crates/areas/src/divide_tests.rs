@@ -1,3 +1,5 @@
+//! The two parts of a divided polygon add up to the whole.
+
 use std::collections::BTreeSet;
 
 use geo::Validation as _;

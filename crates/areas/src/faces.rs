@@ -16,7 +16,7 @@ const OUTERMOST: usize = usize::MAX;
 
 /// The walks of all faces that are inside.
 pub(crate) struct InnerFaces {
-    /// For each face the half-edges of its walks, from any start.
+    /// The half-edges of the walks of each face, from any start.
     pub(crate) faces: Vec<Vec<Vec<usize>>>,
 }
 
@@ -50,9 +50,9 @@ impl Face {
 }
 
 struct Walks {
-    /// For each half-edge its walk.
+    /// The walk of each half-edge.
     of: Vec<usize>,
-    /// For each walk one of its half-edges.
+    /// One of the half-edges of each walk.
     starts: Vec<usize>,
 }
 

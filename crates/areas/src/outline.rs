@@ -1,3 +1,5 @@
+//! The ways that make an outline, and why an outline can fail to surround anything.
+
 use corniche_geom::LatticePoint;
 
 /// A way of an outline: neighbouring points are joined. Its direction does not matter.

@@ -19,7 +19,7 @@ use crate::segments::Segment;
 /// ```
 pub(crate) struct PlanarGraph {
     segments: Vec<Segment>,
-    /// For each half-edge the one after it around its left face.
+    /// The half-edge that follows each half-edge around its left face.
     next: Vec<u32>,
 }
 

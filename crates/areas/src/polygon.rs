@@ -1,3 +1,5 @@
+//! Rings and polygons on the lattice, with their areas in square steps.
+
 use corniche_geom::{LatticePoint, cross};
 
 /// A closed line that neither touches nor crosses itself. The first point is not repeated at the end.

@@ -1,3 +1,5 @@
+//! The sea is made of coastlines: they are closed along the edge of a rectangle, and what is missing or wrong is reported.
+
 use corniche_geom::{LatticeBounds, LatticePoint, cross};
 
 use crate::{

@@ -1,3 +1,5 @@
+//! The sea is what is no land, also where coastlines are open or contradict each other.
+
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;

@@ -9,7 +9,7 @@ pub(crate) type Segment = [LatticePoint; 2];
 
 /// Segments that meet at their ends only.
 pub(crate) struct Separated {
-    /// In ascending order.
+    /// The segments in ascending order.
     pub(crate) segments: Vec<Segment>,
     /// How many were there an even number of times; they separate nothing.
     pub(crate) cancelled: u64,

@@ -11,13 +11,13 @@ pub(crate) struct Stabbing {
 struct Interval {
     low: i64,
     high: i64,
-    /// Of the range whose middle this is.
+    /// The largest end of an interval in the range whose middle this is.
     largest_high: i64,
     item: usize,
 }
 
 impl Stabbing {
-    /// From intervals `[low, high)`; items are named by their place in the list. Empty ones are left out.
+    /// Takes intervals `[low, high)`; items are named by their place in the list. Empty ones are left out.
     pub(crate) fn new(intervals: impl Iterator<Item = [i64; 2]>) -> Self {
         let mut intervals: Vec<Interval> = intervals
             .enumerate()

@@ -1,3 +1,5 @@
+//! The tree of intervals finds what a look at all intervals finds.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -56,7 +56,7 @@ pub(crate) struct Curve {
 pub(crate) enum Marks {
     /// No; the line has the dashes and the width of this number.
     None(usize),
-    /// With the shape and the dashes of this number.
+    /// A mark with the shape of this number, and a line with its dashes.
     Shape(usize),
 }
 

@@ -1,3 +1,5 @@
+//! Every kind of defect is one line of six fields in the list of defects.
+
 use super::*;
 
 #[test]

@@ -28,7 +28,7 @@ pub(crate) struct Drawing {
 }
 
 /// Where lines are saved.
-enum Place {
+enum SaveTarget {
     File(PathBuf),
     /// The next free name in a folder.
     Folder(PathBuf),
@@ -73,8 +73,8 @@ impl Drawing {
             })
             .collect();
         let mut place = match file {
-            Some(path) => Place::File(path.to_path_buf()),
-            None => Place::Folder(folder.to_path_buf()),
+            Some(path) => SaveTarget::File(path.to_path_buf()),
+            None => SaveTarget::Folder(folder.to_path_buf()),
         };
         let save = move |lines: &[DrawnLine]| {
             let saved = save(&known, lines, &mut place, &package);
@@ -87,7 +87,7 @@ impl Drawing {
     }
 }
 
-impl Place {
+impl SaveTarget {
     fn path(&self) -> &Path {
         let (Self::File(path) | Self::Folder(path)) = self;
         path
@@ -98,7 +98,7 @@ impl Place {
 fn save(
     known: &LineFile,
     lines: &[DrawnLine],
-    place: &mut Place,
+    place: &mut SaveTarget,
     package: &PackageSource,
 ) -> Result<PathBuf, Failure> {
     // Heights may be left out; lines may not be lost for want of them.
@@ -134,11 +134,11 @@ fn save(
     }
     let text = known.text_with(&saved);
     let (path, existing) = match place {
-        Place::File(path) => (path.clone(), Existing::Replace),
-        Place::Folder(folder) => (free_name(folder)?, Existing::Keep),
+        SaveTarget::File(path) => (path.clone(), Existing::Replace),
+        SaveTarget::Folder(folder) => (free_name(folder)?, Existing::Keep),
     };
     Output::create(&path, existing, &[])?.write_whole(text.as_bytes())?;
-    *place = Place::File(path.clone());
+    *place = SaveTarget::File(path.clone());
     Ok(path)
 }
 

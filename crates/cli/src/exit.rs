@@ -1,9 +1,11 @@
+//! The exit codes of the program and the words for them in error documents.
+
 use std::process;
 
 /// How the program ends; the numbers are part of its interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExitCode {
-    /// Done.
+    /// The command did all that it was asked to do.
     Done,
     /// Processing failed; for `verify`, a promise is broken.
     Failed,
@@ -11,7 +13,7 @@ pub(crate) enum ExitCode {
     Unusable,
     /// The target exists.
     Exists,
-    /// Interrupted.
+    /// A signal ended the run.
     Interrupted,
 }
 

@@ -1,3 +1,5 @@
+//! Why a command failed: an error, its exit code, and whether trying again may help.
+
 use std::{fmt, io};
 
 use corniche_export::ExportError;

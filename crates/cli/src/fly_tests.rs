@@ -1,3 +1,5 @@
+//! A method that is given twice is flown once.
+
 use super::*;
 
 #[test]

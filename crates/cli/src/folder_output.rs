@@ -160,7 +160,7 @@ fn kind_of(target: &Path) -> io::Result<Kind> {
     }
 }
 
-/// After a program that was killed between two renames: the old export gets back to its place, or is removed where the new one is there.
+/// Puts right what a program left that was killed between two renames: the old export gets back to its place, or is removed where the new one is there.
 fn put_right(target: &Path, replaced: &Path) -> io::Result<()> {
     if !replaced.join(MARKER).is_file() {
         return Ok(());

@@ -1,3 +1,5 @@
+//! A folder of output appears when it is complete and is replaced as a whole, whatever is killed.
+
 use std::{fs, path::Path};
 
 use tempfile::TempDir;

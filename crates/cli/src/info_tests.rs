@@ -1,3 +1,5 @@
+//! Numbers and long texts of `info` are told in a form that people read.
+
 use super::*;
 
 #[test]

@@ -33,7 +33,7 @@ pub(crate) enum Cause {
 
 /// The program was asked to end.
 static NOTED: AtomicBool = AtomicBool::new(false);
-/// By what; set before `NOTED`.
+/// What ended the run; set before `NOTED`.
 static CAUSE: OnceLock<Cause> = OnceLock::new();
 /// The run knows of it.
 static SEEN: AtomicBool = AtomicBool::new(false);

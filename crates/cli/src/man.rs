@@ -1,4 +1,4 @@
-//! `corniche man`: manual pages.
+//! `corniche man`: manual pages are written to a folder.
 
 use std::{
     fs,

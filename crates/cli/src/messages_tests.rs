@@ -1,3 +1,5 @@
+//! Messages have a form for people and one for programs, and each voice says more than the one before.
+
 use std::sync::{Arc, Mutex};
 
 use super::*;

@@ -42,9 +42,9 @@ pub(crate) fn is_package_name(path: &Path) -> bool {
 /// What has one format, so that a name with the ending of another one is a mistake.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Format {
-    /// PNG.
+    /// A picture (PNG).
     Picture,
-    /// SVG.
+    /// A chart (SVG).
     Chart,
 }
 

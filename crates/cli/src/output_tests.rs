@@ -1,3 +1,5 @@
+//! Output files appear when they are complete, and nothing that exists is lost by mistake.
+
 use std::fs;
 
 use super::*;

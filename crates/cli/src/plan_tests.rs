@@ -1,3 +1,5 @@
+//! Times in a plan are told in units that fit.
+
 use super::*;
 
 #[test]

@@ -42,14 +42,14 @@ enum Manner {
     Quiet,
     Bars,
     Lines,
-    /// `--json-progress`.
+    /// Records for programs: `--json-progress`.
     Json,
     /// `--log-format json`.
     Events,
 }
 
 impl Manner {
-    /// As the voice says.
+    /// Progress in the form that the voice asks for.
     fn of(voice: Voice) -> Self {
         match voice {
             Voice { is_quiet: true, .. } => Self::Quiet,

@@ -1,3 +1,5 @@
+//! Progress is told often enough while nothing moves, and rates count only the work of this run.
+
 use super::*;
 
 /// Looked at every half second, and as late as a busy machine may do it, a stage has a plain line every ten seconds, also if

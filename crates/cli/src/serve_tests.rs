@@ -1,3 +1,5 @@
+//! The address that `serve` prints is one that a browser opens.
+
 use super::{counted, url};
 
 #[test]

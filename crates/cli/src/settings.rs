@@ -314,7 +314,7 @@ fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
     }
 }
 
-/// As many threads as asked for, else one per processor.
+/// The number of threads that is asked for, else one per processor.
 pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }

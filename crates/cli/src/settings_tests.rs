@@ -1,3 +1,5 @@
+//! Settings are checked once the command line has overridden them.
+
 use corniche_presets::{Config, ResourceOptions};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! A style is read again when its file changes, and a broken one is told once.
+
 use std::{
     fs,
     time::{Duration, SystemTime},

@@ -1,4 +1,4 @@
-//! Plain text tables.
+//! Tables as plain text.
 
 use std::{fmt::Write as _, io::IsTerminal, ops::Range};
 
@@ -54,7 +54,7 @@ impl Table {
 
 /// Most characters in a line of a table.
 const MAX_WIDTH: usize = 100;
-/// Between two columns.
+/// What stands between two columns.
 const GAP: &str = "  ";
 
 /// Which columns go beside the first one, block by block: no more blocks than needed, and those as narrow as they can be.
@@ -64,7 +64,7 @@ fn folds(widths: &[usize]) -> Vec<Range<usize>> {
     narrower.into_iter().find(|blocks| blocks.len() == widest.len()).unwrap_or(widest)
 }
 
-/// As many columns in each block as fit, at least one.
+/// Blocks of columns, each with as many as fit, at least one.
 fn folds_within(widths: &[usize], limit: usize) -> Vec<Range<usize>> {
     let mut blocks = Vec::new();
     let mut begin = 1;
@@ -108,14 +108,14 @@ pub(crate) fn wrapped(text: &str, first: &str, rest: &str) -> String {
 /// How whole numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Digits {
-    /// With thousands apart, for people.
+    /// Thousands stand apart, for people.
     Apart,
     /// Digits alone, for what reads a file or a pipe.
     Plain,
 }
 
 impl Digits {
-    /// As it suits what is written to.
+    /// The form of numbers that suits the stream they are written to.
     pub(crate) fn on(stream: &impl IsTerminal) -> Self {
         if stream.is_terminal() { Self::Apart } else { Self::Plain }
     }

@@ -1,3 +1,5 @@
+//! Tables line up, are folded where they are too wide, and leave out empty columns.
+
 use super::*;
 
 #[test]

@@ -245,7 +245,7 @@ fn to_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     text
 }
 
-/// So many samples, with their verb.
+/// A number of samples in words, with their verb.
 fn lying(samples: u64, digits: Digits) -> String {
     match samples {
         1 => "1 sample lies".to_owned(),

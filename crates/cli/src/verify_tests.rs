@@ -1,3 +1,5 @@
+//! The last line of `verify` is the verdict, and checks that looked at nothing do not count.
+
 use corniche_pipeline::{Check, CheckId};
 
 use super::*;

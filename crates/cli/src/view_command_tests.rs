@@ -1,3 +1,5 @@
+//! The command that a window offers draws what the window shows.
+
 use clap::Parser as _;
 use corniche_remote::PackagePlace;
 use corniche_viewer::camera::Orientation;

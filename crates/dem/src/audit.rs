@@ -49,7 +49,7 @@ pub struct AuditBlock {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Entry {
     height_m: f64,
-    /// As the file stores it.
+    /// The value as the file stores it.
     stored: f64,
     count: u64,
 }

@@ -1,3 +1,5 @@
+//! Values that stand for missing data although the file does not say so are found.
+
 use super::*;
 
 fn audit(files: &[&[f64]]) -> Audit {

@@ -1,3 +1,5 @@
+//! Elevation files that are described but not held open, and settings of GDAL for the whole process.
+
 use std::path::PathBuf;
 
 use corniche_geom::Bounds;

@@ -1,6 +1,8 @@
+//! Errors of opening, planning and reading elevation files.
+
 use std::path::PathBuf;
 
-use corniche_geom::{Cell, FrameError};
+use corniche_geom::{Cell, GridFrameError};
 
 use crate::LibraryError;
 
@@ -259,7 +261,7 @@ pub enum DemError {
     #[error("--fill-voids {cells} is too far; at most {limit} cells")]
     FillVoids { cells: u32, limit: u32 },
     #[error("the DEM's grid cannot be made")]
-    Frame(#[from] FrameError),
+    Frame(#[from] GridFrameError),
     #[error("windows of stride {stride} are not read from the DEM, only of stride 1")]
     Stride { stride: i64 },
     #[error(

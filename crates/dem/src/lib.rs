@@ -48,5 +48,5 @@ pub use plan::recorded_grid::RecordedGrid;
 pub use polygon_error::PolygonError;
 pub use polygons::polygon::Polygon;
 pub use reading::reader::{DemWindow, Reader};
-pub use reading::samples::{SampleArea, SampleBlock};
+pub use reading::samples::{SampleBlock, SampleRange};
 pub use vector_file::{NotOpened, open_vectors};

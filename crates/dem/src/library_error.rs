@@ -22,7 +22,7 @@ pub struct LibraryError {
 const MOST_LETTERS: usize = 300;
 
 impl LibraryError {
-    /// From an error that was just returned on this thread.
+    /// Tells of an error that was just returned on this thread.
     pub(crate) fn new(error: &GdalError) -> Self {
         let own = match error {
             GdalError::CplError { msg, .. } | GdalError::NullPointer { msg, .. } => msg.clone(),

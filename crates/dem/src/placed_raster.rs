@@ -1,3 +1,5 @@
+//! Any raster with its place on the earth, such as a photo, and the way from its pixels to working metres and back.
+
 use std::path::{Path, PathBuf};
 
 use corniche_geom::GeoTransform;
@@ -15,7 +17,7 @@ use crate::{DemError, GridPlan, OpenOptions, library_error};
 pub struct PlacedRaster {
     path: PathBuf,
     size: [usize; 2],
-    /// From pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees to that.
+    /// The map from pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees to that.
     crs_from_pixel: GeoTransform,
     crs: Crs,
 }

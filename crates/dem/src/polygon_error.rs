@@ -1,3 +1,5 @@
+//! Errors of reading a polygon file that elevation data are cut with.
+
 use std::path::PathBuf;
 
 use crate::LibraryError;

@@ -1,4 +1,4 @@
-//! Opens vector files.
+//! Vector files are opened through GDAL, and pipes and devices are refused.
 
 use std::{fs, io, path::Path};
 

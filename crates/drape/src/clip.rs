@@ -1,3 +1,5 @@
+//! Lines are clipped to a rectangle of the lattice, with the rule for what runs exactly along its borders.
+
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TILE_CELLS};
 
 use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};
@@ -22,7 +24,7 @@ pub fn clip(line: &Polyline, bounds: &LatticeBounds, owned: OwnedBorders) -> Vec
 pub struct ClippedPart {
     /// The part.
     pub line: Polyline,
-    /// For each of its segments, of which segment of the whole line it is.
+    /// The segment of the whole line that each of its segments is a piece of.
     pub segments: Vec<usize>,
 }
 
@@ -75,7 +77,7 @@ pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
 pub(crate) struct Parts {
     pub(crate) ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
-    /// For each segment of `current`, the segment of the line that it is a piece of.
+    /// The segment of the line that each segment of `current` is a piece of.
     segments: Vec<usize>,
     /// The segment of the line that is being clipped.
     pub(crate) segment: usize,

@@ -1,3 +1,5 @@
+//! The tiles together have each line once, as brute force finds it.
+
 use std::collections::BTreeMap;
 
 use super::*;

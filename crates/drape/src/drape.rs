@@ -1,10 +1,12 @@
+//! A line is laid on a TIN, with a vertex at each edge that it crosses.
+
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
 use crate::{
     DrapedLine, DrapedVertex,
     fraction::Fraction,
-    ray::{Next, Place, Ray},
+    ray::{Next, PlaceOnTin, Ray},
 };
 
 /// A line laid on the ground.
@@ -41,7 +43,7 @@ pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
     let room = 2 * points.len();
     let drape = Drape::default();
     let mut walk = Walk { surface, drape, segment: 0, part: None, room, near: Vec::new() };
-    let mut place = Place::of(points[0], surface);
+    let mut place = PlaceOnTin::of(points[0], surface);
     walk.arrive(points[0], place);
     for (segment, pair) in points.windows(2).enumerate() {
         walk.segment = segment;
@@ -73,7 +75,7 @@ enum Entry {
 
 impl Walk<'_> {
     /// Follows one segment from p, which lies at `place`; tells where q lies.
-    fn follow(&mut self, [p, q]: [LatticePoint; 2], place: Place) -> Place {
+    fn follow(&mut self, [p, q]: [LatticePoint; 2], place: PlaceOnTin) -> PlaceOnTin {
         let ray = Ray { surface: self.surface, p, q };
         // Where along the segment the ground was left or a TIN vertex passed, for when it ends there.
         let mut last = Fraction::ZERO;
@@ -104,7 +106,7 @@ impl Walk<'_> {
                     let Some((back, entry)) = self.entry_after(&ray, last) else {
                         self.leave_out([last.to_f64(), 1.0]);
                         // The end may still touch ground, and the next segment may continue from there.
-                        let place = Place::of(q, self.surface);
+                        let place = PlaceOnTin::of(q, self.surface);
                         self.arrive(q, place);
                         return place;
                     };
@@ -169,7 +171,7 @@ impl Walk<'_> {
     }
 
     /// Adds a source point, if it lies on ground.
-    fn arrive(&mut self, point: LatticePoint, place: Place) {
+    fn arrive(&mut self, point: LatticePoint, place: PlaceOnTin) {
         if let Some(triangle) = place.first_triangle(self.surface) {
             self.push(DrapedVertex::Source { point, triangle });
         }

@@ -1,3 +1,5 @@
+//! Lines as tiles hold them: laid on the TIN for GEO, or in plan with a range of heights for SV.
+
 use corniche_geom::LatticePoint;
 
 /// A vertex of a [`DrapedLine`], by what defines it; positions and heights follow from the TIN.

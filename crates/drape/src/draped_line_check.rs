@@ -1,3 +1,5 @@
+//! A check that a draped line is one that draping could have made, in exact arithmetic.
+
 use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 

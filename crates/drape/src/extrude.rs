@@ -1,3 +1,5 @@
+//! Lines for shadow volumes: the plan line, and the lowest and highest ground around each of its segments.
+
 use std::ops::Range;
 
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline};

@@ -1,3 +1,5 @@
+//! No ground around a line for shadow volumes lies beyond the range of its segment.
+
 use super::*;
 use crate::height_range::PAD;
 use corniche_tin::{Placement, Tin, TinVertex};

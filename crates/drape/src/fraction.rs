@@ -8,7 +8,7 @@ use corniche_geom::{LatticePoint, cross};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fraction {
     numerator: i128,
-    /// Above 0.
+    /// The denominator, above 0.
     denominator: i128,
 }
 

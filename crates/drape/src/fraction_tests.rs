@@ -1,3 +1,5 @@
+//! Fractions are compared exactly, also where 128 bits do not hold their products.
+
 use super::*;
 use proptest::prelude::*;
 

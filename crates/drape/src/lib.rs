@@ -53,7 +53,7 @@ mod draped_line;
 mod owned_borders;
 
 mod clip;
-mod clip_area;
+mod clip_region;
 mod drape;
 mod draped_line_check;
 mod line_positions;
@@ -69,7 +69,7 @@ mod ray;
 mod segment_rectangle;
 
 pub use clip::{ClippedPart, clip, clip_closed, clip_parts, clip_parts_within};
-pub use clip_area::clip_area;
+pub use clip_region::clip_region;
 pub use drape::{Drape, Gap, drape};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use draped_line_check::check;

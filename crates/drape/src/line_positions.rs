@@ -1,3 +1,5 @@
+//! Positions and heights of a draped line are computed from the TIN on which it lies.
+
 use corniche_geom::{LatticePoint, MAX_LATTICE_STEPS, cross};
 use corniche_tin::Surface;
 

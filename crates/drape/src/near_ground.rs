@@ -1,3 +1,5 @@
+//! Bounds on the heights of the ground near a segment, which grow with the distance from it.
+
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
 

@@ -1,3 +1,5 @@
+//! No ground near a segment lies beyond the bounds.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,10 +1,12 @@
+//! Which stretches of its borders a tile owns, so that a line along a border is kept exactly once.
+
 use corniche_geom::{TILE_CELLS, TileId};
 
 /// Which stretches of its four borders a tile owns: what runs exactly along a border of two tiles must be kept
 /// by one of them, and only one, so that nothing is drawn twice and lengths add up.
 ///
 /// The boundary of the ground belongs to the ground. So a stretch of border belongs to the tile that has ground
-/// beside it, and where that does not decide, to the tile in the east or south, as in `Frame::tile_column_row`. Both
+/// beside it, and where that does not decide, to the tile in the east or south, as in `GridFrame::tile_column_row`. Both
 /// tiles know the cells on both sides (those of the neighbour through their halo) and make the same decision, cell by
 /// cell:
 ///

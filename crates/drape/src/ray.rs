@@ -7,18 +7,18 @@ use corniche_tin::{NO_TWIN, Surface};
 
 /// Where on the ground a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// Outside the ground.
+pub(crate) enum PlaceOnTin {
+    /// The point lies outside the ground.
     Off,
-    /// In the inside of a triangle.
+    /// The point lies in the inside of a triangle.
     Inside(u32),
-    /// In the inside of the edge of this half-edge.
+    /// The point lies in the inside of the edge of this half-edge.
     Edge(u32),
-    /// On a TIN vertex.
+    /// The point is a TIN vertex.
     Vertex(u32),
 }
 
-impl Place {
+impl PlaceOnTin {
     pub(crate) fn of(point: LatticePoint, surface: &Surface) -> Self {
         let Some(triangle) = surface.locate(point) else {
             return Self::Off;
@@ -67,7 +67,7 @@ fn turn(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> Ordering {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Next {
     /// Its own end, which lies here.
-    Arrives(Place),
+    Arrives(PlaceOnTin),
     /// It leaves a triangle through the inside of this half-edge of it, which runs from a to b.
     Crosses { half_edge: u32, a: u32, b: u32 },
     /// It reaches this TIN vertex before its end.
@@ -93,17 +93,17 @@ pub(crate) struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// From p.
-    pub(crate) fn leave_start(&self, place: Place) -> Next {
+    /// The way from p on.
+    pub(crate) fn leave_start(&self, place: PlaceOnTin) -> Next {
         match place {
-            Place::Off => Next::Ends,
-            Place::Inside(triangle) => self.through(triangle),
-            Place::Edge(half_edge) => self.leave_edge(half_edge),
-            Place::Vertex(vertex) => self.leave_vertex(vertex),
+            PlaceOnTin::Off => Next::Ends,
+            PlaceOnTin::Inside(triangle) => self.through(triangle),
+            PlaceOnTin::Edge(half_edge) => self.leave_edge(half_edge),
+            PlaceOnTin::Vertex(vertex) => self.leave_vertex(vertex),
         }
     }
 
-    /// On from a triangle just entered across its own `half_edge`, whose start lies on the left of the
+    /// The way on from a triangle just entered across its own `half_edge`, whose start lies on the left of the
     /// segment and whose end on the right.
     #[inline]
     pub(crate) fn entered(&self, half_edge: u32) -> Next {
@@ -112,13 +112,13 @@ impl Ray<'_> {
         let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
         let apex = self.surface.triangles()[triangle as usize][((k + 2) % 3) as usize];
         match turn(self.p, self.q, self.point(apex)) {
-            Ordering::Equal => self.towards(apex, Place::Inside(triangle)),
+            Ordering::Equal => self.towards(apex, PlaceOnTin::Inside(triangle)),
             Ordering::Greater => self.out_of(next),
             Ordering::Less => self.out_of(previous),
         }
     }
 
-    /// On from a TIN vertex that lies on the segment, q beyond it.
+    /// The way on from a TIN vertex that lies on the segment, q beyond it.
     pub(crate) fn leave_vertex(&self, vertex: u32) -> Next {
         let hub = self.point(vertex);
         for &out in self.surface.fan(vertex) {
@@ -129,10 +129,10 @@ impl Ray<'_> {
             let turn_right = turn(hub, self.point(right), self.q);
             let turn_left = turn(hub, self.point(left), self.q);
             if turn_right.is_eq() && self.ahead(hub, self.point(right)) {
-                return self.towards(right, Place::Edge(out));
+                return self.towards(right, PlaceOnTin::Edge(out));
             }
             if turn_left.is_eq() && self.ahead(hub, self.point(left)) {
-                return self.towards(left, Place::Edge(into));
+                return self.towards(left, PlaceOnTin::Edge(into));
             }
             if turn_right.is_gt() && turn_left.is_lt() {
                 return self.out_of(across);
@@ -147,7 +147,7 @@ impl Ray<'_> {
         match turn(self.point(a), self.point(b), self.q) {
             Ordering::Equal => {
                 let target = if self.ahead(self.p, self.point(b)) { b } else { a };
-                self.towards(target, Place::Edge(half_edge))
+                self.towards(target, PlaceOnTin::Edge(half_edge))
             }
             Ordering::Greater => self.through(half_edge / 3),
             Ordering::Less => match self.surface.twin(half_edge) {
@@ -157,7 +157,7 @@ impl Ray<'_> {
         }
     }
 
-    /// On through the inside of a triangle that holds p in its inside or on an edge.
+    /// The way on through the inside of a triangle that holds p in its inside or on an edge.
     fn through(&self, triangle: u32) -> Next {
         let corners = self.surface.triangles()[triangle as usize];
         let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));
@@ -167,7 +167,7 @@ impl Ray<'_> {
                 return self.out_of(3 * triangle + k as u32);
             }
             if this.is_eq() && next.is_gt() && previous.is_lt() {
-                return self.towards(corners[k], Place::Inside(triangle));
+                return self.towards(corners[k], PlaceOnTin::Inside(triangle));
             }
         }
         Next::Ends
@@ -178,17 +178,17 @@ impl Ray<'_> {
     fn out_of(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
         match turn(self.point(a), self.point(b), self.q) {
-            Ordering::Equal => Next::Arrives(Place::Edge(half_edge)),
-            Ordering::Greater => Next::Arrives(Place::Inside(half_edge / 3)),
+            Ordering::Equal => Next::Arrives(PlaceOnTin::Edge(half_edge)),
+            Ordering::Greater => Next::Arrives(PlaceOnTin::Inside(half_edge / 3)),
             Ordering::Less => Next::Crosses { half_edge, a, b },
         }
     }
 
     /// Towards a TIN vertex ahead on the segment's line, over `place`.
-    fn towards(&self, vertex: u32, place: Place) -> Next {
+    fn towards(&self, vertex: u32, place: PlaceOnTin) -> Next {
         let target = self.point(vertex);
         if target == self.q {
-            Next::Arrives(Place::Vertex(vertex))
+            Next::Arrives(PlaceOnTin::Vertex(vertex))
         } else if self.ahead(target, self.q) {
             Next::Passes(vertex)
         } else {

@@ -1,3 +1,5 @@
+//! A plane through a piece of a road, and how far the ground beside the piece departs from it.
+
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
 

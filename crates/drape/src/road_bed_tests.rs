@@ -1,3 +1,5 @@
+//! No ground beside a piece of a road lies outside its bed.
+
 use proptest::prelude::*;
 
 use super::*;

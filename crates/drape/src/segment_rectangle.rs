@@ -25,7 +25,7 @@ impl SegmentRectangle {
         Self { p, east, north, length, beyond: [margin; 2], margin }
     }
 
-    /// Beside `length` steps from `p` on in a direction of length 1, reaching `margin` to both sides, and beyond the start
+    /// The rectangle beside `length` steps from `p` on in a direction of length 1, reaching `margin` to both sides, and beyond the start
     /// and the end by so much.
     pub(crate) fn beside(
         p: [f64; 2],

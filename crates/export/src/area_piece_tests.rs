@@ -1,3 +1,5 @@
+//! A piece of an area comes back from its bytes as it was.
+
 use super::*;
 
 #[test]

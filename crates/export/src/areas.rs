@@ -10,10 +10,10 @@ use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 use crate::{
     area_piece::AreaPiece,
     error::ExportError,
+    feature_request::{AreasRequest, Coordinates},
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
-    request::{AreasRequest, Coordinates},
     scratch::{self, FileScratch},
     vector::{Field, FieldKind, Layer, Record, Shape, ShapeKind, Value, VectorFile, VectorFormat},
 };

@@ -1,3 +1,5 @@
+//! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to it.
+
 /// A rectangle of longitudes and latitudes, degrees (WGS84); it may cross the antimeridian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DegreeBounds {
@@ -8,7 +10,7 @@ pub struct DegreeBounds {
 }
 
 impl DegreeBounds {
-    /// From west, south, east and north. A west beyond the east means that the rectangle crosses 180°. `None` where it is
+    /// The rectangle of west, south, east and north. A west beyond the east means that the rectangle crosses 180°. `None` where it is
     /// empty or beyond ±180 and ±90 degrees.
     #[must_use]
     pub fn new([west, south, east, north]: [f64; 4]) -> Option<Self> {

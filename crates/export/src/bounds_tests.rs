@@ -1,3 +1,5 @@
+//! Lines are cut at rectangles of degrees, also across the antimeridian and around the earth.
+
 use super::*;
 
 fn bounds(numbers: [f64; 4]) -> DegreeBounds {

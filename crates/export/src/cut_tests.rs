@@ -1,3 +1,5 @@
+//! Pieces of roads keep their positions and heights where bounds cut them.
+
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Errors of all exports.
+
 use std::{io, path::PathBuf};
 
 use corniche_areas::AreaObject;

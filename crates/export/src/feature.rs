@@ -28,7 +28,7 @@ pub(crate) struct Road<'a> {
     pub(crate) attributes: &'a RoadAttributes,
     pub(crate) parts: usize,
     pub(crate) measures: Measures,
-    /// For a feature of one piece: its tile and its number there.
+    /// The tile of a feature of one piece, and the piece's number there.
     pub(crate) piece: Option<(TileId, u32)>,
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn road_values(road: &Road<'_>) -> Vec<Value> {
     values
 }
 
-/// To whole micrometres, so that sums of rounding do not fill files with digits.
+/// Rounds to whole micrometres, so that sums of rounding do not fill files with digits.
 fn to_micro(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -1,3 +1,5 @@
+//! Settings of GDAL that hold for one thread until they are dropped.
+
 use gdal::config::{clear_thread_local_config_option, set_thread_local_config_option};
 
 /// Settings of GDAL, of this thread alone, until it is dropped.

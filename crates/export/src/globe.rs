@@ -44,7 +44,7 @@ pub(crate) struct RootFrame {
 }
 
 impl RootFrame {
-    /// At a longitude and latitude in degrees.
+    /// The place at a longitude and latitude in degrees.
     pub(crate) fn at(place_deg: [f64; 2]) -> Self {
         let [lon, lat] = place_deg;
         Self { origin_m: geocentric_m([lon, lat, 0.0]), axes: local_axes(place_deg) }

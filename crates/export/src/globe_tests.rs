@@ -1,3 +1,5 @@
+//! Earth-centred positions are those of the published example.
+
 use super::{RootFrame, cross, dot, geocentric_m};
 
 /// IOGP 2019, *Guidance Note 7-2*, section 4.1.1: the example, a point of the North Sea.

@@ -9,12 +9,12 @@ use corniche_tileset::{FilePackage, Manifest, tile_of_order};
 
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     join::lines,
     measures::Measures,
     observer::{Observer, Stage},
     piece::{Piece, Vertex},
     places::Places,
-    request::Coordinates,
     scratch::FileScratch,
     ways::Ways,
 };
@@ -66,7 +66,7 @@ pub fn growth_by_way<E: From<ExportError>>(
     Ok(())
 }
 
-/// Of all pieces of a way, on all levels; `None` of none.
+/// The growth of all pieces of a way, on all levels; `None` without any.
 fn growth_of(
     pieces: Vec<Piece>,
     manifest: &Manifest,

@@ -1,3 +1,5 @@
+//! Ends at borders and bounds do not count as points of the way.
+
 use corniche_geom::LatticePoint;
 use corniche_roads::RoadAttributes;
 

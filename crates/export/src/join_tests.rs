@@ -1,3 +1,5 @@
+//! Pieces of a way are joined across tiles, each exactly once, and gaps stay gaps.
+
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 
 use super::*;

@@ -20,7 +20,7 @@ struct Laid {
     vertices: Vec<Vertex>,
 }
 
-/// For each line the parts of it that lie on ground, in order. Parts that meet on a border of tiles are one.
+/// The parts of each line that lie on ground, in order. Parts that meet on a border of tiles are one.
 pub(crate) fn laid_lines(
     package: &FilePackage,
     lines: &[Vec<LatticePoint>],

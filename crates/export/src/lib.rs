@@ -36,6 +36,7 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
+mod feature_request;
 mod gdal_settings;
 mod geotiff;
 mod globe;
@@ -52,7 +53,6 @@ mod profile;
 mod quantized_mesh;
 mod read;
 mod relief_map;
-mod request;
 mod roads;
 mod scratch;
 mod surfaces;
@@ -66,6 +66,7 @@ pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
 pub use error::{CutError, ExportError};
 pub use feature::road_fields;
+pub use feature_request::{AreasRequest, Coordinates, RoadsRequest};
 pub use geotiff::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
@@ -75,7 +76,6 @@ pub use quantized_mesh::{
     Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,
     export_quantized_mesh,
 };
-pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 pub use vector::{Field, FieldKind, VectorFormat};

@@ -27,7 +27,7 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    /// Of some lines. `distance_m` gives the true distance in plan between two places on the lattice.
+    /// The measures of some lines. `distance_m` gives the true distance in plan between two places on the lattice.
     pub(crate) fn of(lines: &[Line], distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
         let mut all = Self::default();
         for line in lines {

@@ -1,3 +1,5 @@
+//! Lengths and grades of roads are those of the closed form.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! The interface by which an export tells how far it is and learns that it should end.
+
 use crate::error::ExportError;
 
 /// What an export is doing.

@@ -1,3 +1,5 @@
+//! Pieces come back from scratch space sorted and whole.
+
 use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_roads::{Form, Oneway, Structure};

@@ -5,7 +5,9 @@ use corniche_dem::{DemError, DemProjection, RecordedCrs, RecordedHeights};
 use corniche_geom::{LatticePoint, Projection as _, wgs84};
 use corniche_tileset::Manifest;
 
-use crate::{cut::cut_at_antimeridian, error::ExportError, piece::Vertex, request::Coordinates};
+use crate::{
+    cut::cut_at_antimeridian, error::ExportError, feature_request::Coordinates, piece::Vertex,
+};
 
 /// Carries places on the lattice to the coordinates of features.
 pub(crate) struct Places<'a> {

@@ -6,6 +6,7 @@ use corniche_tileset::FilePackage;
 
 use crate::{
     error::ExportError,
+    feature_request::Coordinates,
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures},
@@ -13,7 +14,6 @@ use crate::{
     piece::{Piece, Vertex},
     places::Places,
     read,
-    request::Coordinates,
 };
 
 /// The profile of some ways, one after the other.
@@ -105,19 +105,19 @@ pub fn profile_of_lines(
     let places = Places::new(package.manifest(), Coordinates::Package)?;
     let laid = laid_lines(package, lines, level, observer)?;
     let numbered = (1..).zip(laid).flat_map(|(number, parts)| {
-        let of_line = move |part: Vec<Vertex>| -> Part {
+        let of_line = move |part: Vec<Vertex>| -> ProfileLine {
             part.into_iter().map(|vertex| (number, vertex)).collect()
         };
         parts.into_iter().map(of_line)
     });
-    let parts: Vec<Part> = numbered.collect();
+    let parts: Vec<ProfileLine> = numbered.collect();
     if parts.is_empty() {
         return Err(ExportError::NoLineOnGround { package: package.path().to_path_buf() });
     }
     Ok(told(&parts, level, &places))
 }
 
-fn told(parts: &[Part], level: u8, places: &Places<'_>) -> Profile {
+fn told(parts: &[ProfileLine], level: u8, places: &Places<'_>) -> Profile {
     let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
     let all: Vec<Line> = parts
         .iter()
@@ -162,17 +162,17 @@ fn pieces(
     Ok(pieces)
 }
 
-type Part = Vec<(i64, Vertex)>;
+type ProfileLine = Vec<(i64, Vertex)>;
 
 /// The lines of all ways in a row, turned so that they go on; those that meet become one part.
-fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<Part> {
+fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
     let ends = |lines: &[Line]| -> [Option<[f64; 2]>; 2] {
         let first = lines.first().and_then(|line| line.vertices.first());
         let last = lines.last().and_then(|line| line.vertices.last());
         [first, last].map(|vertex| vertex.map(|vertex| vertex.at))
     };
     let all_ends: Vec<_> = of_ways.iter().map(|lines| ends(lines)).collect();
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<ProfileLine> = Vec::new();
     let mut end: Option<[f64; 2]> = None;
     for (index, (&way_id, mut lines)) in way_ids.iter().zip(of_ways).enumerate() {
         let [first, last] = ends(&lines);
@@ -202,7 +202,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<Part> {
     parts
 }
 
-fn points(part: &Part, begin_m: f64, places: &Places<'_>) -> Vec<ProfilePoint> {
+fn points(part: &ProfileLine, begin_m: f64, places: &Places<'_>) -> Vec<ProfilePoint> {
     let mut along_m = begin_m;
     let mut profile = Vec::with_capacity(part.len());
     for (index, (_, vertex)) in part.iter().enumerate() {
@@ -225,7 +225,7 @@ fn points(part: &Part, begin_m: f64, places: &Places<'_>) -> Vec<ProfilePoint> {
         .collect()
 }
 
-/// Of each point of a profile, whose distances ascend.
+/// The grade at each point of a profile, whose distances ascend.
 fn grades(profile: &[[f64; 2]]) -> Vec<f64> {
     let half_m = LEAST_GRADE_LENGTH_M / 2.0;
     let height_at = |along_m: f64| -> [f64; 2] {

@@ -1,3 +1,5 @@
+//! Ways of a profile are turned so that they go on, and grades are taken over twenty metres.
+
 use super::*;
 
 fn line(points: &[[f64; 2]]) -> Line {
@@ -5,7 +7,7 @@ fn line(points: &[[f64; 2]]) -> Line {
     Line { vertices, joins: Vec::new() }
 }
 
-fn places(parts: &[Part]) -> Vec<Vec<f64>> {
+fn places(parts: &[ProfileLine]) -> Vec<Vec<f64>> {
     parts.iter().map(|part| part.iter().map(|(_, vertex)| vertex.at[0]).collect()).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Pieces of roads out of tiles.
 
 use corniche_drape::DrapedVertex;
-use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, TilePayload, pmtiles_order};
 use corniche_tin::{Placement, Surface};
@@ -138,7 +138,7 @@ fn vertices(road: &GeoRoad, surface: &Surface) -> Result<Vec<Vertex>, corniche_d
 }
 
 /// Whether the ends of a line are points on its tile's border. A line that ends where the ground ends has no such point.
-fn goes_on(road: &GeoRoad, frame: &Frame, id: TileId) -> [bool; 2] {
+fn goes_on(road: &GeoRoad, frame: &GridFrame, id: TileId) -> [bool; 2] {
     let tile = frame.tile_lattice_bounds(id);
     let is_on_border = |point: LatticePoint| {
         point.u == tile.min.u

@@ -32,7 +32,7 @@ const LEAST_AWAY: f32 = 0.005;
 const EDGE: f64 = 1e-9;
 
 impl ReliefMap {
-    /// Of a tile whose ground is `mesh`, normals and all; `None` where the package has no relief there.
+    /// The normal map of a tile whose ground is `mesh`, normals and all; `None` where the package has no relief there.
     pub(crate) fn of_tile(
         package: &FilePackage,
         id: TileId,

@@ -1,3 +1,5 @@
+//! The texels of normal maps give back the directions of the ground.
+
 use corniche_geom::LatticePoint;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Scratch space in a file without a name, for sorting during an export.
+
 use std::{
     fs::File,
     io::{self, Read as _, Seek as _, SeekFrom, Write as _},

@@ -1,3 +1,5 @@
+//! Barycentric coordinates of a point in a triangle.
+
 /// Barycentric coordinates of `p` in the triangle `a`, `b`, `c`: weights in that order, summing to 1.
 ///
 /// All positions in one plane coordinate system, in any unit. A weight is below 0 when `p` lies beyond

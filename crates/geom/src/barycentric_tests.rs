@@ -1,3 +1,5 @@
+//! Barycentric coordinates of corners, the centroid and points outside are as defined.
+
 use super::*;
 
 const A: [f64; 2] = [0.0, 0.0];

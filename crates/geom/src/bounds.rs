@@ -1,3 +1,5 @@
+//! Rectangles along the axes, with f64 coordinates or on the lattice.
+
 use serde::{Deserialize, Serialize};
 
 use crate::LatticePoint;
@@ -71,7 +73,7 @@ impl Bounds {
         self.max_y - self.min_y
     }
 
-    /// As `[min_x, min_y, max_x, max_y]`.
+    /// The rectangle as `[min_x, min_y, max_x, max_y]`.
     #[must_use]
     pub fn to_array(self) -> [f64; 4] {
         [self.min_x, self.min_y, self.max_x, self.max_y]

@@ -1,3 +1,5 @@
+//! The size of a grid cell of the finest level, east and north, and the lattice that follows from it.
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -75,7 +77,7 @@ impl From<f64> for Cell {
 }
 
 impl From<[f64; 2]> for Cell {
-    /// From east and north.
+    /// The cell with these sides, east and north.
     fn from([east_m, north_m]: [f64; 2]) -> Self {
         Self { east_m, north_m }
     }

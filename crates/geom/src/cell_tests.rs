@@ -1,3 +1,5 @@
+//! Cells are told as squares or as rectangles.
+
 use super::*;
 
 #[test]

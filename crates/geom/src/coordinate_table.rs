@@ -1,3 +1,5 @@
+//! A table of WGS84 positions over the working CRS, by which readers convert coordinates without PROJ.
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Bounds, ProjectError, Projection, wgs84};

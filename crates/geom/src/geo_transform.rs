@@ -1,3 +1,5 @@
+//! The affine map from pixels of a raster to coordinates, and back.
+
 use serde::{Deserialize, Serialize};
 
 /// Affine map from pixel coordinates (column, row; 0 at the outer corner of the first pixel, row 0 in

@@ -1,3 +1,5 @@
+//! The inverse of a geotransform leads back, where there is one.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! A regular grid of heights in metres, with gaps.
+
 /// Heights that are compared at the same time.
 const LANES: usize = 8;
 

@@ -1,3 +1,5 @@
+//! Gaps in a grid of heights hold none and are not counted.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Many lists of indices in two flat arrays, such as the triangles of each cell of a grid.
+
 /// Lists of indices, one list for each place: triangles by the cells of a grid, half-edges by their vertex.
 ///
 /// ```text

@@ -1,3 +1,5 @@
+//! Each place lists the items that name it, in ascending order.
+
 use super::*;
 
 #[test]

@@ -1,6 +1,8 @@
+//! A position in plan, in whole steps of a package's lattice.
+
 use serde::{Deserialize, Serialize};
 
-/// A position in plan, in whole lattice steps of a [`Frame`](crate::Frame): `u` east, `v` north.
+/// A position in plan, in whole lattice steps of a [`GridFrame`](crate::GridFrame): `u` east, `v` north.
 ///
 /// All plan geometry of a package lies on this lattice, so orientation and side tests are exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 //!
 //! Everything that two tiles must agree on to the last bit is an integer here: nodes of the global
 //! grid ([`NodeIndex`]) and points of the plan lattice ([`LatticePoint`]). Metres come out of a
-//! [`Frame`] and out of nothing else.
+//! [`GridFrame`] and out of nothing else.
 //!
 //! This crate never knows a road, a file or a GPU.
 
@@ -10,13 +10,13 @@ mod barycentric;
 mod bounds;
 mod cell;
 mod coordinate_table;
-mod frame;
 mod geo_transform;
+mod grid_frame;
 mod height_grid;
 // A plain container that knows nothing of triangles, though `tin` is its only user.
 mod index_lists;
 mod lattice;
-mod lattice_area;
+mod lattice_region;
 mod node;
 mod orientation;
 mod polyline;
@@ -29,12 +29,12 @@ pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
 pub use cell::Cell;
 pub use coordinate_table::{CoordinateTable, CoordinateTableError, width_factor};
-pub use frame::{Frame, FrameError, MAX_LATTICE_STEPS};
 pub use geo_transform::GeoTransform;
+pub use grid_frame::{GridFrame, GridFrameError, MAX_LATTICE_STEPS};
 pub use height_grid::HeightGrid;
 pub use index_lists::IndexLists;
 pub use lattice::LatticePoint;
-pub use lattice_area::LatticeArea;
+pub use lattice_region::LatticeRegion;
 pub use node::{NodeIndex, NodeWindow};
 pub use orientation::{Side, cross, side};
 pub use polyline::{Polyline, PolylineError};

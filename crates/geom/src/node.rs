@@ -1,3 +1,5 @@
+//! Nodes of the global grid, and windows of them on one level.
+
 use serde::{Deserialize, Serialize};
 
 /// A node of the package's global grid at the finest level.

@@ -1,13 +1,15 @@
+//! The exact test on which side of a line a point lies.
+
 use crate::LatticePoint;
 
 /// On which side of a directed line a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
-    /// To the right of the direction of travel (clockwise turn).
+    /// The point lies to the right of the direction of travel (clockwise turn).
     Right,
     /// Exactly on the line.
     On,
-    /// To the left of the direction of travel (counter-clockwise turn).
+    /// The point lies to the left of the direction of travel (counter-clockwise turn).
     Left,
 }
 

@@ -1,3 +1,5 @@
+//! The side of a line is exact, whatever the arithmetic that finds it.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! A line on the lattice: at least two points, and no two neighbours equal.
+
 use crate::LatticePoint;
 
 /// Why points do not make a [`Polyline`].

@@ -1,3 +1,5 @@
+//! A polyline has at least two points, and no two neighbours are equal.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The interface of projections between WGS84 and working metres.
+
 /// Why positions could not be projected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("cannot transform coordinates: {reason}")]

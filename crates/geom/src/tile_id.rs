@@ -1,3 +1,5 @@
+//! The name of a tile in the quadtree: level, column and row.
+
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 

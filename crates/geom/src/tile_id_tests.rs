@@ -1,3 +1,5 @@
+//! Tile ids are read as they are printed, and children know their parent.
+
 use super::*;
 
 #[test]

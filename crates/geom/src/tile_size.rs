@@ -1,3 +1,5 @@
+//! How many cells and nodes a tile has along a side, and how many levels a package may have.
+
 /// Cells along one side of a tile.
 pub const TILE_CELLS: i64 = 256;
 /// Nodes along one side of a tile; border nodes are shared with the neighbour.

@@ -1,3 +1,5 @@
+//! Lengths and areas on the ellipsoid are those of published tables.
+
 use super::*;
 
 /// Snyder 1987, table 3, and the quarter meridian of WGS84 (10 001 965.729 m).

@@ -1,3 +1,5 @@
+//! The camera's next place is predicted from its movement, and drags are told from double clicks.
+
 use corniche_geom::Bounds;
 use corniche_viewer::camera::Orientation;
 use glam::DVec3;

@@ -1,3 +1,5 @@
+//! How far the camera may go and tilt over a package.
+
 use corniche_tileset::Manifest;
 use corniche_viewer::eye_height::clearance_m;
 

@@ -1,4 +1,4 @@
-//! Double clicks.
+//! Double clicks are told from single ones.
 
 use glam::DVec2;
 

@@ -1,3 +1,5 @@
+//! Two clicks soon after each other and near each other are a double click, and quick drags are none.
+
 use super::*;
 
 fn click(clicks: &mut Clicks, at: DVec2, now_s: f64) -> Click {

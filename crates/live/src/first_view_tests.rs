@@ -1,3 +1,5 @@
+//! The first view shows all the data beside the panel.
+
 use corniche_geom::Bounds;
 use corniche_viewer::camera::WorldBox;
 

@@ -1,21 +1,23 @@
+//! Threads load tiles in the order asked, and a damaged tile stops no other.
+
 use std::{
     sync::atomic::{AtomicUsize, Ordering},
     time::{Duration, Instant},
 };
 
-use corniche_geom::{Frame, NodeIndex};
+use corniche_geom::{GridFrame, NodeIndex};
 use corniche_viewer::tiles::{TileCatalog, TileLines};
 
 use super::*;
 
 /// Tiles without ground; those of level 3 are damaged, and on those of level 2 the decoder fails.
 struct Bare {
-    frame: Frame,
+    frame: GridFrame,
     loaded: AtomicUsize,
 }
 
 impl TileCatalog for Bare {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
@@ -36,7 +38,7 @@ impl TileSource for Bare {
 }
 
 fn bare() -> Arc<Bare> {
-    let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 << 4 }, 4);
+    let frame = GridFrame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 << 4 }, 4);
     let frame = frame.unwrap_or_else(|error| panic!("{error}"));
     Arc::new(Bare { frame, loaded: AtomicUsize::new(0) })
 }

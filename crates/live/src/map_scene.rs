@@ -1,3 +1,5 @@
+//! What a map shows: camera, style, roads and tiles, in one picture or in several.
+
 use corniche_styles::Style;
 use corniche_viewer::{FrameView, RoadOptions, Wireframe, camera::Camera, lod::Drawn};
 

@@ -1,3 +1,5 @@
+//! A tile that is loaded without threads comes in a later frame, and nothing waits for it.
+
 use corniche_testing::package;
 
 use super::*;

@@ -21,7 +21,7 @@ impl Recorder {
         Self { begun_s: now_s, keyframes: vec![first], last: first }
     }
 
-    /// For how long it has been going on.
+    /// How long the recording has been going on.
     #[must_use]
     pub fn duration_s(&self, now_s: f64) -> f64 {
         now_s - self.begun_s

@@ -1,3 +1,5 @@
+//! A recorded flight goes where the camera went, pauses included.
+
 use corniche_viewer::camera::Orientation;
 
 use super::*;

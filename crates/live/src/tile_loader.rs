@@ -1,3 +1,5 @@
+//! The interface by which a live map asks for tiles and takes them when they have come.
+
 use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, TileGeometry};
 

@@ -1,9 +1,11 @@
+//! The tiles of a live map are those that its views need, and damage or loss of the device is survived.
+
 use std::{
     num::NonZeroUsize,
     time::{Duration, Instant},
 };
 
-use corniche_geom::{Frame, NodeIndex};
+use corniche_geom::{GridFrame, NodeIndex};
 use corniche_testing::package::QUANTUM_M;
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
@@ -21,14 +23,14 @@ use crate::{
 
 /// A package of two levels: ground at 100 m, 10 m higher in the finer level. One tile of it is damaged.
 struct Steps {
-    frame: Frame,
+    frame: GridFrame,
 }
 
 const CELL_M: f64 = 10.0;
 const DAMAGED: [u32; 2] = [1, 1];
 
 impl TileCatalog for Steps {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
@@ -63,7 +65,7 @@ fn tiles() -> Tiles {
 }
 
 fn tiles_within(gpu_bytes: u64) -> Tiles {
-    let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 512 }, 1);
+    let frame = GridFrame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 512 }, 1);
     let source = Arc::new(Steps { frame: frame.unwrap_or_else(|error| panic!("{error}")) });
     let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
     let loader = LoaderThreads::new(&source, NonZeroUsize::MIN, 8, &wake);

@@ -1,3 +1,5 @@
+//! Errors of comparing roads with an image.
+
 use corniche_drape::BadLine;
 use corniche_geom::TileId;
 use corniche_photo::PhotoError;

@@ -1,3 +1,5 @@
+//! Grey values are interpolated between the centres of texels.
+
 use super::*;
 
 #[test]

@@ -1,7 +1,7 @@
 //! What roads are compared with, as images around a block of samples.
 
 use corniche_dem::GridPlan;
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, TexelWindow};
 use corniche_tileset::{FilePackage, Manifest, Relief, Sections};
 
@@ -43,7 +43,7 @@ enum Source<'a> {
         grid: &'a PhotoGrid,
         reader: PhotoReader<'a>,
     },
-    /// With the tile looked at last: windows come tile by tile.
+    /// The slopes, with the tile looked at last: windows come tile by tile.
     Slope(Option<(TileId, Option<Relief>)>),
 }
 
@@ -89,7 +89,7 @@ impl<'a> Images<'a> {
         Ok(Grey { first, columns, values })
     }
 
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.package.manifest().frame
     }
 }

@@ -12,18 +12,18 @@
 //! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*, section 7 and
 //! Figure 16: roads and terrain come from different sources, and may not fit.
 
+mod comparison;
 mod error;
 mod images;
 mod report;
-mod run;
 
 mod grey;
 mod response;
 mod samples;
 mod votes;
 
+pub use comparison::{MatchObserver, MatchRequest, match_roads};
 pub use error::MatchError;
 pub use images::Target;
 pub use report::{MatchReport, MatchedRegion, MatchedRoad};
-pub use run::{MatchObserver, MatchRequest, match_roads};
 pub use votes::{AlongOffset, Offset};

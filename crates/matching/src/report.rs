@@ -1,3 +1,5 @@
+//! The report of a comparison: offsets of ways, of regions and of the whole package.
+
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 
 use crate::votes::{AlongOffset, Offset};

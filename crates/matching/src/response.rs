@@ -2,7 +2,7 @@
 
 use crate::{grey::Grey, samples::Sample, votes::Search};
 
-/// From working metres to texels: eastwards and southwards.
+/// Texels to working metres, eastwards and southwards.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TexelScale {
     /// Where texel (0, 0) begins.
@@ -31,7 +31,7 @@ impl Profile {
     }
 }
 
-/// By how much the middle is brighter than both sides at each shift, in the order of [`Search::shifts`]; negative where it is darker, 0
+/// How much brighter the middle is than both sides at each shift, in the order of [`Search::shifts`]; negative where it is darker, 0
 /// where it lies between both sides: there is an edge and no line. `None` if a value is missing.
 pub(crate) fn responses(
     grey: &Grey,

@@ -1,3 +1,5 @@
+//! The filter for lines answers to a line where it lies, and not to an edge.
+
 use super::*;
 
 const SCALE: TexelScale = TexelScale { origin_m: [0.0, 100.0], texel_m: [1.0, 1.0] };

@@ -1,4 +1,4 @@
-//! Places along roads.
+//! Samples along roads, with the direction of the road at each.
 
 /// Metres between samples.
 const SPACING_M: f64 = 4.0;
@@ -8,7 +8,7 @@ const SPACING_M: f64 = 4.0;
 pub(crate) struct Sample {
     /// Working metres.
     pub(crate) at: [f64; 2],
-    /// To the left of the road, of length 1.
+    /// The direction to the left of the road, of length 1.
     pub(crate) normal: [f64; 2],
 }
 

@@ -1,3 +1,5 @@
+//! Samples lie in the middles of equal parts of a line.
+
 use super::*;
 
 #[test]

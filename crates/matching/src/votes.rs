@@ -3,7 +3,7 @@
 /// Shifts that are tried: a square of equal steps around no shift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Search {
-    /// To each side.
+    /// Steps to each side.
     steps: i32,
     step_m: f64,
 }
@@ -11,7 +11,7 @@ pub(crate) struct Search {
 /// Steps to each side, at most: votes for each shift are kept for each road.
 const MOST_STEPS: f64 = 20.0;
 
-/// By how much an image lies beside roads.
+/// How far an image lies beside roads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
     /// What must be added to places of the roads, metres.
@@ -25,7 +25,7 @@ pub struct Offset {
     pub is_at_edge: bool,
 }
 
-/// By how much an image lies beside a road, in one direction.
+/// How far an image lies beside a road, in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlongOffset {
     /// How far in that direction, metres.
@@ -71,7 +71,7 @@ impl Search {
 /// The sum of votes for each shift, and of the directions of the roads that gave them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Votes {
-    /// In the order of [`Search::shifts`]; empty before the first.
+    /// The sums in the order of [`Search::shifts`]; empty before the first.
     sums: Vec<f32>,
     pub(crate) samples: u64,
     /// Sums of the products of the normals' parts: east · east, east · north, north · north.

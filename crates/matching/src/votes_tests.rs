@@ -1,3 +1,5 @@
+//! The best shift is found between whole steps, and straight roads say nothing along themselves.
+
 use super::*;
 
 #[test]

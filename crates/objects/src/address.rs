@@ -1,3 +1,5 @@
+//! Addresses in object storage: `s3://BUCKET/NAME`.
+
 use std::fmt;
 
 use crate::ObjectError;

@@ -1,3 +1,5 @@
+//! Addresses of objects are told from file names, and broken ones are refused.
+
 use super::*;
 
 fn parsed(text: &str) -> Option<(String, String)> {

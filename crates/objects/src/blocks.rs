@@ -22,7 +22,7 @@ pub struct BlockCache {
 
 #[derive(Debug, Default)]
 struct Kept {
-    /// With the time of last use, and the bytes that are counted for it.
+    /// The blocks, with the time of last use and the bytes that are counted for it.
     blocks: HashMap<BlockId, (u64, u64, Filling)>,
     bytes: u64,
     clock: u64,

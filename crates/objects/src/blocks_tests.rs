@@ -1,3 +1,5 @@
+//! The cache of blocks keeps its limit, and many threads fetch a block once.
+
 use std::{
     sync::atomic::{AtomicU64, Ordering},
     thread,

@@ -1,3 +1,5 @@
+//! A bucket of object storage: its objects are listed, found, read and created here.
+
 use std::{fmt, ops::Range, sync::Arc, thread, time::Duration};
 
 use bytes::Bytes;

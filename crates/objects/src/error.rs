@@ -1,3 +1,5 @@
+//! Errors of object storage, told without passwords.
+
 use std::{io, path::PathBuf};
 
 use corniche_store::StoreError;
@@ -101,7 +103,7 @@ impl From<ObjectError> for StoreError {
 }
 
 impl From<ObjectError> for io::Error {
-    /// For readers, whose errors travel as those of files.
+    /// The error for readers, whose errors travel as those of files.
     fn from(error: ObjectError) -> Self {
         let kind = match &error {
             ObjectError::Missing { .. } => io::ErrorKind::NotFound,

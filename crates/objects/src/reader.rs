@@ -1,3 +1,5 @@
+//! An object is read like a file, and reading fails if the object changes meanwhile.
+
 use std::io::{self, Read, Seek, SeekFrom};
 
 use bytes::Bytes;

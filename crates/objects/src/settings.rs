@@ -54,7 +54,7 @@ const RETRY_TIMEOUT: Duration = Duration::from_mins(4);
 const REQUEST_TIMEOUT: Duration = Duration::from_mins(2);
 
 impl StorageSettings {
-    /// Those of the process.
+    /// The settings that the environment of the process gives.
     #[must_use]
     pub fn of_environment() -> Self {
         let variables = env::vars_os().filter_map(|(name, value)| {

@@ -1,3 +1,5 @@
+//! The words of a server's answer are found and kept short.
+
 use super::*;
 
 #[test]

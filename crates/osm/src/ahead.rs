@@ -1,3 +1,5 @@
+//! An iterator over records whose next record can be seen before it is taken.
+
 use std::io;
 
 /// Records of which the next one can be seen before it is taken.

@@ -1,3 +1,5 @@
+//! Reasons for which an object with the tags of an area is left out.
+
 use serde::{Deserialize, Serialize};
 
 /// Why an object with the tags of an area became none.
@@ -44,7 +46,7 @@ impl AreaLoss {
         Self::ContradictingCoastline,
     ];
 
-    /// In words: the name to count it under.
+    /// The name to count it under, in words.
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {

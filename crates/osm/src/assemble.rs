@@ -6,7 +6,7 @@ use corniche_geom::{LatticePoint, Polyline, wgs84};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location, read_request::Place, records::Stop,
+    Defect, LeftOutReason, ReadOsmError, location, read_request::ToLattice, records::Stop,
     self_crossings::self_crossings, way_bytes::WayKind,
 };
 
@@ -24,7 +24,7 @@ pub(crate) struct PlainWay {
 pub(crate) struct Assembled {
     pub(crate) roads: Vec<Road>,
     pub(crate) defects: Vec<Defect>,
-    /// Of a way that is left out: why, its `highway` value, its length in micrometres.
+    /// Why a way is left out, its `highway` value and its length in micrometres.
     pub(crate) left_out: Option<(LeftOutReason, String, u64)>,
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Assembled {
 pub(crate) fn assemble(
     some: &[PlainWay],
     all_stops: &[Stop],
-    place: &Place<'_>,
+    place: &ToLattice<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
     let is_road = |way: &&PlainWay| matches!(way.kind, WayKind::Road(..));

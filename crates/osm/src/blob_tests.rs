@@ -1,3 +1,5 @@
+//! A blob unpacks to what it promises or is refused.
+
 use corniche_testing::pbf::{field, number, zlib};
 
 use super::*;

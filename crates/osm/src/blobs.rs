@@ -26,17 +26,17 @@ const MAX_HEADER_BLOCK_BYTES: u64 = 1 << 20;
 struct Limits {
     unpacked_bytes: u64,
     decoded_bytes: u64,
-    /// For what is found in it.
+    /// Bytes for what is found in it.
     found_bytes: u64,
 }
 
-/// Of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
+/// Limits of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
 ///
 /// 16 MiB is what the format asks of writers (OSM wiki, *PBF Format*, "File format"); twice that is what it allows.
 const SIDE_BY_SIDE: Limits =
     Limits { unpacked_bytes: 16 << 20, decoded_bytes: 64 << 20, found_bytes: 16 << 20 };
 
-/// Of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
+/// Limits of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
 const ALONE: Limits =
     Limits { unpacked_bytes: MAX_BLOB_BYTES, decoded_bytes: 512 << 20, found_bytes: 256 << 20 };
 
@@ -51,7 +51,7 @@ pub(crate) struct BlobFile<R> {
     path: PathBuf,
     source: BufReader<R>,
     len_bytes: u64,
-    data: Vec<Part>,
+    data: Vec<BlobPlace>,
     pub(crate) header: Header,
     pub(crate) blobs_passed_over: u64,
 }
@@ -66,10 +66,10 @@ pub(crate) struct Header {
 
 /// Where a blob lies.
 #[derive(Debug, Clone, Copy)]
-struct Part {
-    /// Of its frame.
+struct BlobPlace {
+    /// Where the blob's frame begins in the file.
     offset: u64,
-    /// Of itself.
+    /// Where the blob itself begins in the file.
     blob_offset: u64,
     blob_bytes: u64,
 }
@@ -150,7 +150,7 @@ impl<R: Read + Seek> BlobFile<R> {
     }
 
     /// Reads the frame before a blob and leaves the source at the start of the blob, which lies inside the file.
-    fn read_frame(&mut self, offset: u64) -> Result<(Part, String), ReadOsmError> {
+    fn read_frame(&mut self, offset: u64) -> Result<(BlobPlace, String), ReadOsmError> {
         let mut size = [0; 4];
         self.check_end(offset, offset + 4)?;
         self.source.read_exact(&mut size).map_err(|source| self.unreadable(source))?;
@@ -166,17 +166,22 @@ impl<R: Read + Seek> BlobFile<R> {
         let BlobHeader { kind, blob_bytes } =
             BlobHeader::parse(&header).map_err(|refusal| self.refused(offset, refusal))?;
         self.check_end(offset, blob_offset + blob_bytes)?;
-        Ok((Part { offset, blob_offset, blob_bytes }, kind))
+        Ok((BlobPlace { offset, blob_offset, blob_bytes }, kind))
     }
 
     /// Reads a blob from where the source is.
-    fn read_part(&mut self, part: Part) -> Result<Vec<u8>, ReadOsmError> {
+    fn read_part(&mut self, part: BlobPlace) -> Result<Vec<u8>, ReadOsmError> {
         let mut blob = vec![0; part.blob_bytes as usize];
         self.source.read_exact(&mut blob).map_err(|source| self.unreadable(source))?;
         Ok(blob)
     }
 
-    fn take_header(&mut self, part: Part, blob: &[u8], is_first: bool) -> Result<(), ReadOsmError> {
+    fn take_header(
+        &mut self,
+        part: BlobPlace,
+        blob: &[u8],
+        is_first: bool,
+    ) -> Result<(), ReadOsmError> {
         let header = unpack(blob, MAX_HEADER_BLOCK_BYTES)
             .and_then(|block| header_block(&block))
             .map_err(|refusal| self.refused(part.offset, refusal))?;
@@ -374,7 +379,7 @@ pub(crate) fn decode(block: Vec<u8>) -> Result<PrimitiveBlock, BlobRefusal> {
     blob.to_primitiveblock().map_err(of_decoder)
 }
 
-/// For kinds of errors that the decoder does not have yet.
+/// The reason that is given for kinds of errors that the decoder does not have yet.
 const UNREADABLE: &str = "its contents cannot be decoded";
 
 fn of_decoder(error: osmpbf::Error) -> BlobRefusal {

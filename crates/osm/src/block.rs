@@ -180,7 +180,7 @@ impl<'b, 'a> BlockWay<'b, 'a> {
 pub(crate) struct Packed<'a>(Cow<'a, [u8]>);
 
 impl<'a> Packed<'a> {
-    /// Those of a field of a message.
+    /// The numbers in a field of a message.
     pub(crate) fn of(message: &'a [u8], number: u32) -> Self {
         let mut packed = Self::default();
         let fields = wire::fields(message).flatten().filter(|field| field.number == number);

@@ -1,3 +1,5 @@
+//! Blocks are decoded as another author's decoder does.
+
 use corniche_testing::pbf::{Block as Made, deltas, field, number, varint, zigzags};
 use osmpbf::PrimitiveBlock;
 use proptest::prelude::*;

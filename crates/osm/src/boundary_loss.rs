@@ -1,3 +1,5 @@
+//! Reasons for which a way that is a boundary is left out.
+
 use serde::{Deserialize, Serialize};
 
 /// Why a way that is a boundary is left out.
@@ -6,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum BoundaryLoss {
     /// A relation names it, and the file does not have it.
     MissingWay,
-    /// So many of its nodes are not in the file that no two that follow each other are left.
+    /// Too few of its nodes are in the file: no two that follow each other are left.
     MissingNodes,
     /// No two nodes that follow each other lie on Earth, at different places.
     OutOfRange,
@@ -19,7 +21,7 @@ impl BoundaryLoss {
     pub const ALL: [Self; 4] =
         [Self::MissingWay, Self::MissingNodes, Self::OutOfRange, Self::OutsideProjection];
 
-    /// In words: the name to count it under.
+    /// The name to count it under, in words.
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {

@@ -15,14 +15,14 @@ pub(crate) struct Counts {
     highway_ways: u64,
     /// Listed, class off, unknown, area.
     left_out: [u64; 4],
-    /// By value: class and ways.
+    /// Class and ways of each value.
     highways: BTreeMap<String, (Option<u8>, u64)>,
     unknown_highways: BTreeMap<String, u64>,
     tags_taken_otherwise: BTreeMap<String, u64>,
 }
 
 impl From<ExtractSummary> for Counts {
-    /// Of a summary as pass 1 leaves it.
+    /// The counts of a summary as pass 1 leaves it.
     fn from(summary: ExtractSummary) -> Self {
         let left_out = summary.left_out;
         let highway = |(value, count): (String, HighwayCount)| {

@@ -1,3 +1,5 @@
+//! Defects of an extract that were survived: each names its object and its reason.
+
 use serde::{Deserialize, Serialize};
 
 use crate::{area_loss::AreaLoss, boundary_loss::BoundaryLoss};
@@ -37,7 +39,7 @@ pub enum Defect {
     TagTakenOtherwise {
         /// The way.
         way_id: i64,
-        /// `key=value`.
+        /// The tag as `key=value`.
         tag: String,
     },
     /// A way of one node or none; it is left out.
@@ -113,7 +115,7 @@ pub enum Defect {
         is_relation: bool,
         /// The object.
         id: i64,
-        /// Why.
+        /// Why it is none.
         loss: AreaLoss,
     },
     /// Ways of an area's relation are not in the file; what the others surround stays.
@@ -142,7 +144,7 @@ pub enum Defect {
     LostBoundary {
         /// The way.
         way_id: i64,
-        /// Why.
+        /// Why it is left out.
         loss: BoundaryLoss,
     },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.

@@ -1,4 +1,4 @@
-//! Defects as bytes.
+//! Defects are written as bytes and read back.
 
 use crate::Defect;
 

@@ -1,3 +1,5 @@
+//! Errors of reading an extract.
+
 use std::{io, path::PathBuf};
 
 use crate::kept_error::KeptError;

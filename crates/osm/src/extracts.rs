@@ -88,7 +88,7 @@ impl<R: Read + Seek> Extracts<R> {
         self.files.iter().map(|file| file.blobs_passed_over).sum()
     }
 
-    /// As [`BlobFile::for_each_block`], over all files; `take` is told the number of the file, too. The numbers of a file come one after
+    /// Does the same as [`BlobFile::for_each_block`] over all files; `take` is told the number of the file, too. The numbers of a file come one after
     /// another.
     pub(crate) fn for_each_block<T: Send>(
         &mut self,

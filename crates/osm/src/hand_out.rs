@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::{
     ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
-    read_request::Place,
+    read_request::ToLattice,
     reading::{Reading, Step},
     records::Stop,
     spool::{SpoolReader, damaged},
@@ -126,7 +126,7 @@ impl Batch {
     fn assemble(
         &self,
         some: &[PackedWay],
-        place: &Place<'_>,
+        place: &ToLattice<'_>,
     ) -> Result<Vec<Assembled>, HandOutError> {
         let plain = |way: &PackedWay| {
             let kind = take_way(&mut &self.kinds[way.kind.clone()])?;

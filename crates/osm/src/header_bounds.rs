@@ -1,3 +1,5 @@
+//! The rectangle that the header of an extract says it was cut for.
+
 use std::path::Path;
 
 use crate::{ReadOsmError, blobs::BlobFile, open_file::open_file};

@@ -47,7 +47,7 @@ impl IdRange {
     }
 }
 
-/// Of a field that comes twice the last one counts.
+/// The id of a plain node; if the field comes twice, the last one counts.
 fn plain_id(node: &[u8]) -> i64 {
     let id_of = |field: Field<'_>| match (field.number, field.value) {
         (1, Value::Varint(id)) => Some(zigzag(id)),

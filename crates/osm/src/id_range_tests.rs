@@ -1,3 +1,5 @@
+//! The range of node ids in a block covers dense and plain nodes together.
+
 use corniche_testing::pbf::Block;
 use proptest::prelude::*;
 

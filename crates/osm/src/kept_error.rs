@@ -1,3 +1,5 @@
+//! Errors of intermediate results that shares of an extract kept.
+
 use std::io;
 
 use corniche_store::StoreError;

@@ -81,7 +81,7 @@ pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
-pub use read_request::{OnProgress, Place, ReadRequest};
+pub use read_request::{OnProgress, ReadRequest, ToLattice};
 pub use read_roads::{read_roads, read_roads_from};
 pub use share::{Share, ShareError};
 pub use shares::{Kept, KeptKinds, keep_nodes, keep_ways, read_kept_roads};

@@ -1,3 +1,5 @@
+//! Places are rounded to the resolution of the data, and places off the earth are marked.
+
 use super::*;
 
 #[test]

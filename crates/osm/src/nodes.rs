@@ -16,9 +16,9 @@ pub(crate) struct NodeIds {
 #[derive(Debug)]
 pub(crate) struct NodePlaces {
     locations: Vec<Location>,
-    /// Of nodes to which the file gives different places.
+    /// Marks nodes to which the file gives different places.
     is_conflicting: Vec<bool>,
-    /// With [`Precedence::Newest`] the versions of the places; else empty.
+    /// The versions of the places with [`Precedence::Newest`]; else empty.
     versions: Vec<i32>,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct NodePlaces {
 pub(crate) enum Precedence {
     /// The first.
     First,
-    /// That of the newest version, or the first of these.
+    /// The place of the newest version, or of the first of these.
     Newest,
 }
 
@@ -73,7 +73,7 @@ impl NodeIds {
 }
 
 impl NodePlaces {
-    /// Of `count` nodes, none known.
+    /// A table of `count` nodes, none of them known.
     pub(crate) fn new(count: usize, precedence: Precedence) -> Self {
         let versions = match precedence {
             Precedence::First => Vec::new(),

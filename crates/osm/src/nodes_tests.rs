@@ -1,3 +1,5 @@
+//! The search for nodes finds what a plain search finds.
+
 use super::*;
 
 #[test]

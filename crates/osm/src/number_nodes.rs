@@ -27,7 +27,7 @@ pub(crate) struct NumberedNodes<'a> {
     pub(crate) duplicates: u64,
 }
 
-/// Of roads with one id the first in the file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
+/// The first of several roads with one id in a file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
 /// with the newest version count, or of the first; what they count for goes to `summary`.
 ///
 /// Fails if a way is there in two versions.

@@ -1,3 +1,5 @@
+//! An extract is opened as a file or as an object in object storage.
+
 use std::{
     fs::{self, File},
     io::{self, Read, Seek, SeekFrom},

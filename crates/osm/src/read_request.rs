@@ -1,3 +1,5 @@
+//! The request to read an extract: which file, which table, how much memory, and who is told of progress.
+
 use std::{
     fmt,
     path::{Path, PathBuf},
@@ -10,7 +12,7 @@ use corniche_store::Scratch;
 /// Maps `[longitude, latitude]` (WGS84, degrees) to points of the package's lattice, one point for each position. A
 /// position gives the same point in every call, whatever positions are with it. `None` where the projection has none.
 /// Called from several threads.
-pub type Place<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
+pub type ToLattice<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
 
 /// Is told how much of the reading is done, of how much. Both are counted in bytes of the files, each of them three times:
 /// read for its ways, read for its nodes, handed out as roads. What is done never shrinks and ends at the whole, which does
@@ -27,7 +29,7 @@ pub struct ReadRequest<'a> {
     /// Which ways are roads.
     pub table: &'a FrcTable,
     /// Where positions lie on the lattice.
-    pub place: &'a Place<'a>,
+    pub place: &'a ToLattice<'a>,
     /// Where blobs are decoded and points placed.
     pub pool: &'a rayon::ThreadPool,
     /// About how much the ways and nodes of all roads may take, bytes; what does not fit goes to `scratch`. The blobs that

@@ -1,3 +1,5 @@
+//! The roads of an extract are read and handed out in order of their ways.
+
 use std::{
     cell::Cell,
     io::{Read, Seek},

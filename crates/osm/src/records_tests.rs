@@ -1,3 +1,5 @@
+//! Records come back as they were, and cut ones are refused.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Crossings of a way with itself are those that whole numbers find.
+
 use corniche_geom::{MAX_LATTICE_STEPS, Side, side};
 use proptest::prelude::*;
 

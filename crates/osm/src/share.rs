@@ -1,3 +1,5 @@
+//! A share of an extract, printed `I/N`, which one process reads while others read the rest.
+
 use std::{fmt, ops::Range, str::FromStr};
 
 /// One of so many shares of an extract, printed `I/N`: its number, counted from 1, and how many there are.

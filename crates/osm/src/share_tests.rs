@@ -1,3 +1,5 @@
+//! Shares cover an extract in order and without gaps.
+
 use proptest::prelude::*;
 
 use super::*;

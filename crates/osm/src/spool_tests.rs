@@ -1,3 +1,5 @@
+//! Records come back in their order with any amount of memory.
+
 use corniche_store::MemoryScratch;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! How many ways an extract had, how many became roads, and why the others did not.
+
 use std::collections::BTreeMap;
 
 use corniche_roads::FunctionalRoadClass;
@@ -52,7 +54,7 @@ pub struct ExtractSummary {
 /// Ways with one `highway` value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HighwayCount {
-    /// Their class; `None` when the table lists the value as no road.
+    /// The class of the ways; `None` when the table lists the value as no road.
     pub class: Option<FunctionalRoadClass>,
     /// How many ways.
     pub ways: u64,
@@ -67,7 +69,7 @@ pub struct LeftOut {
     pub class_off: u64,
     /// The table does not know the value.
     pub unknown: u64,
-    /// `area=yes`.
+    /// Ways with `area=yes`.
     pub area: u64,
     /// Another way of the file has the same id.
     pub duplicate: u64,
@@ -109,7 +111,7 @@ impl LeftOutReason {
 pub struct LeftOutWays {
     /// How many ways.
     pub ways: u64,
-    /// Their true length in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
+    /// The true length of the ways in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
     pub length_um: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Texts of tags.
+//! A key or value of a tag as text, cut at the length that OSM allows.
 
 use std::borrow::Cow;
 

@@ -48,7 +48,7 @@ struct Run {
 struct Versioned {
     id: i64,
     version: i32,
-    /// Of several extracts: which.
+    /// The number of the file, where there are several extracts.
     file: u32,
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn way_bytes(
     bytes.into()
 }
 
-/// In place of a class: the way is left out.
+/// Stands in place of a class where the way is left out.
 const LEFT_OUT: u8 = u8::MAX;
 
 /// What a way is.

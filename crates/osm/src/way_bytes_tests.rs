@@ -1,3 +1,5 @@
+//! Ways come back from their bytes.
+
 use proptest::prelude::*;
 
 use std::num::{NonZeroU8, NonZeroU32};

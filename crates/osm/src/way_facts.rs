@@ -17,7 +17,7 @@ pub(crate) struct WayFacts {
 }
 
 impl WayFacts {
-    /// As bytes, which are never empty.
+    /// The facts as bytes, which are never empty.
     pub(crate) fn to_bytes(&self) -> Box<[u8]> {
         // Writing to a list cannot fail, and all of it can be written.
         let written = bincode::serde::encode_to_vec(self, bincode::config::standard());
@@ -25,7 +25,7 @@ impl WayFacts {
         written.unwrap_or_default().into()
     }
 
-    /// From what [`Self::to_bytes`] wrote.
+    /// The facts that [`Self::to_bytes`] wrote.
     pub(crate) fn of_bytes(bytes: &[u8]) -> io::Result<Self> {
         let limited = bincode::config::standard().with_limit::<MOST_BYTES>();
         let (facts, _) =

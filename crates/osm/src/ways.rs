@@ -21,9 +21,9 @@ use crate::{
 /// Where counts and defects of ways go.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Counted {
-    /// To those of the block: each way counts.
+    /// Counts go to those of the block: each way counts.
     ByBlock,
-    /// To each way's record: a way may be in another extract, too.
+    /// Counts go to each way's record: a way may be in another extract, too.
     ByWay,
 }
 

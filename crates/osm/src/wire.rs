@@ -109,7 +109,7 @@ pub(crate) struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    /// Those that are packed in these bytes.
+    /// The numbers that are packed in these bytes.
     pub(crate) fn of(packed: &'a [u8]) -> Self {
         Self { single: None, rest: packed }
     }

@@ -1,3 +1,5 @@
+//! Fields of protocol buffers are told apart, and what is no field is refused.
+
 use super::*;
 
 #[track_caller]

@@ -1,3 +1,5 @@
+//! Errors of reading lines from a vector file.
+
 use std::path::PathBuf;
 
 use corniche_dem::{DemError, LibraryError};

@@ -1,3 +1,5 @@
+//! Heights of a package are carried to the ellipsoid of WGS84, which GeoJSON wants.
+
 use corniche_dem::{RecordedCrs, RecordedHeights};
 use corniche_tileset::Manifest;
 
@@ -7,7 +9,8 @@ use crate::OverlayError;
 pub struct EllipsoidHeights(RecordedHeights);
 
 impl EllipsoidHeights {
-    /// For a package; `None` if its vertical datum is unknown, or nothing here leads from it to the ellipsoid, such as a missing grid.
+    /// What carries a package's heights; `None` if its vertical datum is unknown, or nothing here leads from it to the ellipsoid,
+    /// such as a missing grid.
     ///
     /// # Errors
     /// When the package's coordinate system cannot be used.

@@ -10,11 +10,11 @@
 mod error;
 mod heights;
 mod line_file;
-mod place;
+mod place_lines;
 mod read;
 
 pub use error::OverlayError;
 pub use heights::EllipsoidHeights;
 pub use line_file::{LineFile, SavedLine, Shape};
-pub use place::{Placed, place};
+pub use place_lines::{Placed, place};
 pub use read::{VectorLine, VectorLines, read};

@@ -1,3 +1,5 @@
+//! The GeoJSON file of the lines and areas that a person draws: read, changed and written back.
+
 use std::{fs, io::Read as _, path::Path};
 
 use serde_json::{Map, Value, json};
@@ -34,7 +36,7 @@ pub struct SavedLine {
     pub shape: Shape,
     /// Longitude and latitude, WGS84.
     pub points_deg: Vec<[f64; 2]>,
-    /// Of each point, above the ellipsoid, metres; `None` if they are not known.
+    /// The height of each point above the ellipsoid, metres; `None` if they are not known.
     pub heights_m: Option<Vec<f64>>,
 }
 

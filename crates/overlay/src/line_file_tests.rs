@@ -1,3 +1,5 @@
+//! A file of lines is saved with everything that was not changed as it was.
+
 use super::*;
 
 const TEXT: &str = r#"{"type":"FeatureCollection","name":"mine","features":[

@@ -1,3 +1,5 @@
+//! Lines are read from all layers of a vector file and carried to WGS84.
+
 use std::path::Path;
 
 use corniche_dem::{NotOpened, failure, forget, open_vectors};

@@ -1,3 +1,5 @@
+//! Lines and outlines are read in the order of their file.
+
 use std::{fs, path::PathBuf};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Errors of opening and reading photos.
+
 use std::path::PathBuf;
 
 use corniche_dem::{DemError, LibraryError};

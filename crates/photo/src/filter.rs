@@ -25,7 +25,7 @@ pub(crate) struct Light {
 pub(crate) struct Weights {
     first: i64,
     of_pixels: Vec<f64>,
-    /// Of all pixels, those outside the photo included.
+    /// The sum of the weights of all pixels, those outside the photo included.
     sum: f64,
 }
 
@@ -96,7 +96,7 @@ impl Light {
         }
     }
 
-    /// As a texel: none where less than half of it is covered.
+    /// The colour as a texel: none where less than half of it is covered.
     pub(crate) fn texel(self) -> [u8; 4] {
         if self.opacity < 0.5 {
             return crate::texels::NONE;

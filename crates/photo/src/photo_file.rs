@@ -1,3 +1,5 @@
+//! One photo file, and its place on the grid of a package.
+
 use std::path::Path;
 
 use corniche_dem::{GridPlan, PlacedRaster, RasterOnGrid};

@@ -1,3 +1,5 @@
+//! All photos of a build, placed on the grid of a package.
+
 use corniche_geom::Bounds;
 
 use crate::TexelGrid;

@@ -1,3 +1,5 @@
+//! Photo files that are described but not held open, and the choice of how fine their texels become.
+
 use std::path::PathBuf;
 
 use corniche_dem::{FileBlocks, GridPlan};
@@ -25,12 +27,12 @@ pub struct Photos {
 /// How many levels of texels finer than the finest cell there are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LevelChoice {
-    /// As many as the finest photo has detail for, at most three.
+    /// There are as many levels as the finest photo has detail for, at most three.
     OfPhotos,
-    /// So many.
+    /// There are so many levels.
     Given(u8),
-    /// As many as the finest photo has detail for, or as make texels of so many metres if that is coarser; to be read by windows, not by
-    /// whole tiles.
+    /// There are as many levels as the finest photo has detail for, or as make texels of so many metres if that is coarser; to
+    /// be read by windows, not by whole tiles.
     NotCoarserThan(f64),
 }
 

@@ -1,3 +1,5 @@
+//! The reader of texels: windows of them are made of the pixels of photos, block by block.
+
 use corniche_geom::Bounds;
 use gdal::Dataset;
 
@@ -17,7 +19,7 @@ const BLOCK_MESHES: i64 = 8;
 /// Reads texels out of photos.
 pub struct PhotoReader<'a> {
     grid: &'a PhotoGrid,
-    /// Those used last come first.
+    /// Open files, those used last first.
     open: Vec<(usize, Dataset)>,
     filter: Filter,
 }

@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+//! The grid of texels over the finest tiles, and windows of it.
+
+use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 
 use crate::PhotoError;
 
@@ -11,7 +13,7 @@ pub const MAX_LEVELS: u8 = 4;
 /// tile that holds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelGrid {
-    frame: Frame,
+    frame: GridFrame,
     levels: u8,
 }
 
@@ -29,19 +31,19 @@ pub struct TexelWindow {
 }
 
 impl TexelGrid {
-    /// Of a package's grid.
+    /// The texels over a package's grid.
     ///
     /// # Errors
     /// When there are more than [`MAX_LEVELS`].
-    pub fn new(frame: Frame, levels: u8) -> Result<Self, PhotoError> {
+    pub fn new(frame: GridFrame, levels: u8) -> Result<Self, PhotoError> {
         if levels > MAX_LEVELS {
             return Err(PhotoError::Levels { levels, most: MAX_LEVELS });
         }
         Ok(Self { frame, levels })
     }
 
-    /// With any number of levels, to be read by windows.
-    pub(crate) fn of_any(frame: Frame, levels: u8) -> Self {
+    /// The texels of any number of levels, to be read by windows.
+    pub(crate) fn of_any(frame: GridFrame, levels: u8) -> Self {
         Self { frame, levels }
     }
 

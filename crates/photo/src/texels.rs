@@ -1,3 +1,5 @@
+//! A rectangle of texels, of which some may have no photo.
+
 /// A rectangle of texels, row by row from the north.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texels {
@@ -17,7 +19,7 @@ impl Texels {
         Self { columns, rows, rgba: vec![0; columns * rows * 4] }
     }
 
-    /// From red, green, blue and alpha of each texel; alpha is 255 for texels with a photo, and 0 for others, which have no colour.
+    /// Takes red, green, blue and alpha of each texel; alpha is 255 for texels with a photo, and 0 for others, which have no colour.
     /// `None` if there are not four bytes for each texel, or other values.
     #[must_use]
     pub fn new(columns: usize, rows: usize, rgba: Vec<u8>) -> Option<Self> {

@@ -1,3 +1,5 @@
+//! Texels without a photo do not darken the mean of their neighbours.
+
 use super::*;
 
 fn of(columns: usize, rgba: &[[u8; 4]]) -> Texels {

@@ -8,7 +8,7 @@
 //! | `Defects` | block of defects | the extract's defects, in the order in which they were found | roads | roads, merge |
 //! | `RoadTotals` | 0 | counts, classes, defects, what the extract held | roads | merge |
 //! | `Heights` | finest tile | heights of its nodes with one node of halo; which of them are filled voids | heights | tiles |
-//! | `Area` | tile, two levels above the finest | counts and range of its heights; what was seen of heights that cannot be | heights | tiles, merge |
+//! | `Patch` | tile, two levels above the finest | counts and range of its heights; what was seen of heights that cannot be | heights | tiles, merge |
 //! | `Raster` | coarse tile | heights of its 257 × 257 nodes, borders included | heights, top | top, tiles |
 //! | `Tin` | coarse tile | its TIN with normals; empty where it has no ground | top, tiles | tiles, merge |
 //! | `Record` | tile | counts and sums, deviations of itself and its share in those of its ancestors | tiles, merge | merge |
@@ -28,7 +28,7 @@
 //! | `BoundarySection` | tile | its boundaries section, encoded, with counts; nothing where it has none | roads | tiles |
 //! | `BoundaryTotals` | 0 | counts of the extract's boundaries, after all their sections | roads | merge |
 //!
-//! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
+//! A tile is finished when its `Record` is there: it is put last. So is a patch when its `Patch` is there, and the roads when
 //! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
 //! never taken for a void.
 
@@ -49,7 +49,7 @@ pub(crate) enum Kind {
     Defects,
     RoadTotals,
     Heights,
-    Area,
+    Patch,
     Raster,
     Tin,
     Record,
@@ -79,7 +79,7 @@ impl Kind {
         Self::Defects,
         Self::RoadTotals,
         Self::Heights,
-        Self::Area,
+        Self::Patch,
         Self::Raster,
         Self::Tin,
         Self::Record,

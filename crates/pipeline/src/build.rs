@@ -56,7 +56,7 @@ pub fn build(
     build_on(&disk, SYNC_INTERVAL, settings, observer)
 }
 
-/// As [`build`], with the store on any disk, and made durable as often as wanted: tests let it fail.
+/// Does the same as [`build`] with the store on any disk, made durable as often as wanted: tests let it fail.
 #[doc(hidden)]
 pub fn build_on(
     disk: &Arc<dyn Disk>,

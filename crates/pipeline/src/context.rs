@@ -1,7 +1,7 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds, TileId};
+use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
 use corniche_store::Artifacts;
 
 use crate::{
@@ -58,7 +58,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    pub(crate) fn frame(&self) -> &Frame {
+    pub(crate) fn frame(&self) -> &GridFrame {
         self.levels.frame()
     }
 
@@ -78,7 +78,7 @@ impl<'a> Context<'a> {
     }
 
     /// The polygon that was asked for.
-    pub(crate) fn polygon(&self) -> Option<&LatticeArea> {
+    pub(crate) fn polygon(&self) -> Option<&LatticeRegion> {
         self.grid.polygon.as_deref()
     }
 

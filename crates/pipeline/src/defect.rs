@@ -1,15 +1,17 @@
+//! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
+
 use serde::{Deserialize, Serialize};
 
 /// Bad input that was skipped and counted, or what was lost by it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Defect {
-    /// In the extract.
+    /// A defect of the extract.
     Osm(corniche_osm::Defect),
     /// A road, or a part of it, that no tile of the finest level holds.
     LostRoad {
         /// Its way.
         way_id: i64,
-        /// Why.
+        /// Why it was lost.
         loss: Loss,
         /// Length in plan.
         length_m: f64,

@@ -1,3 +1,5 @@
+//! The list of losses is complete and in order.
+
 use super::*;
 
 /// The match has no `_`, so a new reason does not compile here until it has a place in the order.

@@ -1,3 +1,5 @@
+//! Errors of building a package.
+
 use std::{io, path::PathBuf};
 
 use crate::{TargetError, plan_error::PlanError, workers::Interrupted};

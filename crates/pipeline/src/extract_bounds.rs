@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::BuildError;
 
-/// Of each side, and in degrees: how much farther the bounds reach than the extract's own box. Ways that cross the box are whole in
+/// How much farther the bounds reach than the extract's own box, on each side and in degrees. Ways that cross the box are whole in
 /// most extracts, and their ends need ground.
 const MARGIN: f64 = 0.01;
 const LEAST_MARGIN_DEG: f64 = 0.002;

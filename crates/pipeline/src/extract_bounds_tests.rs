@@ -1,3 +1,5 @@
+//! The bounds of several extracts are around all their boxes, also across the antimeridian.
+
 use super::*;
 
 fn check(boxes: &[[f64; 4]], wanted: [f64; 4]) {

@@ -1,4 +1,4 @@
-//! Hashes as text.
+//! Hashes are written as hexadecimal text.
 
 /// Lower-case hexadecimal.
 pub(crate) fn hex(bytes: &[u8]) -> String {

@@ -49,12 +49,12 @@ pub(crate) enum InputKind {
 }
 
 impl InputKind {
-    /// Those that a manifest has.
+    /// The kinds that a manifest has.
     pub(crate) const RECORDED: [Self; 6] =
         [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
-    /// Those that the terrain is made from.
+    /// The kinds that the terrain is made from.
     pub(crate) const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
-    /// Those that photos are made from.
+    /// The kinds that photos are made from.
     pub(crate) const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
 
     /// The word for it in the manifest.
@@ -85,7 +85,7 @@ pub(crate) struct Inputs {
 #[derive(Debug)]
 struct Input {
     kind: InputKind,
-    /// As it was given.
+    /// The path as it was given.
     path: PathBuf,
     name: String,
     content: Content,

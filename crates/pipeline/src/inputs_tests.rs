@@ -1,3 +1,5 @@
+//! Every kind of input is listed once, and hashing counts the bytes of the files.
+
 use std::sync::Mutex;
 
 use super::*;

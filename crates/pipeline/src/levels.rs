@@ -1,6 +1,6 @@
 //! Tolerances, margins and shown classes of each level.
 
-use corniche_geom::Frame;
+use corniche_geom::GridFrame;
 use corniche_roads::{ClassFilter, FunctionalRoadClass};
 use corniche_tileset::Manifest;
 
@@ -15,7 +15,7 @@ const MIN_MARGIN_M: f64 = 40.0;
 /// Tolerances and margins of all levels.
 #[derive(Debug, Clone)]
 pub(crate) struct Levels {
-    frame: Frame,
+    frame: GridFrame,
     max_error_m: f64,
     quantum_m: f64,
     /// Least important class that the FRC table lets in.
@@ -29,7 +29,7 @@ pub(crate) struct Levels {
 impl Levels {
     /// `most_scale` is the largest number of working metres to a true metre over the data.
     pub(crate) fn new(
-        frame: Frame,
+        frame: GridFrame,
         max_error_m: f64,
         roads: &RoadSettings,
         most_scale: f64,
@@ -60,7 +60,7 @@ impl Levels {
         })
     }
 
-    pub(crate) fn frame(&self) -> &Frame {
+    pub(crate) fn frame(&self) -> &GridFrame {
         &self.frame
     }
 

@@ -41,7 +41,7 @@ fn total_of_meminfo(text: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1 << 10)
 }
 
-/// For how long this thread has used a processor, from any start. Unlike the time that passes, it is the same on a busy machine.
+/// How long this thread has used a processor, from any start. Unlike the time that passes, it is the same on a busy machine.
 #[cfg(unix)]
 pub(crate) fn thread_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

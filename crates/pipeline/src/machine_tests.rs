@@ -1,3 +1,5 @@
+//! By default a build takes half of the machine's memory, within bounds.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The interface by which a run reports its stages and progress and learns that it should stop.
+
 use std::path::Path;
 
 use crate::Defect;
@@ -9,8 +11,8 @@ pub enum Unit {
     Bytes,
     /// Blocks of the DEM's samples.
     Blocks,
-    /// Areas of the grid: the finest tiles of one window of the DEM.
-    Areas,
+    /// Patches of the grid: the finest tiles of one window of the DEM.
+    Patches,
     /// Tiles of the package.
     Tiles,
 }
@@ -110,7 +112,7 @@ impl Stage {
         match self {
             Self::Hash | Self::MapAreas | Self::Boundaries | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
-            Self::Heights => Unit::Areas,
+            Self::Heights => Unit::Patches,
             Self::Photos
             | Self::CoarseTins
             | Self::Deviations

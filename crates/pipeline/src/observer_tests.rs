@@ -1,3 +1,5 @@
+//! Every stage is listed once, in order, under a name of its own.
+
 use std::collections::BTreeSet;
 
 use super::*;

@@ -13,12 +13,12 @@ mod jobs;
 mod merge;
 mod needed_parts;
 mod package;
-mod part;
 mod planned;
+mod single_part;
 mod step;
 mod stores;
 
 pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
 pub use merge::{MergeSettings, MergeSummary, merge};
-pub use part::{PartSettings, PartSummary, make_part};
+pub use single_part::{PartSettings, PartSummary, make_part};
 pub use step::Step;

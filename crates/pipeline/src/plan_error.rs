@@ -1,3 +1,5 @@
+//! Errors of reading a plan and of using it on another machine.
+
 use corniche_roads::FrcTableError;
 
 /// Version of a plan's JSON; other versions are refused.

@@ -1,4 +1,6 @@
-use corniche_geom::Frame;
+//! The spacing of the lattice on which points of areas and boundaries lie on each level.
+
+use corniche_geom::GridFrame;
 
 /// On the finest level, points of areas and boundaries lie on a lattice of at most this spacing, metres: what is drawn there can be looked at
 /// from near.
@@ -9,7 +11,7 @@ const FINEST_STEP_M: f64 = 0.1;
 const STEPS_PER_CELL: f64 = 4.0;
 
 /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
-pub(crate) fn points_step(frame: &Frame, level: u8) -> i64 {
+pub(crate) fn points_step(frame: &GridFrame, level: u8) -> i64 {
     let widest_m = if level == frame.max_level() {
         FINEST_STEP_M
     } else {

@@ -1,3 +1,5 @@
+//! The settings of a build: inputs, outputs and everything that decides what is made.
+
 use std::path::PathBuf;
 
 use corniche_areas::AreaTable;
@@ -60,11 +62,11 @@ impl PlanSettings {
 /// Which photos of the ground a package gets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PhotoChoice {
-    /// None.
+    /// The package has no photos.
     Off,
-    /// Those of the package whose terrain is taken, as they are there; none if it has none, or if no package gives the terrain.
+    /// The package has the photos of the package whose terrain is taken, as they are there; none if it has none, or if no package gives the terrain.
     OfTerrain,
-    /// Those of files.
+    /// The package has the photos of files.
     Files(PhotoSettings),
 }
 

@@ -1,3 +1,5 @@
+//! Each setting that decides bytes changes the record and its hash.
+
 use corniche_geom::Cell;
 use corniche_tileset::ReliefLevels;
 

@@ -1,3 +1,5 @@
+//! A stretch between two heights holds its segment.
+
 use super::*;
 
 #[test]

@@ -2,7 +2,7 @@
 
 use corniche_drape::{ClippedPart, Gap};
 use corniche_geom::{
-    CoordinateTable, Frame, LatticeBounds, LatticePoint, Polyline, Projection, wgs84,
+    CoordinateTable, GridFrame, LatticeBounds, LatticePoint, Polyline, Projection, wgs84,
 };
 
 /// Micrometres in a metre.
@@ -12,7 +12,7 @@ pub(crate) const UM: f64 = 1e6;
 /// segment have their shares of its length, cut at whole micrometres along it. Pieces that meet share the cut, so the
 /// lengths of all pieces of a segment add up to its length exactly.
 pub(crate) struct TrueLengths<'a> {
-    frame: Frame,
+    frame: GridFrame,
     /// Longitudes and latitudes inside its bounds come from this table, others from PROJ.
     table: &'a CoordinateTable,
     projection: &'a (dyn Projection + Sync),
@@ -20,7 +20,7 @@ pub(crate) struct TrueLengths<'a> {
 
 impl<'a> TrueLengths<'a> {
     pub(crate) fn new(
-        frame: Frame,
+        frame: GridFrame,
         table: &'a CoordinateTable,
         projection: &'a (dyn Projection + Sync),
     ) -> Self {

@@ -1,3 +1,5 @@
+//! The true lengths of pieces add up to that of the segment, exactly.
+
 use proptest::prelude::*;
 
 use super::*;

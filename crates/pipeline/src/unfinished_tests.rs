@@ -1,3 +1,5 @@
+//! What a killed program left is taken over, and of two programs one is refused.
+
 use super::*;
 
 fn names(folder: &Path) -> Vec<String> {

@@ -1,4 +1,4 @@
-//! The only place where worker threads are spawned.
+//! The worker threads of a build: they work side by side, and one writer takes their results in order.
 
 use std::{
     collections::BTreeMap,

@@ -1,3 +1,5 @@
+//! Results come in order at any number of threads, and errors and panics are passed on.
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;

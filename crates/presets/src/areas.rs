@@ -1,3 +1,5 @@
+//! The tables of area classes that come with the program, and the reading of such tables.
+
 use corniche_areas::{AreaClass, AreaTable};
 use corniche_config::AREA_TABLES;
 use serde::Deserialize;

@@ -1,3 +1,5 @@
+//! Bounds are four degrees or a word, in files and on the command line.
+
 use super::*;
 
 #[test]

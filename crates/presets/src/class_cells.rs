@@ -1,3 +1,5 @@
+//! From which level on each road class is shown, read from settings.
+
 use std::collections::BTreeMap;
 
 use corniche_roads::{ClassFilter, FunctionalRoadClass};

@@ -1,3 +1,5 @@
+//! Road classes vanish in the order of their importance.
+
 use super::*;
 
 fn cells(entries: &[(&str, f64)]) -> BTreeMap<String, f64> {

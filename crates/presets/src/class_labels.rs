@@ -1,3 +1,5 @@
+//! What people call the roads of each class, for legends and panels.
+
 use corniche_roads::{FrcTable, FunctionalRoadClass};
 
 use crate::{frc_preset, parse_frc_table};

@@ -1,3 +1,5 @@
+//! Road classes are called by the values of their table.
+
 use super::*;
 #[test]
 fn classes_are_called_by_the_values_of_their_table() {

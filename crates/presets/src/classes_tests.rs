@@ -1,3 +1,5 @@
+//! Lists of classes are numbers and ranges.
+
 use super::*;
 
 #[test]

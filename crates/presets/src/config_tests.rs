@@ -1,3 +1,5 @@
+//! Settings files are read whole or refused, and the command line has precedence.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Errors of reading settings and tables, and the limit on the length of their texts.
+
 use corniche_areas::{AreaClass, AreaTableError};
 use corniche_roads::{ClassFilterError, FrcTableError};
 

@@ -1,3 +1,5 @@
+//! Paths in a settings file begin at its folder.
+
 use super::*;
 use crate::InputFiles;
 

@@ -1,3 +1,5 @@
+//! The tables of functional road classes that come with the program, and the reading of such tables.
+
 use std::collections::BTreeMap;
 
 use corniche_config::FRC_TABLES;

@@ -1,3 +1,5 @@
+//! The choice of levels that store rasters for shading.
+
 use clap::ValueEnum;
 use serde::Deserialize;
 

@@ -1,4 +1,4 @@
-//! Texts of single values.
+//! Single values in settings files and on the command line, such as amounts of memory and cells.
 
 use bytesize::ByteSize;
 
@@ -17,7 +17,7 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// With less than this a build cannot hold a tile for each of a few threads.
+/// The least memory: with less a build cannot hold a tile for each of a few threads.
 const MIN_MEMORY_BYTES: u64 = 256 << 20;
 
 /// Memory that is enough to build in, bytes.

@@ -1,3 +1,5 @@
+//! Sizes, ranges and cells are read or refused.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Addresses of files on web servers, told without passwords.
+
 use std::fmt;
 
 use reqwest::Url;

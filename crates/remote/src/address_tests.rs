@@ -1,3 +1,5 @@
+//! Addresses on web servers are told from file names, and secrets are not shown.
+
 use super::*;
 
 #[test]

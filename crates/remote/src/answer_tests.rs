@@ -1,3 +1,5 @@
+//! Answers of servers are taken only if they are the range and the version that were asked for.
+
 use reqwest::header::HeaderValue;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Reads that follow each other become few requests, and many threads fetch a block once.
+
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     sync::atomic::{AtomicU64, Ordering},

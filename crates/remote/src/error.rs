@@ -1,3 +1,5 @@
+//! Errors of reading from a web server, and which of them may pass.
+
 use std::time::Duration;
 
 use corniche_tileset::SourceError;
@@ -159,7 +161,7 @@ impl HttpError {
         self
     }
 
-    /// As the error of a source: of a read, or of opening where `length` is 0.
+    /// The error as one of a source: of a read, or of opening where `length` is 0.
     pub(crate) fn of_source(&self, name: &str, offset: u64, length: usize) -> SourceError {
         SourceError {
             name: name.to_owned(),

@@ -17,7 +17,7 @@ mod address;
 mod answer;
 mod blocks;
 mod error;
-mod place;
+mod package_place;
 mod range;
 mod requests;
 mod settings;
@@ -26,7 +26,7 @@ mod web;
 
 pub use address::HttpAddress;
 pub use error::{AddressError, HttpError};
-pub use place::PackagePlace;
+pub use package_place::PackagePlace;
 pub use requests::Requests;
 pub use settings::HttpSettings;
 pub use source::HttpSource;

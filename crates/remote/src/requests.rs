@@ -1,3 +1,5 @@
+//! Counts of the requests to a server and of the bytes that came.
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What was asked of a server so far.

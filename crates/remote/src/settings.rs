@@ -1,3 +1,5 @@
+//! How long requests wait and how often they are tried again.
+
 use std::time::Duration;
 
 /// How patient requests are.

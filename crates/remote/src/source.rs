@@ -1,3 +1,5 @@
+//! The bytes of a file on a web server, for readers that wait for them.
+
 use std::{
     ops::Range,
     sync::{Mutex, OnceLock, PoisonError},

@@ -1,3 +1,5 @@
+//! The client for web servers: its connections, its thread and its rule for redirections.
+
 use std::{sync::Arc, time::Duration};
 
 use corniche_tileset::{FilePackage, OpenError};

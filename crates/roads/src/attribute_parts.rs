@@ -1,3 +1,5 @@
+//! Road attributes as plain numbers and texts, for encodings that write them as bytes.
+
 use std::num::{NonZeroU8, NonZeroU32};
 
 use crate::{Form, Oneway, RoadAttributes, Structure};

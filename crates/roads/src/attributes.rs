@@ -1,3 +1,5 @@
+//! Road attributes are read from the tags of a way.
+
 use crate::{
     Form, Oneway, RoadAttributes, Structure,
     frc_table::{is_yes, tag},

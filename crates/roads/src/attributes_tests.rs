@@ -1,3 +1,5 @@
+//! Road attributes are read from tags as documented, and what is read differently is named.
+
 use std::num::{NonZeroU8, NonZeroU32};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! The filter that says from which level on each road class is shown.
+
 use crate::FunctionalRoadClass;
 
 /// From which level on each class is shown, as the coarsest cell at which it still is.

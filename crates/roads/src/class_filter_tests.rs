@@ -1,3 +1,5 @@
+//! The usual filter of classes thins out as cells grow, and disordered ones are refused.
+
 use super::*;
 
 fn class(number: u8) -> FunctionalRoadClass {

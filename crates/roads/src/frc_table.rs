@@ -1,3 +1,5 @@
+//! A table says which value of `highway` has which functional road class; it is checked when it is made.
+
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::FunctionalRoadClass;
@@ -51,7 +53,7 @@ pub enum Classified<'t> {
     Road(FunctionalRoadClass),
     /// A road of this class, and the class is off.
     NotShown(FunctionalRoadClass),
-    /// Not a road, and the table knows it.
+    /// The way is no road, and the table knows it.
     NotARoad(NotARoad),
     /// The table does not list this `highway` value.
     Unknown(&'t str),

@@ -1,3 +1,5 @@
+//! FRC tables classify by their list and the rule for links, and refuse entries that make no table.
+
 use super::*;
 
 fn strings(values: &[&str]) -> Vec<String> {

@@ -1,3 +1,5 @@
+//! Widths, speeds and lanes are read with their units, and no text breaks a reader.
+
 use proptest::prelude::*;
 
 use super::*;

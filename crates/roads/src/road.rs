@@ -1,3 +1,5 @@
+//! A road: its way, its functional road class, its attributes and its line.
+
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,
@@ -6,7 +8,7 @@ use std::{
 
 use corniche_geom::Polyline;
 
-/// Functional road class, 0 (motorway) to 7 (least), and 8 for other roads (paths, steps, cycleways).
+/// Functional road class, 0 to 8: 0 is for motorways, 7 for the least of the roads for cars, 8 for paths, steps and cycleways.
 ///
 /// Lower is more important. Source: OpenLR White Paper v1.5 names 0 to 7; TomTom's products add 8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -122,12 +124,12 @@ listed! {
 /// What the tags of a road say of its width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 pub enum OwnWidth {
-    /// Nothing.
+    /// Nothing is known of the width.
     #[default]
     Unknown,
-    /// So many millimetres.
+    /// The width in millimetres.
     Millimetres(NonZeroU32),
-    /// So many lanes.
+    /// The number of lanes.
     Lanes(NonZeroU8),
 }
 

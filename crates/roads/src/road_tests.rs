@@ -1,3 +1,5 @@
+//! The numbers of road attributes are those that packages store.
+
 use super::*;
 
 /// Packages store these numbers.

@@ -1,3 +1,5 @@
+//! Road lines lose points within a tolerance, the same points in whichever direction a line runs.
+
 use corniche_geom::{LatticePoint, Polyline, cross};
 
 use crate::Road;

@@ -1,3 +1,5 @@
+//! Simplified lines stay within their tolerance and keep what is fixed.
+
 use super::*;
 use crate::{FunctionalRoadClass, RoadAttributes};
 use proptest::{collection::vec, prelude::*};

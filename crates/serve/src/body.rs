@@ -1,4 +1,4 @@
-//! What an answer sends.
+//! The bodies of answers: bytes in memory, or ranges of a file.
 
 use std::{io, ops::RangeInclusive};
 

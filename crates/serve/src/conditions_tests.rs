@@ -1,3 +1,5 @@
+//! Ranges and conditions of requests are understood as the standard says.
+
 use hyper::{HeaderMap, Method, header::HeaderName};
 
 use super::Wanted;

@@ -1,3 +1,5 @@
+//! Errors that keep packages from being served.
+
 use std::{io, net::SocketAddr};
 
 use thiserror::Error;
@@ -10,7 +12,7 @@ pub enum ServeError {
         "there is no address {host}; give one of this machine, such as 127.0.0.1, ::1 or 0.0.0.0 (all of them)"
     )]
     NoAddress {
-        /// As it was given.
+        /// The name as it was given.
         host: String,
         /// What the system says.
         source: io::Error,
@@ -20,7 +22,7 @@ pub enum ServeError {
         "port {port} of {host} is in use by another program; give another one, or 0 for one that is free"
     )]
     InUse {
-        /// As it was given.
+        /// The name as it was given.
         host: String,
         /// The port.
         port: u16,
@@ -28,7 +30,7 @@ pub enum ServeError {
     /// The system does not let this program listen there.
     #[error("cannot listen at port {port} of {host}")]
     Listen {
-        /// As it was given.
+        /// The name as it was given.
         host: String,
         /// The port.
         port: u16,
@@ -38,7 +40,7 @@ pub enum ServeError {
     /// The threads of the server cannot be started.
     #[error("cannot start to serve at {address}")]
     Start {
-        /// Where.
+        /// The address at which it should have listened.
         address: SocketAddr,
         /// What the system says.
         source: io::Error,

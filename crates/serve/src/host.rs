@@ -15,13 +15,13 @@ pub(crate) enum Hosts {
     Any,
     /// Addresses of numbers, `localhost`, and the one that was named.
     Local {
-        /// In lower case; a number, too, if that was given.
+        /// The name in lower case; a number, too, if that was given.
         named: String,
     },
 }
 
 impl Hosts {
-    /// Those of a server that was told to listen at `named`, which turned out to be `bound`.
+    /// The names of a server that was told to listen at `named`, which turned out to be `bound`.
     pub(crate) fn of(named: &str, bound: SocketAddr) -> Self {
         if bound.ip().is_loopback() {
             Self::Local { named: named.to_lowercase() }

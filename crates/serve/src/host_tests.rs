@@ -1,3 +1,5 @@
+//! A server on the loopback answers only to names that cannot be made to lead there.
+
 use super::Hosts;
 
 #[test]

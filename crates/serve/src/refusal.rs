@@ -37,7 +37,7 @@ pub(crate) enum Refusal {
     Changed,
     /// The file has no such bytes.
     NoSuchBytes {
-        /// So many it has.
+        /// How many bytes the file has.
         length_bytes: u64,
     },
 }

@@ -18,9 +18,9 @@ pub enum Content {
 /// Which pages may read a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Readers {
-    /// Those of any server: `Access-Control-Allow-Origin: *`.
+    /// Pages of any server may read it: `Access-Control-Allow-Origin: *`.
     AnyPage,
-    /// Those of this server.
+    /// Pages of this server alone may read it.
     OwnPages,
 }
 

@@ -1,3 +1,5 @@
+//! Only the paths in the table are found, and tags tell contents apart.
+
 use bytes::Bytes;
 
 use super::{Content, Readers, Routes};

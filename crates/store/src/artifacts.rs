@@ -1,3 +1,5 @@
+//! Artifacts: immutable bytes by key, and the interface of what keeps them.
+
 use crate::StoreError;
 
 /// The name of an artifact. Keys sort by kind first.

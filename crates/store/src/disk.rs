@@ -110,16 +110,16 @@ pub enum OpenMode {
     Change,
     /// A file that is not there yet, for reading and writing.
     New,
-    /// For reading and writing; made where it is not there.
+    /// The file is opened for reading and writing, and made where it is not there.
     ChangeOrNew,
 }
 
 /// How a lock is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hold {
-    /// By one.
+    /// One holds it alone.
     Alone,
-    /// By any number, but then by nobody alone.
+    /// Any number hold it, but then nobody alone.
     Shared,
 }
 

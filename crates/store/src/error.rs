@@ -1,3 +1,5 @@
+//! Errors of keeping and reading back, with advice where there is a remedy.
+
 use std::{io, path::PathBuf};
 
 /// Why something could not be kept or read back.
@@ -84,7 +86,7 @@ fn is_too_many_open_files(source: &io::Error) -> bool {
 }
 
 impl From<StoreError> for io::Error {
-    /// For [`Scratch`](crate::Scratch), whose errors travel through readers and writers. The kind stays.
+    /// The error for users of [`Scratch`](crate::Scratch), whose errors travel through readers and writers. The kind stays.
     fn from(error: StoreError) -> Self {
         let kind = match &error {
             StoreError::Io { source, .. } => source.kind(),

@@ -1,3 +1,5 @@
+//! Errors of a store give advice that the command at hand can follow.
+
 use super::*;
 
 fn said(source: io::Error) -> String {

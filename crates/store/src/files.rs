@@ -17,7 +17,7 @@ use crate::{Disk, DiskFile, Hold, Listed, OpenMode, PartFile, StoreError};
 pub struct Traffic {
     /// Read from the disk, or from the system's cache of it.
     pub read_bytes: u64,
-    /// Written.
+    /// How many bytes were written.
     pub written_bytes: u64,
 }
 

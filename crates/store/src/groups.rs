@@ -1,3 +1,5 @@
+//! Sorted records that belong to one object are taken together.
+
 use std::io;
 
 use crate::{SortRecord, Sorted};

@@ -24,7 +24,7 @@
 //! # }
 //! ```
 //!
-//! A store reads sealed parts from any number of [places](Place): folders, or what another crate makes one, such as object storage.
+//! A store reads sealed parts from any number of [places](PartsPlace): folders, or what another crate makes one, such as object storage.
 //!
 //! This crate knows no tile and no road: a key is two numbers, an artifact is bytes. It never changes what was put, makes no threads, and
 //! removes no file that it did not make.
@@ -36,7 +36,7 @@ mod files;
 mod groups;
 mod local;
 mod memory;
-mod place;
+mod parts_place;
 mod scratch;
 mod sorter;
 mod stored_plan;
@@ -52,7 +52,7 @@ pub use local::{
     SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 pub use memory::{MemoryScratch, MemoryStore};
-pub use place::{PartFile, Place, Publish};
+pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};

@@ -40,7 +40,7 @@ pub use scratch::LocalScratch;
 pub use sealed_part::check_sealed;
 
 use crate::{
-    Artifacts, Disk, Hold, Key, PartFile, Place, PlanHash, Publish, StoreError, StoredPlan,
+    Artifacts, Disk, Hold, Key, PartFile, PartsPlace, PlanHash, Publish, StoreError, StoredPlan,
     files::{Files, OpenFile, Traffic},
 };
 use binding::FolderState;
@@ -61,7 +61,7 @@ const BUILD: &str = "build";
 pub struct LocalStore {
     files: Arc<Files>,
     index: RwLock<Index>,
-    /// By their numbers in the index.
+    /// The sealed parts by their numbers in the index.
     sealed: Vec<Box<dyn PartFile>>,
     own: Option<Own>,
 }
@@ -95,7 +95,7 @@ pub struct OwnPart<'a> {
 #[derive(Clone, Copy)]
 pub struct SealedParts<'a> {
     /// Where they lie.
-    pub places: &'a [&'a dyn Place],
+    pub places: &'a [&'a dyn PartsPlace],
     /// Which of them are needed, by their names without digest. The others are not even opened, and neither are those in the folder of the
     /// own part.
     pub is_needed: &'a dyn Fn(&str) -> bool,
@@ -168,7 +168,8 @@ impl LocalStore {
         let files = Files::new(disk);
         let folders: Vec<Folder> =
             folders.iter().map(|folder| Folder::of(&files, folder)).collect();
-        let places: Vec<&dyn Place> = folders.iter().map(|folder| folder as &dyn Place).collect();
+        let places: Vec<&dyn PartsPlace> =
+            folders.iter().map(|folder| folder as &dyn PartsPlace).collect();
         let sealed = SealedParts { places: &places, ..NO_PARTS };
         Self::open_of(files, sealed, plan, own.map(|own| (own, Hold::Shared)))
     }
@@ -436,7 +437,7 @@ impl Artifacts for LocalStore {
 const NO_PARTS: SealedParts<'static> = SealedParts { places: &[], is_needed: &|_| true };
 
 /// Fails unless all places are of this plan.
-fn check_plans(places: &[&dyn Place], plan: &PlanHash) -> Result<(), StoreError> {
+fn check_plans(places: &[&dyn PartsPlace], plan: &PlanHash) -> Result<(), StoreError> {
     for place in places {
         let path = place.name().to_owned();
         match place.stored_plan()? {

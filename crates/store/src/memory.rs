@@ -1,4 +1,4 @@
-//! The same in memory, for tests and for small work.
+//! Artifacts and scratch space in memory, for tests and for small work.
 
 use std::{
     collections::BTreeMap,

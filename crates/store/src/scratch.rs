@@ -1,3 +1,5 @@
+//! The interface of scratch space: bytes that only the step that wrote them reads back.
+
 use std::io;
 
 /// Where something was put.

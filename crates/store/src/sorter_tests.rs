@@ -1,3 +1,5 @@
+//! Records are sorted as `Vec::sort` sorts them, however little memory there is.
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! The plan that a store is bound to, and its hash.
+
 /// SHA-256 of what a store is bound to.
 pub type PlanHash = [u8; 32];
 

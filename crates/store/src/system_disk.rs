@@ -1,3 +1,5 @@
+//! The file system of the machine, behind the interface that tests replace.
+
 use std::{
     fs::{self, File, Metadata, TryLockError},
     io,

@@ -1,4 +1,4 @@
-//! How areas look.
+//! The looks of areas: a colour and an opacity for each class.
 
 use corniche_areas::AreaClass;
 use serde::{Deserialize, Serialize};

@@ -33,7 +33,7 @@ pub fn snow_line_m(latitude_deg: f64) -> f64 {
     }
 }
 
-/// By how much the heights of a tint are multiplied at this latitude.
+/// The factor by which the heights of a tint are multiplied at this latitude.
 #[must_use]
 pub fn height_factor(latitude_deg: f64) -> f64 {
     snow_line_m(latitude_deg) / snow_line_m(REFERENCE_LATITUDE_DEG)

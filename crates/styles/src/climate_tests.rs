@@ -1,3 +1,5 @@
+//! The snow line meets its table and is the same north and south.
+
 use super::*;
 
 #[test]

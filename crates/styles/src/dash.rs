@@ -1,3 +1,5 @@
+//! Patterns along a line: dashes, dots, beads and arrows, with the width of each part.
+
 use crate::StyleError;
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! Patterns are divided into shares, and what is no pattern is refused.
+
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Errors of reading a style.
+
 /// Why a text is no style. The caller knows which file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]

@@ -19,7 +19,7 @@ const LEAST_STEP_M: f64 = 1.0;
 pub(crate) struct LightSheet {
     /// Clockwise from north, 0 to 360.
     pub(crate) azimuth_deg: f64,
-    /// Above the horizon, 0 to 90.
+    /// The angle above the horizon, 0 to 90.
     pub(crate) altitude_deg: f64,
     /// How strongly slopes are shaded, 0 to 1.
     pub(crate) hillshade: f64,

@@ -1,3 +1,5 @@
+//! The styles of lines take the places of roads.
+
 use super::*;
 
 #[test]

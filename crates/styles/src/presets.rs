@@ -1,3 +1,5 @@
+//! The styles that come with the program.
+
 use corniche_config::STYLES;
 
 /// Names of the styles that come with the program, the default one first.

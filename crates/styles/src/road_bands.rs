@@ -1,3 +1,5 @@
+//! The stripes of a road, such as casing, fill and centre line, one upon the other.
+
 use crate::{Rgb, StyleError};
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! Bands are nested from the whole road to its middle.
+
 use super::*;
 
 const DARK: Rgb = [0.1; 3];

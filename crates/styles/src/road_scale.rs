@@ -1,3 +1,5 @@
+//! How roads fade out where the picture becomes too coarse for their class.
+
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{RoadStyle, Style};

@@ -1,3 +1,5 @@
+//! A road class fades over half a zoom step.
+
 use super::*;
 
 fn road(max_pixel_m: Option<f32>) -> RoadStyle {

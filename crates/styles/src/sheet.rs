@@ -39,13 +39,13 @@ pub(crate) struct StyleSheet {
     pub(crate) background: BackgroundSheet,
     /// Height tint.
     pub(crate) tint: Tint,
-    /// By class, 0 first.
+    /// The roads of each class, 0 first.
     pub(crate) roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// By class, in order of their numbers.
+    /// The areas of each class, in order of their numbers.
     pub(crate) areas: [AreaStyle; AreaClass::COUNT],
-    /// By class, in order of their numbers.
+    /// The boundaries of each class, in order of their numbers.
     pub(crate) boundaries: [LineStyle; LineStyle::MOST],
-    /// In the order of the files.
+    /// The lines of files, in the order of the files.
     pub(crate) overlays: [LineStyle; LineStyle::MOST],
     /// Lines that a person draws.
     pub(crate) drawn: LineStyle,

@@ -1,3 +1,5 @@
+//! The styles that come with the program keep their rules, and mistakes in a style are named.
+
 use super::*;
 use crate::{Rgb, TintHeights, style_preset, style_preset_names};
 

@@ -87,9 +87,9 @@ impl OwnWidths {
 /// How the map looks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Style {
-    /// By class, 0 first.
+    /// The roads of each class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// By class, in order of their numbers. Which lies above which is said by [`AreaStyle::TOP_FIRST`].
+    /// The areas of each class, in order of their numbers. Which lies above which is said by [`AreaStyle::TOP_FIRST`].
     pub areas: [AreaStyle; AreaClass::COUNT],
     /// Boundaries, by class.
     pub boundaries: [LineStyle; LineStyle::MOST],

@@ -1,3 +1,5 @@
+//! Widths and colours of a style follow its numbers.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! A small extract with areas, some of which cannot be made.
+
 use std::{
     fs,
     path::{Path, PathBuf},

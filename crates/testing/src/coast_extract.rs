@@ -1,3 +1,5 @@
+//! A small extract with a coastline, whole or with a gap.
+
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -1,3 +1,5 @@
+//! Colour images with a place on the earth, written as GeoTIFF for tests.
+
 use std::path::{Path, PathBuf};
 
 use gdal::{

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use corniche_drape::{SvLine, drape};
 use corniche_geom::{
-    Bounds, Cell, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, TileId,
+    Bounds, Cell, CoordinateTable, GridFrame, LatticePoint, NodeIndex, Polyline, TileId,
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{
@@ -23,8 +23,8 @@ pub const MAX_LEVEL: u8 = 2;
 
 /// Grid of the small package.
 #[must_use]
-pub fn frame() -> Frame {
-    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, MAX_LEVEL).unwrap()
+pub fn frame() -> GridFrame {
+    GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, MAX_LEVEL).unwrap()
 }
 
 /// What the tiles of the small package are encoded with.
@@ -50,7 +50,7 @@ pub fn manifest() -> Manifest {
 
 /// The same manifest for another grid; its world is flat, 100 km to a degree. Tests set the fields they are about.
 #[must_use]
-pub fn manifest_of(frame: Frame) -> Manifest {
+pub fn manifest_of(frame: GridFrame) -> Manifest {
     let projection = FlatProjection::new([1e5; 2]);
     let data_bounds = frame.tile_bounds(TileId::ROOT);
     Manifest {
@@ -115,7 +115,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
 
 /// A level of `frame` with a root tile of the small package.
 #[must_use]
-pub fn level(frame: &Frame, level: u8) -> LevelRecord {
+pub fn level(frame: &GridFrame, level: u8) -> LevelRecord {
     LevelRecord {
         level,
         cell_m: frame.level_cell(level),

@@ -1,3 +1,5 @@
+//! A projection of a flat world, exact enough for closed forms in tests.
+
 use corniche_geom::{ProjectError, Projection};
 
 /// A flat world: working metres are degrees from an origin times a factor per axis, plus the origin's metres.

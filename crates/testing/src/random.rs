@@ -1,3 +1,5 @@
+//! Random numbers that are the same on every machine.
+
 /// Random numbers that are the same on every machine.
 ///
 /// Source: Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (splitmix64).

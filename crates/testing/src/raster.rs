@@ -1,3 +1,5 @@
+//! Rasters of heights, written as GeoTIFF for tests.
+
 use std::path::{Path, PathBuf};
 
 use gdal::{

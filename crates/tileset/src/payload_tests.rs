@@ -1,8 +1,10 @@
+//! A tile with all its sections comes back whole, and any damage is noticed.
+
 use std::num::{NonZeroU8, NonZeroU32};
 use std::sync::LazyLock;
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
-use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{GridFrame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_tin::{Surface, Tin, TinVertex};
 use proptest::prelude::*;
@@ -14,8 +16,8 @@ use super::{
 
 const QUANTUM_M: f64 = 0.25;
 
-fn frame() -> Frame {
-    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
 }
 
 fn context() -> PayloadContext {
@@ -27,7 +29,7 @@ fn context_in_degrees() -> PayloadContext {
     PayloadContext { metres_per_unit: [39_062.5; 2], ..context() }
 }
 
-static FRAME: LazyLock<Frame> = LazyLock::new(frame);
+static FRAME: LazyLock<GridFrame> = LazyLock::new(frame);
 
 /// OSM's grid in [`context_in_degrees`].
 fn grid() -> SourceGrid<'static> {

@@ -1,3 +1,5 @@
+//! The queue of candidates for the next vertex of a TIN, the greatest error first.
+
 use std::collections::BinaryHeap;
 
 /// The node of a face that lies farthest from it. Candidates compare by error, then by node (of equals the

@@ -1,3 +1,5 @@
+//! The queue of candidates pops in the order of one heap.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! How far a TIN lies from heights, measured window by window.
+
 use std::ops::Range;
 
 use corniche_geom::{HeightGrid, IndexLists};

@@ -1,3 +1,5 @@
+//! Deviations of a TIN are those that a look at each node finds.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! The scan of a face finds its farthest node.
+
 use corniche_geom::HeightGrid;
 use proptest::prelude::*;
 

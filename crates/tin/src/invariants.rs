@@ -1,3 +1,5 @@
+//! Checks that a TIN is valid and covers exactly its ground.
+
 use std::collections::HashSet;
 
 use corniche_geom::HeightGrid;

@@ -1,3 +1,5 @@
+//! A node of the tile's raster as a vertex of the triangulation.
+
 use spade::{HasPosition, Point2};
 
 use crate::TinVertex;

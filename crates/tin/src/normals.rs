@@ -1,3 +1,5 @@
+//! Normals of the ground at the vertices of a TIN, and their code of two bytes.
+
 use corniche_geom::{Cell, HeightGrid};
 
 use crate::Tin;

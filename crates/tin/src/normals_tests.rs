@@ -1,3 +1,5 @@
+//! Decoded normals are within a degree of the ground's, and of unit length.
+
 use super::*;
 use crate::{TinSpec, triangulate};
 use proptest::prelude::*;

@@ -2,7 +2,7 @@
 
 mod buckets;
 
-use corniche_geom::{Frame, IndexLists, LatticeBounds, LatticePoint, TileId, cross};
+use corniche_geom::{GridFrame, IndexLists, LatticeBounds, LatticePoint, TileId, cross};
 
 use crate::Tin;
 use buckets::Buckets;
@@ -27,7 +27,7 @@ impl Placement {
     /// # Panics
     /// When the tile's level is beyond the frame's finest one.
     #[must_use]
-    pub fn of_tile(frame: &Frame, id: TileId, quantum_m: f64) -> Self {
+    pub fn of_tile(frame: &GridFrame, id: TileId, quantum_m: f64) -> Self {
         Self {
             corner: frame.lattice_of_node(frame.tile_corner(id)),
             node_steps: frame.node_steps(id.z()),

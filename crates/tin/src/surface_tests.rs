@@ -1,3 +1,5 @@
+//! The search on a surface finds what trying every triangle finds.
+
 use super::*;
 use crate::TinVertex;
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! The heights of one tile with a border of one node around it.
+
 use corniche_geom::HeightGrid;
 
 /// The nodes of one tile, read from a grid that has one more node on each side.

@@ -1,3 +1,5 @@
+//! The triangulated irregular network of a tile, valid from construction.
+
 use corniche_geom::IndexLists;
 
 /// A vertex of a [`Tin`]: a node of the tile's grid and its quantized height.

@@ -1,3 +1,5 @@
+//! The nodes in a triangle, found row by row in whole numbers.
+
 /// Calls `each(row, first_column, last_column)` for every row of nodes that the triangle `corners`
 /// (`[column, row]`) holds, edges included, within `rows` and from north to south.
 ///

@@ -1,3 +1,5 @@
+//! The rows of a triangle hold exactly the nodes in it.
+
 use super::*;
 use proptest::prelude::*;
 

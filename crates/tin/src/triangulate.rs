@@ -1,3 +1,5 @@
+//! Triangulation of a tile: greedy insertion until every node lies within the error bound.
+
 use corniche_geom::HeightGrid;
 use spade::{
     ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation,

@@ -1,3 +1,5 @@
+//! Every node of a tile lies within the tolerance of its TIN, and simple ground has few triangles.
+
 use std::collections::BTreeSet;
 
 use corniche_testing::srtm_heights;

@@ -1,3 +1,5 @@
+//! The camera looks where it is told to, and depths lie between 0 and 1.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -52,7 +52,7 @@ pub(crate) fn shown_classes(view: &FrameView<'_>, nearest_m: f64) -> ClassSet {
     classes.filter(|class| view.style.road(*class).last_pixel_m() > pixel_m).collect()
 }
 
-/// For each level, how much ground a pixel covers where the level's tiles lack no road that is shown there.
+/// How much ground a pixel covers on each level where the level's tiles lack no road that is shown there.
 ///
 /// A package stores less important classes on fine levels only. If a style shows one of them where the terrain alone would
 /// be drawn from a coarser level, the tiles there are refined, ground and roads.

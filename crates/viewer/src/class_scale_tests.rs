@@ -1,3 +1,5 @@
+//! A level is too coarse for a picture that shows a class which the level lacks.
+
 use corniche_geom::Cell;
 use corniche_tileset::SampleErrorRecord;
 

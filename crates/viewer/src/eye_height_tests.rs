@@ -1,3 +1,5 @@
+//! The near plane does not reach the ground beneath the eye.
+
 use glam::DVec3;
 
 use super::*;

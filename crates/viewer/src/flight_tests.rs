@@ -1,3 +1,5 @@
+//! Flights are read from text in any CRS and are flown smoothly.
+
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_testing::FlatProjection;
 use proptest::prelude::*;

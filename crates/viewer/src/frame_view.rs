@@ -1,3 +1,5 @@
+//! What a picture shows and how: camera, style and options, without the tiles.
+
 use corniche_styles::Style;
 
 use crate::{camera::Camera, options::RoadOptions};

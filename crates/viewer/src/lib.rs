@@ -1,4 +1,4 @@
-//! Package to pixels.
+//! Draws packages: tiles are chosen, loaded and rendered to pixels.
 //!
 //! ```text
 //!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, areas, roads, composite ──► picture

@@ -79,7 +79,7 @@ pub struct Fineness {
 }
 
 impl Quality {
-    /// For a package with this manifest, drawn with these roads and with heights multiplied by `exaggeration`.
+    /// The quality with which a package with this manifest is drawn, with these roads and heights multiplied by `exaggeration`.
     #[must_use]
     pub fn of_package(
         manifest: &Manifest,

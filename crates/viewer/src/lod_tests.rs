@@ -1,3 +1,5 @@
+//! Tiles are refined by their errors and cells as the closed forms say.
+
 use std::collections::BTreeSet;
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+//! Positions in degrees are read or refused.
+
 use super::*;
 
 #[test]

@@ -7,9 +7,9 @@ use corniche_styles::{Style, WidthScaling};
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RoadMethod {
-    /// As geometry lying on the TIN of their level (GEO).
+    /// Roads are geometry lying on the TIN of their level (GEO).
     Geometry,
-    /// As volumes that are intersected with the ground (SV).
+    /// Roads are volumes that are intersected with the ground (SV).
     ShadowVolumes,
     /// No roads are drawn.
     None,
@@ -18,18 +18,18 @@ pub enum RoadMethod {
 /// How a road begins, ends and bends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Caps {
-    /// With a half disc around every point of the line.
+    /// Roads have a half disc around every point of the line.
     Round,
-    /// Without caps: every segment is a rectangle, and there are gaps at the outer side of bends.
+    /// Roads have no caps: every segment is a rectangle, and there are gaps at the outer side of bends.
     None,
 }
 
 /// How the fragment shader of volumes decides whether the ground at its pixel is road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CapTest {
-    /// By the distance in plan from that ground to the segment. Exact to some hundredths of a pixel at any distance.
+    /// The distance in plan from that ground to the segment decides. It is exact to some hundredths of a pixel at any distance.
     Distance,
-    /// By the paper's formula: where the ray of view enters and leaves the volume, as the roots of a quadratic.
+    /// The paper's formula decides: where the ray of view enters and leaves the volume, as the roots of a quadratic.
     /// It is imprecise far from the eye and is kept for comparison. Only for volumes.
     PaperQuadratic,
 }
@@ -58,7 +58,7 @@ pub enum WidthGrowth {
 /// The edge drawn around roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outline {
-    /// As wide as the style says.
+    /// Outlines are as wide as the style says.
     OfStyle,
     /// No edge.
     None,

@@ -1,3 +1,5 @@
+//! Growing widths and sets of classes follow their options.
+
 use super::*;
 
 /// How much widths grow at a distance of 4 km, with a threshold of 1 km, an exponent of 0.5 and a constant of 3.

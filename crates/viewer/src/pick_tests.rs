@@ -1,3 +1,5 @@
+//! A ray meets the nearest triangle and slips through no edge.
+
 use corniche_geom::TileId;
 use proptest::prelude::*;
 

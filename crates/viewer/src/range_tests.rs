@@ -1,3 +1,5 @@
+//! The ends of a range are in it, and what is no number is not.
+
 use super::*;
 
 #[test]

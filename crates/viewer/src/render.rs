@@ -1,3 +1,5 @@
+//! One picture of a package is rendered without a window.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;

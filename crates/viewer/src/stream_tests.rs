@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, NodeIndex};
+//! Streaming ends with the tiles that the view needs, within its budget.
+
+use corniche_geom::{GridFrame, NodeIndex};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -14,13 +16,14 @@ const PLENTY: StreamBudget =
 
 /// A complete quadtree over a square of 64 km.
 struct World {
-    frame: Frame,
+    frame: GridFrame,
 }
 
 impl World {
     fn new() -> Self {
         let corner = NodeIndex { i: 0, j: 256 << MAX_LEVEL };
-        let frame = Frame::new([0.0; 2], 64_000.0 / f64::from(256 << MAX_LEVEL), corner, MAX_LEVEL);
+        let frame =
+            GridFrame::new([0.0; 2], 64_000.0 / f64::from(256 << MAX_LEVEL), corner, MAX_LEVEL);
         Self { frame: frame.expect("a frame of whole tiles") }
     }
 }
@@ -38,7 +41,7 @@ fn facts(id: TileId) -> TileFacts {
 }
 
 impl TileCatalog for World {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.frame
     }
 

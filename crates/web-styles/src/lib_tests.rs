@@ -1,3 +1,5 @@
+//! A style arrives in the page's module as it was written.
+
 use corniche_styles::{style_preset, style_preset_names};
 
 use super::*;

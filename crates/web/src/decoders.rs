@@ -26,7 +26,7 @@ struct Job {
 }
 
 thread_local! {
-    /// Of all maps of the page.
+    /// The jobs of all maps of the page.
     static JOBS: RefCell<Jobs> = RefCell::default();
 }
 

@@ -205,7 +205,7 @@ async fn request(
     fetch(address, &init).await
 }
 
-/// By the global function, which pages and workers both have.
+/// Calls the global function, which pages and workers both have.
 async fn fetch(address: &str, init: &RequestInit) -> Result<Response, JsValue> {
     let global = js_sys::global();
     let fetch: Function = Reflect::get(&global, &"fetch".into())?.unchecked_into();

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, collections::BTreeMap};
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     CameraRequest, SightedGround,
@@ -34,7 +34,7 @@ impl std::fmt::Display for NotYet {
 impl std::error::Error for NotYet {}
 
 impl TileCatalog for Noting<'_> {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         self.tiles.package.frame()
     }
 

@@ -35,7 +35,7 @@ impl Flights {
             .map_err(|error| error.to_string())
     }
 
-    /// For how long a flight has been recorded.
+    /// How long a flight has been recorded.
     pub(crate) fn recording_s(&self, now_s: f64) -> Option<f64> {
         self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s))
     }

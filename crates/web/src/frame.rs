@@ -7,10 +7,10 @@ use crate::map::{HURRY_S, Map, fineness_of, ground};
 use crate::{
     canvas::Scene,
     flights::view_of_pose,
-    place::Place,
     problem::Problem,
     report::{FrameReport, GroundPlace, Next, Notice, TileCounts},
     settings::Settings,
+    view_record::ViewRecord,
 };
 use corniche_live::controls::KnownGround as _;
 
@@ -158,7 +158,7 @@ impl Map {
         let scale = self.vertical_scale();
         let place = {
             let ground = ground(&self.tiles, &self.settings, manifest, self.height_range_m);
-            Place::of(request_of_view(
+            ViewRecord::of(request_of_view(
                 &self.camera.view(),
                 &ground,
                 scale,

@@ -44,8 +44,6 @@ mod open;
 #[cfg(target_arch = "wasm32")]
 mod pick;
 #[cfg(target_arch = "wasm32")]
-mod place;
-#[cfg(target_arch = "wasm32")]
 mod problem;
 #[cfg(target_arch = "wasm32")]
 mod report;
@@ -55,6 +53,8 @@ mod source;
 mod timer;
 #[cfg(target_arch = "wasm32")]
 pub mod view;
+#[cfg(target_arch = "wasm32")]
+mod view_record;
 #[cfg(target_arch = "wasm32")]
 pub mod worker;
 

@@ -23,10 +23,10 @@ use crate::{
     canvas::PageCanvas,
     flights::Flights,
     loader::{PageLoader, Tileset},
-    place::{Place, view_on},
     report::{About, ClassEntry, GroundPlace, Has, Notice},
     settings::{Compare, Settings},
     tables,
+    view_record::{ViewRecord, view_on},
 };
 
 /// A place is picked at most so far beside a road, points of the screen.
@@ -159,7 +159,7 @@ impl Map {
 
     /// Moves to a place that the page names, as JSON.
     pub(crate) fn go(&mut self, place: &str, now_s: f64, jump: bool) -> Result<(), String> {
-        let place: Place = serde_json::from_slice(place.as_bytes())
+        let place: ViewRecord = serde_json::from_slice(place.as_bytes())
             .map_err(|error| format!("the place: {error}"))?;
         let request = place.request();
         range::check_camera(request).map_err(|error| error.to_string())?;

@@ -1,3 +1,5 @@
+//! Ranges that are near each other are fetched together, and far ones apart.
+
 use super::*;
 
 #[test]

@@ -29,11 +29,11 @@ use crate::{
     foresight::foreseen,
     host::Host,
     loader::{PageLoader, Tileset},
-    place::{Place, view_on},
     problem::Problem,
     settings::{Changes, Settings},
     source::WebSource,
     tables,
+    view_record::{ViewRecord, view_on},
 };
 
 /// What may be done in a frame and kept, unless the page says otherwise.
@@ -44,10 +44,10 @@ const BUDGET: StreamBudget =
 #[derive(Debug, Clone, Default, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Options {
-    /// Those that are not the usual ones.
+    /// The settings that are not the usual ones.
     settings: Changes,
     /// Where to look; without it, where the roads are.
-    view: Option<Place>,
+    view: Option<ViewRecord>,
     /// Pixels at the right that are covered by a panel.
     covered_px: u32,
     /// Bytes of tiles on the graphics card.

@@ -9,7 +9,7 @@ use wasm_bindgen::JsValue;
 /// Why a map cannot be shown. For a page it is an object with the fields `kind`, `message` and `advice`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Problem {
-    /// For programs: `network`, `not-found`, `cors` and so on.
+    /// The kind of problem, for programs: `network`, `not-found`, `cors` and so on.
     pub(crate) kind: &'static str,
     /// What is wrong.
     pub(crate) message: String,

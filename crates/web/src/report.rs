@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-use crate::place::Place;
+use crate::view_record::ViewRecord;
 
 /// When the next frame is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Next {
-    /// As soon as possible.
+    /// The next frame is due as soon as possible.
     Now,
-    /// When something happens.
+    /// The next frame is due when something happens.
     Asked,
 }
 
@@ -65,7 +65,7 @@ pub(crate) struct FrameReport {
     pub(crate) next: Next,
     /// Whether nothing moves and nothing is loaded any more.
     pub(crate) is_settled: bool,
-    pub(crate) view: Option<Place>,
+    pub(crate) view: Option<ViewRecord>,
     pub(crate) cursor: Option<GroundPlace>,
     /// True metres in a pixel in the middle.
     pub(crate) metres_per_pixel: Option<f64>,
@@ -91,7 +91,7 @@ pub(crate) struct FrameReport {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct ClassEntry {
     pub(crate) label: String,
-    /// As in CSS: `#rrggbb`.
+    /// The colour as in CSS: `#rrggbb`.
     pub(crate) color: String,
 }
 

@@ -109,7 +109,7 @@ fn said<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
 }
 
 impl Default for Settings {
-    /// As `corniche render` draws without options.
+    /// The settings with which `corniche render` draws without options.
     fn default() -> Self {
         Self {
             roads: Roads::Geo,

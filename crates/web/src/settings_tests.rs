@@ -1,3 +1,5 @@
+//! Settings of the page change what they name and nothing else.
+
 use super::*;
 
 #[test]

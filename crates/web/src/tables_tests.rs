@@ -1,3 +1,5 @@
+//! Styles and class names of the page are those of the program.
+
 use corniche_styles::{parse_style, style_preset, style_preset_names};
 
 use super::*;

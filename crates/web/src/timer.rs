@@ -1,4 +1,4 @@
-//! Waiting.
+//! Waiting for some time in a browser.
 
 use js_sys::{Function, Promise, Reflect};
 use wasm_bindgen::{JsCast as _, JsValue};

@@ -1,3 +1,5 @@
+//! A window draws the same whether its tiles come from a file or from a source that nothing waits for.
+
 use std::{
     num::NonZeroUsize,
     sync::Arc,

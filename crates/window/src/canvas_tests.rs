@@ -1,3 +1,5 @@
+//! The canvas shows the map pixel for pixel and draws only what has changed.
+
 use std::time::{Duration, Instant};
 
 use corniche_live::MapScene;

@@ -1,3 +1,5 @@
+//! Errors of windows and of saving their pictures and flights.
+
 use std::{io, path::PathBuf};
 
 use corniche_viewer::{

@@ -1,3 +1,5 @@
+//! Numbers and positions are written as people write them.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The median is that of recent frames.
+
 use super::*;
 
 #[test]

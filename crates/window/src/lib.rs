@@ -27,18 +27,18 @@ mod outcome;
 mod overlay;
 mod panel;
 mod platform;
-mod request;
 mod save_files;
 mod settings;
 mod shots;
 mod trace;
 mod window_content;
+mod window_request;
 
 pub use corniche_live::controls::Inertia;
 pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};
-pub use request::{
+pub use window_request::{
     BeginTrace, ClockS, CommandOf, DrawnLine, NamedStyle, Reload, SaveDrawing, ShownView,
     Visibility, WindowRequest,
 };

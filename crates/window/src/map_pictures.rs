@@ -1,3 +1,5 @@
+//! The pictures of the map in a window: one, or two beside each other.
+
 use egui::TextureId;
 
 /// The pictures of the map, as large as the window.

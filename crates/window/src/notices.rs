@@ -1,6 +1,6 @@
 //! Messages for the person. Warnings stay until they are dismissed; other messages disappear after a few seconds.
 
-/// At most this many are kept.
+/// Most messages that are kept.
 const MOST: usize = 6;
 /// A message that is no warning disappears after this time.
 const NEWS_S: f64 = 8.0;

@@ -1,3 +1,5 @@
+//! Good news goes by itself, and warnings stay until they are no longer true.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! How a window ended.
+
 use std::path::PathBuf;
 
 use crate::{NotSaved, WindowError};

@@ -1,3 +1,5 @@
+//! The interface by which a window saves files while it goes on drawing.
+
 use std::{io, path::PathBuf};
 
 use crate::NotSaved;

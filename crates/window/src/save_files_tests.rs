@@ -1,3 +1,5 @@
+//! A way to save files, for tests in which nothing is saved.
+
 use super::*;
 
 /// For tests in which nothing is saved.

@@ -1,3 +1,5 @@
+//! A comparison draws both methods, and a factor widens its own class alone.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Files are numbered, written before the end and never replaced.
+
 use std::{
     fs, thread,
     time::{Duration, Instant},

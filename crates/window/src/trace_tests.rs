@@ -1,3 +1,5 @@
+//! Every line of the trace has a cell for every column.
+
 use corniche_viewer::camera::Orientation;
 
 use super::*;

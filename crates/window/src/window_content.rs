@@ -17,14 +17,14 @@ use crate::{frame_times::FrameTimes, notices::Notice};
 pub(crate) struct Has {
     /// Water, forest and so on.
     pub(crate) areas: bool,
-    /// Boundaries.
+    /// Whether the package has boundaries.
     pub(crate) boundaries: bool,
 }
 
 /// A point of a drawn line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Handle {
-    /// On the screen, points.
+    /// The place on the screen, points.
     pub(crate) at: [f32; 2],
     /// Whether keys act on it.
     pub(crate) is_picked: bool,
@@ -101,7 +101,7 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) frame_times: &'a FrameTimes,
     /// The lines that a person draws.
     pub(crate) drawing: DrawingContent,
-    /// For how long a flight has been recorded; `None` while none is.
+    /// How long a flight has been recorded; `None` while none is.
     pub(crate) recording_s: Option<f64>,
     /// Messages, oldest first.
     pub(crate) notices: &'a [Notice],

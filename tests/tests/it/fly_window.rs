@@ -15,13 +15,13 @@ use e2e::{
 };
 
 /// A package, and a folder for the output.
-struct Place {
+struct FlightFolder {
     folder: tempfile::TempDir,
     package: PathBuf,
     out: PathBuf,
 }
 
-impl Place {
+impl FlightFolder {
     fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let package = folder.path().join("pass.pmtiles");
@@ -65,7 +65,12 @@ fn window_of(display: &Display, flight: &mut Child) -> Option<String> {
 }
 
 /// What becomes of a flight of so many frames when this is done to its window after some of them; `None` without an adapter.
-fn disturbed(place: &Place, display: &Display, frames: &str, disturb: &[&str]) -> Option<Ran> {
+fn disturbed(
+    place: &FlightFolder,
+    display: &Display,
+    frames: &str,
+    disturb: &[&str],
+) -> Option<Ran> {
     let mut flight =
         display.lend(&mut place.fly(&["--frames", frames])).spawn().expect("it starts");
     if let Some(id) = window_of(display, &mut flight) {
@@ -82,7 +87,7 @@ fn disturbed(place: &Place, display: &Display, frames: &str, disturb: &[&str]) -
 #[test]
 fn what_is_shown_is_listed_as_if_it_were_not() {
     let Some(display) = Display::start() else { return };
-    let place = Place::new();
+    let place = FlightFolder::new();
     let ran = Ran::from(display.lend(&mut place.fly(&["--frames", "12"])).output().unwrap());
     if lacks_adapter(&ran) {
         return;
@@ -100,7 +105,7 @@ fn what_is_shown_is_listed_as_if_it_were_not() {
 #[test]
 fn closing_the_window_ends_the_flight_and_leaves_nothing() {
     let Some(display) = Display::start() else { return };
-    let place = Place::new();
+    let place = FlightFolder::new();
     // Without a window manager there is no button to close the window; the key does the same.
     let close = ["windowfocus ID", "sleep 1", "key ctrl+q"];
     let Some(ran) = disturbed(&place, &display, "5000", &close) else { return };
@@ -113,7 +118,7 @@ fn closing_the_window_ends_the_flight_and_leaves_nothing() {
 #[test]
 fn a_window_that_is_lost_is_no_loss() {
     let Some(display) = Display::start() else { return };
-    let place = Place::new();
+    let place = FlightFolder::new();
     let Some(ran) = disturbed(&place, &display, "200", &["windowclose ID"]) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(ran.err.contains("goes on without it"), "{}", ran.err);
@@ -123,7 +128,7 @@ fn a_window_that_is_lost_is_no_loss() {
 
 #[test]
 fn without_a_display_there_is_no_flight() {
-    let place = Place::new();
+    let place = FlightFolder::new();
     let begun = Instant::now();
     let ran = Ran::from(without_display(&mut place.fly(&["--frames", "5000"])).output().unwrap());
     assert_eq!(ran.code, 1, "{}", ran.err);
@@ -155,7 +160,7 @@ fn is_at_rest(trace: &Path) -> bool {
 #[test]
 fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
     let Some(display) = Display::start() else { return };
-    let place = Place::new();
+    let place = FlightFolder::new();
     let drawing = ["--size", "320x240", "--supersampling", "1", "--roads", "sv"];
     let trace = place.folder.path().join("trace.csv");
     let mut command = Command::new(binary());

@@ -18,13 +18,13 @@ use e2e::{
 use tempfile::TempDir;
 
 /// A folder with a package and a page.
-struct Place {
+struct ServedFolder {
     folder: TempDir,
 }
 
 const INDEX: &str = "<!doctype html><title>Maps</title>";
 
-impl Place {
+impl ServedFolder {
     fn new() -> Self {
         let place = Self { folder: tempfile::tempdir().unwrap() };
         copy_pass(&place.package(), &["--quiet", "--max-error", "10"]);
@@ -132,7 +132,7 @@ impl Serving {
 
 #[test]
 fn a_browser_gets_page_and_package_as_they_are() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let serving = place.serve(&[&place.package()], &[]);
     let bytes = fs::read(place.package()).unwrap();
     for (path, kind, expected) in [
@@ -189,7 +189,7 @@ fn a_browser_gets_page_and_package_as_they_are() {
 
 #[test]
 fn nothing_else_can_be_had() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     fs::write(place.at("beside.pmtiles"), "not served").unwrap();
     let serving = place.serve(&[&place.package()], &[]);
     for path in [
@@ -225,7 +225,7 @@ fn nothing_else_can_be_had() {
 /// The reader of packages on web servers, with its own checks of lengths, ranges and versions.
 #[test]
 fn corniche_reads_from_its_own_server() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let serving = place.serve(&[&place.package()], &[]);
     let url = format!("{}packages/pass.pmtiles", serving.url);
     let run = |arguments: &[&str]| -> Ran { direct().args(arguments).output().unwrap().into() };
@@ -259,7 +259,7 @@ fn corniche_reads_from_its_own_server() {
 
 #[test]
 fn packages_of_one_name_get_numbers() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     fs::create_dir(place.at("other")).unwrap();
     let [same, spaced] =
         ["other/pass.pmtiles", "other/Zürich 50 %.pmtiles"].map(|name| place.at(name));
@@ -284,7 +284,7 @@ fn packages_of_one_name_get_numbers() {
 #[test]
 #[cfg(unix)]
 fn a_signal_ends_it_well() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     for signal in ["INT", "TERM"] {
         let serving = place.serve(&[&place.package()], &[]);
         let host = serving.host().to_owned();
@@ -304,7 +304,7 @@ fn a_signal_ends_it_well() {
 #[test]
 #[cfg(unix)]
 fn what_is_asked_is_told_with_v() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let serving = place.serve(&[&place.package()], &["-v"]);
     serving.ask("GET", "/packages/pass.pmtiles", "Range: bytes=0-9\r\n");
     serving.get("/nowhere");
@@ -317,7 +317,7 @@ fn what_is_asked_is_told_with_v() {
 
 #[test]
 fn what_cannot_be_served_is_told_before_anyone_asks() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let page = place.at("page");
     let [package, page] = [&place.package(), &page].map(|path| text(path).to_owned());
     let [other, no_page, missing] =
@@ -362,7 +362,7 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
 #[test]
 #[cfg(unix)]
 fn pipes_and_links_are_refused() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let pipe = place.at("pipe");
     let made = Command::new("mkfifo").arg(&pipe).status();
     assert!(made.unwrap().success());
@@ -382,7 +382,7 @@ fn pipes_and_links_are_refused() {
 /// The program has a page of its own, or says how to get one.
 #[test]
 fn without_a_folder_the_page_of_the_program_is_taken() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let site = place.at("site");
     let ran = corniche(["serve", text(&place.package()), "--site", text(&site)]);
     if ran.code == 0 {
@@ -401,7 +401,7 @@ fn without_a_folder_the_page_of_the_program_is_taken() {
 /// The folder is a page on any server that knows ranges; it is there as a whole, and replaced as a whole.
 #[test]
 fn a_site_is_the_same_files_for_another_server() {
-    let place = Place::new();
+    let place = ServedFolder::new();
     let (site, page) = (place.at("site"), place.at("page"));
     let spaced = place.at("Zürich 50 %.pmtiles");
     fs::copy(place.package(), &spaced).unwrap();

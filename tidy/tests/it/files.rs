@@ -1,11 +1,17 @@
 //! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
 
-use std::{collections::BTreeSet, fs, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::PathBuf,
+};
 
 use corniche_tidy::{crates_of, files_below, root};
 
 /// Lines beyond which a file is split.
 const MAX_FILE_LINES: usize = 600;
+/// Words that a file's first line has at least.
+const LEAST_WORDS: usize = 4;
 
 fn all_rust_files() -> Vec<PathBuf> {
     let files = files_below(&root(), "rs").expect("the repository can be listed");
@@ -20,6 +26,21 @@ fn unit_tests_lie_beside_the_code() {
         let text = fs::read_to_string(&file).unwrap();
         let inline = text.lines().any(|line| line.trim_start().starts_with("mod tests {"));
         assert!(!inline, "{} has a module of tests inside", file.display());
+    }
+}
+
+/// The file of the module `name` is `name.rs`, and its children lie in the folder `name/`. In the folders of integration tests
+/// `mod.rs` is allowed, because cargo takes each other file at the top of `tests/` for a test.
+#[test]
+fn modules_of_products_have_files_of_their_own_name() {
+    for file in all_rust_files() {
+        let in_repository = file.strip_prefix(root()).unwrap();
+        let is_product = in_repository.components().any(|part| part.as_os_str() == "src");
+        assert!(
+            !(is_product && file.ends_with("mod.rs")),
+            "{}: name the file after its folder and put it beside that",
+            file.display()
+        );
     }
 }
 
@@ -42,6 +63,24 @@ fn files_stay_short() {
     for file in all_rust_files() {
         let lines = fs::read_to_string(&file).unwrap().lines().count();
         assert!(lines <= MAX_FILE_LINES, "{} has {lines} lines", file.display());
+    }
+}
+
+/// Whoever opens a file meets its purpose first: what is in it, or, of a module of tests, what holds. No two files say the same.
+#[test]
+fn each_file_begins_with_what_it_is_for() {
+    let mut seen = BTreeMap::new();
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        let first = text.lines().next().unwrap_or_default();
+        let purpose = first.strip_prefix("//! ").unwrap_or_else(|| {
+            panic!("{}: the first line is no `//!` that says what is in the file", file.display())
+        });
+        let words = purpose.split_whitespace().count();
+        assert!(words >= LEAST_WORDS, "{}: {purpose:?} says too little", file.display());
+        if let Some(other) = seen.insert(purpose.to_owned(), file.clone()) {
+            panic!("{} and {} begin with the same line", other.display(), file.display());
+        }
     }
 }
 

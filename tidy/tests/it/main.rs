@@ -1,7 +1,10 @@
 //! The house rules, in one binary. The first line of each module says what holds.
 
+mod comments;
 mod files;
 mod finds_cycles;
+mod invariants;
 mod links;
 mod module_graph;
+mod names;
 mod tests_are_run;

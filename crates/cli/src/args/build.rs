@@ -1,3 +1,5 @@
+//! Arguments of `build` and `plan`: what to read, what to make of it and where to write it.
+
 use std::{
     num::NonZeroU32,
     path::{Path, PathBuf},

@@ -1,3 +1,5 @@
+//! Options of the camera agree with each other: a place, a distance or a scale.
+
 use clap::Parser;
 
 use super::*;

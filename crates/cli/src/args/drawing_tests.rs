@@ -1,3 +1,5 @@
+//! Commands that draw have the same options with the same defaults, or say why not.
+
 use clap::Parser as _;
 
 use super::*;

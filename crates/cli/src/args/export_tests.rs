@@ -1,3 +1,5 @@
+//! Classes, bounds and coordinate systems of exports are read or refused.
+
 use super::*;
 
 #[test]

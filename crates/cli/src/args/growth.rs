@@ -1,3 +1,5 @@
+//! Arguments of `growth`: the packages, and the forms in which the table of growth is written.
+
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueHint};

@@ -1,3 +1,5 @@
+//! Every option of how roads look reaches the drawing.
+
 use clap::Parser;
 
 use super::*;

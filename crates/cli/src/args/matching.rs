@@ -1,3 +1,5 @@
+//! Arguments of `match`: what roads are compared with, how far beside them to look, and what to write.
+
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueHint};

@@ -1,3 +1,5 @@
+//! Entries of `--overlay` are read in any order, and mistakes are told.
+
 use super::*;
 
 fn usual() -> LineStyle {

@@ -1,3 +1,5 @@
+//! Arguments of `profile`: the ways or lines to follow, and what to write of them.
+
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueHint};

@@ -1,3 +1,5 @@
+//! Arguments of `serve`: the packages, the address to listen at, and the folder for a site of files.
+
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};

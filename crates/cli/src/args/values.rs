@@ -1,4 +1,4 @@
-//! Texts of single values.
+//! Single values on the command line, such as packages, sizes and positions.
 
 use std::{
     ffi::OsStr,

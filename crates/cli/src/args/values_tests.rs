@@ -1,3 +1,5 @@
+//! Sizes and positions on the command line are read or refused.
+
 use super::*;
 
 #[test]

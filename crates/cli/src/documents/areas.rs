@@ -1,7 +1,7 @@
-//! Areas, in documents of several commands.
+//! Areas in the JSON documents of several commands.
 
 use corniche_areas::AreaClass;
-use corniche_geom::Frame;
+use corniche_geom::GridFrame;
 use corniche_tileset::{AreaLevelRecord, AreaRecord, AreaTableRecord, AreasRecord};
 use serde::Serialize;
 
@@ -88,7 +88,7 @@ impl TileAreaDocument {
     /// `place` makes coordinates from working metres.
     pub(crate) fn of(
         area: AreaRecord,
-        frame: &Frame,
+        frame: &GridFrame,
         place: &impl Fn([f64; 2]) -> [f64; 2],
     ) -> Self {
         let (object, id) = area.object.parts();

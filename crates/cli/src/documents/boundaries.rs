@@ -1,4 +1,4 @@
-//! Boundaries, in documents.
+//! Boundaries in the JSON documents of several commands.
 
 use corniche_areas::BoundaryClass;
 use corniche_tileset::{BoundariesRecord, BoundaryLevelRecord};

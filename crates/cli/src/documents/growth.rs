@@ -1,4 +1,4 @@
-//! `corniche growth --json`.
+//! The JSON document of `corniche growth`.
 
 use corniche_tileset::GrowthRow;
 use serde::Serialize;

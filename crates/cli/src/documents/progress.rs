@@ -1,4 +1,4 @@
-//! The records of `--json-progress`.
+//! The records that `--json-progress` writes.
 
 use std::time::Duration;
 

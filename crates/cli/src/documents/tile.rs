@@ -1,4 +1,4 @@
-//! `corniche tile --json`.
+//! The JSON document of `corniche tile`.
 
 use corniche_tileset::RoadRecord;
 use serde::Serialize;

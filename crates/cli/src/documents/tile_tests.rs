@@ -1,3 +1,5 @@
+//! The normals that `tile --json` prints are unit vectors that point up.
+
 use super::*;
 
 #[test]

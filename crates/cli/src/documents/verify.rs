@@ -1,4 +1,4 @@
-//! `corniche verify --json`.
+//! The JSON document of `corniche verify`.
 
 use corniche_pipeline::VerifyReport;
 use corniche_tileset::{Distribution, SampleErrorRecord};

@@ -1,4 +1,4 @@
-//! `corniche export geotiff`.
+//! `corniche export geotiff`: heights as a raster.
 
 use std::{
     io::stderr,

@@ -1,4 +1,4 @@
-//! `corniche export mesh`.
+//! `corniche export mesh`: the ground of a level as a model.
 
 use std::{
     fs,

@@ -1,4 +1,4 @@
-//! `corniche export quantized-mesh`.
+//! `corniche export quantized-mesh`: terrain tiles of the globe.
 
 use std::io::stderr;
 

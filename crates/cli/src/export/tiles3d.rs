@@ -1,4 +1,4 @@
-//! `corniche export 3dtiles`.
+//! `corniche export 3dtiles`: a package as 3D Tiles.
 
 use std::io::stderr;
 

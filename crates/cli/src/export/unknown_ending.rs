@@ -1,3 +1,5 @@
+//! The error for an output file whose name ends in no known format.
+
 use std::path::Path;
 
 use crate::failure::Failure;

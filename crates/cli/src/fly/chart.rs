@@ -1,3 +1,5 @@
+//! The chart of a flight: frame times, road segments and tiles over the time, one curve for each run.
+
 use std::ops::Range;
 
 use corniche_viewer::{FrameRecord, gpu::PassTimes};
@@ -52,7 +54,7 @@ pub(crate) fn flights(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result<Str
     draw_below_each_other(&parts)
 }
 
-/// From nothing to a little more than the most that `of` gives for the frames that count.
+/// The range from 0 to a little more than the most that `of` gives for the frames that count.
 fn range_of(runs: &[MeasuredRun], of: &dyn Fn(&FrameRecord) -> f64) -> Range<f64> {
     let most = runs.iter().flat_map(MeasuredRun::counted).map(of).fold(0.0, f64::max);
     // Where everything is nothing, the axis goes to 1.

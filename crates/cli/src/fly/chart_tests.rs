@@ -1,3 +1,5 @@
+//! The chart of a flight names its clock, fits its axes and can be read without colours.
+
 use std::{fs, path::PathBuf};
 
 use clap::ValueEnum as _;

@@ -1,3 +1,5 @@
+//! Every line of the list of frames has every column.
+
 use super::*;
 use crate::{
     args::{Lod, Roads},

@@ -1,3 +1,5 @@
+//! A flight that shows less than it seems to says so.
+
 use corniche_viewer::{camera::Orientation, flight::Pose, gpu::PassTimes};
 
 use super::*;

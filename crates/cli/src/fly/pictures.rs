@@ -1,3 +1,5 @@
+//! Pictures of a flight's frames, written to a folder that appears when all of them are complete.
+
 use std::{
     fs,
     path::{Path, PathBuf},

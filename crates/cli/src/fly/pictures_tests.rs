@@ -1,3 +1,5 @@
+//! The pictures of a flight appear together or not at all.
+
 use super::*;
 
 #[test]

@@ -213,7 +213,7 @@ fn of_paper(roads: Roads) -> Option<[u32; 2]> {
 /// Loss of frame rate against the same flight without roads, as shares.
 #[derive(Debug, Clone, Copy)]
 struct Loss {
-    /// Of the frames per second over all frames together.
+    /// The share of the frames per second that is lost, over all frames together.
     total: f64,
     /// The mean of what each frame loses.
     mean: f64,

@@ -1,3 +1,5 @@
+//! The summary of a flight counts the right frames and compares only what can be compared.
+
 use corniche_viewer::gpu::PassTimes;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Charts of how vertices grow over the levels: a curve for each class, or one for each of several packages.
+
 use corniche_tileset::Manifest;
 use plotters::prelude::RGBColor;
 

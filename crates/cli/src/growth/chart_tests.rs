@@ -1,3 +1,5 @@
+//! Curves in charts of growth can be told apart without colours, and too many packages are refused.
+
 use corniche_testing::package;
 use corniche_tileset::GrowthRow;
 
@@ -6,9 +8,13 @@ use super::*;
 /// A package whose levels grow by 1, 2, 3 and so on, with this cell.
 fn manifest(cell_m: f64) -> Manifest {
     let frame = package::frame();
-    let frame =
-        corniche_geom::Frame::new(frame.origin_m(), cell_m, frame.root_corner(), frame.max_level())
-            .unwrap();
+    let frame = corniche_geom::GridFrame::new(
+        frame.origin_m(),
+        cell_m,
+        frame.root_corner(),
+        frame.max_level(),
+    )
+    .unwrap();
     let mut manifest = package::manifest_of(frame);
     let row = |level: u8| GrowthRow {
         level,

@@ -1,4 +1,4 @@
-//! Several packages beside each other.
+//! The tables of growth of several packages, one beside the other.
 
 use std::fmt::Write as _;
 
@@ -203,7 +203,7 @@ fn list(values: impl Iterator<Item = impl ToString>) -> String {
 }
 
 impl Difference {
-    /// In one line.
+    /// The difference in one line of text.
     pub(crate) fn text(&self, packages: &[Compared<'_>]) -> String {
         let labels = |of: &[usize]| list(of.iter().map(|&index| &packages[index].label));
         let value = |(of, value): &(Vec<usize>, String)| format!("{}: {value}", labels(of));

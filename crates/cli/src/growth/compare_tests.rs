@@ -1,3 +1,5 @@
+//! A comparison of packages names everything in which they are not alike.
+
 use super::*;
 
 #[test]

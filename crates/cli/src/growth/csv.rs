@@ -1,3 +1,5 @@
+//! The table of growth as CSV, of one package or of several.
+
 use corniche_tileset::{GrowthRow, Manifest};
 
 use super::factors::{Factors, factors, of_level, whole};

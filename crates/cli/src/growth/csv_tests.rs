@@ -1,3 +1,5 @@
+//! Names with commas and quotes are quoted in CSV.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The table of growth as a JSON document.
+
 use corniche_tileset::Manifest;
 
 use super::factors::{PAPER_GROWTH, of_level, whole};

@@ -59,7 +59,7 @@ pub(crate) fn of_level(manifest: &Manifest, level: u8) -> (GrowthRow, Factors) {
     (row, factors)
 }
 
-/// Of a row or a sum of rows.
+/// The factors of a row or of a sum of rows.
 pub(crate) fn factors(row: &GrowthRow) -> Factors {
     let ratio = |above: u64, below: u64| (below > 0).then(|| above as f64 / below as f64);
     Factors {

@@ -1,4 +1,4 @@
-//! A line for each way.
+//! The list of growth with one line for each way (CSV).
 
 use std::{fmt::Write as _, io::Write as _, path::Path};
 
@@ -86,7 +86,7 @@ fn line(way: &WayGrowth) -> String {
 /// Sums over the lines, by class.
 struct Sums {
     source: [u64; FunctionalRoadClass::COUNT],
-    /// By level, then by class.
+    /// Counts of vertices by level, then by class.
     geo: Vec<[u64; FunctionalRoadClass::COUNT]>,
 }
 

@@ -1,3 +1,5 @@
+//! The lines for single ways add up to the table of growth.
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::package;
 use corniche_tileset::GrowthRow;

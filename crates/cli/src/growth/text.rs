@@ -1,3 +1,5 @@
+//! The table of growth as text for people.
+
 use corniche_tileset::{GrowthRow, Manifest};
 
 use super::factors::{Factors, PAPER_GROWTH, factors, of_level, whole};

@@ -1,4 +1,4 @@
-//! A line for each way.
+//! The list of offsets with one line for each way (CSV).
 
 use std::fmt::Write as _;
 

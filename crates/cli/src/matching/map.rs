@@ -12,7 +12,7 @@ use super::sure::{is_sure, sure_across};
 const SIDE_PX: f64 = 900.0;
 const LEGEND_PX: f64 = 190.0;
 const MARGIN_PX: f64 = 20.0;
-/// Beside the map, for the names of arrows there.
+/// Room beside the map for the names of arrows.
 const NAME_PX: f64 = 50.0;
 /// Offsets across a road up to so many metres, and their colours, which also differ in brightness.
 const COLOURS: [(f64, &str); 5] = [

@@ -1,4 +1,4 @@
-//! The table of regions.
+//! The table of offsets by region, for people.
 
 use std::fmt::Write as _;
 

@@ -17,9 +17,9 @@ use crate::{
 #[derive(Debug, Clone)]
 pub(crate) struct Cost {
     pub(crate) stage: Stage,
-    /// In all, by an earlier run too.
+    /// How much is done in all, by an earlier run too.
     pub(crate) done: u64,
-    /// By an earlier run.
+    /// How much of it an earlier run did.
     pub(crate) already: u64,
     pub(crate) wall: Duration,
     pub(crate) used: Usage,

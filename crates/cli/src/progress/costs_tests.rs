@@ -1,3 +1,5 @@
+//! The table of costs has one row for each stage and leaves out what the system does not tell.
+
 use serde_json::json;
 
 use super::*;

@@ -30,9 +30,9 @@ const BURST: f64 = 1e-3;
 /// The steps of one stage over time.
 #[derive(Debug, Clone)]
 pub(crate) struct Pace {
-    /// In order of time. The first is the last one before the window, or the begin.
+    /// The moments in order of time. The first is the last one before the window, or the begin.
     kept: VecDeque<Moment>,
-    /// Of the latest step.
+    /// When the latest step was made, and how much was done then.
     last: Moment,
     /// When the burst began to which the latest step belongs.
     burst_began_s: f64,
@@ -46,7 +46,7 @@ struct Moment {
 }
 
 impl Pace {
-    /// Of a stage that begins now.
+    /// The pace of a stage that begins now.
     pub(crate) fn new() -> Self {
         let begin = Moment { at_s: 0.0, done: 0 };
         Self { kept: VecDeque::from([begin]), last: begin, burst_began_s: 0.0 }

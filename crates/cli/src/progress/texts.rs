@@ -14,9 +14,9 @@ use crate::{
 #[derive(Debug, Clone)]
 pub(crate) struct Reading {
     pub(crate) stage: Stage,
-    /// In all, by an earlier run too.
+    /// How much is done in all, by an earlier run too.
     pub(crate) done: u64,
-    /// By an earlier run.
+    /// How much of it an earlier run did.
     pub(crate) already: u64,
     pub(crate) total: Option<u64>,
     /// Since the stage began.
@@ -49,7 +49,7 @@ impl Reading {
         parts.join(", ")
     }
 
-    /// When the stage has ended, without its title.
+    /// What is told when the stage has ended, without its title.
     pub(crate) fn ended(&self, digits: Digits) -> String {
         let seconds = self.elapsed.as_secs_f64();
         match (self.done, self.already) {
@@ -66,7 +66,7 @@ impl Reading {
         }
     }
 
-    /// For programs.
+    /// The state of the stage as a record for programs.
     pub(crate) fn record(&self, state: &'static str) -> ProgressRecord<'static> {
         ProgressRecord::Stage(StageRecord {
             stage: self.stage.id(),
@@ -90,7 +90,7 @@ fn plural(unit: Unit) -> &'static str {
     match unit {
         Unit::Bytes => "bytes",
         Unit::Blocks => "blocks",
-        Unit::Areas => "areas",
+        Unit::Patches => "areas",
         Unit::Tiles => "tiles",
     }
 }

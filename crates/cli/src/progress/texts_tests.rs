@@ -1,3 +1,5 @@
+//! Texts of progress never claim more than is done.
+
 use serde_json::json;
 
 use super::*;

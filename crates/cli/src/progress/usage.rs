@@ -20,7 +20,7 @@ pub(crate) struct Usage {
 const TICKS_PER_SECOND: u64 = 100;
 
 impl Usage {
-    /// As it is now. What the kernel does not tell is `None`.
+    /// What the process has used until now. What the kernel does not tell is `None`.
     pub(crate) fn now() -> Self {
         let file = |name| {
             if cfg!(target_os = "linux") { fs::read_to_string(name).ok() } else { None }

@@ -1,3 +1,5 @@
+//! CPU time, memory and bytes of the process are read from the kernel as they are.
+
 use super::*;
 
 /// A name may look like anything; the fields count from its last bracket.

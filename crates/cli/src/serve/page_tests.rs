@@ -1,3 +1,5 @@
+//! The page is served from the program or from a folder, and other folders are refused.
+
 use std::fs;
 
 use tempfile::TempDir;

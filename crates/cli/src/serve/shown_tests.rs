@@ -1,3 +1,5 @@
+//! No two packages that are served have the same name.
+
 use std::path::PathBuf;
 
 use super::{Shown, list, names};

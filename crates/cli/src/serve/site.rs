@@ -18,7 +18,7 @@ use crate::{
     output::{Existing, failed},
 };
 
-/// Between two looks at whether to stop.
+/// Bytes that are copied between two looks at whether to stop.
 const COPIED_AT_ONCE: u64 = 64 << 20;
 
 /// Writes a folder, which is there when it is complete. `used` are files of the command. Returns the size of the folder in bytes.

@@ -11,7 +11,7 @@ use crate::{DemError, library_error};
 /// A horizontal system, and the vertical one that is named together with it.
 pub(crate) type CrsParts = (Crs, Option<VerticalCrs>);
 
-/// From "EPSG:n" or WKT, as `option` gave it.
+/// The systems of "EPSG:n" or WKT, as `option` gave it.
 pub(crate) fn from_text(option: &'static str, text: &str) -> Result<CrsParts, DemError> {
     library_error::forget();
     let reference = SpatialRef::from_definition(text).map_err(|source| DemError::CrsText {

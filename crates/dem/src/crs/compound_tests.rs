@@ -1,3 +1,5 @@
+//! A compound CRS is split into its horizontal and its vertical part.
+
 use super::*;
 
 #[test]

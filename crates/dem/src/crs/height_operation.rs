@@ -12,7 +12,7 @@ use crate::crs::vertical::VerticalCrs;
 /// Carries heights of one file to the vertical CRS asked for, sample by sample.
 #[derive(Debug, Clone)]
 pub(crate) struct HeightOperation {
-    /// From the horizontal system of the file to the one of the ellipsoidal heights, where these differ.
+    /// The operation from the horizontal system of the file to that of the ellipsoidal heights, where these differ.
     place: Option<Operation>,
     operation: Operation,
     /// Value in the source system for a metre upwards.

@@ -1,3 +1,5 @@
+//! A horizontal coordinate system, kept as text because the objects of PROJ belong to one thread.
+
 use std::sync::Arc;
 
 use corniche_geom::wgs84;
@@ -86,7 +88,7 @@ impl Crs {
         Ok(Some([parallel_m * radians, meridian_m * radians]))
     }
 
-    /// For each of the two coordinates 1, or −1 where it counts westwards or southwards. Both axes of a polar system
+    /// 1 for each of the two coordinates, or −1 where it counts westwards or southwards. Both axes of a polar system
     /// run south or north: their signs are 1.
     pub(crate) fn signs(&self) -> [f64; 2] {
         let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());

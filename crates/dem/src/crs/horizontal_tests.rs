@@ -1,3 +1,5 @@
+//! A degree is as long as the tables say, and axes that count backwards are known.
+
 use crate::crs::compound;
 
 /// WGS84 at 45 degrees: Snyder 1987, table 3: 1 degree of latitude 111 131.7 m, of longitude 78 846.8 m.

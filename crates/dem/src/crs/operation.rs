@@ -1,3 +1,5 @@
+//! Coordinate operations between two systems, made for one area of interest and kept for each thread.
+
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -40,7 +42,7 @@ thread_local! {
 const KEPT: usize = 64;
 
 impl Operation {
-    /// From one system to another for data inside `area_deg` (WGS84; past the antimeridian beyond ±180).
+    /// The operation from one system to another for data inside `area_deg` (WGS84; past the antimeridian beyond ±180).
     pub(crate) fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
         let wrap = |lon: f64| lon - 360.0 * ((lon + 180.0) / 360.0).floor();
         let area_deg = area_deg.filter(|area| !area.is_empty()).map(|area| {
@@ -64,14 +66,14 @@ impl Operation {
         }
     }
 
-    /// From a system to working metres. Longitudes come out as those images that are nearest to the data's middle.
+    /// The operation from a system to working metres. Longitudes come out as those images that are nearest to the data's middle.
     pub(crate) fn into_working(from: &Crs, working: &Working, area_deg: Option<Bounds>) -> Self {
         let turn = working.crs.turn.map(|turn| [turn, working.middle]);
         let multiply = working.metres_per_unit;
         Self { multiply, turn, ..Self::new(from, &working.crs, area_deg) }
     }
 
-    /// From working metres to a system.
+    /// The operation from working metres to a system.
     pub(crate) fn out_of_working(working: &Working, to: &Crs, area_deg: Option<Bounds>) -> Self {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }

@@ -1,3 +1,5 @@
+//! The projection between WGS84 and the working metres of a grid plan, by PROJ.
+
 use corniche_geom::{Bounds, ProjectError, Projection};
 
 use crate::DemError;

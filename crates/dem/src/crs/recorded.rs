@@ -1,3 +1,5 @@
+//! The working CRS of a package, made from what the package records and without its elevation files.
+
 use corniche_geom::Bounds;
 
 use crate::crs::horizontal::Crs;
@@ -13,7 +15,7 @@ pub struct RecordedCrs {
 }
 
 impl RecordedCrs {
-    /// From its WKT or a code such as "EPSG:32632", the working metres to a unit of its coordinates, and the rectangle of
+    /// The CRS of a WKT or a code such as "EPSG:32632", the working metres to a unit of its coordinates, and the rectangle of
     /// the data in working metres.
     ///
     /// # Errors

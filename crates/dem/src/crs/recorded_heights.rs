@@ -1,3 +1,5 @@
+//! The vertical CRS of a package, found from what it records, and heights carried to the ellipsoid of WGS84.
+
 use std::ops::RangeInclusive;
 
 use corniche_geom::Bounds;

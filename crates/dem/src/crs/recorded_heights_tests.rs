@@ -1,3 +1,5 @@
+//! The vertical CRS that a package records is found again, and nothing is guessed.
+
 use super::*;
 
 const BOUNDS: Bounds = Bounds { min_x: 9.0, min_y: 47.0, max_x: 10.0, max_y: 48.0 };

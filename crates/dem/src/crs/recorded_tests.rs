@@ -1,3 +1,5 @@
+//! A recorded CRS is the same by its code and by its WKT.
+
 use corniche_geom::Projection as _;
 
 use super::*;

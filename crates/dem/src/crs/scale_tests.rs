@@ -1,3 +1,5 @@
+//! The scales of UTM and Web Mercator are those of their formulas.
+
 use super::*;
 use crate::crs::compound;
 use crate::crs::horizontal::Crs;

@@ -113,7 +113,7 @@ impl VerticalCrs {
         self.wkt == other.wkt || self.datum.is_some() && self.datum == other.datum
     }
 
-    /// From "EPSG:n" or WKT as `option` gave it: a vertical CRS, or one with a vertical part.
+    /// The vertical CRS of "EPSG:n" or WKT as `option` gave it, which may be one with a vertical part.
     pub(crate) fn from_text(option: &'static str, text: &str) -> Result<Self, DemError> {
         library_error::forget();
         let refused = |reason: Option<Box<LibraryError>>| DemError::VerticalCrsText {

@@ -1,3 +1,5 @@
+//! The unit of heights is that of their own axis.
+
 use super::*;
 
 fn unit_m(text: &str) -> Option<f64> {

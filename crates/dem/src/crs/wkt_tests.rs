@@ -1,3 +1,5 @@
+//! WKT is split at the right commas.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Tie points give the affine map on which they agree.
+
 use super::*;
 
 #[test]

@@ -11,7 +11,7 @@ use crate::{DemError, library_error};
 /// same folder.
 const ENDINGS: [&str; 13] =
     ["tif", "tiff", "hgt", "asc", "img", "dem", "dt0", "dt1", "dt2", "bil", "flt", "grd", "jp2"];
-/// Those of packed files, of which GDAL reads the content.
+/// Endings of packed files, of which GDAL reads the content.
 const PACKED: [&str; 2] = ["gz", "zip"];
 
 /// Files of a folder with this ending are taken for extracts.

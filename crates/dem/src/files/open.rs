@@ -1,3 +1,5 @@
+//! GDAL opens a raster, and an error says which of the usual things went wrong.
+
 use std::path::Path;
 
 use gdal::Dataset;

@@ -1,3 +1,5 @@
+//! Options that say how to understand an elevation file where it does not say so itself.
+
 /// How an elevation file is to be understood where it does not say so itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OpenOptions {

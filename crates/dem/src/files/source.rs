@@ -31,7 +31,7 @@ pub(crate) struct Source {
     pub(crate) is_striped: bool,
     /// Number of the band in which 0 means that there is no sample.
     alpha_band: Option<usize>,
-    /// To the vertical CRS asked for, where that is another one.
+    /// The operation to the vertical CRS asked for, where that is another one.
     pub(crate) to_target: Option<HeightOperation>,
     pub(crate) shift_m: f64,
 }

@@ -16,7 +16,7 @@ const SRTM_VOID: f64 = -32768.0;
 /// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
 const SAME_UNIT: f64 = 1e-5;
 
-/// From stored values to heights.
+/// How stored values become heights.
 #[derive(Debug, Clone)]
 pub(crate) struct StoredValues {
     nodata: Vec<f64>,

@@ -1,3 +1,5 @@
+//! Stored values become heights: sentinels, signs and depths are understood.
+
 use super::*;
 
 fn plain() -> StoredValues {

@@ -1,3 +1,5 @@
+//! A reader keeps a limited number of rasters open and closes the least recently used one first.
+
 use gdal::Dataset;
 
 use crate::DemError;

@@ -1,3 +1,5 @@
+//! A rectangle of samples, its intersections and unions.
+
 /// A rectangle of samples: `min` inclusive, `max` exclusive, as `[column, row]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SampleRect {

@@ -1,3 +1,5 @@
+//! Where the samples of a raster lie exactly on nodes of the grid: the rule from nodes to samples.
+
 use corniche_geom::NodeIndex;
 
 /// Sample (column, row) = (`way[0]` · (`every` · i − `first[0]`), `way[1]` · (`every` · j − `first[1]`)).

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, Frame, MAX_LATTICE_STEPS, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::crs::full_turns::turns;
 use crate::crs::horizontal::Crs;
@@ -15,7 +15,7 @@ use crate::mosaics::mosaic::{Mosaic, Placed};
 use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
 use crate::plan::layout::Layout;
-use crate::polygons::image::{Image, area};
+use crate::polygons::image::{Image, region};
 use crate::polygons::polygon::Polygon;
 use crate::{Dem, DemError};
 
@@ -106,7 +106,7 @@ impl Asked {
 }
 
 /// The same nodes, as far as they are on the lattice.
-pub(crate) fn on_lattice(frame: &Frame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
+pub(crate) fn on_lattice(frame: &GridFrame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
     let [most_i, most_j] =
         frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
     nodes.map(|NodeIndex { i, j }| NodeIndex {
@@ -235,7 +235,7 @@ pub(crate) fn needed_samples(
 }
 
 impl Dem {
-    /// For each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
+    /// Tells for each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
     /// plan's bounds were looked into for the grid alone.
     ///
     /// # Errors
@@ -277,8 +277,8 @@ impl GridPlan {
     /// # Errors
     /// When the polygon has no place in the working CRS, or encloses nothing.
     pub fn within(mut self, polygon: &Polygon) -> Result<Self, DemError> {
-        let area = area(polygon, &self.working, self.area_deg(), &self.frame)?;
-        self.polygon = Some(Arc::new(area));
+        let region = region(polygon, &self.working, self.area_deg(), &self.frame)?;
+        self.polygon = Some(Arc::new(region));
         Ok(self)
     }
 }

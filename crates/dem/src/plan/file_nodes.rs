@@ -8,7 +8,7 @@ use crate::plan::grid_plan::Method;
 use crate::{Dem, DemError, GridPlan};
 
 impl Dem {
-    /// For each file the south-western and the north-eastern node between which it can have data, within the plan's. Files that
+    /// The south-western and the north-eastern node of each file, between which it can have data, within the plan's. Files that
     /// have no node between their samples there are left out.
     ///
     /// # Errors

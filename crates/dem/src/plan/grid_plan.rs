@@ -1,6 +1,8 @@
+//! The plan of a package's grid: its nodes, its CRS, and what each mosaic does for its heights.
+
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, Frame, LatticeArea, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, LatticeRegion, NodeIndex};
 
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
@@ -69,7 +71,7 @@ pub struct Clip {
 #[derive(Debug, Clone)]
 pub struct GridPlan {
     /// Nodes, tiles and levels.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// South-westernmost node at which data can lie.
     pub south_west: NodeIndex,
     /// North-easternmost node at which data can lie.
@@ -88,7 +90,7 @@ pub struct GridPlan {
     /// The part that is asked for; `None`: all of it.
     pub clip: Option<Clip>,
     /// The polygon that was asked for, on the lattice.
-    pub polygon: Option<Arc<LatticeArea>>,
+    pub polygon: Option<Arc<LatticeRegion>>,
     /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
     pub data_bounds: Bounds,
     /// Rectangle around the files, or around the part that is asked for, in WGS84 degrees. Past the antimeridian longitudes go on
@@ -119,7 +121,7 @@ pub(crate) struct MosaicRole {
     /// South-western and north-eastern node between which it can have data.
     pub(crate) nodes: [NodeIndex; 2],
     pub(crate) method: Method,
-    /// From the mosaic's CRS to working metres.
+    /// The operation from the mosaic's CRS to working metres.
     pub(crate) working_from_crs: Operation,
 }
 
@@ -130,7 +132,7 @@ pub(crate) enum Method {
 }
 
 /// The rectangle between two nodes, working metres.
-pub(crate) fn bounds_of(frame: &Frame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+pub(crate) fn bounds_of(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
     Bounds {
         min_x: frame.x_m(south_west.i),
         min_y: frame.y_m(south_west.j),

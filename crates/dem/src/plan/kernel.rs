@@ -59,7 +59,7 @@ impl Samples<'_> {
 }
 
 impl Kernel {
-    /// For cells that are `samples_per_node` samples wide, along columns and rows.
+    /// The kernel for cells that are `samples_per_node` samples wide, along columns and rows.
     pub(crate) fn new(samples_per_node: [f64; 2]) -> Self {
         Self {
             width: samples_per_node.map(|width| if width >= AVERAGE_FROM { width } else { 0.0 }),

@@ -1,3 +1,5 @@
+//! Interpolation gives planes back exactly.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Where nodes lie among the DEM's samples.
 
-use corniche_geom::{Frame, GeoTransform, NodeIndex, NodeWindow};
+use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow};
 
 use crate::DemError;
 use crate::crs::operation::Operation;
@@ -15,7 +15,7 @@ const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
 /// Meshes looked at along each side of the extent when choosing a lattice.
 const TRIAL_MESHES: i64 = 12;
 
-/// From nodes to positions among a mosaic's samples, through PROJ.
+/// Where nodes lie among a mosaic's samples, found through PROJ.
 ///
 /// ```text
 ///   o───·───o───·───o      o  corners: nodes whose indices are multiples of `step`
@@ -44,7 +44,7 @@ impl NodePositions {
     pub(crate) fn new(
         mosaic: &Mosaic,
         crs_from_working: Operation,
-        frame: &Frame,
+        frame: &GridFrame,
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
     ) -> Result<Self, DemError> {
@@ -73,7 +73,7 @@ impl NodePositions {
         self.step
     }
 
-    fn is_smooth(&self, frame: &Frame, [low, high]: [NodeIndex; 2]) -> Result<bool, DemError> {
+    fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, DemError> {
         if self.step == 1 {
             return Ok(true);
         }
@@ -95,7 +95,11 @@ impl NodePositions {
     }
 
     /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there is none.
-    pub(crate) fn of(&self, frame: &Frame, window: &NodeWindow) -> Result<Vec<[f64; 2]>, DemError> {
+    pub(crate) fn of(
+        &self,
+        frame: &GridFrame,
+        window: &NodeWindow,
+    ) -> Result<Vec<[f64; 2]>, DemError> {
         let mut positions = vec![[f64::NAN; 2]; window.columns * window.rows];
         let (west, north) = (window.corner.i, window.corner.j);
         let (east, south) = (west + window.columns as i64 - 1, north - window.rows as i64 + 1);
@@ -169,7 +173,7 @@ impl NodePositions {
 
     fn lattice(
         &self,
-        frame: &Frame,
+        frame: &GridFrame,
         first: [i64; 2],
         meshes: [usize; 2],
     ) -> Result<Lattice, DemError> {

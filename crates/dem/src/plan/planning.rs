@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use corniche_geom::{Frame, NodeIndex};
+use corniche_geom::{GridFrame, NodeIndex};
 use gdal::version::VersionInfo;
 
 use crate::crs::operation::Operation;
@@ -96,7 +96,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         Some(asked) => clip::cut(asked, whole, columns_of_a_turn(&layout), dem)?,
         None => whole,
     };
-    let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
+    let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()
@@ -192,7 +192,7 @@ fn method(
     dem: &Dem,
     mosaic: &Mosaic,
     layout: &Layout,
-    frame: &Frame,
+    frame: &GridFrame,
     nodes: [NodeIndex; 2],
     steps: Option<[[f64; 2]; 2]>,
 ) -> Result<Method, DemError> {

@@ -1,6 +1,6 @@
 //! The grid of a package without its elevation files.
 
-use corniche_geom::{Bounds, Frame, NodeIndex};
+use corniche_geom::{Bounds, GridFrame, NodeIndex};
 
 use crate::plan::clip;
 use crate::plan::grid_plan::{Clip, GridPlan, PlanScale, Resampling, bounds_of};
@@ -11,7 +11,7 @@ use crate::{DemError, RecordedCrs};
 #[derive(Debug, Clone)]
 pub struct RecordedGrid {
     /// Nodes, tiles and levels.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// South-westernmost node at which data can lie.
     pub south_west: NodeIndex,
     /// North-easternmost node at which data can lie.
@@ -49,7 +49,7 @@ impl RecordedCrs {
     pub fn nodes_within(
         &self,
         bounds_deg: [f64; 4],
-        frame: &Frame,
+        frame: &GridFrame,
         area_deg: Bounds,
     ) -> Result<[NodeIndex; 2], DemError> {
         clip::nodes_of(bounds_deg, self.working(), area_deg, frame.origin_m(), frame.cell())

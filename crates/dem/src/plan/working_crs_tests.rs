@@ -1,3 +1,5 @@
+//! The standard latitude of a geographic DEM is its middle, rounded.
+
 use super::*;
 
 #[test]

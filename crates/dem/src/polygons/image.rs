@@ -1,12 +1,12 @@
 //! A polygon in the working CRS, and on the lattice of a package.
 
-use corniche_geom::{Bounds, Frame, LatticeArea, LatticePoint};
+use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion};
 
 use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::data_extent::near_image;
-use crate::polygons::polygon::{Part, Polygon, Ring};
+use crate::polygons::polygon::{Polygon, PolygonRings, Ring};
 use crate::{DemError, PolygonError, RecordedCrs};
 
 /// Edges that are bent in the working CRS are followed this closely, in cells.
@@ -41,10 +41,10 @@ impl Image {
 
     fn on_lattice(
         &self,
-        frame: &Frame,
+        frame: &GridFrame,
         polygon: &Polygon,
         working: &Working,
-    ) -> Result<LatticeArea, DemError> {
+    ) -> Result<LatticeRegion, DemError> {
         let ring = |ring: &Ring| -> Option<Vec<LatticePoint>> {
             ring.iter().map(|&corner| frame.snap(corner)).collect()
         };
@@ -52,7 +52,7 @@ impl Image {
             self.parts.iter().map(|rings| rings.iter().map(ring).collect()).collect();
         let parts = parts.ok_or_else(|| outside(polygon, working))?;
         let no_area = || PolygonError::NoArea { path: polygon.path().to_path_buf() };
-        Ok(LatticeArea::new(&parts).ok_or_else(no_area)?)
+        Ok(LatticeRegion::new(&parts).ok_or_else(no_area)?)
     }
 }
 
@@ -65,19 +65,19 @@ impl RecordedCrs {
         &self,
         polygon: &Polygon,
         area_deg: Bounds,
-        frame: &Frame,
-    ) -> Result<LatticeArea, DemError> {
-        area(polygon, self.working(), area_deg, frame)
+        frame: &GridFrame,
+    ) -> Result<LatticeRegion, DemError> {
+        region(polygon, self.working(), area_deg, frame)
     }
 }
 
 /// A polygon on the lattice of `frame`.
-pub(crate) fn area(
+pub(crate) fn region(
     polygon: &Polygon,
     working: &Working,
     area_deg: Bounds,
-    frame: &Frame,
-) -> Result<LatticeArea, DemError> {
+    frame: &GridFrame,
+) -> Result<LatticeRegion, DemError> {
     let image = Image::new(polygon, working, area_deg, frame.cell().shorter_m())?;
     image.on_lattice(frame, polygon, working)
 }
@@ -89,7 +89,7 @@ fn outside(polygon: &Polygon, working: &Working) -> DemError {
 
 /// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does not reach or is torn.
 fn of_part(
-    part: &Part,
+    part: &PolygonRings,
     working: &Working,
     area_deg: Bounds,
     tolerance_m: f64,

@@ -1,3 +1,5 @@
+//! Polygons with holes, read from a vector file, that say which part of the elevation data is wanted.
+
 use std::{
     fmt,
     path::{Path, PathBuf},
@@ -23,12 +25,12 @@ pub struct Polygon {
 
 struct Content {
     path: PathBuf,
-    parts: Vec<Part>,
+    parts: Vec<PolygonRings>,
     bytes: Vec<u8>,
 }
 
 /// One polygon: its outer ring first, then its holes.
-pub(crate) struct Part {
+pub(crate) struct PolygonRings {
     pub(crate) crs: Crs,
     pub(crate) rings: Vec<Ring>,
 }
@@ -70,7 +72,7 @@ impl Polygon {
         &self.content.bytes
     }
 
-    pub(crate) fn parts(&self) -> &[Part] {
+    pub(crate) fn parts(&self) -> &[PolygonRings] {
         &self.content.parts
     }
 }
@@ -91,7 +93,7 @@ impl fmt::Debug for Polygon {
 /// A file that is being read.
 struct Reading<'a> {
     path: &'a Path,
-    parts: Vec<Part>,
+    parts: Vec<PolygonRings>,
     features: u64,
     corners: usize,
 }
@@ -197,7 +199,7 @@ impl Reading<'_> {
         }
         self.corners = corners;
         if rings.first().is_some_and(|outer| outer.len() >= 3) {
-            self.parts.push(Part { crs: crs.clone(), rings });
+            self.parts.push(PolygonRings { crs: crs.clone(), rings });
         }
         Ok(())
     }
@@ -217,8 +219,8 @@ fn in_normal_order(mut ring: Ring) -> Ring {
 }
 
 /// The parts, sorted by their bytes.
-fn canonical_bytes(parts: &[Part]) -> Vec<u8> {
-    let of_part = |part: &Part| {
+fn canonical_bytes(parts: &[PolygonRings]) -> Vec<u8> {
+    let of_part = |part: &PolygonRings| {
         let mut bytes = Vec::new();
         let mut push = |number: usize| bytes.extend((number as u64).to_le_bytes());
         let crs = part.crs.identity();

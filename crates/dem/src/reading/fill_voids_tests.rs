@@ -1,3 +1,5 @@
+//! A void in a plane is filled with the plane.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The reader of windows of heights; each thread has one of its own.
+
 use corniche_geom::{HeightGrid, NodeWindow};
 
 use crate::mosaics::mosaic::Mosaic;
@@ -7,7 +9,7 @@ use crate::plan::alignment::Alignment;
 use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples, Scratch};
 use crate::reading::fill_voids;
-use crate::reading::window_parts::{Part, Target, intersection};
+use crate::reading::window_parts::{Target, WindowPart, intersection};
 use crate::{Dem, DemError, GridPlan};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
@@ -102,11 +104,11 @@ impl Reader<'_> {
 
     /// The nodes of a window that the plan's polygon leaves, and the smallest window around them; `None` where it leaves none.
     fn wanted(&self, window: NodeWindow) -> Option<Wanted> {
-        let Some(area) = &self.plan.polygon else {
+        let Some(region) = &self.plan.polygon else {
             return Some(Wanted { part: window, is_wanted: Vec::new() });
         };
         let frame = &self.plan.frame;
-        let is_wanted = area.nodes(frame.node_steps(frame.max_level()), &window);
+        let is_wanted = region.nodes(frame.node_steps(frame.max_level()), &window);
         let places = || (0..is_wanted.len()).filter(|&at| is_wanted[at]);
         let (top, bottom) = (places().min()? / window.columns, places().max()? / window.columns);
         let columns = || places().map(|at| at % window.columns);
@@ -192,7 +194,8 @@ impl Reader<'_> {
                 }
                 Method::Resampled(positions, kernel) => {
                     let at = positions.of(&plan.frame, &part)?;
-                    let all = Part { column: 0, row: 0, columns: part.columns, rows: part.rows };
+                    let all =
+                        WindowPart { column: 0, row: 0, columns: part.columns, rows: part.rows };
                     self.interpolate(mosaic, kernel, &at, &all, &target, &mut heights_m)?;
                 }
             }
@@ -239,31 +242,31 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Heights of nodes that lie between samples: the nodes of `area`, whose positions among the samples are in `at`.
+    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the samples are in `at`.
     fn interpolate(
         &mut self,
         mosaic: &Mosaic,
         kernel: &Kernel,
         at: &[[f64; 2]],
-        area: &Part,
+        part: &WindowPart,
         target: &Target,
         heights_m: &mut [f32],
     ) -> Result<(), DemError> {
-        let open = area.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
+        let open = part.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
         let Some(rect) =
             around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.reachable())
         else {
             return Ok(());
         };
-        if rect.columns() * rect.rows() > MOST_SAMPLES && area.columns * area.rows > 1 {
-            for half in area.halves() {
+        if rect.columns() * rect.rows() > MOST_SAMPLES && part.columns * part.rows > 1 {
+            for half in part.halves() {
                 self.interpolate(mosaic, kernel, at, &half, target, heights_m)?;
             }
             return Ok(());
         }
         self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
         let samples = Samples { rect, heights_m: &self.samples };
-        for (column, row) in area.nodes() {
+        for (column, row) in part.nodes() {
             let position = at[row * target.columns + column];
             let height_m = &mut heights_m[target.at(column, row)];
             if height_m.is_nan() && position[0].is_finite() {

@@ -1,6 +1,6 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
-use corniche_geom::{Frame, LatticeBounds, NodeIndex, NodeWindow};
+use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
 
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
@@ -17,7 +17,7 @@ const BLOCK_SAMPLES: i64 = 256;
 
 /// A block of samples of one of the DEM's grids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SampleArea {
+pub struct SampleRange {
     /// Which of the DEM's grids: the place of its mosaic.
     mosaic: usize,
     rect: SampleRect,
@@ -34,7 +34,7 @@ pub struct SampleBlock {
 
 impl SampleBlock {
     /// Leaves out the samples that do not lie between two nodes, by their places rounded to the lattice.
-    fn keep_within(&mut self, frame: &Frame, nodes: [NodeIndex; 2]) {
+    fn keep_within(&mut self, frame: &GridFrame, nodes: [NodeIndex; 2]) {
         let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
         let bounds = LatticeBounds { min, max };
         let is_inside: Vec<bool> = self
@@ -55,13 +55,13 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn sample_areas(&self, plan: &GridPlan) -> Result<Vec<SampleArea>, DemError> {
-        let mut areas = Vec::new();
+    pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, DemError> {
+        let mut ranges = Vec::new();
         for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
             let needed = needed_samples(plan, mosaic, role)?;
-            areas.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
+            ranges.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
         }
-        Ok(areas)
+        Ok(ranges)
     }
 }
 
@@ -74,13 +74,13 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn sample_areas_of(
+    pub fn sample_ranges_of(
         &self,
         plan: &GridPlan,
         window: NodeWindow,
-    ) -> Result<Vec<SampleArea>, DemError> {
+    ) -> Result<Vec<SampleRange>, DemError> {
         let wide = window.with_halo(AROUND_NODES);
-        let mut areas = Vec::new();
+        let mut ranges = Vec::new();
         for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
             let grow = |[low, high]: [NodeIndex; 2]| {
                 let by = AROUND_NODES as i64;
@@ -104,63 +104,63 @@ impl Dem {
                 }
             };
             let Some(rect) = rect else { continue };
-            areas.extend(blocks_of(mosaic, index, &rect));
+            ranges.extend(blocks_of(mosaic, index, &rect));
         }
-        Ok(areas)
+        Ok(ranges)
     }
 }
 
 /// The blocks of a rectangle of samples, those of no file left out.
-fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleArea> {
-    let mut areas = Vec::new();
+fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleRange> {
+    let mut ranges = Vec::new();
     let SampleRect { min, max } = *rect;
     for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
         for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
             let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
             let rect = rect.intersection(&SampleRect { min: [column, row], max: end });
             if mosaic.files.iter().any(|file| !file.rect.intersection(&rect).is_empty()) {
-                areas.push(SampleArea { mosaic: index, rect });
+                ranges.push(SampleRange { mosaic: index, rect });
             }
         }
     }
-    areas
+    ranges
 }
 
 impl Reader<'_> {
-    /// The samples of an area that have a height: after nodata, units and shift; where files of one grid overlap, those of
+    /// The samples of a range that have a height: after nodata, units and shift; where files of one grid overlap, those of
     /// the file named first. Those outside the plan's bounds are left out.
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn samples(&mut self, area: &SampleArea) -> Result<SampleBlock, DemError> {
-        let mosaic = &self.dem.mosaics[area.mosaic];
-        self.files.read(&self.dem.sources, mosaic, &area.rect, &mut self.samples)?;
+    pub fn samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+        let mosaic = &self.dem.mosaics[range.mosaic];
+        self.files.read(&self.dem.sources, mosaic, &range.rect, &mut self.samples)?;
         let mut block = SampleBlock::default();
         for (k, height_m) in self.samples.iter().enumerate() {
             if height_m.is_nan() {
                 continue;
             }
-            let (column, row) = (k % area.rect.columns(), k / area.rect.columns());
-            let sample = [area.rect.min[0] + column as i64, area.rect.min[1] + row as i64];
+            let (column, row) = (k % range.rect.columns(), k / range.rect.columns());
+            let sample = [range.rect.min[0] + column as i64, range.rect.min[1] + row as i64];
             let at = sample.map(|index| index as f64);
             block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(at));
             block.heights_m.push(*height_m as f32);
         }
-        self.plan.roles[area.mosaic].working_from_crs.apply(&mut block.positions_m)?;
+        self.plan.roles[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
         if let Some(Clip { nodes, .. }) = self.plan.clip {
             block.keep_within(&self.plan.frame, nodes);
         }
         Ok(block)
     }
 
-    /// The samples of an area from which nodes are made: those that are not hidden by an earlier named grid with data
+    /// The samples of a range from which nodes are made: those that are not hidden by an earlier named grid with data
     /// there.
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn used_samples(&mut self, area: &SampleArea) -> Result<SampleBlock, DemError> {
-        let mut block = self.samples(area)?;
-        for earlier in 0..area.mosaic {
+    pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+        let mut block = self.samples(range)?;
+        for earlier in 0..range.mosaic {
             let hidden = self.is_covered(earlier, &block.positions_m)?;
             let mut is_hidden = hidden.iter();
             block.positions_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
@@ -170,7 +170,7 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// For each position, working metres, whether a mosaic has all samples around it.
+    /// Tells for each position, in working metres, whether a mosaic has all samples around it.
     fn is_covered(
         &mut self,
         mosaic: usize,

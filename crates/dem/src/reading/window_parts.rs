@@ -4,14 +4,14 @@ use corniche_geom::{NodeIndex, NodeWindow};
 
 /// A rectangle of a window's nodes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Part {
+pub(crate) struct WindowPart {
     pub(crate) column: usize,
     pub(crate) row: usize,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
 }
 
-impl Part {
+impl WindowPart {
     pub(crate) fn nodes(self) -> impl Iterator<Item = (usize, usize)> {
         let columns = self.column..self.column + self.columns;
         (self.row..self.row + self.rows)

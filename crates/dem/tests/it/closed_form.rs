@@ -1,3 +1,5 @@
+//! Windows of rasters whose heights are known in closed form have these heights, however the raster lies.
+
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, OpenOptions, PlanOptions, Resampling};

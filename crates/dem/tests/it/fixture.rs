@@ -150,7 +150,7 @@ pub(crate) fn all(plan: &GridPlan) -> NodeWindow {
 /// All samples that have a height, area by area.
 pub(crate) fn sample_blocks(dem: &Dem, plan: &GridPlan) -> Vec<SampleBlock> {
     let mut reader = dem.reader(plan);
-    dem.sample_areas(plan).unwrap().iter().map(|area| reader.samples(area).unwrap()).collect()
+    dem.sample_ranges(plan).unwrap().iter().map(|range| reader.samples(range).unwrap()).collect()
 }
 
 /// Compares every node with `truth` at its position; returns how many have a height.

@@ -1,3 +1,5 @@
+//! Windows of real elevation files have the heights that the files hold.
+
 use std::path::PathBuf;
 use std::time::Instant;
 

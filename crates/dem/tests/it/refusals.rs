@@ -1,3 +1,5 @@
+//! Errors of elevation files name the file and say what to do.
+
 use std::fs;
 
 use corniche_dem::{Dem, DemError, OpenOptions, PlanOptions};

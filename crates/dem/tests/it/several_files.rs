@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use corniche_dem::{GridPlan, PlanOptions, Resampling};
-use corniche_geom::{Cell, Frame, HeightGrid, Projection};
+use corniche_geom::{Cell, GridFrame, HeightGrid, Projection};
 
 use crate::fixture::{HUNDREDTH_M, Raster, UTM, all, check, folder, open, options, plan, plane};
 
@@ -58,8 +58,8 @@ fn files_of_one_grid_are_one_raster() {
 }
 
 /// The frame of the first file's grid over all nodes of a plan.
-fn grown(first: &Frame, plan: &GridPlan) -> Frame {
-    Frame::covering(first.origin_m(), first.cell(), plan.south_west, plan.north_east).unwrap()
+fn grown(first: &GridFrame, plan: &GridPlan) -> GridFrame {
+    GridFrame::covering(first.origin_m(), first.cell(), plan.south_west, plan.north_east).unwrap()
 }
 
 #[test]

@@ -1,3 +1,5 @@
+//! Voids are filled by the documented rule, and heights do not depend on the window.
+
 use corniche_dem::{Dem, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{Cell, NodeIndex, NodeWindow};
 use proptest::prelude::*;

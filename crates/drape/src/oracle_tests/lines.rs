@@ -1,4 +1,4 @@
-//! Lines that go where it hurts.
+//! Lines for the comparison with brute force: through vertices, along edges, over voids and beyond the ground.
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;

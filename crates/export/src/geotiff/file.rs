@@ -65,10 +65,10 @@ impl Number for f64 {
 
 /// What a raster says of itself.
 pub(crate) struct RasterFacts {
-    /// WKT2.
+    /// The CRS as WKT2.
     pub(crate) crs: String,
     pub(crate) crs_from_pixel: [f64; 6],
-    /// Of each band.
+    /// The description of each band.
     pub(crate) descriptions: Vec<String>,
     pub(crate) metadata: Vec<(&'static str, String)>,
 }
@@ -79,7 +79,7 @@ pub(crate) struct RasterFile<T> {
     dataset: Dataset,
     crs: SpatialRef,
     grid: RasterGrid,
-    /// Of each band, the checksum of each block that was written.
+    /// The checksum of each block that was written, band by band.
     written: Vec<Vec<u32>>,
     numbers: std::marker::PhantomData<T>,
     _settings: GdalSettings,
@@ -204,7 +204,7 @@ fn read_again<T: Number>(
     Ok(Some(found == *crs))
 }
 
-/// Of what a block has of the raster: what is beyond it, GDAL chooses itself.
+/// The checksum of what a block has of the raster: what is beyond it, GDAL chooses itself.
 fn checksum<T: Number>(block: &[T], grid: &RasterGrid, place: [usize; 2]) -> u32 {
     let (mut crc, window) = (Crc::new(), grid.window(place));
     for row in block.chunks(BLOCK).take(window.rows) {

@@ -70,7 +70,7 @@ impl RasterGrid {
         }
     }
 
-    /// From pixels to the package's CRS, as GDAL has it: about the corners of pixels, whose middles are nodes.
+    /// The map from pixels to the package's CRS, as GDAL has it: about the corners of pixels, whose middles are nodes.
     pub(crate) fn crs_from_pixel(&self, manifest: &Manifest) -> [f64; 6] {
         let Manifest { frame, metres_per_unit: [unit_x, unit_y], .. } = manifest;
         let (east, north) = (frame.cell().east_m / unit_x, frame.cell().north_m / unit_y);

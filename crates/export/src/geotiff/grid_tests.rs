@@ -1,3 +1,5 @@
+//! Blocks cover a raster once, whatever its size.
+
 use super::*;
 
 /// Blocks cover a raster once, whatever its size, and end where it ends.

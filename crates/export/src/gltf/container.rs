@@ -1,3 +1,5 @@
+//! The binary container of glTF: header, document and one chunk of bytes.
+
 use std::io::{self, Write};
 
 use serde_json::Value;

@@ -1,3 +1,5 @@
+//! Numbers that glTF takes from OpenGL: targets, component types, modes, filters.
+
 use serde_json::{Value, json};
 
 /// Target of a view of vertices.

@@ -12,8 +12,8 @@ use std::{
 use serde_json::{Map, Value, json};
 
 use super::{
+    mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    request::{ModelColors, UpAxis},
     spill::Spill,
     writer::{About, MeshWriter},
 };
@@ -165,9 +165,9 @@ enum Content<'a> {
         vectors: &'a [[f32; 3]],
         has_range: bool,
     },
-    /// On a picture.
+    /// Places on a picture.
     Places(&'a [[f32; 2]]),
-    /// Of a normal map.
+    /// The tangents of a normal map.
     Tangents(&'a [[f32; 4]]),
     Indices(&'a [u32]),
 }

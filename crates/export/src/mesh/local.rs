@@ -1,3 +1,5 @@
+//! Local coordinates of a model: true metres from an origin, so that numbers stay small.
+
 use corniche_geom::Bounds;
 use corniche_tileset::Manifest;
 
@@ -14,7 +16,7 @@ pub(crate) struct LocalMetres {
 }
 
 impl LocalMetres {
-    /// With the origin in the middle of some ground.
+    /// Local metres whose origin is in the middle of some ground.
     pub(crate) fn about(ground: Bounds, manifest: &Manifest) -> Self {
         Self { origin_m: ground.center().map(f64::round), scale: manifest.scale.center }
     }

@@ -1,4 +1,4 @@
-//! One tile of a model.
+//! One tile of a model: its corners, triangles and roads, its photo and its relief.
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
@@ -6,7 +6,7 @@ use corniche_tileset::{FilePackage, Sections};
 
 use super::{
     local::LocalMetres,
-    request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
+    mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
 };
 use crate::{
     cut::cut_at_bounds,
@@ -25,7 +25,7 @@ pub(crate) struct TileMesh {
     pub(crate) corners: Vec<Corner>,
     /// Counter-clockwise from above.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Of each triangle, the class of the road whose surface it is; `None` is ground.
+    /// The class of the road whose surface each triangle is; `None` is ground.
     pub(crate) classes: Vec<Option<FunctionalRoadClass>>,
     pub(crate) roads: Vec<RoadLine>,
     /// The photo of the ground, in formats that have pictures inside.

@@ -8,8 +8,8 @@ use std::{
 };
 
 use super::{
+    mesh_request::{UpAxis, group_name},
     model::TileMesh,
-    request::{UpAxis, group_name},
     spill::Spill,
     weld::Welding,
     writer::{About, MeshWriter},
@@ -24,7 +24,7 @@ pub(crate) struct ObjWriter {
     lines: Spill,
     /// Positions so far; the first one has the number 1.
     positions: u32,
-    /// For each welded corner of the ground, the number of its position; its normal has the corner's own number.
+    /// The number of the position of each welded corner of the ground; its normal has the corner's own number.
     position_of: Vec<u32>,
 }
 

@@ -11,8 +11,8 @@ use std::{
 use corniche_roads::FunctionalRoadClass;
 
 use super::{
+    mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    request::{ModelColors, UpAxis},
     spill::Spill,
     weld::Welding,
     writer::{About, MeshWriter},

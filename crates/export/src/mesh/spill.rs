@@ -1,3 +1,5 @@
+//! Bytes wait in a file without a name until what must stand before them is known.
+
 use std::{
     fs::File,
     io::{self, BufWriter, Seek as _, SeekFrom, Write},
@@ -11,7 +13,7 @@ pub(crate) struct Spill {
 }
 
 impl Spill {
-    /// In the folder of a file.
+    /// A file without a name in the folder of another file.
     pub(crate) fn beside(path: &Path) -> io::Result<Self> {
         let file = tempfile::tempfile_in(crate::scratch::folder_of(path))?;
         Ok(Self { file: BufWriter::new(file), length: 0 })

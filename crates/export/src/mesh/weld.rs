@@ -1,3 +1,5 @@
+//! Corners that several tiles share get one number in the whole model.
+
 use std::collections::HashMap;
 
 use corniche_geom::LatticePoint;

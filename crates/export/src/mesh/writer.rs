@@ -1,3 +1,5 @@
+//! What the writers of all model formats have in common.
+
 use std::io::{self, Write};
 
 use super::model::TileMesh;

@@ -74,7 +74,7 @@ pub(crate) fn beneath(levels: &[Vec<Block>], tile: TerrainTile, depth: u8) -> Ve
     found
 }
 
-/// As layer.json has it: rows count from the south, whatever its `scheme`.
+/// The blocks as layer.json has them: rows count from the south, whatever its `scheme`.
 pub(crate) fn to_json(levels: &[Vec<Block>]) -> Value {
     let block = |block: &Block| {
         let Block { columns, rows } = block;

@@ -1,3 +1,5 @@
+//! Blocks of available tiles hold each tile once and nothing else.
+
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;

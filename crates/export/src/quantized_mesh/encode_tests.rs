@@ -1,3 +1,5 @@
+//! Terrain tiles have the bytes that the format describes.
+
 #![expect(clippy::float_cmp, reason = "the same to the last bit is what is tested")]
 
 use super::*;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{
     available::{Block, beneath, to_json},
     encode::{METADATA_NAME, NORMALS_NAME},
-    request::{Availability, QuantizedMeshRequest},
+    quantized_mesh_request::{Availability, QuantizedMeshRequest},
     summary::QuantizedMeshSummary,
     tiling::TerrainTile,
 };

@@ -28,11 +28,11 @@ pub(crate) struct MeshVertex {
     pub(crate) v: u16,
     /// Longitude, latitude and height above the ellipsoid.
     pub(crate) place: [f64; 3],
-    /// In 32 767ths of the range, once the mesh is finished.
+    /// The height in 32 767ths of the range, once the mesh is finished.
     pub(crate) height: u16,
-    /// From the earth's centre.
+    /// The position from the earth's centre.
     pub(crate) at_m: [f64; 3],
-    /// Of the ground, in the same axes.
+    /// The normal of the ground, in the same axes.
     pub(crate) normal: [f64; 3],
 }
 

@@ -329,11 +329,11 @@ impl Samples {
 /// Where a sample is in its raster.
 #[derive(Debug, Clone, Copy)]
 enum Around {
-    /// At a node.
+    /// The point lies at a node.
     Node(usize),
-    /// In the cell whose north-western node this is.
+    /// The point lies in the cell whose north-western node this is.
     Cell(usize),
-    /// On a border, between these nodes.
+    /// The point lies on a border, between these nodes.
     Side([usize; 2]),
 }
 
@@ -345,7 +345,7 @@ pub(crate) struct Sample {
     /// Longitude, latitude and height above the ellipsoid.
     pub(crate) place: [f64; 3],
     around: Around,
-    /// From the earth's centre.
+    /// The position from the earth's centre.
     pub(crate) at_m: [f64; 3],
     /// The vertical.
     pub(crate) up: [f64; 3],

@@ -1,4 +1,4 @@
-//! What an export tells.
+//! What an export of terrain tiles tells of itself.
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,9 +14,9 @@ pub struct QuantizedMeshSummary {
 pub struct QuantizedMeshLevel {
     /// The level.
     pub level: u8,
-    /// Tiles.
+    /// The number of tiles.
     pub tiles: u64,
-    /// Triangles.
+    /// The number of triangles.
     pub triangles: u64,
     /// Bytes of the files.
     pub bytes: u64,

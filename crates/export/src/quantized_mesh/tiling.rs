@@ -1,3 +1,5 @@
+//! The grids of terrain tiles on the globe, by degrees and by Mercator, and the names of their tiles.
+
 use std::{f64::consts::PI, fmt};
 
 use corniche_geom::wgs84::SEMI_MAJOR_M;

@@ -1,3 +1,5 @@
+//! Both sides of a tile border agree to the last bit, and errors are those that CesiumJS assumes.
+
 #![expect(clippy::float_cmp, reason = "the same to the last bit is what is tested")]
 
 use proptest::prelude::*;

@@ -36,7 +36,7 @@ const MOVED_STEPS: i64 = 4;
 /// A tile's ground before the cut.
 pub(crate) struct Ground<'a> {
     pub(crate) surface: &'a Surface,
-    /// Of the TIN's vertices, as they are stored.
+    /// The normals of the TIN's vertices, as they are stored.
     pub(crate) normals: &'a [[i8; 2]],
     /// The tile's rectangle.
     pub(crate) tile: LatticeBounds,

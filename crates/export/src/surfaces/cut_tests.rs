@@ -1,3 +1,5 @@
+//! Roads cut into the ground have their area, and the ground keeps its own.
+
 use std::collections::HashMap;
 
 use corniche_geom::{LatticeBounds, LatticePoint};

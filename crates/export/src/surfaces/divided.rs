@@ -1,3 +1,5 @@
+//! The ground of a tile, divided along the edges of its roads, with the class of each triangle.
+
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Manifest, Terrain};

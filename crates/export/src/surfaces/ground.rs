@@ -23,7 +23,7 @@ pub(crate) struct GroundMesh {
     pub(crate) vertices: Vec<GroundVertex>,
     /// Counter-clockwise from above.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Of each triangle: 0 is ground, others are roads.
+    /// The label of each triangle: 0 is ground, others are roads.
     pub(crate) labels: Vec<u32>,
 }
 

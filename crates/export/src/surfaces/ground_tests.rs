@@ -1,3 +1,5 @@
+//! Long edges are divided without loss of area, and no inner edge is left open.
+
 use corniche_geom::LatticePoint;
 
 use super::{GroundMesh, GroundVertex};

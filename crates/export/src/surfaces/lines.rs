@@ -48,7 +48,7 @@ struct TileLine {
 pub(crate) struct TileLines<'a> {
     package: &'a FilePackage,
     look: RoadLook<'a>,
-    /// By level.
+    /// What is drawn on each level.
     details: Vec<Detail>,
     kept: Mutex<VecDeque<(TileId, Arc<Vec<TileLine>>)>>,
 }
@@ -58,7 +58,8 @@ pub(crate) struct TileLines<'a> {
 /// A client that allows two pixels of error draws a tile only where a pixel is at least half its error. What is finer than that is not seen on it.
 #[derive(Debug, Clone, PartialEq)]
 struct Detail {
-    /// Of the classes that were asked for, those that the style draws at that scale and that are about a pixel wide: thinner surfaces break up into dots.
+    /// Classes that were asked for, that the style draws at that scale and that are about a pixel wide: thinner surfaces break
+    /// up into dots.
     classes: Vec<FunctionalRoadClass>,
     /// A quarter of such a pixel, lattice steps: lines are simplified by it.
     tolerance_steps: f64,

@@ -1,3 +1,5 @@
+//! Both tiles at a border cut a segment at the same points.
+
 use corniche_geom::{LatticeBounds, LatticePoint};
 use proptest::prelude::*;
 

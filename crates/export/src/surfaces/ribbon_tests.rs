@@ -1,3 +1,5 @@
+//! The outline of a road has its width, also at turns, short segments and borders.
+
 use corniche_geom::LatticePoint;
 
 use super::{CenterLine, Ribbon};

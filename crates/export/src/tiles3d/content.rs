@@ -8,10 +8,10 @@ use corniche_styles::Rgb;
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 
 use super::{
-    parts::{Part, PartKind, RESTART, RoadRow, TileContent, y_up},
+    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent, y_up},
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
-    request::{TileRoads, Tiles3dRequest},
     skirt::Skirt,
+    tiles3d_request::{TileRoads, Tiles3dRequest},
 };
 use crate::{
     error::ExportError,
@@ -113,10 +113,10 @@ pub(crate) fn make(
     let mut vector = Builder::new(manifest, request, &placed, Look::default());
     match request.roads {
         TileRoads::Line => {
-            builder.lines(&payload, placing, facts.error_m, PartKind::RoadLines)?;
+            builder.lines(&payload, placing, facts.error_m, PrimitiveKind::RoadLines)?;
         }
         TileRoads::Vector => {
-            vector.lines(&payload, placing, facts.error_m, PartKind::RoadStrips)?;
+            vector.lines(&payload, placing, facts.error_m, PrimitiveKind::RoadStrips)?;
         }
         TileRoads::Cut | TileRoads::None => {}
     }
@@ -149,7 +149,7 @@ struct Builder<'a> {
     request: &'a Tiles3dRequest,
     placed: &'a PlacedTile,
     look: Look,
-    parts: Vec<(PartKind, Part)>,
+    parts: Vec<(PrimitiveKind, Primitive)>,
     rows: BTreeMap<i64, RoadRow>,
     /// Ways of features, until rows have their numbers.
     ways: Vec<Vec<i64>>,
@@ -176,7 +176,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds how the ground looks at a vertex.
-    fn add_look(&self, vertex: &PlacedVertex, part: &mut Part) {
+    fn add_look(&self, vertex: &PlacedVertex, part: &mut Primitive) {
         if self.look.relief.is_some() {
             let [x, y, z] =
                 y_up(vertex.tangent).map(|axis| (axis * TANGENT_STEPS).round() / TANGENT_STEPS);
@@ -207,7 +207,7 @@ impl<'a> Builder<'a> {
             of_label.entry(*label).or_default().push(*triangle);
         }
         for (class, labels) in by_class {
-            let (mut part, mut ways) = (Part::default(), Vec::new());
+            let (mut part, mut ways) = (Primitive::default(), Vec::new());
             for label in labels {
                 let road = (label != 0).then(|| &roads[label as usize - 1]);
                 let mut place = BTreeMap::new();
@@ -230,7 +230,7 @@ impl<'a> Builder<'a> {
                         .or_insert_with(|| row(road.way_id, road.class, &road.attributes));
                 }
             }
-            let kind = class.map_or(PartKind::Terrain, PartKind::RoadSurfaces);
+            let kind = class.map_or(PrimitiveKind::Terrain, PrimitiveKind::RoadSurfaces);
             self.parts.push((kind, part));
             self.ways.push(ways);
         }
@@ -240,7 +240,7 @@ impl<'a> Builder<'a> {
         if skirt.triangles.is_empty() {
             return;
         }
-        let mut part = Part::default();
+        let mut part = Primitive::default();
         for (at, top) in &skirt.vertices {
             let vertex = &self.placed.vertices[*top as usize];
             part.positions.push(y_up(*at));
@@ -248,7 +248,7 @@ impl<'a> Builder<'a> {
             self.add_look(vertex, &mut part);
         }
         part.indices.extend(skirt.triangles.as_flattened());
-        self.parts.push((PartKind::Skirt, part));
+        self.parts.push((PrimitiveKind::Skirt, part));
         self.ways.push(Vec::new());
     }
 
@@ -258,11 +258,11 @@ impl<'a> Builder<'a> {
         payload: &TilePayload,
         placing: &Placing<'_>,
         error_m: f64,
-        kind: fn(FunctionalRoadClass) -> PartKind,
+        kind: fn(FunctionalRoadClass) -> PrimitiveKind,
     ) -> Result<(), ExportError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
         let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
-        let mut by_class: BTreeMap<FunctionalRoadClass, (Part, Vec<i64>)> = BTreeMap::new();
+        let mut by_class: BTreeMap<FunctionalRoadClass, (Primitive, Vec<i64>)> = BTreeMap::new();
         for piece in pieces {
             if piece.attributes.structure == Structure::Tunnel {
                 continue;
@@ -277,7 +277,7 @@ impl<'a> Builder<'a> {
                 ways.push(piece.key.way_id);
             }
             let end = part.positions.len() as u32;
-            if let PartKind::RoadStrips(_) = kind(piece.class) {
+            if let PrimitiveKind::RoadStrips(_) = kind(piece.class) {
                 if !part.indices.is_empty() {
                     part.indices.push(RESTART);
                 }
@@ -322,7 +322,7 @@ fn color(manifest: &Manifest, request: &Tiles3dRequest, height_m: f64) -> Rgb {
     request.style.tint.color_at(height_m, manifest.vertical.range_m, latitude)
 }
 
-/// That of a tile at its mean height.
+/// The colour of a tile's ground at its mean height.
 fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile) -> Rgb {
     let sum: f64 = placed.vertices.iter().map(|vertex| vertex.height_m).sum();
     color(manifest, request, sum / placed.vertices.len().max(1) as f64)

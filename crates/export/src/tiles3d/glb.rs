@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use corniche_styles::Rgb;
 use serde_json::{Map, Value, json};
 
-use super::parts::{Part, PartKind, RESTART, RoadRow, TileContent};
+use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
 use crate::gltf::{
     ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, TRIANGLES, U8,
     U16, U32, linear, range_of, sampler, write_container,
@@ -69,7 +69,7 @@ pub(crate) fn write(
     write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
 }
 
-fn material(kind: PartKind, colors: &[Rgb]) -> Value {
+fn material(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
     let base = |rgb: [f32; 3]| {
         let [red, green, blue] = rgb;
         json!({
@@ -99,7 +99,7 @@ struct File {
 }
 
 impl File {
-    fn primitive(&mut self, kind: PartKind, part: &Part) -> io::Result<Value> {
+    fn primitive(&mut self, kind: PrimitiveKind, part: &Primitive) -> io::Result<Value> {
         let count = part.positions.len();
         let mut attributes = Map::new();
         let [least, largest] = range_of(&part.positions);
@@ -159,9 +159,9 @@ impl File {
             primitive["extras"]["frc"] = json!(class.number());
         }
         match kind {
-            PartKind::RoadLines(_) => primitive["mode"] = json!(LINES),
-            PartKind::RoadStrips(_) => primitive["mode"] = json!(LINE_STRIP),
-            PartKind::Terrain | PartKind::Skirt | PartKind::RoadSurfaces(_) => {}
+            PrimitiveKind::RoadLines(_) => primitive["mode"] = json!(LINES),
+            PrimitiveKind::RoadStrips(_) => primitive["mode"] = json!(LINE_STRIP),
+            PrimitiveKind::Terrain | PrimitiveKind::Skirt | PrimitiveKind::RoadSurfaces(_) => {}
         }
         primitive["attributes"] = Value::Object(attributes);
         primitive["indices"] = self.indices(&part.indices, count, kind)?;
@@ -187,7 +187,12 @@ impl File {
         Ok(self.plain(plain, json!({ "byteStride": stride, "target": ARRAY_BUFFER })))
     }
 
-    fn indices(&mut self, indices: &[u32], vertices: usize, kind: PartKind) -> io::Result<Value> {
+    fn indices(
+        &mut self,
+        indices: &[u32],
+        vertices: usize,
+        kind: PrimitiveKind,
+    ) -> io::Result<Value> {
         let is_short = vertices < SHORT_INDICES;
         // The largest number restarts strips, of either length.
         const { assert!(RESTART as u16 == u16::MAX) };
@@ -197,10 +202,10 @@ impl File {
             if is_short { bytemuck::cast_slice(&short) } else { bytemuck::cast_slice(indices) };
         let stride = if is_short { 2 } else { 4 };
         // The codec takes no index that is not that of a vertex.
-        let is_compressed = self.is_compressed && !matches!(kind, PartKind::RoadStrips(_));
+        let is_compressed = self.is_compressed && !matches!(kind, PrimitiveKind::RoadStrips(_));
         let view = if is_compressed {
             let (encoded, mode) = match kind {
-                PartKind::RoadLines(_) => {
+                PrimitiveKind::RoadLines(_) => {
                     (meshopt::encode_index_sequence(indices, vertices), "INDICES")
                 }
                 _ => (meshopt::encode_index_buffer(indices, vertices), "TRIANGLES"),
@@ -338,7 +343,7 @@ impl File {
         if table.is_some() {
             used.extend(["EXT_mesh_features", "EXT_structural_metadata", "KHR_materials_unlit"]);
         }
-        if tile.parts.iter().any(|(kind, _)| matches!(kind, PartKind::RoadStrips(_))) {
+        if tile.parts.iter().any(|(kind, _)| matches!(kind, PrimitiveKind::RoadStrips(_))) {
             used.push("KHR_mesh_primitive_restart");
         }
         let mut document = json!({

@@ -7,7 +7,7 @@ use crate::relief_map::ReliefMap;
 
 /// A list of vertices of one material, as glTF has it: y upwards.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct Primitive {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) normals: Vec<[f32; 3]>,
     /// Linear red, green and blue, and 255; empty with a picture.
@@ -28,7 +28,7 @@ pub(crate) const RESTART: u32 = u32::MAX;
 
 /// What a part is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PartKind {
+pub(crate) enum PrimitiveKind {
     Terrain,
     Skirt,
     RoadSurfaces(FunctionalRoadClass),
@@ -36,7 +36,7 @@ pub(crate) enum PartKind {
     RoadStrips(FunctionalRoadClass),
 }
 
-impl PartKind {
+impl PrimitiveKind {
     /// The class of roads.
     pub(crate) fn class(self) -> Option<FunctionalRoadClass> {
         match self {
@@ -73,9 +73,9 @@ pub(crate) struct RoadRow {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TileContent {
     pub(crate) name: String,
-    /// Of the node, y upwards.
+    /// The translation of the node, y upwards.
     pub(crate) translation: [f64; 3],
-    pub(crate) parts: Vec<(PartKind, Part)>,
+    pub(crate) parts: Vec<(PrimitiveKind, Primitive)>,
     pub(crate) roads: Vec<RoadRow>,
     /// Colours of roads by class.
     pub(crate) colors: [Rgb; FunctionalRoadClass::COUNT],

@@ -28,10 +28,10 @@ pub(crate) fn step_m(reach_m: f64) -> f64 {
 /// A vertex on the globe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlacedVertex {
-    /// From the tile's middle, along the root frame's axes, metres.
+    /// The position from the tile's middle, along the root frame's axes, metres.
     pub(crate) at_m: [f32; 3],
     pub(crate) normal: [f32; 3],
-    /// Of the relief's normal map.
+    /// The tangent of the relief's normal map.
     pub(crate) tangent: [f32; 3],
     /// Height in the package's datum, which tells the colour.
     pub(crate) height_m: f64,
@@ -44,7 +44,7 @@ pub(crate) struct PlacedVertex {
 /// A tile on the globe.
 #[derive(Debug, Clone)]
 pub(crate) struct PlacedTile {
-    /// In the root frame; whole steps.
+    /// The middle in the root frame; whole steps.
     pub(crate) middle_m: [f64; 3],
     pub(crate) vertices: Vec<PlacedVertex>,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -232,7 +232,7 @@ impl TileBox {
         dot(along, along).sqrt()
     }
 
-    /// As 3D Tiles write it: the middle and three half axes. A little larger, so that rounding leaves nothing out.
+    /// The box as 3D Tiles write it: the middle and three half axes. A little larger, so that rounding leaves nothing out.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         const MARGIN_M: f64 = 0.01;
         let middle: [f64; 3] = [0, 1, 2].map(|k: usize| {

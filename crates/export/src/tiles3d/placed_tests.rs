@@ -1,3 +1,5 @@
+//! Positions of a 3D tile fit an f32 exactly.
+
 use super::{TileBox, step_m};
 
 /// The step is the smallest power of two with which an f32 holds every position of a tile, and never finer than a millimetre.

@@ -1,4 +1,4 @@
-//! The tileset's documents.
+//! The documents of a tileset: which tile lies below which.
 //!
 //! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), sections 7 and 9.
 

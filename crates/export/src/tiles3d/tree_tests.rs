@@ -1,3 +1,5 @@
+//! Every tile is found once in the documents of a tileset, and errors never grow downwards.
+
 use std::{collections::BTreeSet, fs, path::Path};
 
 use corniche_geom::TileId;

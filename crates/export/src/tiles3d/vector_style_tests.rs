@@ -1,3 +1,5 @@
+//! Each road class has a colour and a width in the style of vector tiles.
+
 use corniche_styles::Style;
 use serde_json::Value;
 use tempfile::TempDir;

@@ -1,3 +1,5 @@
+//! Fields, values and geometries of the features that are exported.
+
 /// What a field holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldKind {

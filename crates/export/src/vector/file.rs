@@ -1,3 +1,5 @@
+//! A vector file is written through GDAL, layer and features, and read again at the end.
+
 use std::path::{Path, PathBuf};
 
 use gdal::{
@@ -35,7 +37,7 @@ pub(crate) struct Layer {
     pub(crate) shapes: ShapeKind,
     /// WKT2, or a code such as "EPSG:4979".
     pub(crate) crs: String,
-    /// For people.
+    /// The description for people.
     pub(crate) description: String,
     /// Credits to show wherever the features are shown.
     pub(crate) attribution: String,

@@ -1,3 +1,5 @@
+//! The formats of vector files, their endings and GDAL's drivers for them.
+
 use std::path::Path;
 
 /// A file format of features.

@@ -21,7 +21,7 @@ const FEATURE: &[u8] = b"{ \"type\": \"Feature\"";
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Contents {
     pub(crate) features: u64,
-    /// Of all features.
+    /// How many vertices all features have.
     pub(crate) vertices: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The view from above.
+//! The view from above keeps its scale, and the ground stays under the cursor.
 
 use corniche_viewer::camera::Projection;
 

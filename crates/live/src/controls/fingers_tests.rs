@@ -1,3 +1,5 @@
+//! Two fingers zoom, turn or tilt.
+
 use super::*;
 
 fn at(x: f64, y: f64) -> DVec2 {

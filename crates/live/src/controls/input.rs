@@ -1,3 +1,5 @@
+//! Inputs of a person at mouse, keys and touch screen, without any window system.
+
 use glam::{DVec2, DVec3};
 
 /// A button of the mouse.

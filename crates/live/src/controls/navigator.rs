@@ -1,3 +1,5 @@
+//! The navigator turns inputs and time into views of the camera.
+
 use corniche_viewer::camera::{Camera, Orientation};
 use glam::{DVec2, DVec3};
 

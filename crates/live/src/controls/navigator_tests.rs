@@ -1,3 +1,5 @@
+//! The ground that was grabbed stays under the cursor, and the eye never leaves the world.
+
 use corniche_geom::Bounds;
 use proptest::prelude::*;
 

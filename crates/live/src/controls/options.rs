@@ -1,3 +1,5 @@
+//! Options of the controls: limits of the camera, what a drag does, and how movements end.
+
 use corniche_geom::Bounds;
 
 /// How far the camera may go.

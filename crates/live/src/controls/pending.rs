@@ -1,3 +1,5 @@
+//! What is left of a step that was asked for and is done over several frames.
+
 use glam::{DVec2, DVec3};
 
 /// A step with less than this left, in its unit, is completed at once.

@@ -1,3 +1,5 @@
+//! Some of the data always stays in sight.
+
 use corniche_viewer::camera::{Camera, Orientation};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! The camera travels from one view to another in a short time.
+
 use corniche_viewer::camera::Orientation;
 
 use super::{

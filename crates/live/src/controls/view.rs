@@ -1,3 +1,5 @@
+//! The view of the camera, and what controls must know of the ground that it looks at.
+
 use corniche_viewer::{
     camera::{Camera, Orientation},
     eye_height,
@@ -26,7 +28,7 @@ pub struct View {
     pub orientation: Orientation,
     /// About how far away the ground is that is looked at; near plane and haze follow from it.
     pub focus_m: f64,
-    /// In a view from above, with parallel rays: all ground lies between these heights, world metres. The eye is then over the middle of
+    /// Heights between which all ground lies, world metres, in a view from above with parallel rays. The eye is then over the middle of
     /// the picture, at about the height from which things look as large, and looks straight down.
     pub from_above: Option<[f64; 2]>,
 }

@@ -10,7 +10,7 @@ use crate::support::{
 };
 use corniche_objects::{BlockCache, ObjectAddress, ObjectPlace};
 use corniche_store::{
-    Artifacts as _, Hold, Key, LocalStore, OwnPart, Place as _, Publish as _, SealedParts,
+    Artifacts as _, Hold, Key, LocalStore, OwnPart, PartsPlace as _, Publish as _, SealedParts,
     StoreError, StoredPlan, SystemDisk,
 };
 use corniche_testing::Random;

@@ -4,7 +4,7 @@ use corniche_store::{SortRecord as _, Sorter};
 
 use super::{
     located_ways::{LocatedWay, LocatedWays},
-    records::{MemberRecord, PartLine, PartRecord},
+    records::{MemberRecord, OutlineLine, OutlineWayRecord},
 };
 use crate::{ReadOsmError, reading::Reading, spool::SpoolReader};
 
@@ -13,7 +13,7 @@ pub(crate) fn hand_parts<'a>(
     reading: &Reading<'a>,
     mut members: SpoolReader<'a>,
     mut located: LocatedWays<'a>,
-) -> Result<Sorter<'a, PartRecord>, ReadOsmError> {
+) -> Result<Sorter<'a, OutlineWayRecord>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().ways);
     let mut way: Option<LocatedWay> = None;
@@ -30,10 +30,10 @@ pub(crate) fn hand_parts<'a>(
             }
         }
         let line = match &way {
-            Some(way) if way.way_id == way_id => PartLine::of(way.places.clone()),
-            _ => PartLine::NoWay,
+            Some(way) if way.way_id == way_id => OutlineLine::of(way.places.clone()),
+            _ => OutlineLine::NoWay,
         };
-        parts.push(PartRecord { object_number, member, line }).map_err(failed)?;
+        parts.push(OutlineWayRecord { object_number, member, line }).map_err(failed)?;
     }
     Ok(parts)
 }

@@ -20,7 +20,7 @@ pub(crate) struct LocatedWays<'a> {
 pub(crate) struct LocatedWay {
     pub(crate) way_id: i64,
     pub(crate) places: Vec<Location>,
-    /// Of each node, whether another of the ways has it too, or this one twice.
+    /// Whether another of the ways has each node too, or this one twice.
     pub(crate) is_shared: Vec<bool>,
 }
 

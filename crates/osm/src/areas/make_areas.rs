@@ -11,14 +11,14 @@ use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use super::{
-    records::{Known, PartLine, PartRecord, degrees_of, to_point},
+    records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
     summary::AreaSummary,
 };
 use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
     find_ways::check_held,
-    read_request::Place,
+    read_request::ToLattice,
     reading::{Reading, Step},
     spool::SpoolReader,
 };
@@ -32,7 +32,7 @@ const POINTS_PER_THREAD: usize = 1 << 16;
 pub(crate) fn make_areas(
     reading: &Reading<'_>,
     (mut known, objects_count): (SpoolReader<'_>, u64),
-    parts: Sorted<'_, PartRecord>,
+    parts: Sorted<'_, OutlineWayRecord>,
     mut held_bytes: u64,
     summary: &mut AreaSummary,
     sink: &mut dyn FnMut(Area),
@@ -83,15 +83,15 @@ pub(crate) fn make_areas(
     }
 }
 
-fn points_of(part: &PartRecord) -> usize {
-    if let PartLine::Points(points) = &part.line { points.len() } else { 0 }
+fn points_of(part: &OutlineWayRecord) -> usize {
+    if let OutlineLine::Points(points) = &part.line { points.len() } else { 0 }
 }
 
 fn parts_of(
     reading: &Reading<'_>,
-    parts: &mut Ahead<Sorted<'_, PartRecord>>,
+    parts: &mut Ahead<Sorted<'_, OutlineWayRecord>>,
     number: u64,
-) -> Result<Vec<PartRecord>, ReadOsmError> {
+) -> Result<Vec<OutlineWayRecord>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     let mut own = Vec::new();
     while parts.peek().map_err(failed)?.is_some_and(|part| part.object_number == number) {
@@ -116,7 +116,7 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
+fn make(known: Known, parts: &[OutlineWayRecord], place: &ToLattice<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
@@ -140,16 +140,16 @@ fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
 /// The lines of a way on the package's lattice: several where points between them cannot be placed.
 fn coastlines(
     way_id: i64,
-    parts: &[PartRecord],
-    place: &Place<'_>,
+    parts: &[OutlineWayRecord],
+    place: &ToLattice<'_>,
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
         let points = match &part.line {
-            PartLine::Points(points) => points,
-            PartLine::NoWay => return Err(AreaLoss::MissingWays),
-            PartLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            PartLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+            OutlineLine::Points(points) => points,
+            OutlineLine::NoWay => return Err(AreaLoss::MissingWays),
+            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
+            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
         };
         let positions_deg: Vec<[f64; 2]> =
             points.iter().copied().map(to_point).map(degrees_of).collect();
@@ -163,8 +163,8 @@ fn coastlines(
 
 fn try_making(
     (known, class): (Known, AreaClass),
-    parts: &[PartRecord],
-    place: &Place<'_>,
+    parts: &[OutlineWayRecord],
+    place: &ToLattice<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
     let Known { object, name, .. } = known;
@@ -174,15 +174,15 @@ fn try_making(
     for part in parts {
         let is_inner = part.member.is_inner;
         match &part.line {
-            PartLine::Points(points) => {
+            OutlineLine::Points(points) => {
                 ways.push(Line {
                     points: points.iter().copied().map(to_point).collect(),
                     is_inner,
                 });
             }
-            PartLine::NoWay => missing += 1,
-            PartLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            PartLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+            OutlineLine::NoWay => missing += 1,
+            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
+            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
         }
     }
     let outline: Vec<OutlineWay<'_>> =
@@ -246,7 +246,7 @@ fn area_m2(polygon: &Polygon) -> f64 {
 }
 
 /// The same polygon on the package's lattice.
-fn placed(polygon: &Polygon, place: &Place<'_>) -> Option<Polygon> {
+fn placed(polygon: &Polygon, place: &ToLattice<'_>) -> Option<Polygon> {
     let points = polygon.rings().flat_map(Ring::points);
     let positions_deg: Vec<[f64; 2]> = points.copied().map(degrees_of).collect();
     let mut placed = place(&positions_deg).into_iter();

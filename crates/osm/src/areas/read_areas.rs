@@ -1,3 +1,5 @@
+//! The areas of an extract are read and handed out in order of their objects.
+
 use std::io::{Read, Seek};
 
 use corniche_areas::{Area, AreaTable};

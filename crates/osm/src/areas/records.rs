@@ -56,15 +56,15 @@ pub(crate) struct MemberRecord {
 
 /// A way of an object's outline with its places.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct PartRecord {
+pub(crate) struct OutlineWayRecord {
     pub(crate) object_number: u64,
     pub(crate) member: Member,
-    pub(crate) line: PartLine,
+    pub(crate) line: OutlineLine,
 }
 
 /// What is known of a way of an outline.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum PartLine {
+pub(crate) enum OutlineLine {
     /// The way is not in the file.
     NoWay,
     /// Some of its nodes are not.
@@ -75,7 +75,7 @@ pub(crate) enum PartLine {
     Points(Box<[Location]>),
 }
 
-impl PartLine {
+impl OutlineLine {
     pub(crate) fn of(locations: Vec<Location>) -> Self {
         if locations.contains(&location::MISSING) {
             Self::NoNodes
@@ -192,15 +192,15 @@ impl SortRecord for MemberRecord {
     }
 }
 
-impl SortRecord for PartRecord {
+impl SortRecord for OutlineWayRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         push_varint(bytes, self.object_number);
         self.member.encode(bytes);
         let points: &[Location] = match &self.line {
-            PartLine::NoWay => return bytes.push(0),
-            PartLine::NoNodes => return bytes.push(1),
-            PartLine::OutOfRange => return bytes.push(2),
-            PartLine::Points(points) => points,
+            OutlineLine::NoWay => return bytes.push(0),
+            OutlineLine::NoNodes => return bytes.push(1),
+            OutlineLine::OutOfRange => return bytes.push(2),
+            OutlineLine::Points(points) => points,
         };
         bytes.push(3);
         push_varint(bytes, points.len() as u64);
@@ -219,9 +219,9 @@ impl SortRecord for PartRecord {
         let (&kind, rest) = bytes.split_first()?;
         *bytes = rest;
         let line = match kind {
-            0 => PartLine::NoWay,
-            1 => PartLine::NoNodes,
-            2 => PartLine::OutOfRange,
+            0 => OutlineLine::NoWay,
+            1 => OutlineLine::NoNodes,
+            2 => OutlineLine::OutOfRange,
             _ => {
                 let count = varint(bytes).ok()?;
                 let mut last = [0_i32; 2];
@@ -233,7 +233,7 @@ impl SortRecord for PartRecord {
                     Some(last)
                 };
                 let points: Option<_> = (0..count).map(|_| next()).collect();
-                PartLine::Points(points?)
+                OutlineLine::Points(points?)
             }
         };
         Some(Self { object_number, member, line })
@@ -241,8 +241,8 @@ impl SortRecord for PartRecord {
 
     fn extra_bytes(&self) -> usize {
         match &self.line {
-            PartLine::Points(points) => size_of_val(&**points) + 16,
-            PartLine::NoWay | PartLine::NoNodes | PartLine::OutOfRange => 0,
+            OutlineLine::Points(points) => size_of_val(&**points) + 16,
+            OutlineLine::NoWay | OutlineLine::NoNodes | OutlineLine::OutOfRange => 0,
         }
     }
 }

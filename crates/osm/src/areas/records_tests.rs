@@ -1,3 +1,5 @@
+//! Records of areas come back as they were written.
+
 use std::fmt::Debug;
 
 use super::*;
@@ -36,16 +38,20 @@ fn records_come_back() {
     }
     comes_back(&MemberRecord { member: member(-5), object_number: 300 });
     let points = Box::new([[i32::MIN + 1, i32::MAX - 1], [0, 0], [1_800_000_000, -900_000_000]]);
-    for line in [PartLine::NoWay, PartLine::NoNodes, PartLine::OutOfRange, PartLine::Points(points)]
-    {
-        comes_back(&PartRecord { object_number: 9, member: member(10), line });
+    for line in [
+        OutlineLine::NoWay,
+        OutlineLine::NoNodes,
+        OutlineLine::OutOfRange,
+        OutlineLine::Points(points),
+    ] {
+        comes_back(&OutlineWayRecord { object_number: 9, member: member(10), line });
     }
 }
 
 #[test]
 fn lines_with_unknown_places_say_so() {
     let [near, missing, far] = [[1, 2], location::MISSING, location::OUT_OF_RANGE];
-    assert_eq!(PartLine::of(vec![near, missing, far]), PartLine::NoNodes);
-    assert_eq!(PartLine::of(vec![near, far]), PartLine::OutOfRange);
-    assert_eq!(PartLine::of(vec![near, near]), PartLine::Points(Box::new([near, near])));
+    assert_eq!(OutlineLine::of(vec![near, missing, far]), OutlineLine::NoNodes);
+    assert_eq!(OutlineLine::of(vec![near, far]), OutlineLine::OutOfRange);
+    assert_eq!(OutlineLine::of(vec![near, near]), OutlineLine::Points(Box::new([near, near])));
 }

@@ -1,3 +1,5 @@
+//! How many areas an extract had, and how many were kept or lost.
+
 use std::collections::BTreeMap;
 
 use corniche_areas::{AreaClass, Coastline};
@@ -22,11 +24,11 @@ pub struct AreaSummary {
 pub struct KeptAreas {
     /// How many.
     pub areas: u64,
-    /// Their polygons.
+    /// The number of their polygons.
     pub polygons: u64,
     /// The points of all rings.
     pub points: u64,
-    /// Their true area, square metres. Where areas overlap, each counts.
+    /// The true area of the objects, square metres. Where areas overlap, each counts.
     pub area_m2: f64,
 }
 

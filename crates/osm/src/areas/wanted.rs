@@ -1,3 +1,5 @@
+//! What is looked for in an extract, areas by a table or boundaries, and which keys, tags and roles belong to it.
+
 use corniche_areas::{AreaTable, BoundaryClass};
 
 /// Which objects are looked for.

@@ -1,3 +1,5 @@
+//! A part of a way that is a boundary, with its class and its points.
+
 use corniche_areas::BoundaryClass;
 use corniche_geom::LatticePoint;
 

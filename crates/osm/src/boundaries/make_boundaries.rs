@@ -1,3 +1,5 @@
+//! Boundaries are made of ways and of the relations that hold them.
+
 use corniche_areas::BoundaryClass;
 use corniche_geom::LatticePoint;
 use corniche_store::SortRecord as _;

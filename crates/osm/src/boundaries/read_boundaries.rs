@@ -1,3 +1,5 @@
+//! The boundaries of an extract are read and handed out in order of their ways.
+
 use std::io::{Read, Seek};
 
 use corniche_areas::BoundaryClass;

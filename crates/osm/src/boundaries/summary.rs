@@ -1,3 +1,5 @@
+//! How many ways of boundaries an extract had, and how many were kept or lost.
+
 use std::collections::BTreeMap;
 
 use corniche_areas::BoundaryClass;

@@ -75,7 +75,7 @@ pub(crate) struct BlockReader<'a, T: BlockRecord> {
 }
 
 impl<'a, T: BlockRecord> BlockReader<'a, T> {
-    /// Of so many blocks.
+    /// A writer of so many blocks.
     pub(crate) fn new(kept: Kept<'a>, kind: u8, share: Share, blocks: u32) -> Self {
         let (bytes, before) = (Vec::new(), T::Before::default());
         Self { kept, kind, share, blocks: 0..blocks, bytes, at: 0, before }

@@ -11,7 +11,7 @@ use crate::{kept_error::KeptError, share::Share};
 pub struct Kept<'a> {
     /// Where artifacts are kept and read.
     pub store: &'a dyn Artifacts,
-    /// Under which kinds.
+    /// The kinds under which artifacts are kept.
     pub kinds: KeptKinds,
 }
 

@@ -1,3 +1,5 @@
+//! What shares keep is read as it was written, and other bytes are refused.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -12,7 +12,7 @@ use super::blocks::{BlockReader, BlockRecord};
 pub(crate) trait HasId {
     fn id(&self) -> i64;
 
-    /// Of those with the same id, the smaller ones come first.
+    /// How old the record's extract is: among records with the same id, the smaller ones come first.
     fn age(&self) -> u32 {
         0
     }
@@ -27,7 +27,7 @@ pub(crate) struct Merged<'a, T: BlockRecord> {
 }
 
 impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
-    /// Of one reader for each share, in the order of the shares.
+    /// Merges the records of one reader for each share, in the order of the shares.
     pub(crate) fn new(readers: Vec<BlockReader<'a, T>>) -> Self {
         let mut merged =
             Self { heads: BinaryHeap::with_capacity(readers.len()), readers, failed: None };

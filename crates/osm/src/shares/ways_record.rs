@@ -12,13 +12,13 @@ use crate::{
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WaysRecord {
     pub(crate) counts: Counts,
-    /// Of the whole file.
+    /// The header of the whole file.
     pub(crate) header: Header,
     pub(crate) blobs_passed_over: u64,
     pub(crate) len_bytes: u64,
     /// Blobs of the share that have nodes, in the order of the file.
     pub(crate) node_blobs: Vec<NodeBlob>,
-    /// Without a reason why the file is a history: a share with one is never complete.
+    /// What is known of versions, without a reason why the file is a history: a share with one is never complete.
     pub(crate) versions: Versions,
     /// What its ways take, as it counts for the limit on all of them.
     pub(crate) held_bytes: u64,

@@ -12,7 +12,7 @@ use corniche_tileset::{AreaRecord, AreaRings, encode_areas, pmtiles_order};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{sea::SeaPlace, sections::TileAreas, split::Splitting, totals::AreaTotals};
+use super::{sea::SeaPlace, sections::TileAreas, split::AreaSplitting, totals::AreaTotals};
 use crate::{
     BuildError, Defect, Observer,
     artifacts::{Kind, damaged, tile_of},
@@ -27,7 +27,7 @@ const BATCH_POINTS: usize = 1 << 16;
 pub(crate) fn partition(
     request: &ReadRequest<'_>,
     table: &AreaTable,
-    (splitting, sea): (&Splitting<'_>, &SeaPlace<'_>),
+    (splitting, sea): (&AreaSplitting<'_>, &SeaPlace<'_>),
     store: &dyn Artifacts,
     observer: &dyn Observer,
     on_defect: &mut dyn FnMut(Defect),
@@ -80,12 +80,12 @@ pub(crate) fn partition(
 
 /// Areas as they come in.
 struct Gathered<'a> {
-    splitting: &'a Splitting<'a>,
+    splitting: &'a AreaSplitting<'a>,
     pool: &'a rayon::ThreadPool,
     batch: Vec<Area>,
     batch_points: usize,
     areas: u64,
-    parts: Sorter<'a, PartRecord>,
+    parts: Sorter<'a, AreaPartRecord>,
     /// Areas that could not be split, with their true area.
     intricate: Vec<(AreaObject, AreaClass, f64)>,
     /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
@@ -121,7 +121,8 @@ impl Gathered<'_> {
             };
             for (id, record) in parts {
                 let part = StoredArea::from(record);
-                let record = PartRecord { tile: pmtiles_order(id), number, bytes: part.to_bytes() };
+                let record =
+                    AreaPartRecord { tile: pmtiles_order(id), number, bytes: part.to_bytes() };
                 if let Err(error) = self.parts.push(record) {
                     self.failed = Some(BuildError::Storage(error));
                     return;
@@ -133,14 +134,14 @@ impl Gathered<'_> {
 
 /// The part of an area on its way to its tile. No two have the same tile and number.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct PartRecord {
+struct AreaPartRecord {
     /// The tile's place in the order of the package.
     tile: u64,
     number: u64,
     bytes: Vec<u8>,
 }
 
-impl SortRecord for PartRecord {
+impl SortRecord for AreaPartRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.extend(self.tile.to_le_bytes());
         bytes.extend(self.number.to_le_bytes());
@@ -208,8 +209,8 @@ impl StoredArea {
 
 /// Puts one section for each tile, in the order of the package.
 fn put_sections(
-    parts: Sorter<'_, PartRecord>,
-    splitting: &Splitting<'_>,
+    parts: Sorter<'_, AreaPartRecord>,
+    splitting: &AreaSplitting<'_>,
     store: &dyn Artifacts,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
@@ -232,7 +233,7 @@ fn put_sections(
 fn put_section(
     tile: u64,
     areas: &[AreaRecord],
-    splitting: &Splitting<'_>,
+    splitting: &AreaSplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
     let id: TileId = tile_of(Kind::AreaSection.item(tile))?;

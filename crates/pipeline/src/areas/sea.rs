@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use corniche_areas::{Area, AreaClass, AreaObject, Coastline, Polygon, close_sea};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, Projection, wgs84};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Projection, wgs84};
 use corniche_osm::{AreaLoss, AreaSummary, Defect};
 
 use crate::{BuildError, extract_bounds};
@@ -20,7 +20,7 @@ pub(crate) struct SeaPlace<'a> {
     pub(crate) osm: &'a [PathBuf],
     /// What the data cover.
     pub(crate) data: LatticeBounds,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     pub(crate) projection: &'a (dyn Projection + Sync),
 }
 
@@ -95,7 +95,7 @@ impl SeaPlace<'_> {
 /// The largest rectangle of the lattice inside a box in degrees; `None` if there is none.
 fn inner_rectangle(
     [west, south, east, north]: [f64; 4],
-    frame: &Frame,
+    frame: &GridFrame,
     projection: &dyn Projection,
 ) -> Option<LatticeBounds> {
     let side = |from: [f64; 2], to: [f64; 2]| -> Option<Vec<LatticePoint>> {

@@ -15,7 +15,7 @@ use crate::{
 pub(crate) struct TileAreas {
     pub(crate) section: Vec<u8>,
     pub(crate) areas: u64,
-    /// Of all rings.
+    /// The number of points of all rings.
     pub(crate) points: u64,
 }
 
@@ -24,12 +24,12 @@ impl TileAreas {
         artifacts::put(store, Kind::AreaSection.of_tile(id), self)
     }
 
-    /// Those of a tile; `None` if it has no areas.
+    /// The sections of a tile; `None` if it has no areas.
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
         artifacts::get(store, Kind::AreaSection.of_tile(id))
     }
 
-    /// As the section of a payload.
+    /// The areas as the section of a payload.
     pub(crate) fn into_section(self) -> AreasSection {
         AreasSection::from_bytes(self.section)
     }

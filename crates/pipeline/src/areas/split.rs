@@ -1,20 +1,20 @@
 //! One area to its parts in the tiles of each level.
 
 use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all};
-use corniche_geom::{Frame, LatticeBounds, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use crate::{heights::data_tiles::DataTiles, points_step::points_step};
 
 /// How areas are split.
-pub(crate) struct Splitting<'a> {
-    pub(crate) frame: &'a Frame,
+pub(crate) struct AreaSplitting<'a> {
+    pub(crate) frame: &'a GridFrame,
     pub(crate) data: DataTiles,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
 }
 
-impl Splitting<'_> {
+impl AreaSplitting<'_> {
     /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
     pub(crate) fn step(&self, level: u8) -> i64 {
         points_step(self.frame, level)
@@ -48,7 +48,7 @@ impl Splitting<'_> {
 
 /// The tiles of a level on which data can lie.
 struct Wanted<'a> {
-    frame: &'a Frame,
+    frame: &'a GridFrame,
     data: DataTiles,
     level: u8,
 }

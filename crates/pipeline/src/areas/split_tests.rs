@@ -1,3 +1,5 @@
+//! The parts of an area add up on every level, and neighbours share their borders.
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};
@@ -8,13 +10,13 @@ use super::*;
 use crate::verify::area_seams::{Beside, Seam};
 
 /// Three levels of tiles, 10 m cells.
-fn frame() -> Frame {
-    Frame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
-fn splitting(frame: &Frame) -> Splitting<'_> {
+fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
-    Splitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
+    AreaSplitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
 }
 
 /// A star around a place, with a hole.
@@ -40,7 +42,10 @@ fn area(polygons: Vec<Polygon>) -> Area {
 }
 
 /// The parts of an area by level and tile.
-fn by_level(splitting: &Splitting<'_>, area: &Area) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
+fn by_level(
+    splitting: &AreaSplitting<'_>,
+    area: &Area,
+) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
     let mut by_level: BTreeMap<u8, BTreeMap<TileId, AreaRecord>> = BTreeMap::new();
     for (id, record) in splitting.split(area).unwrap() {
         by_level.entry(id.z()).or_default().insert(id, record);
@@ -57,7 +62,7 @@ fn doubled_area(parts: &[AreaRings]) -> i128 {
 }
 
 /// Asserts that neighbours cover the same of the lines between them, but for outlines that run along these.
-fn assert_seams_hold(frame: &Frame, tiles: &BTreeMap<TileId, AreaRecord>) {
+fn assert_seams_hold(frame: &GridFrame, tiles: &BTreeMap<TileId, AreaRecord>) {
     let all = tiles
         .keys()
         .flat_map(|&id| [id, id.neighbour(-1, 0).unwrap_or(id), id.neighbour(0, -1).unwrap_or(id)]);

@@ -17,9 +17,9 @@ use crate::{
 pub(crate) struct AreaTotals {
     /// Objects with the tags of an area.
     objects: u64,
-    /// By number of the class: areas, m².
+    /// Number of areas and square metres of each class, by the class's number.
     kept: BTreeMap<u8, (u64, f64)>,
-    /// By reason.
+    /// How many were lost, by reason.
     lost: BTreeMap<String, u64>,
 }
 

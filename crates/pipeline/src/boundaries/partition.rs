@@ -9,7 +9,7 @@ use corniche_store::{Artifacts, Groups, SortRecord, Sorter};
 use corniche_tileset::{BoundaryRecord, encode_boundaries, pmtiles_order};
 use serde::{Deserialize, Serialize};
 
-use super::{sections::TileBoundaries, split::Splitting, totals::BoundaryTotals};
+use super::{sections::TileBoundaries, split::BoundarySplitting, totals::BoundaryTotals};
 use crate::{
     BuildError, Defect, Observer,
     artifacts::{Kind, damaged, tile_of},
@@ -19,7 +19,7 @@ use crate::{
 /// Keeps the sections of all tiles and last the totals. `on_defect` is told what is wrong, in an order that depends on the extract alone.
 pub(crate) fn partition(
     request: &ReadRequest<'_>,
-    (splitting, lengths): (&Splitting<'_>, &TrueLengths<'_>),
+    (splitting, lengths): (&BoundarySplitting<'_>, &TrueLengths<'_>),
     store: &dyn Artifacts,
     observer: &dyn Observer,
     on_defect: &mut dyn FnMut(Defect),
@@ -37,7 +37,7 @@ pub(crate) fn partition(
         *lengths_um.entry(boundary.class).or_default() +=
             lengths.segments_um(&line).iter().sum::<u64>();
         for (number, (id, record)) in (0..).zip(splitting.split(&boundary)) {
-            let record = PartRecord::of(id, number, &record);
+            let record = BoundaryPartRecord::of(id, number, &record);
             if let Err(error) = parts.push(record) {
                 failed = Some(BuildError::Storage(error));
                 return;
@@ -62,7 +62,7 @@ pub(crate) fn partition(
 /// The part of a boundary on its way to its tile. Parts of a tile are sorted by class and way; those of one way by where they begin, so that
 /// their order depends on what they are alone.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct PartRecord {
+struct BoundaryPartRecord {
     /// The tile's place in the order of the package.
     tile: u64,
     class: u8,
@@ -80,7 +80,7 @@ struct StoredPart {
     points: Vec<LatticePoint>,
 }
 
-impl PartRecord {
+impl BoundaryPartRecord {
     fn of(id: TileId, number: u64, record: &BoundaryRecord) -> Self {
         let stored = StoredPart {
             class: record.class.number(),
@@ -112,7 +112,7 @@ impl PartRecord {
     }
 }
 
-impl SortRecord for PartRecord {
+impl SortRecord for BoundaryPartRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.extend(self.tile.to_le_bytes());
         bytes.extend((self.bytes.len() as u64).to_le_bytes());
@@ -140,8 +140,8 @@ impl SortRecord for PartRecord {
 
 /// Puts one section for each tile, in the order of the package.
 fn put_sections(
-    parts: Sorter<'_, PartRecord>,
-    splitting: &Splitting<'_>,
+    parts: Sorter<'_, BoundaryPartRecord>,
+    splitting: &BoundarySplitting<'_>,
     store: &dyn Artifacts,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
@@ -163,7 +163,7 @@ fn put_sections(
 fn put_section(
     tile: u64,
     boundaries: &[BoundaryRecord],
-    splitting: &Splitting<'_>,
+    splitting: &BoundarySplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
     let id: TileId = tile_of(Kind::BoundarySection.item(tile))?;

@@ -23,12 +23,12 @@ impl TileBoundaries {
         artifacts::put(store, Kind::BoundarySection.of_tile(id), self)
     }
 
-    /// Those of a tile; `None` if it has no boundaries.
+    /// The sections of a tile; `None` if it has no boundaries.
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
         artifacts::get(store, Kind::BoundarySection.of_tile(id))
     }
 
-    /// As the section of a payload.
+    /// The boundaries as the section of a payload.
     pub(crate) fn into_section(self) -> BoundariesSection {
         BoundariesSection::from_bytes(self.section)
     }

@@ -25,14 +25,14 @@ fn coarsest_cell_m(class: BoundaryClass) -> Option<f64> {
 }
 
 /// How boundaries are split.
-pub(crate) struct Splitting<'a> {
+pub(crate) struct BoundarySplitting<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) data: DataTiles,
     /// The bounds that were asked for: tiles that do not touch them get none.
     pub(crate) clip: Option<LatticeBounds>,
 }
 
-impl Splitting<'_> {
+impl BoundarySplitting<'_> {
     /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
     pub(crate) fn step(&self, level: u8) -> i64 {
         points_step(self.levels.frame(), level)

@@ -1,6 +1,8 @@
+//! Every tile has the segments of boundaries that come near it, and junctions stay.
+
 use std::collections::{BTreeMap, BTreeSet};
 
-use corniche_geom::{Frame, NodeIndex};
+use corniche_geom::{GridFrame, NodeIndex};
 use corniche_roads::{ClassFilter, FrcTable};
 
 use super::*;
@@ -8,16 +10,16 @@ use crate::RoadSettings;
 
 /// Three levels of tiles with cells of 10, 20 and 40 m.
 fn levels() -> Levels {
-    let frame = Frame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let frame = GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
     let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
     let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25 };
     Levels::new(frame, 1.0, &settings, 1.0)
 }
 
-fn splitting(levels: &Levels) -> Splitting<'_> {
+fn splitting(levels: &Levels) -> BoundarySplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    Splitting { levels, data, clip: None }
+    BoundarySplitting { levels, data, clip: None }
 }
 
 /// A wave across the whole of the root, in metres; its middle is a junction.
@@ -83,7 +85,7 @@ fn junctions_stay_and_coarse_levels_have_fewer_points() {
 
 #[test]
 fn small_units_are_stored_where_cells_are_small() {
-    let frame = Frame::new([0.0, 0.0], 60.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let frame = GridFrame::new([0.0, 0.0], 60.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
     let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
     let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25 };
     let levels = Levels::new(frame, 1.0, &settings, 1.0);

@@ -18,9 +18,9 @@ use crate::{
 pub(crate) struct BoundaryTotals {
     /// Ways that are boundaries.
     ways: u64,
-    /// By number of the class: ways, micrometres.
+    /// Number of ways and micrometres of each class, by the class's number.
     kept: BTreeMap<u8, (u64, u64)>,
-    /// By reason.
+    /// How many were lost, by reason.
     lost: BTreeMap<String, u64>,
 }
 

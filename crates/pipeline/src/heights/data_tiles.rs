@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_dem::GridPlan;
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, NodeIndex, TILE_CELLS, TileId};
 use corniche_tileset::pmtiles_order;
 
 /// A rectangle of finest tiles; both ends belong to it.
@@ -17,14 +17,14 @@ pub(crate) struct DataTiles {
 }
 
 impl DataTiles {
-    /// Those of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
+    /// The tiles of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
     /// its last tiles.
     pub(crate) fn of(plan: &GridPlan) -> Self {
         Self::between(&plan.frame, plan.south_west, plan.north_east)
     }
 
-    /// Those on which the nodes between two corners lie.
-    pub(crate) fn between(frame: &Frame, south_west: NodeIndex, north_east: NodeIndex) -> Self {
+    /// The tiles on which the nodes between two corners lie.
+    pub(crate) fn between(frame: &GridFrame, south_west: NodeIndex, north_east: NodeIndex) -> Self {
         let corner = frame.root_corner();
         let last = (1_i64 << frame.max_level()) - 1;
         let index = |cells: i64| cells.div_euclid(TILE_CELLS).clamp(0, last) as u32;
@@ -52,7 +52,7 @@ impl DataTiles {
     }
 
     /// The tile to which a point belongs; beside the data, the tile nearest to it.
-    pub(crate) fn owner(&self, frame: &Frame, point: LatticePoint) -> TileId {
+    pub(crate) fn owner(&self, frame: &GridFrame, point: LatticePoint) -> TileId {
         let [x, y] = frame.tile_column_row(self.level, point);
         let within =
             |at: i64, [first, last]: [u32; 2]| at.clamp(i64::from(first), i64::from(last)) as u32;
@@ -116,7 +116,7 @@ impl DataTiles {
     }
 
     /// The rectangle of all of them.
-    pub(crate) fn bounds(&self, frame: &Frame) -> LatticeBounds {
+    pub(crate) fn bounds(&self, frame: &GridFrame) -> LatticeBounds {
         let corner = |x: u32, y: u32| {
             frame.tile_lattice_bounds(TileId::new(self.level, x, y).unwrap_or(TileId::ROOT))
         };

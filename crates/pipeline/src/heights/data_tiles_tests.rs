@@ -1,3 +1,5 @@
+//! Missing tiles are named by the largest subtrees of which nothing is there.
+
 use super::*;
 
 fn data(level: u8, columns: [u32; 2], rows: [u32; 2]) -> DataTiles {

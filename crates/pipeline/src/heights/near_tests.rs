@@ -1,3 +1,5 @@
+//! The tiles near a subtree are those that a ring of tiles around it reaches.
+
 use super::*;
 
 fn tile(z: u8, x: u32, y: u32) -> TileId {

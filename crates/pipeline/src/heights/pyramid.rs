@@ -1,4 +1,4 @@
-//! The heights of all levels: the DEM, area by area, to the heights of finest tiles and to the rasters of the levels above.
+//! The heights of all levels: the DEM, patch by patch, to the heights of finest tiles and to the rasters of the levels above.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,9 +8,9 @@ use corniche_store::Artifacts;
 use corniche_tileset::{Manifest, SampleCounts};
 
 use super::{
-    area::{AreaReader, AreaRecord, area_level, audit_blocks_of},
     data_tiles::DataTiles,
     near::is_near,
+    patch::{PatchReader, PatchRecord, audit_blocks_of, patch_level},
     rasters, upwards,
 };
 use crate::{BuildError, Observer, Stage, artifacts::Kind, workers};
@@ -27,19 +27,20 @@ pub(crate) struct Pyramid<'a> {
 }
 
 impl Pyramid<'_> {
-    /// Reads the areas of a subtree that are not there yet, and makes the rasters from there up to the subtree's own.
+    /// Reads the patches of a subtree that are not there yet, and makes the rasters from there up to the subtree's own.
     pub(crate) fn make(&self, scope: TileId) -> Result<(), BuildError> {
         self.read_areas(scope)?;
         self.make_rasters(scope)
     }
 
-    /// Whether all that is made of an area is there. An area above it has the same.
-    fn has_area(&self, area: TileId) -> bool {
+    /// Whether all that is made of a patch is there. A patch above it has the same.
+    fn has_patch(&self, patch: TileId) -> bool {
         let (store, data) = (self.store, self.data());
         let finest_level = self.grid.frame.max_level();
-        let mut rasters = (area.z()..finest_level).flat_map(|level| data.above(level).within(area));
-        (0..=area.z()).any(|level| store.has(Kind::Area.of_tile(area.ancestor(level))))
-            && data.within(area).into_iter().all(|id| store.has(Kind::Heights.of_tile(id)))
+        let mut rasters =
+            (patch.z()..finest_level).flat_map(|level| data.above(level).within(patch));
+        (0..=patch.z()).any(|level| store.has(Kind::Patch.of_tile(patch.ancestor(level))))
+            && data.within(patch).into_iter().all(|id| store.has(Kind::Heights.of_tile(id)))
             && rasters.all(|id| store.has(Kind::Raster.of_tile(id)))
     }
 
@@ -49,15 +50,15 @@ impl Pyramid<'_> {
 
     fn read_areas(&self, scope: TileId) -> Result<(), BuildError> {
         let &Self { dem, grid, store, observer, .. } = self;
-        let level = area_level(&grid.frame, scope);
+        let level = patch_level(&grid.frame, scope);
         let all = self.data().above(level).within(scope);
         let missing: Vec<TileId> =
-            all.iter().copied().filter(|&area| !self.has_area(area)).collect();
+            all.iter().copied().filter(|&patch| !self.has_patch(patch)).collect();
         let mut blocks: BTreeMap<TileId, Vec<AuditBlock>> = BTreeMap::new();
         let wanted: BTreeSet<TileId> = missing.iter().copied().collect();
-        for (area, block) in audit_blocks_of(dem, grid, level)? {
-            if wanted.contains(&area) {
-                blocks.entry(area).or_default().push(block);
+        for (patch, block) in audit_blocks_of(dem, grid, level)? {
+            if wanted.contains(&patch) {
+                blocks.entry(patch).or_default().push(block);
             }
         }
         workers::make_missing(
@@ -65,8 +66,8 @@ impl Pyramid<'_> {
             Stage::Heights,
             self.threads,
             (&missing, all.len()),
-            || Ok(AreaReader::new(dem, grid, self.allowed_m(), store)),
-            |reader, area| reader.make(*area, blocks.get(area).map_or(&[], Vec::as_slice)),
+            || Ok(PatchReader::new(dem, grid, self.allowed_m(), store)),
+            |reader, patch| reader.make(*patch, blocks.get(patch).map_or(&[], Vec::as_slice)),
         )
     }
 
@@ -106,7 +107,7 @@ pub(crate) fn all_there(
     Err(BuildError::Missing { what, step })
 }
 
-/// What the heights of all areas add up to.
+/// What the heights of all patches add up to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct HeightSums {
     pub(crate) samples: SampleCounts,
@@ -115,7 +116,7 @@ pub(crate) struct HeightSums {
 }
 
 impl HeightSums {
-    /// Those that a package records.
+    /// The sums that a package records.
     pub(crate) fn recorded(manifest: &Manifest) -> Self {
         // They were 32-bit numbers before they were written.
         let range_m = manifest.vertical.range_m.map(|height_m| height_m as f32);
@@ -124,15 +125,15 @@ impl HeightSums {
 }
 
 impl Pyramid<'_> {
-    /// Fails if samples of `areas` cannot be heights; see [`Audit::check`].
-    pub(crate) fn check(&self, areas: &AreaRecord) -> Result<(), BuildError> {
+    /// Fails if samples of `patches` cannot be heights; see [`Audit::check`].
+    pub(crate) fn check(&self, patches: &PatchRecord) -> Result<(), BuildError> {
         let mut audit = Audit::none_of(self.dem, self.allowed_m());
-        areas.audit.iter().for_each(|part| audit.merge(part));
+        patches.audit.iter().for_each(|part| audit.merge(part));
         Ok(audit.check(self.dem, self.range_m.is_some())?)
     }
 
-    /// Counts over `all` areas.
-    pub(crate) fn sums(&self, all: &AreaRecord) -> HeightSums {
+    /// Counts over `all` patches.
+    pub(crate) fn sums(&self, all: &PatchRecord) -> HeightSums {
         let plan = self.grid;
         let span = |low: i64, high: i64| (high - low + 1) as u64;
         let nodes =
@@ -146,23 +147,23 @@ impl Pyramid<'_> {
         HeightSums { samples, range_m: all.range_m.unwrap_or_default() }
     }
 
-    /// The records of all areas together; fails if one is missing.
+    /// The records of all patches together; fails if one is missing.
     ///
-    /// The areas of a build that was split may lie on several levels, and even one above the other. Each finest tile counts for
+    /// The patches of a build that was split may lie on several levels, and even one above the other. Each finest tile counts for
     /// the highest that is there: so do all others beneath that one, and nothing counts twice.
-    pub(crate) fn all_areas(&self) -> Result<AreaRecord, BuildError> {
+    pub(crate) fn all_patches(&self) -> Result<PatchRecord, BuildError> {
         let store = self.store;
         let area_of = |finest: TileId| {
-            let mut areas = (0..=finest.z()).map(|level| finest.ancestor(level));
-            areas.find(|&area| store.has(Kind::Area.of_tile(area)))
+            let mut patches = (0..=finest.z()).map(|level| finest.ancestor(level));
+            patches.find(|&patch| store.has(Kind::Patch.of_tile(patch)))
         };
         let data = self.data();
         all_there("the heights", &data.missing(|id| area_of(id).is_none()), "heights")?;
-        let areas: BTreeSet<TileId> =
+        let patches: BTreeSet<TileId> =
             data.within(TileId::ROOT).into_iter().filter_map(area_of).collect();
-        let mut all = AreaRecord::default();
-        for area in areas {
-            all.merge(AreaRecord::get(store, area)?.unwrap_or_default());
+        let mut all = PatchRecord::default();
+        for patch in patches {
+            all.merge(PatchRecord::get(store, patch)?.unwrap_or_default());
         }
         Ok(all)
     }

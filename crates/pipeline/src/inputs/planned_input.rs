@@ -1,3 +1,5 @@
+//! An input file as it was when the plan was made, and how it has changed since.
+
 use serde::{Deserialize, Serialize};
 
 /// An input as it was when the plan was made.

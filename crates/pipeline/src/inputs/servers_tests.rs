@@ -1,3 +1,5 @@
+//! Names on servers become those of GDAL.
+
 use super::*;
 
 #[test]

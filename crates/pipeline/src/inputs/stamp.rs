@@ -16,9 +16,9 @@ const CLOCK: Duration = Duration::from_millis(20);
 /// What is noted of a file before it is read.
 #[derive(Debug)]
 pub(crate) enum Stamp {
-    /// On disk: of a raster in an archive, the archive.
+    /// A file on disk; for a raster in an archive, the archive.
     File(PathBuf, FileState),
-    /// On a server: its size, and its `ETag` if the server gives one.
+    /// A file on a server: its size, and its `ETag` if the server gives one.
     Remote { path: PathBuf, bytes: u64, etag: Option<String> },
 }
 
@@ -38,7 +38,7 @@ impl Stamp {
         Ok(Self::File(path.to_path_buf(), settled(path)?))
     }
 
-    /// Of a name that GDAL's virtual file systems understand.
+    /// The stamp of a name that GDAL's virtual file systems understand.
     pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
         if let Some(container) = path.to_str().and_then(container) {
             return Self::of_file(&container);
@@ -69,7 +69,7 @@ impl Stamp {
 }
 
 impl FileState {
-    /// Bytes.
+    /// The size in bytes.
     pub(crate) fn size(&self) -> u64 {
         self.size
     }

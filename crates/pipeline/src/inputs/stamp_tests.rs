@@ -1,3 +1,5 @@
+//! Whatever is done to an input file shows in its stamp.
+
 use super::*;
 
 #[test]

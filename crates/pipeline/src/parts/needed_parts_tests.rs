@@ -1,3 +1,5 @@
+//! A step opens the sealed parts that it can read and no others.
+
 use super::*;
 
 fn tile(z: u8, x: u32, y: u32) -> TileId {

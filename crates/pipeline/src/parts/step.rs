@@ -1,3 +1,5 @@
+//! The steps of a build that a process can do alone.
+
 /// A step of a build that a process can do alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Step {

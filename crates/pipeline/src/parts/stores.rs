@@ -8,7 +8,7 @@ use std::{
 
 use corniche_objects::{ObjectPlace, Requests};
 use corniche_store::{
-    Disk, Folder, Hold, LocalStore, OwnPart, Place, Publish as _, SYNC_INTERVAL, SealedParts,
+    Disk, Folder, Hold, LocalStore, OwnPart, PartsPlace, Publish as _, SYNC_INTERVAL, SealedParts,
     StoreError, StoredPlan, SystemDisk,
 };
 use sha2::{Digest as _, Sha256};
@@ -20,9 +20,9 @@ use crate::{
     objects::{ObjectAccess, address},
 };
 
-/// So many processes of one machine can make the same part at once.
+/// Most processes of one machine that can make the same part at once.
 const MOST_COPIES: u32 = 16;
-/// So often a folder may be removed while it is being opened.
+/// How often a folder may be removed while it is being opened.
 const MOST_TRIES: u32 = 8;
 
 /// What a user says of stores.
@@ -142,7 +142,7 @@ impl<'a> Stores<'a> {
         &self,
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<Option<LocalStore>, BuildError> {
-        let mut places: Vec<&dyn Place> = Vec::new();
+        let mut places: Vec<&dyn PartsPlace> = Vec::new();
         for store in &self.all {
             if store.place().stored_plan()?.is_some() {
                 places.push(store.place());
@@ -162,7 +162,7 @@ impl<'a> Stores<'a> {
         is_needed: &dyn Fn(&str) -> bool,
         hold: Hold,
     ) -> Result<LocalStore, StoreError> {
-        let places: Vec<&dyn Place> = self.all.iter().map(OneStore::place).collect();
+        let places: Vec<&dyn PartsPlace> = self.all.iter().map(OneStore::place).collect();
         let sealed = SealedParts { places: &places, is_needed };
         let own = OwnPart { folder, name, plan: &self.stored, interval: SYNC_INTERVAL };
         let disk = Arc::clone(&self.disk);
@@ -184,7 +184,7 @@ impl<'a> Stores<'a> {
 }
 
 impl OneStore {
-    fn place(&self) -> &dyn Place {
+    fn place(&self) -> &dyn PartsPlace {
         match self {
             Self::Folder(folder) => folder,
             Self::Objects(place) => &**place,
@@ -215,7 +215,7 @@ impl OpenStores<'_> {
         Ok(sent)
     }
 
-    /// After a failure: what was done stays. The user is told where, if that is not the store.
+    /// Leaves the store after a failure: what was done stays. The user is told where, if that is not the store.
     pub(crate) fn leave(self, observer: &dyn Observer) {
         if let Some((_, folder)) = &self.sent {
             tell_of_what_is_kept(folder, observer);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use corniche_areas::{AreaTable, AreaTableError};
 use corniche_dem::Polygon;
-use corniche_geom::{Bounds, Cell, Frame, NodeIndex, TileId};
+use corniche_geom::{Bounds, Cell, GridFrame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_tileset::{PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
@@ -80,7 +80,7 @@ pub struct FrcTableRecord {
 #[serde(deny_unknown_fields)]
 pub struct PlannedGrid {
     /// Nodes, tiles and levels.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// South-westernmost node at which data can lie.
     pub south_west: NodeIndex,
     /// North-easternmost node at which data can lie.
@@ -237,7 +237,7 @@ impl BuildPlan {
         if differences.is_empty() { Ok(()) } else { Err(PlanError::Differs { differences }) }
     }
 
-    /// As text, indented; the same for the same plan.
+    /// The plan as text, indented; the same for the same plan.
     ///
     /// # Errors
     /// When a number is not finite.

@@ -1,6 +1,8 @@
+//! The tiles of a level in which data can lie, as runs of columns.
+
 use std::collections::BTreeMap;
 
-use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, NodeIndex, TILE_CELLS, TileId};
 
 /// The tiles of a level that data can lie in, as runs of columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,7 +14,7 @@ pub(crate) struct CoveredTiles {
 
 impl CoveredTiles {
     /// The finest tiles that have a cell in one of the rectangles, each given by its south-western and north-eastern node.
-    pub(crate) fn finest(frame: &Frame, rectangles: &[[NodeIndex; 2]]) -> Self {
+    pub(crate) fn finest(frame: &GridFrame, rectangles: &[[NodeIndex; 2]]) -> Self {
         let size = TILE_CELLS;
         let corner = frame.root_corner();
         let most = (1_i64 << frame.max_level()) - 1;

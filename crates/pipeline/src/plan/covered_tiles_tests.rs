@@ -1,3 +1,5 @@
+//! Tiles that data only touch at a border are not counted.
+
 use super::*;
 
 fn node(i: i64, j: i64) -> NodeIndex {
@@ -16,7 +18,7 @@ fn counts(finest: &CoveredTiles) -> Vec<u64> {
 #[test]
 fn a_border_alone_makes_no_tile() {
     let (south_west, north_east) = (node(256, 256), node(768, 1024));
-    let frame = Frame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
+    let frame = GridFrame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
     let covered = CoveredTiles::finest(&frame, &[[south_west, north_east]]);
     assert_eq!(counts(&covered), [1, 2, 6]);
     let wider = [[south_west, node(769, 1024)]];
@@ -26,7 +28,7 @@ fn a_border_alone_makes_no_tile() {
 #[test]
 fn what_lies_between_files_is_not_counted_and_what_they_share_once() {
     let (south_west, north_east) = (node(0, 0), node(256 * 64, 256 * 64));
-    let frame = Frame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
+    let frame = GridFrame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
     let corner = [south_west, node(256, 256)];
     let far = [node(256 * 63, 256 * 63), north_east];
     let covered = CoveredTiles::finest(&frame, &[corner, far, corner]);

@@ -6,7 +6,7 @@ use super::{
 };
 
 impl BuildPlan {
-    /// In what this plan differs from `store`, the plan that a store was made with: what the user can change first (program,
+    /// What differs between this plan and `store`, the plan that a store was made with: what the user can change first (program,
     /// files, settings), and only if that is the same, what was derived from it. Empty where the plans are the same.
     #[must_use]
     pub fn differences(&self, store: &Self) -> Vec<String> {

@@ -11,9 +11,9 @@ use serde::Serialize;
 use super::{Opened, PhotoSource, covered_tiles::CoveredTiles, rates};
 use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
 
-/// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
+/// The number of finest tiles from which on some are triangulated to see how the ground is. Less work is estimated well enough without.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
-/// So many are.
+/// How many tiles are triangulated to see how the ground is.
 const SAMPLED_TILES: u64 = 12;
 /// Files with larger blocks are not sampled, because each sample would take as long as reading a large part of a file.
 const MOST_SAMPLED_BLOCK_BYTES: u64 = 64 << 20;
@@ -44,13 +44,13 @@ pub struct Estimate {
 pub struct MemoryEstimate {
     /// Whatever is being built.
     pub base_bytes: u64,
-    /// For what is remembered of every tile.
+    /// Memory for what is remembered of every tile.
     pub tiles_bytes: u64,
     /// Number of threads.
     pub threads: u64,
-    /// For the work of each thread.
+    /// Memory for the work of each thread.
     pub thread_bytes: u64,
-    /// For the largest block of a file, which GDAL decodes whole for each thread.
+    /// Memory for the largest block of a file, which GDAL decodes whole for each thread.
     pub block_bytes: u64,
     /// The file with that block.
     pub block_file: String,
@@ -65,9 +65,9 @@ pub struct MemoryEstimate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// From builds of other data on another machine, as `docs/lab/build-costs.md` says.
+    /// The rates come from builds of other data on another machine, as `docs/lab/build-costs.md` says.
     Recorded,
-    /// From so many tiles of these data, triangulated on this machine.
+    /// The rates come from so many tiles of these data, triangulated on this machine.
     Sampled {
         /// How many.
         tiles: u64,
@@ -75,7 +75,7 @@ pub enum Rates {
 }
 
 impl Rates {
-    /// For people.
+    /// Where the rates come from, in words for people.
     #[must_use]
     pub fn text(self) -> String {
         match self {
@@ -180,7 +180,7 @@ impl Estimate {
         self.seconds += core_seconds / self.memory.cores();
     }
 
-    /// Of a build that takes the terrain of a package.
+    /// The estimate of a build that takes the terrain of a package.
     fn of_recorded(
         manifest: &Manifest,
         memory: MemoryEstimate,
@@ -265,7 +265,7 @@ impl Estimate {
 }
 
 impl MemoryEstimate {
-    /// Of the elevation files with these blocks, and of the photos.
+    /// The memory that is needed for elevation files with these blocks, and for the photos.
     fn of(mut blocks: Vec<FileBlocks>, opened: &Opened, tiles: u64, resources: Resources) -> Self {
         blocks.extend(
             opened.photo.files().into_iter().flat_map(|photo| photo.blocks.iter().cloned()),
@@ -324,7 +324,7 @@ impl Ground {
         }
     }
 
-    /// From the average of some tiles, void ones included.
+    /// The ground as the average of some tiles has it, void ones included.
     fn sampled(
         opened: &Opened,
         dem: &Dem,

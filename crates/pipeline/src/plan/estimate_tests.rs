@@ -1,3 +1,5 @@
+//! Estimates grow with the work and fit the packages that the rates were taken from.
+
 use std::path::PathBuf;
 
 use corniche_dem::PlanOptions;

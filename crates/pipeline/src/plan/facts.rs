@@ -23,7 +23,7 @@ pub(crate) fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
     said
 }
 
-/// In what the settings for the ground differ from those that a package records, in words; those for roads do not count.
+/// How the settings for the ground differ from those that a package records, in words; those for roads do not count.
 pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     // The package's roads are not used.
     let mut theirs = SettingsRecord {
@@ -51,7 +51,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     differences_from(ours, &theirs)
 }
 
-/// In what the settings for roads and areas differ from those that a package records, in words; those for the ground do not count.
+/// How the settings for roads and areas differ from those that a package records, in words; those for the ground do not count.
 pub(crate) fn network_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     let theirs = SettingsRecord {
         frc_table: package.frc_table.clone(),

@@ -1,3 +1,5 @@
+//! The inputs of a build are opened, and what follows from them before any height is read is worked out.
+
 use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};
@@ -72,7 +74,7 @@ impl Opened {
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
     }
 
-    /// From elevation files.
+    /// What follows from elevation files.
     fn plan(settings: &PlanSettings) -> Result<Planned, BuildError> {
         let terrain = &settings.terrain;
         let dem = Dem::open(&settings.dem, &terrain.open)?;
@@ -89,7 +91,7 @@ impl Opened {
         Ok(Planned { source, grid, levels, max_error_m, coordinates })
     }
 
-    /// From a package.
+    /// What follows from a package whose terrain is taken.
     fn recorded(settings: &PlanSettings, package: &Path) -> Result<Planned, BuildError> {
         let terrain = RecordedTerrain::open(package, &settings.generator)?;
         let manifest = terrain.manifest();

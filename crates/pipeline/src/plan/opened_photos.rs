@@ -1,3 +1,5 @@
+//! The photos of a build are opened and placed on the grid, or taken from another package.
+
 use corniche_dem::{FileBlocks, GridPlan};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;
@@ -9,7 +11,7 @@ pub(crate) enum PhotoSource {
     /// There are none.
     Nothing,
     Files(Box<OpenedPhotos>),
-    /// From the package that gives the terrain, as they are there. It says how they were made.
+    /// Photos come from the package that gives the terrain, as they are there. It says how they were made.
     Package(PhotoRecord),
 }
 

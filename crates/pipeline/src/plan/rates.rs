@@ -6,7 +6,7 @@ use corniche_tileset::PHOTO_BORDER;
 
 /// Program, libraries, the tables of PROJ and GDAL, buffers of the store: whatever does not depend on input or threads.
 pub(crate) const BASE_BYTES: u64 = 80 << 20;
-/// Heights of an area, its TIN while it grows, a tile while it is encoded.
+/// Heights of a patch, its TIN while it grows, a tile while it is encoded.
 pub(crate) const THREAD_BYTES: u64 = 28 << 20;
 /// What is remembered of each tile while the build runs.
 pub(crate) const TILE_BYTES: u64 = 200;

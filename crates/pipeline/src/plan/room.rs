@@ -13,7 +13,7 @@ use crate::{
 
 /// What a build may use.
 pub(crate) struct Room {
-    /// `--memory`.
+    /// The memory of `--memory`.
     pub(crate) memory_bytes: u64,
     /// The machine's; `None` where it is not known.
     pub(crate) machine_bytes: Option<u64>,
@@ -24,7 +24,7 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// Of this machine. `held_bytes` is what a store that is there takes already: the build goes on from it, or removes it first.
+    /// The room of this machine. `held_bytes` is what a store that is there takes already: the build goes on from it, or removes it first.
     pub(crate) fn of(
         memory_bytes: u64,
         [store, target]: [&Path; 2],

@@ -1,3 +1,5 @@
+//! A build that does not fit the memory or the disk is refused with what it needs.
+
 use super::*;
 use crate::plan::estimate::tests::{estimate, file};
 

@@ -1,3 +1,5 @@
+//! Kept defects are told again as they were, and a missing block is an error.
+
 use std::sync::{
     Mutex,
     atomic::{AtomicBool, Ordering},

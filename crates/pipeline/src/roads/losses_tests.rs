@@ -1,3 +1,5 @@
+//! A road is kept or lost by what became of all its parts, in whatever order they come.
+
 use std::sync::Mutex;
 
 use corniche_store::{MemoryScratch, MemoryStore};

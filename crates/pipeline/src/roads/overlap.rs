@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use corniche_dem::GridPlan;
-use corniche_geom::{Bounds, Frame, ProjectError, Projection};
+use corniche_geom::{Bounds, GridFrame, ProjectError, Projection};
 
 use super::totals::RoadTotals;
 use crate::BuildError;
@@ -12,7 +12,7 @@ use crate::BuildError;
 pub(crate) fn check_overlap(
     roads: &RoadTotals,
     osm: &[PathBuf],
-    frame: &Frame,
+    frame: &GridFrame,
     projection: &dyn Projection,
     plan: &GridPlan,
 ) -> Result<(), BuildError> {

@@ -1,3 +1,5 @@
+//! A rectangle that is turned in degrees is found by all its corners.
+
 use super::*;
 
 /// Turned by 45 degrees.

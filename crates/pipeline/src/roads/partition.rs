@@ -15,7 +15,7 @@ use std::{
 
 use corniche_areas::AreaTable;
 use corniche_geom::{
-    Frame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
+    GridFrame, LatticeBounds, LatticePoint, LatticeRegion, ProjectError, Projection, TileId,
 };
 use corniche_osm::{ExtractSummary, ReadOsmError, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
@@ -28,7 +28,7 @@ use super::{
     defects::DefectsWriter,
     extract::{kept_in, not_read},
     pieces::{RoadPiece, TilePiecesWriter},
-    split::{SplitRoad, Splitting},
+    split::{RoadSplitting, SplitRoad},
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
 use crate::{
@@ -65,9 +65,9 @@ pub(crate) struct RoadInput<'a> {
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for.
-    pub(crate) polygon: Option<&'a LatticeArea>,
+    pub(crate) polygon: Option<&'a LatticeRegion>,
     pub(crate) pool: &'a rayon::ThreadPool,
-    /// Of the sorting.
+    /// Memory for sorting.
     pub(crate) memory_bytes: u64,
 }
 
@@ -123,7 +123,7 @@ fn read_areas(
     let Some(AreaInput { table, data }) = input.areas else { return Ok(()) };
     observer.begin(Stage::MapAreas, None);
     let frame = input.levels.frame();
-    let splitting = areas::split::Splitting { frame, data, clip: input.clip };
+    let splitting = areas::split::RoadSplitting { frame, data, clip: input.clip };
     let (osm, data) = (input.osm, input.data_bounds);
     let sea = SeaPlace { osm, data, frame, projection: input.projection };
     on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
@@ -150,7 +150,8 @@ fn read_boundaries(
 ) -> Result<(), BuildError> {
     let Some(data) = input.boundaries else { return Ok(()) };
     observer.begin(Stage::Boundaries, None);
-    let splitting = boundaries::split::Splitting { levels: input.levels, data, clip: input.clip };
+    let splitting =
+        boundaries::split::RoadSplitting { levels: input.levels, data, clip: input.clip };
     on_extract(input, (scratch, Stage::Boundaries), observer, |request| {
         let mut on_defect = |defect| defects.push(defect);
         let how = (&splitting, input.lengths);
@@ -223,7 +224,7 @@ fn on_extract<T>(
 
 fn place(
     positions_deg: &[[f64; 2]],
-    frame: &Frame,
+    frame: &GridFrame,
     projection: &dyn Projection,
 ) -> Result<Vec<Option<LatticePoint>>, ProjectError> {
     let mut positions = positions_deg.to_vec();
@@ -233,7 +234,7 @@ fn place(
 
 /// Roads as they come in.
 struct Gathered<'a> {
-    splitting: Splitting<'a>,
+    splitting: RoadSplitting<'a>,
     pool: &'a rayon::ThreadPool,
     batch: Vec<Road>,
     batch_points: usize,
@@ -248,7 +249,7 @@ impl<'a> Gathered<'a> {
     /// Nothing yet.
     fn new(input: &RoadInput<'a>, store: &'a dyn Artifacts, scratch: &'a dyn Scratch) -> Self {
         Self {
-            splitting: Splitting {
+            splitting: RoadSplitting {
                 levels: input.levels,
                 lengths: input.lengths,
                 data_bounds: input.data_bounds,

@@ -1,3 +1,5 @@
+//! Neither threads nor memory change the pieces of roads, and nothing is read twice.
+
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -65,7 +67,7 @@ struct World {
 impl World {
     fn new() -> Self {
         let corner = NodeIndex { i: -512, j: 512 };
-        let frame = Frame::new([0.0; 2], 10.0, corner, 2).unwrap();
+        let frame = GridFrame::new([0.0; 2], 10.0, corner, 2).unwrap();
         let table = FrcTable::new("t", vec![("primary".into(), 2)], vec!["no".into()], 8).unwrap();
         let filter = ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap();
         let settings = RoadSettings { table, filter, simplify_cells: 0.5 };

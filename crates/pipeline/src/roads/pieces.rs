@@ -33,7 +33,7 @@ pub(crate) struct RoadPiece {
     pub(crate) source_points: u64,
     /// The same of the level's simplified line.
     pub(crate) simplified_points: u64,
-    /// In the order of the line.
+    /// The runs in the order of the line.
     pub(crate) runs: Vec<Run>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct RoadPiece {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Run {
     pub(crate) line: Polyline,
-    /// On the finest level, the true length of each segment in micrometres; empty on other levels.
+    /// The true length of each segment in micrometres on the finest level; empty on other levels.
     pub(crate) segments_um: Vec<u64>,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct TilePieces {
 }
 
 impl TilePieces {
-    /// Those of a tile; none if nothing is in the store.
+    /// The pieces of a tile; none if nothing is in the store.
     pub(crate) fn load(store: &dyn Artifacts, id: TileId) -> Result<Self, BuildError> {
         let key = Kind::RoadPieces.of_tile(id);
         let Some(bytes) = store.get(key)? else { return Ok(Self::default()) };

@@ -1,3 +1,5 @@
+//! Pieces of roads come back as they were, and damaged bytes never cause a panic.
+
 use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_roads::{Form, Oneway, Structure};

@@ -1,3 +1,5 @@
+//! The counts of shares add up.
+
 use super::share;
 
 #[test]

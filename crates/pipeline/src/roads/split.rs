@@ -3,7 +3,7 @@
 use std::{borrow::Cow, sync::Arc};
 
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use super::{
@@ -15,7 +15,7 @@ use crate::tiles_near::for_each_tile_near;
 use crate::true_lengths::{TrueLengths, pieces_um};
 
 /// What splitting needs.
-pub(crate) struct Splitting<'a> {
+pub(crate) struct RoadSplitting<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
@@ -23,7 +23,7 @@ pub(crate) struct Splitting<'a> {
     /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for: roads end at its outline.
-    pub(crate) polygon: Option<&'a LatticeArea>,
+    pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
 /// A road, split.
@@ -31,11 +31,11 @@ pub(crate) struct SplitRoad {
     pub(crate) length: RoadLength,
     pub(crate) class: FunctionalRoadClass,
     pub(crate) bounds: Option<LatticeBounds>,
-    /// By level and tile.
+    /// The pieces with their tiles, on all levels.
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
 }
 
-impl Splitting<'_> {
+impl RoadSplitting<'_> {
     /// The pieces of a road for every level that shows its class, and its true lengths.
     pub(crate) fn split(&self, road: &Road) -> SplitRoad {
         let segments_um = self.lengths.segments_um(&road.line);
@@ -72,21 +72,21 @@ impl Splitting<'_> {
     }
 
     /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
-    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<Part<'r>> {
-        let Some(area) = self.polygon else {
-            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
+        let Some(region) = self.polygon else {
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         };
-        let parts = corniche_drape::clip_area(&road.line, area);
+        let parts = corniche_drape::clip_region(&road.line, region);
         if parts.first().is_some_and(|part| part.line == road.line) {
-            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
         }
-        parts.into_iter().map(|part| Part::cut(road, part, &segments_um)).collect()
+        parts.into_iter().map(|part| RoadPart::cut(road, part, &segments_um)).collect()
     }
 
     /// The pieces of one level.
     fn split_level(
         &self,
-        parts: &[Part<'_>],
+        parts: &[RoadPart<'_>],
         attributes: &Arc<RoadAttributes>,
         level: u8,
         pieces: &mut Vec<(TileId, RoadPiece)>,
@@ -149,13 +149,13 @@ impl Splitting<'_> {
 }
 
 /// A part of a road in the polygon that was asked for, or the whole road.
-struct Part<'r> {
+struct RoadPart<'r> {
     road: Cow<'r, Road>,
     /// True lengths of its segments.
     segments_um: Vec<u64>,
 }
 
-impl Part<'_> {
+impl RoadPart<'_> {
     /// What was cut out of a road, whose segments have these lengths.
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
         let own_um = pieces_um(&road.line, &part, segments_um).map(|[from, to]| to - from);
@@ -202,7 +202,7 @@ struct LevelLine<'p> {
 }
 
 impl<'p> LevelLine<'p> {
-    fn new(part: &'p Part<'_>, level: u8, levels: &Levels) -> Self {
+    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels) -> Self {
         let line = corniche_roads::simplify(&part.road, levels.simplify_tolerance_steps(level));
         // On the finest level the line is the source line, not simplified.
         let is_finest = level == levels.frame().max_level();

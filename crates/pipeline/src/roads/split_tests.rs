@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_drape::Neighbours;
-use corniche_geom::{Bounds, CoordinateTable, Frame, HeightGrid, NodeIndex, TILE_CELLS};
+use corniche_geom::{Bounds, CoordinateTable, GridFrame, HeightGrid, NodeIndex, TILE_CELLS};
 use corniche_roads::{ClassFilter, FrcTable, RoadAttributes};
 use corniche_testing::FlatProjection;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad};
@@ -144,7 +144,7 @@ fn worlds() -> impl Strategy<Value = World> {
         |(cell, max_level, corner, gaps, simplify_cells, is_all)| {
             let cell = corniche_geom::Cell::from(cell).fitted();
             let corner = NodeIndex { i: -corner * TILE_CELLS, j: corner * 2 * TILE_CELLS };
-            let frame = Frame::new([5e5, 5e6], cell, corner, max_level).unwrap();
+            let frame = GridFrame::new([5e5, 5e6], cell, corner, max_level).unwrap();
             let settings = RoadSettings {
                 table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
                 filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
@@ -167,19 +167,19 @@ fn worlds() -> impl Strategy<Value = World> {
 }
 
 /// A coordinate, as a place within the root and as a border and a distance from it.
-type Place = (u8, f64, i64, i64);
+type PointSeed = (u8, f64, i64, i64);
 
-fn places() -> impl Strategy<Value = Place> {
+fn places() -> impl Strategy<Value = PointSeed> {
     (0..12_u8, -0.4..1.4_f64, 0..=4_i64, -1..=1_i64)
 }
 
 /// Roads with points anywhere, on borders of tiles and of margins, a step beside them, and far away; some are rings.
-fn roads() -> impl Strategy<Value = Vec<Vec<(Place, Place)>>> {
+fn roads() -> impl Strategy<Value = Vec<Vec<(PointSeed, PointSeed)>>> {
     vec(vec((places(), places()), 2..14), 1..4)
 }
 
 impl World {
-    fn coordinate(&self, (kind, share, border, step): Place, ends: [i64; 2]) -> i64 {
+    fn coordinate(&self, (kind, share, border, step): PointSeed, ends: [i64; 2]) -> i64 {
         let [min, max] = ends;
         let level = self.levels.frame().max_level().min(kind % 3);
         let margin = self.levels.margin_steps(level);
@@ -201,9 +201,9 @@ impl World {
         }
     }
 
-    fn road(&self, ordinal: u32, points: &[(Place, Place)]) -> Road {
+    fn road(&self, ordinal: u32, points: &[(PointSeed, PointSeed)]) -> Road {
         let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT);
-        let at = |&(u, v): &(Place, Place)| {
+        let at = |&(u, v): &(PointSeed, PointSeed)| {
             let u = self.coordinate(u, [root.min.u, root.max.u]);
             LatticePoint::new(u, self.coordinate(v, [root.min.v, root.max.v]))
         };
@@ -235,7 +235,7 @@ proptest! {
             (0..).zip(&roads).map(|(ordinal, points)| world.road(ordinal, points)).collect();
         let lengths = world.lengths();
         let splitting =
-            Splitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None, polygon: None };
+            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None, polygon: None };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
             for (id, piece) in splitting.split(road).pieces {
@@ -289,7 +289,7 @@ struct Large {
 
 impl Large {
     fn new() -> Self {
-        let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
+        let frame = GridFrame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
         let settings = RoadSettings {
             table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
             filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
@@ -316,7 +316,7 @@ impl Large {
             fixed: vec![0, last],
         };
         let lengths = self.lengths();
-        Splitting {
+        RoadSplitting {
             levels: &self.levels,
             lengths: &lengths,
             data_bounds,

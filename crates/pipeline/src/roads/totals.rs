@@ -19,7 +19,7 @@ pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct RoadLength {
     pub(crate) way_id: i64,
-    /// Of the whole road, micrometres.
+    /// The length of the whole road, micrometres.
     pub(crate) length_um: u64,
     /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
     pub(crate) outside_um: u64,
@@ -54,7 +54,7 @@ pub(crate) struct ExtractCounts {
     pub(crate) highways_in: u64,
     /// Ways with a `highway` tag that are no roads here, by reason.
     pub(crate) highways_left_out: Vec<(String, u64)>,
-    /// Those that the FRC table leaves out, by reason and `highway` value.
+    /// Ways that the FRC table leaves out, by reason and `highway` value.
     pub(crate) left_out: Vec<LeftOutCount>,
 }
 
@@ -84,7 +84,7 @@ impl From<&ExtractSummary> for ExtractCounts {
     }
 }
 
-/// By reason, and within one the longest first.
+/// Ways that are left out, by reason, and within one the longest first.
 fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
     let ways = extract.left_out_ways.iter();
     let mut counts: Vec<(LeftOutReason, LeftOutCount)> = ways

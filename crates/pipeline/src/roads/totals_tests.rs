@@ -1,3 +1,5 @@
+//! The lengths of roads come back block by block.
+
 use corniche_store::MemoryStore;
 
 use super::*;

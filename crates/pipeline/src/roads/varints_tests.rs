@@ -1,3 +1,5 @@
+//! Numbers and texts come back, and cut bytes give nothing.
+
 use proptest::prelude::*;
 
 use super::*;

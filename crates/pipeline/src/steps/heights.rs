@@ -1,4 +1,4 @@
-//! Step *heights*: the DEM, area by area, to the heights of finest tiles and the rasters above them, within a subtree.
+//! Step *heights*: the DEM, patch by patch, to the heights of finest tiles and the rasters above them, within a subtree.
 
 use corniche_geom::TileId;
 

@@ -37,7 +37,7 @@ pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
     hashes::records(context)?;
     roads::check_done(context)?;
     if let Some(pyramid) = context.pyramid() {
-        pyramid.all_areas()?;
+        pyramid.all_patches()?;
     }
     top::check_done(context)?;
     let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
@@ -53,7 +53,7 @@ pub(crate) fn make(
     let heights = match context.source {
         GroundSource::Dem(dem) => {
             let pyramid = context.pyramid_of(dem);
-            pyramid.sums(&pyramid.all_areas()?)
+            pyramid.sums(&pyramid.all_patches()?)
         }
         GroundSource::Package(terrain) => HeightSums::recorded(terrain.manifest()),
     };

@@ -84,7 +84,7 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
 struct Borders<'a> {
     context: &'a Context<'a>,
     terrain: &'a RecordedTerrain,
-    /// Those of the tiles seen last; `None` for tiles without ground.
+    /// The border cells of the tiles seen last; `None` for tiles without ground.
     kept: Mutex<BTreeMap<TileId, Option<BorderCells>>>,
     most: usize,
 }

@@ -15,7 +15,7 @@ use crate::{
 /// Whole numbers, maxima, and lists that are sorted before they are used: the order in which records come does not matter.
 pub(crate) struct TileSums {
     pub(crate) levels: BTreeMap<u8, LevelSums>,
-    /// By level and class.
+    /// Sums by level and class.
     pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
     /// Per level, root first: distances to samples.
     pub(crate) samples: Vec<SampleSums>,

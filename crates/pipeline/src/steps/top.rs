@@ -12,9 +12,9 @@ use crate::{BuildError, artifacts::Kind, context::Context};
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
     if let Some(pyramid) = context.pyramid() {
         // Before any tile is made, because no tile has ground where no node has a height.
-        let areas = pyramid.all_areas()?;
-        pyramid.check(&areas)?;
-        if pyramid.sums(&areas).samples.with_data == 0 {
+        let patches = pyramid.all_patches()?;
+        pyramid.check(&patches)?;
+        if pyramid.sums(&patches).samples.with_data == 0 {
             return Err(BuildError::NoHeights { dem: context.settings.terrain_files() });
         }
         pyramid.make_rasters(TileId::ROOT)?;

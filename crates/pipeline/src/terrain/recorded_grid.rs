@@ -1,7 +1,7 @@
 //! The grid of a package, from its manifest.
 
 use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
-use corniche_geom::{Frame, TILE_CELLS};
+use corniche_geom::{GridFrame, TILE_CELLS};
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
 /// The grid; no height can be read with it.
@@ -43,7 +43,7 @@ pub(crate) fn check(manifest: &Manifest) -> Result<(), &'static str> {
     if corners.map(f64::to_bits) != manifest.data_bounds.to_array().map(f64::to_bits) {
         return Err("the corners of the data's rectangle are no nodes");
     }
-    let smallest = Frame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
+    let smallest = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
     if smallest.as_ref() != Ok(frame) {
         return Err("its grid is not the smallest over its data");
     }

@@ -48,7 +48,7 @@ pub(crate) struct Grounds<'a> {
 
 #[derive(Default)]
 struct Kept {
-    /// With the time of last use. `None` for a tile without ground.
+    /// The grounds with the time of last use. `None` for a tile without ground.
     by_tile: BTreeMap<TileId, (u64, Option<Arc<Ground>>)>,
     bytes: u64,
     clock: u64,

@@ -122,8 +122,8 @@ impl Column {
     ) -> Result<(), BuildError> {
         let (frame, data) = (context.frame(), context.data());
         let root = frame.tile_lattice_bounds(TileId::ROOT);
-        for area in dem.sample_areas_of(context.grid, frame.tile_window(self.finest))? {
-            let block = reader.used_samples(&area)?;
+        for range in dem.sample_ranges_of(context.grid, frame.tile_window(self.finest))? {
+            let block = reader.used_samples(&range)?;
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
                 let Some(point) = frame.snap(position_m) else { continue };
                 if data.owner(frame, point) != self.finest {

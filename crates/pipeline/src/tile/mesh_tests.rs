@@ -1,3 +1,5 @@
+//! A mesh is read as it was written, and a cut one is refused.
+
 use super::*;
 
 #[test]

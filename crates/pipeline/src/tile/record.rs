@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     BuildError,
     artifacts::{self, Kind},
-    heights::area::union,
+    heights::patch::union,
     roads::lay::{ClassSums, RoadFate},
 };
 
@@ -21,7 +21,7 @@ use crate::{
 pub(crate) struct TileRecord {
     /// `None` where the tile has no ground, and so no payload.
     pub(crate) ground: Option<GroundRecord>,
-    /// By number of the class.
+    /// Sums by number of the class.
     pub(crate) classes: BTreeMap<u8, ClassSums>,
     /// Finest tiles only: what became of roads here, by ordinal.
     pub(crate) fates: Vec<(u32, RoadFate)>,
@@ -47,9 +47,9 @@ pub(crate) struct GroundRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct AreasOfTile {
     pub(crate) areas: u64,
-    /// Of all rings.
+    /// The number of points of all rings.
     pub(crate) points: u64,
-    /// Stored.
+    /// The size of the section as it is stored.
     pub(crate) bytes: u64,
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct AreasOfTile {
 pub(crate) struct BoundariesOfTile {
     pub(crate) parts: u64,
     pub(crate) points: u64,
-    /// Stored.
+    /// The size of the section as it is stored.
     pub(crate) bytes: u64,
 }
 
@@ -102,7 +102,7 @@ impl Seen {
         self.range_m = union(self.range_m, other.range_m);
     }
 
-    /// From a measurement of nodes; `uncovered_nodes` without those that belong to the next tile.
+    /// What a measurement of nodes gives; `uncovered_nodes` without those that belong to the next tile.
     pub(crate) fn of(
         deviation: Deviation,
         range_m: Option<[f32; 2]>,
@@ -113,7 +113,7 @@ impl Seen {
 }
 
 impl TileDeviation {
-    /// From what was seen of a tile, the largest geometric error beneath it, and the largest own deviation of its children.
+    /// The record of what was seen of a tile, the largest geometric error beneath it, and the largest own deviation of its children.
     pub(crate) fn of(seen: Seen, beneath_m: f64, children_m: f64) -> Self {
         let [low, high] = seen.range_m.unwrap_or([0.0, 0.0]);
         Self {

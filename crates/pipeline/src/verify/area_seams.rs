@@ -22,7 +22,7 @@
 use std::collections::BTreeMap;
 
 use corniche_areas::AreaObject;
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_tileset::AreaRecord;
 
 use crate::points_step::points_step;
@@ -52,7 +52,7 @@ pub(crate) struct Seam {
     beside: Beside,
     /// The coordinate that all of its points have.
     at: i64,
-    /// From end to end.
+    /// The line from end to end.
     whole: Stretch,
     /// The spacing of the corners of outlines on this level.
     step: i64,
@@ -62,7 +62,7 @@ pub(crate) struct Seam {
 
 impl Seam {
     pub(crate) fn new(
-        frame: &Frame,
+        frame: &GridFrame,
         tile: TileId,
         beside: Beside,
         clip: Option<LatticeBounds>,

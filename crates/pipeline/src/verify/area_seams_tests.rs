@@ -1,3 +1,5 @@
+//! The check of area seams finds an area that a tile lacks, and no outline along a border.
+
 use corniche_areas::AreaClass;
 use corniche_geom::NodeIndex;
 use corniche_tileset::AreaRings;
@@ -5,8 +7,8 @@ use corniche_tileset::AreaRings;
 use super::*;
 
 /// Three levels of tiles around a corner of all of them, cells of 10 m.
-fn frame() -> Frame {
-    Frame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
 /// The finest tile north-west of that corner.

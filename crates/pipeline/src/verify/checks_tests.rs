@@ -1,3 +1,5 @@
+//! Ids of checks are short and different, and findings of several workers add up in order.
+
 use super::*;
 
 #[test]

@@ -4,7 +4,7 @@ use corniche_tileset::{FilePackage, SampleSums};
 
 use super::{
     checks::Findings, dem_inputs, deviation_checks, deviations, error::VerifyError,
-    report::VerifyReport, request::VerifySettings, samples, vertices_against_dem,
+    report::VerifyReport, samples, verify_settings::VerifySettings, vertices_against_dem,
 };
 use crate::{
     Observer,

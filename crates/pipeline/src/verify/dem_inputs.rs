@@ -6,7 +6,7 @@ use corniche_tileset::{InputRecord, Manifest};
 use super::{
     checks::{Check, CheckId},
     error::VerifyError,
-    request::VerifySettings,
+    verify_settings::VerifySettings,
 };
 use crate::{
     Observer,

@@ -39,7 +39,7 @@ impl TrueDeviation {
 
 /// What was measured.
 pub(crate) struct Measured {
-    /// For every tile over the data, also those without ground.
+    /// The deviation of every tile over the data, also of those without ground.
     pub(crate) by_tile: BTreeMap<TileId, TrueDeviation>,
     /// Per level, root first: distances at samples where nodes are samples; otherwise empty sums.
     pub(crate) at_samples: Vec<SampleSums>,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_tileset::FilePackage;
 
-use super::{checks::Check, dem_inputs, error::VerifyError, polygon, request::VerifySettings};
+use super::{
+    checks::Check, dem_inputs, error::VerifyError, polygon, verify_settings::VerifySettings,
+};
 use crate::{
     Observer,
     inputs::{Inputs, OtherInputs},

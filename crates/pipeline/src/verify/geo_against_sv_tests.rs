@@ -1,9 +1,11 @@
-use corniche_geom::{Frame, NodeIndex, TileId};
+//! The check of GEO against SV finds a missing line, inside the tile only.
+
+use corniche_geom::{GridFrame, NodeIndex, TileId};
 
 use super::*;
 
 fn place() -> TilePlace {
-    let frame = Frame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
+    let frame = GridFrame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
     TilePlace::of(&frame, TileId::ROOT)
 }
 

@@ -1,6 +1,6 @@
 //! The grid of a package and the data's rectangle on it.
 
-use corniche_geom::{Frame, LatticeBounds, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, TILE_CELLS, TileId};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
@@ -18,7 +18,7 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::Grid, corners.map(f64::to_bits) == bounds.map(f64::to_bits), || {
         format!("the data's rectangle is {bounds:?}, but the nodes nearest to its corners are at {corners:?}")
     });
-    let wanted = Frame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
+    let wanted = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
     findings.look(CheckId::Grid, wanted.as_ref() == Ok(frame), || {
         format!("the grid is {frame:?}, the smallest over the data is {wanted:?}")
     });

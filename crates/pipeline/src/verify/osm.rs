@@ -13,8 +13,8 @@ use super::{
     error::VerifyError,
     georeference, grid, osm_areas, osm_boundaries,
     osm_tile::{Found, Laying, SoupCache, look_at},
-    request::{VerifyOsm, VerifySettings},
     temporary_store::TemporaryStore,
+    verify_settings::{VerifyOsm, VerifySettings},
 };
 use crate::{
     BuildError, Observer, Silent, Stage,

@@ -18,8 +18,8 @@ use super::{
     error::VerifyError,
     georeference,
     photo_against_files::look_at,
-    request::VerifySettings,
     temporary_store::TemporaryStore,
+    verify_settings::VerifySettings,
 };
 use crate::{
     Observer, Stage,

@@ -1,3 +1,5 @@
+//! The check of reliefs finds another height, gap or slope.
+
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
 use corniche_geom::Cell;

@@ -1,4 +1,4 @@
-//! What verification found.
+//! The report of `corniche verify`: what each check found.
 
 use corniche_tileset::{Distribution, SampleErrorRecord};
 
@@ -44,9 +44,9 @@ pub struct VerifyReport {
     pub gaps: Vec<GapFigures>,
     /// Borders between tiles of one level that were compared.
     pub borders: u64,
-    /// With the DEM: geometric errors and deviations, per level.
+    /// Geometric errors and deviations per level, where the DEM was given.
     pub errors: Vec<ErrorFigures>,
-    /// With the DEM: how far the finest level is from the DEM's own samples.
+    /// How far the finest level is from the DEM's own samples, where the DEM was given.
     pub samples: Option<SampleErrorRecord>,
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{Frame, TileId, wgs84};
+use corniche_geom::{GridFrame, TileId, wgs84};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::{Placement, Surface, Tin};
@@ -25,7 +25,7 @@ pub(crate) struct OnTin {
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
-/// By what roads of a section are sorted: class, way id, part.
+/// What roads of a section are sorted by: class, way id, part.
 type Key = (FunctionalRoadClass, i64, u32);
 
 /// The gap that P1 allows on a level with this tolerance.
@@ -108,6 +108,6 @@ pub(crate) fn verify_on_tin(
 }
 
 /// Whether a tile is at the finest level, where the lengths of roads add up to what the manifest says.
-pub(crate) fn counts_for_sums(id: TileId, frame: &Frame) -> bool {
+pub(crate) fn counts_for_sums(id: TileId, frame: &GridFrame) -> bool {
     id.z() == frame.max_level()
 }

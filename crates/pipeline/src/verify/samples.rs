@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums, Sections};
 
 use super::{
     checks::{Check, CheckId},
     error::VerifyError,
-    request::VerifySettings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
+    verify_settings::VerifySettings,
 };
 use crate::{Observer, Stage, workers};
 
@@ -39,16 +39,16 @@ pub(crate) fn measure(
     observer: &dyn Observer,
 ) -> Result<Vec<SampleSums>, VerifyError> {
     let manifest = package.manifest();
-    let areas = dem.sample_areas(plan)?;
+    let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);
-    observer.begin(Stage::Samples, Some(areas.len() as u64));
+    observer.begin(Stage::Samples, Some(ranges.len() as u64));
     workers::in_order_unless_cancelled(
         observer,
         settings.threads,
-        areas.len(),
+        ranges.len(),
         || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
         |(reader, grounds), index| {
-            let block = reader.used_samples(&areas[index])?;
+            let block = reader.used_samples(&ranges[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
                 // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides
@@ -91,7 +91,7 @@ fn load(package: &FilePackage, id: TileId) -> TriangleSoup {
 
 /// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or
 /// south border, the last tile.
-fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
+fn tile_at(frame: &GridFrame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
     let root = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let column = (x - root.min_x) / root.width() * tiles;
@@ -105,7 +105,7 @@ fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
 }
 
 /// Where a position lies in a tile, in its own cells: column, row.
-fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
+fn cells(frame: &GridFrame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
     let corner = frame.tile_corner(id);
     let cell = frame.level_cell(id.z());
     [(x - frame.x_m(corner.i)) / cell.east_m, (frame.y_m(corner.j) - y) / cell.north_m]

@@ -1,3 +1,5 @@
+//! The check of seams finds a missing vertex and a moved one.
+
 use corniche_tin::TinVertex;
 
 use super::*;

@@ -1,6 +1,6 @@
 //! Where a tile lies on the lattice.
 
-use corniche_geom::{Frame, LatticePoint, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, LatticePoint, NodeIndex, TILE_CELLS, TileId};
 
 /// Where a tile lies on the lattice.
 #[derive(Debug, Clone, Copy)]
@@ -11,7 +11,7 @@ pub(crate) struct TilePlace {
 }
 
 impl TilePlace {
-    pub(crate) fn of(frame: &Frame, id: TileId) -> Self {
+    pub(crate) fn of(frame: &GridFrame, id: TileId) -> Self {
         let (corner, stride) = (frame.tile_corner(id), frame.stride(id.z()));
         let next = NodeIndex { i: corner.i + stride, j: corner.j + stride };
         let (from, to) = (frame.lattice_of_node(corner), frame.lattice_of_node(next));

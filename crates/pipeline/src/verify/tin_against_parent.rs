@@ -1,6 +1,6 @@
 //! Compares a child's TIN with its parent's TIN at every finest node that both cover.
 
-use corniche_geom::{Frame, TILE_NODES, TileId};
+use corniche_geom::{GridFrame, TILE_NODES, TileId};
 
 use super::{
     checks::{CheckId, Findings},
@@ -16,7 +16,7 @@ pub(crate) struct Level<'a> {
 
 /// Compares the TINs above a finest tile: `levels` are that tile and all of its ancestors that have ground, from the
 /// finest up. Nodes that the finest level does not cover may be void, and nothing is promised there.
-pub(crate) fn verify(frame: &Frame, levels: &[Level<'_>], findings: &mut Findings) {
+pub(crate) fn verify(frame: &GridFrame, levels: &[Level<'_>], findings: &mut Findings) {
     let Some(finest) = levels.first() else { return };
     let corner = frame.tile_corner(finest.id);
     let mut has_data: Vec<bool> = Vec::new();

@@ -1,3 +1,5 @@
+//! Heights and edges of plain triangles are those of closed forms.
+
 use corniche_tin::TinVertex;
 
 use super::*;

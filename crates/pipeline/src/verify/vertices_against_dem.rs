@@ -39,13 +39,13 @@ pub(crate) fn verify(
         observer,
     };
     pyramid.make(TileId::ROOT)?;
-    let areas = pyramid.all_areas()?;
+    let patches = pyramid.all_patches()?;
     let mut findings = Findings::default();
-    let refused = refusal(pyramid.check(&areas))?;
+    let refused = refusal(pyramid.check(&patches))?;
     findings.look(CheckId::DemCounts, refused.is_none(), || {
         format!("heights that the settings do not allow: {}", refused.unwrap_or_default())
     });
-    let sums = pyramid.sums(&areas);
+    let sums = pyramid.sums(&patches);
     let (said, found) = (manifest.counts.samples, sums.samples);
     findings
         .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));

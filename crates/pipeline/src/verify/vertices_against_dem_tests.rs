@@ -1,3 +1,5 @@
+//! Gradients beside gaps are one-sided, and only refused samples are findings.
+
 use super::*;
 
 #[test]

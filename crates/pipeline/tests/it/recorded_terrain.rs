@@ -348,7 +348,7 @@ fn a_data_rectangle_of_a_whole_continent_with_few_tiles_is_refused() {
             corniche_geom::NodeIndex { i: south_west.i, j: south_west.j - (TILE << level) };
         let (origin, cell) = (manifest.frame.origin_m(), manifest.frame.cell());
         manifest.frame =
-            corniche_geom::Frame::covering(origin, cell, south_west, north_east).unwrap();
+            corniche_geom::GridFrame::covering(origin, cell, south_west, north_east).unwrap();
         let frame = manifest.frame;
         manifest.data_bounds = corniche_geom::Bounds {
             min_x: frame.x_m(south_west.i),

@@ -17,7 +17,7 @@ use std::{
 };
 
 use corniche_dem::PlanOptions;
-use corniche_geom::{Frame, NodeIndex, TileId};
+use corniche_geom::{GridFrame, NodeIndex, TileId};
 use corniche_pipeline::{
     BuildError, BuildSettings, Existing, Leftovers, PhotoChoice, PlanSettings, Resources,
     RoadSettings, Silent, TerrainSettings, build,
@@ -240,7 +240,7 @@ pub(crate) fn build_raster(raster: &Raster, options: Options) -> Result<Built, B
 }
 
 impl Built {
-    pub(crate) fn frame(&self) -> &Frame {
+    pub(crate) fn frame(&self) -> &GridFrame {
         &self.manifest.frame
     }
 

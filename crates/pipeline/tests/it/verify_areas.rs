@@ -10,7 +10,7 @@ use crate::support::{
     settings,
 };
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_pipeline::{
     CheckId, Needs, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
 };
@@ -166,7 +166,7 @@ struct OnBorder {
 }
 
 impl Tile {
-    fn bytes(&self, frame: &Frame) -> Vec<u8> {
+    fn bytes(&self, frame: &GridFrame) -> Vec<u8> {
         if !self.is_changed {
             return self.whole.clone();
         }

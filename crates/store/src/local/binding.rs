@@ -17,7 +17,7 @@ use crate::{
 
 /// What a folder is.
 pub(crate) enum FolderState {
-    /// Not there.
+    /// There is nothing.
     Absent,
     /// Empty, or what is left of making or removing a store.
     Free,
@@ -103,7 +103,7 @@ pub(crate) fn read_hash(files: &Arc<Files>, folder: &Path) -> Result<PlanHash, S
     decode_header(&header, &folder.join(layout::STORE)).map(|(hash, ..)| hash)
 }
 
-/// As `read_hash`, and it must be `plan`.
+/// Does the same as `read_hash`, and the hash must be `plan`.
 pub(crate) fn check_hash(
     files: &Arc<Files>,
     folder: &Path,

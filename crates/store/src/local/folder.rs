@@ -1,10 +1,12 @@
+//! The sealed parts of a store that lie in a folder.
+
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use crate::{
-    Disk, OpenMode, PartFile, Place, StoreError, StoredPlan,
+    Disk, OpenMode, PartFile, PartsPlace, StoreError, StoredPlan,
     files::Files,
     local::{binding, binding::FolderState, layout},
 };
@@ -29,7 +31,7 @@ impl Folder {
     }
 }
 
-impl Place for Folder {
+impl PartsPlace for Folder {
     fn name(&self) -> &Path {
         &self.path
     }

@@ -82,7 +82,7 @@ pub(crate) fn decode(kind: FileKind, bytes: &[u8], path: &Path) -> Result<PlanHa
     Ok(plan)
 }
 
-/// As `decode`, and the hash must be `plan`.
+/// Does the same as `decode`, and the hash must be `plan`.
 pub(crate) fn check(
     kind: FileKind,
     bytes: &[u8],

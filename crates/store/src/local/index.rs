@@ -21,7 +21,7 @@ pub(crate) struct Location {
 pub(crate) const OFFSET_LIMIT: u64 = 1 << OFFSET_BITS;
 /// Numbers of parts are below this, a million.
 pub(crate) const PART_LIMIT: u32 = 1 << (u64::BITS - OFFSET_BITS);
-/// Of the 64 bits of a place; the others are the part's number.
+/// How many of the 64 bits of a place are the offset; the others are the part's number.
 const OFFSET_BITS: u32 = 44;
 
 /// Where the artifacts of all kinds are.
@@ -144,7 +144,7 @@ impl OneKind {
         }
     }
 
-    /// By item.
+    /// The entries by item.
     fn entries(&self) -> impl Iterator<Item = Entry> {
         let mut sorted = self.sorted.iter().copied().peekable();
         let mut recent = self.recent.values().copied().peekable();

@@ -1,3 +1,5 @@
+//! The index answers as a map would, in at most 32 bytes an artifact.
+
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! Scratch space in a file of a store, removed when it is no longer needed.
+
 use std::{
     io,
     sync::{
@@ -19,7 +21,7 @@ pub struct LocalScratch {
 }
 
 impl LocalScratch {
-    /// In a file that is empty and owned.
+    /// Scratch space in a file that is empty and owned.
     pub(crate) fn new(file: OpenFile, total_bytes: Arc<AtomicU64>) -> Self {
         Self { file, end: AtomicU64::new(0), total_bytes }
     }

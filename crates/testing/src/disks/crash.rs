@@ -1,3 +1,5 @@
+//! What a simulated disk holds after a loss of power, by chance within what real disks may do.
+
 use super::state::{Content, ContentChange, Node, State};
 use crate::Random;
 

@@ -1,3 +1,5 @@
+//! The failures that a simulated disk can have at a call.
+
 /// What happens at a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {

@@ -1,3 +1,5 @@
+//! The names and contents of a simulated disk, and which changes are not yet safe on it.
+
 use std::{
     collections::BTreeMap,
     io,

@@ -1,3 +1,5 @@
+//! Numbers of a manifest are finite and within their ranges.
+
 use super::{MAX_MEASURE_M, is_height_quantum, measure};
 
 #[test]

@@ -1,4 +1,6 @@
-use corniche_geom::{Bounds, Cell, CoordinateTable, Frame, NodeIndex};
+//! The manifest of a package: everything that a reader must know before it reads a tile.
+
+use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, NodeIndex};
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
@@ -28,7 +30,7 @@ pub struct Manifest {
     /// The same along each axis, at the centre and over the data's rim.
     pub scale: ScaleRecord,
     /// The grid.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// Rectangle of the DEM's nodes, working metres.
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.
@@ -40,7 +42,7 @@ pub struct Manifest {
     pub resampling: String,
     /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
     pub nodes_are_samples: bool,
-    /// Heights.
+    /// What heights are: their step, unit and datum.
     pub vertical: VerticalRecord,
     /// WGS84 ⇄ working CRS without PROJ.
     pub coordinates: CoordinateTable,
@@ -111,7 +113,7 @@ impl Manifest {
 /// Working metres to a true metre, along x and along y.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScaleRecord {
-    /// In the middle of the data.
+    /// The scale in the middle of the data.
     pub center: [f64; 2],
     /// The smallest over corners, middles of sides and centre of every file.
     pub least: [f64; 2],
@@ -218,7 +220,7 @@ pub struct AreaTableRecord {
 pub struct AreasRecord {
     /// What became of the extract's.
     pub counts: AreaCounts,
-    /// For each level that has some, root first.
+    /// What each level has that has some, root first.
     pub levels: Vec<AreaLevelRecord>,
 }
 
@@ -227,9 +229,9 @@ pub struct AreasRecord {
 pub struct AreaCounts {
     /// How many there are.
     pub objects: u64,
-    /// Those that became areas, by class, wherever they lie.
+    /// Areas that objects became, by class, wherever they lie.
     pub kept: Vec<AreaClassRecord>,
-    /// Those that became none: reason, how many.
+    /// Objects that became no area: reason, how many.
     pub lost: Vec<(String, u64)>,
 }
 
@@ -240,7 +242,7 @@ pub struct AreaClassRecord {
     pub class: u8,
     /// How many.
     pub areas: u64,
-    /// Their true area, square kilometres, wherever they lie; where areas overlap, each counts.
+    /// The true area of the objects, square kilometres, wherever they lie; where areas overlap, each counts.
     pub area_km2: f64,
 }
 
@@ -324,9 +326,9 @@ pub struct BoundariesRecord {
 pub struct BoundaryCounts {
     /// Ways that are boundaries; each counts once, in its most important class.
     pub ways: u64,
-    /// Those that were read, by class, wherever they lie.
+    /// Boundaries that were read, by class, wherever they lie.
     pub kept: Vec<BoundaryClassRecord>,
-    /// Those that were left out, by reason.
+    /// Ways that were left out, by reason.
     pub lost: Vec<(String, u64)>,
 }
 
@@ -337,7 +339,7 @@ pub struct BoundaryClassRecord {
     pub class: u8,
     /// How many ways.
     pub ways: u64,
-    /// Their true length in plan, micrometres, wherever they lie.
+    /// The true length of the ways in plan, micrometres, wherever they lie.
     pub length_um: u64,
 }
 
@@ -350,7 +352,7 @@ pub struct BoundaryLevelRecord {
     pub tiles: u64,
     /// Parts of boundaries in these tiles; what comes near several tiles counts in each.
     pub parts: u64,
-    /// Their points.
+    /// The number of their points.
     pub points: u64,
     /// Stored bytes of their boundaries sections.
     pub bytes: u64,

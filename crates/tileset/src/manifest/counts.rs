@@ -1,3 +1,5 @@
+//! Counts in the manifest: what came in, what was kept, what was lost and why.
+
 use serde::{Deserialize, Serialize};
 
 /// What came in, what was kept, what was lost and why.
@@ -7,7 +9,7 @@ pub struct Counts {
     pub samples: SampleCounts,
     /// Roads read from the extract (ways that the FRC table knows).
     pub roads_in: u64,
-    /// Their true length in plan, micrometres.
+    /// The true length of all roads that came in, in plan, micrometres.
     pub roads_in_um: u64,
     /// Roads of which anything is kept at the finest level.
     pub roads_kept: u64,
@@ -29,7 +31,7 @@ pub struct Counts {
     pub highways_in: u64,
     /// How many of them did not become roads, by reason. Together with the ways that became roads they give all.
     pub highways_left_out: Vec<(String, u64)>,
-    /// Those that the FRC table leaves out, with their lengths; by reason, the longest first.
+    /// Ways that the FRC table leaves out, with their lengths; by reason, the longest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOutRecord>,
     /// Roads per class, 0 first: count and true micrometres in.
@@ -41,7 +43,7 @@ pub struct Counts {
 pub struct SampleCounts {
     /// All nodes of the rectangle.
     pub nodes: u64,
-    /// With a height from the DEM.
+    /// Nodes with a height from the DEM.
     pub with_data: u64,
     /// Filled from their surroundings.
     pub filled: u64,
@@ -69,7 +71,7 @@ pub struct LeftOutRecord {
     pub highway: String,
     /// How many ways.
     pub ways: u64,
-    /// Their true length in plan, micrometres; of areas that of the outline.
+    /// The true length of the ways in plan, micrometres; of areas that of the outline.
     pub length_um: u64,
 }
 

@@ -1,3 +1,5 @@
+//! What the manifest records of each level: its tiles, its errors and its sizes.
+
 use corniche_geom::Cell;
 use serde::{Deserialize, Serialize};
 
@@ -40,7 +42,7 @@ pub struct LevelRecord {
     pub uncovered_nodes: u64,
 }
 
-/// For serde: packages without relief say nothing of it.
+/// Serde asks this: packages without relief say nothing of it.
 fn is_zero<N: Default + PartialEq>(count: &N) -> bool {
     *count == N::default()
 }
@@ -77,7 +79,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// Of `values`, in any order; `None` of none.
+    /// The distribution of `values`, in any order; `None` without any.
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_unstable_by(f64::total_cmp);

@@ -1,3 +1,5 @@
+//! Which levels of a package have relief sections.
+
 use serde::{Deserialize, Serialize};
 
 /// Which levels of a package have relief sections.

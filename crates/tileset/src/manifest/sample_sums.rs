@@ -28,7 +28,7 @@ pub struct SampleSums {
 }
 
 impl SampleSums {
-    /// Of no samples, for a package with this height quantum.
+    /// The sums of no samples, for a package with this height quantum.
     #[must_use]
     pub fn new(quantum_m: f64) -> Self {
         Self { quantum_m, on_tin: 0, off_tin: 0, max_m: 0.0, squares: 0, bins: Vec::new() }

@@ -1,3 +1,5 @@
+//! Sums of sample errors are the same in any split and order.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -36,7 +36,7 @@ pub(crate) struct CloseUp<W> {
 }
 
 impl<W: Write + Seek> CloseUp<W> {
-    /// For a file of at most `tiles` tiles, written from the start of `out` on.
+    /// A file of at most `tiles` tiles, written from the start of `out` on.
     pub(crate) fn new(out: W, tiles: usize) -> Self {
         let root = tiles.saturating_mul(ENTRY_BYTES).saturating_add(FRAME_BYTES);
         let shift = (INITIAL_BYTES - HEADER_BYTES).saturating_sub(root) as u64;

@@ -1,3 +1,5 @@
+//! The parts of a small package are moved up to its root directory, without a gap.
+
 use std::io::Cursor;
 
 use super::*;

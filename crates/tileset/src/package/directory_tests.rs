@@ -1,3 +1,5 @@
+//! Hostile directories are refused.
+
 use corniche_testing::pmtiles::gzip;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Errors of opening a package and of reading its tiles.
+
 use corniche_geom::TileId;
 
 use crate::DecodeError;

@@ -1,3 +1,5 @@
+//! A package that is read without `async`, from a file or from a source that threads wait for.
+
 use std::{
     path::{Path, PathBuf},
     sync::Arc,

@@ -1,3 +1,5 @@
+//! The JSON metadata of a PMTiles file, with the manifest under a key of its own.
+
 use serde::{Deserialize, Serialize};
 
 use crate::Manifest;

@@ -1,3 +1,5 @@
+//! The reader of packages from any source of bytes: manifest, list of tiles, tiles.
+
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},

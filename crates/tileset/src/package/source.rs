@@ -1,3 +1,5 @@
+//! Sources of a package's bytes: memory, files, and the interface for servers.
+
 use std::future::Future;
 
 /// Why bytes could not be read.

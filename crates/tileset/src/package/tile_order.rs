@@ -1,3 +1,5 @@
+//! The order of tiles in a package: PMTiles' tile ids along a Hilbert curve.
+
 use corniche_geom::TileId;
 
 /// Place of a tile in a package: PMTiles' tile id, which counts tiles level by level along a Hilbert curve.

@@ -61,7 +61,7 @@ impl ToolRecord {
         }
     }
 
-    /// From the header's bytes and the metadata's JSON.
+    /// The record that the header's bytes and the metadata's JSON make.
     pub(crate) fn parse(header: &[u8], metadata: &[u8]) -> Result<Self, OpenError> {
         let Some(bytes) = header.first_chunk::<HEADER_BYTES>() else {
             let actual = header.len() as u64;

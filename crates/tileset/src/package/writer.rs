@@ -1,3 +1,5 @@
+//! The writer of packages, which takes tiles in order.
+
 use std::{
     fs::File,
     io::{self, Seek, Write},

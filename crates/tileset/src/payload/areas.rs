@@ -7,7 +7,7 @@ mod decode;
 mod encode;
 mod record;
 
-use corniche_geom::{Frame, LatticeBounds, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, TileId};
 
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::{self, StoredSection};
@@ -26,7 +26,7 @@ pub use record::{AreaRecord, AreaRings};
 pub fn decode_areas(
     bytes: &[u8],
     id: TileId,
-    frame: &Frame,
+    frame: &GridFrame,
 ) -> Result<Vec<AreaRecord>, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let sections = envelope::open(bytes, id).map_err(failed("header"))?;

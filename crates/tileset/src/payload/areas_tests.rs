@@ -1,3 +1,5 @@
+//! Areas come back from both of their encodings, and damaged sections are refused.
+
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint, NodeIndex};
 use proptest::prelude::*;
@@ -12,8 +14,8 @@ fn id() -> TileId {
     TileId::new(1, 1, 0).unwrap()
 }
 
-fn frame() -> Frame {
-    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
 }
 
 fn bounds() -> LatticeBounds {

@@ -1,3 +1,5 @@
+//! Boundaries come back from their section, and damage is told.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -47,7 +47,7 @@ pub(crate) struct LineCoder<'f> {
 const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
 
 impl<'f> LineCoder<'f> {
-    /// For the lines of one class of a tile with this south-western corner.
+    /// The coder of the lines of one class of a tile with this south-western corner.
     pub(crate) fn new(grid: SourceGrid<'f>, corner: LatticePoint) -> Self {
         Self {
             grid,

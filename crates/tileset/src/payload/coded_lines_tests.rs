@@ -1,6 +1,8 @@
+//! Range-coded lines come back, and what has no code is refused.
+
 use std::sync::LazyLock;
 
-use corniche_geom::{Frame, NodeIndex};
+use corniche_geom::{GridFrame, NodeIndex};
 use proptest::prelude::*;
 
 use super::*;
@@ -8,8 +10,9 @@ use crate::payload::number_codes::Cursor;
 use crate::payload::range_coder::Writer;
 
 /// Cells of 3" at 47° north, whose side is no whole number of OSM's steps.
-static FRAME: LazyLock<Frame> = LazyLock::new(|| {
-    Frame::new([0.25, -0.5], 92.650_490_646_542_96, NodeIndex { i: 0, j: 256 }, 0).expect("a frame")
+static FRAME: LazyLock<GridFrame> = LazyLock::new(|| {
+    GridFrame::new([0.25, -0.5], 92.650_490_646_542_96, NodeIndex { i: 0, j: 256 }, 0)
+        .expect("a frame")
 });
 
 fn grid() -> SourceGrid<'static> {

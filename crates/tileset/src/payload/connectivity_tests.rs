@@ -1,3 +1,5 @@
+//! The edges that were added are found, and no others.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, LatticePoint, TILE_NODES, TileId};
+//! The corner, the placement and the scale that give numbers in a payload their meaning.
+
+use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
 
 use crate::manifest::check::is_height_quantum;
@@ -14,7 +16,7 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    pub(crate) fn new(id: TileId, frame: &Frame, quantum_m: f64) -> Result<Self, Damage> {
+    pub(crate) fn new(id: TileId, frame: &GridFrame, quantum_m: f64) -> Result<Self, Damage> {
         if id.z() > frame.max_level() {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
         }

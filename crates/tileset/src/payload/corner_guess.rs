@@ -173,7 +173,7 @@ struct Gate {
     /// Column and row.
     a: [i32; 2],
     b: [i32; 2],
-    /// From a to b; y grows against the row.
+    /// The way from a to b; y grows against the row.
     dx: i32,
     dy: i32,
     /// Columns that the edge's line goes east from one row to the next one north, times 2^32, rounded.

@@ -1,3 +1,5 @@
+//! The bounded search for a corner finds what a search through all vertices finds.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Errors of encoding and decoding a tile, and the kinds of damage that bytes can have.
+
 use corniche_geom::TileId;
 
 /// What is wrong with bytes that should be a payload or a section of one.

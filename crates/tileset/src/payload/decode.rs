@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, TileId};
+//! A payload is decoded: the sections that the caller wants.
+
+use corniche_geom::{GridFrame, TileId};
 use corniche_tin::Surface;
 
 use crate::payload::context::Context;
@@ -21,7 +23,7 @@ use crate::payload::{
 pub fn decode(
     bytes: &[u8],
     id: TileId,
-    frame: &Frame,
+    frame: &GridFrame,
     quantum_m: f64,
     wanted: Sections,
 ) -> Result<TilePayload, DecodeError> {
@@ -102,7 +104,7 @@ pub fn decode(
 /// Decodes the GEO roads, which need the ground that they lie on.
 fn decode_geo(
     bytes: &[u8],
-    coded_in: Option<&Frame>,
+    coded_in: Option<&GridFrame>,
     ground: Option<&Terrain>,
     context: &Context,
 ) -> Result<Vec<GeoRoad>, Damage> {

@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, LatticePoint};
+//! A tile is encoded as a payload: all its sections, with their sizes.
+
+use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
@@ -16,7 +18,7 @@ use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terra
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PayloadContext {
     /// The package's grid.
-    pub frame: Frame,
+    pub frame: GridFrame,
     /// One step of `height_q`, metres; a power of two.
     pub quantum_m: f64,
     /// Working metres of one unit of the package's CRS, east and north; 1, or some 100 000 where it is in degrees.
@@ -24,7 +26,7 @@ pub struct PayloadContext {
 }
 
 impl PayloadContext {
-    /// That of a package.
+    /// The context of a package.
     #[must_use]
     pub fn of(manifest: &Manifest) -> Self {
         Self {
@@ -53,7 +55,7 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
     encode_sections(payload, context, None)
 }
 
-/// As [`encode`], for a payload whose ground was decoded from `earlier`, a payload of the same tile in the same context: its terrain
+/// Does the same as [`encode`] for a payload whose ground was decoded from `earlier`, a payload of the same tile in the same context: its terrain
 /// section is taken as it is stored there, which saves the time to compress it. The bytes are those of [`encode`] if it was
 /// stored by this version.
 ///

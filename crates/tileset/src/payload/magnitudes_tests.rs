@@ -1,3 +1,5 @@
+//! Numbers of all sizes come back, whatever their contexts are.
+
 use super::*;
 use crate::payload::range_coder::{Reader, Writer};
 

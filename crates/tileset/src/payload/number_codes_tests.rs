@@ -1,3 +1,5 @@
+//! Varints, zigzag numbers and planes come back, and overlong ones are refused.
+
 use super::*;
 use proptest::prelude::*;
 

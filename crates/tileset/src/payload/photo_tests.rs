@@ -1,3 +1,5 @@
+//! Photos come back within their loss, with their coverage exact, and hostile sections are refused.
+
 use super::image::side;
 use super::*;
 use crate::limits::MAX_PHOTO_LEVELS;
@@ -131,7 +133,7 @@ fn a_flipped_byte_breaks_the_checksum() {
     let error = decode_photo(&bytes, id()).unwrap_err();
     assert_eq!((error.part, &error.damage), ("photo section", &Damage::Checksum));
     // Reading everything sees it, too; reading the ground does not look.
-    let frame = corniche_geom::Frame::covering(
+    let frame = corniche_geom::GridFrame::covering(
         [0.0; 2],
         corniche_geom::Cell::from([10.0; 2]),
         corniche_geom::NodeIndex { i: 0, j: 0 },

@@ -1,3 +1,5 @@
+//! Range-coded bits come back and take about as many bytes as their entropy says.
+
 use corniche_testing::Random;
 
 use super::*;

@@ -40,9 +40,9 @@ pub struct Relief {
     coded: Vec<u8>,
     heights: HeightGrid,
     greatest_error_m: f64,
-    /// By [`border::index`]; `None` where the node has no height.
+    /// The slopes of border nodes, by [`border::index`]; `None` where the node has no height.
     border: Vec<Option<[i32; 2]>>,
-    /// By row; empty without water.
+    /// Marks of water, row by row; empty without water.
     water: Vec<bool>,
 }
 

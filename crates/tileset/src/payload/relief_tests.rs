@@ -1,3 +1,5 @@
+//! Reliefs keep their stated error, and neighbours have the same slopes on their border.
+
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
 use corniche_testing::Random;

@@ -1,3 +1,5 @@
+//! The road tags section has the bytes of the specification.
+
 use super::*;
 
 fn ways() -> Vec<RoadRecord> {

@@ -3,7 +3,7 @@
 mod surprises;
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{Frame, LatticePoint};
+use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
@@ -25,7 +25,7 @@ use crate::payload::work_limit::Work;
 /// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
 pub(crate) fn decode(
     bytes: &[u8],
-    coded_in: Option<&Frame>,
+    coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     surface: &Surface,
 ) -> Result<Vec<GeoRoad>, Damage> {

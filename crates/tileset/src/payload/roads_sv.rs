@@ -3,7 +3,7 @@
 mod ground_ranges;
 
 use corniche_drape::SvLine;
-use corniche_geom::{Frame, LatticePoint};
+use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 
 use crate::limits::MAX_POINTS;
@@ -23,7 +23,7 @@ const REACH_Q: f64 = (1_u64 << 53) as f64;
 /// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
 pub(crate) fn decode(
     bytes: &[u8],
-    coded_in: Option<&Frame>,
+    coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     quantum_m: f64,
 ) -> Result<Vec<SvRoad>, Damage> {

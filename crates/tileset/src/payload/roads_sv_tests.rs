@@ -1,3 +1,5 @@
+//! SV lines come back with the ground around them.
+
 use std::sync::LazyLock;
 
 use corniche_geom::NodeIndex;
@@ -11,8 +13,8 @@ const QUANTUM_M: f64 = 0.25;
 type Point = ([i64; 2], i32, u32);
 
 /// Its lattice has 2^14 steps to 10 m.
-static FRAME: LazyLock<Frame> = LazyLock::new(|| {
-    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).expect("a frame")
+static FRAME: LazyLock<GridFrame> = LazyLock::new(|| {
+    GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).expect("a frame")
 });
 
 /// Steps of 1/256 m.

@@ -29,21 +29,21 @@ pub(crate) struct Route<'a> {
     next: usize,
     /// Source points end here; what follows is the lead-out.
     end: usize,
-    place: Place,
+    place: RoutePlace,
     work: &'a Work,
 }
 
 #[derive(Clone, Copy)]
-enum Place {
-    /// Before the first vertex.
+enum RoutePlace {
+    /// The route is before the first vertex.
     Start,
     /// At a source point, in this triangle or on its border.
     Triangle(u32),
-    /// On an edge, about to enter the triangle of this half-edge.
+    /// The route is on an edge, about to enter the triangle of this half-edge.
     HalfEdge(u32),
-    /// At a TIN vertex.
+    /// The route is at a TIN vertex.
     Vertex(u32),
-    /// On the boundary, going out.
+    /// The route is on the boundary, going out.
     Outside,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Route<'a> {
         work: &'a Work,
     ) -> Self {
         let end = points.len() - usize::from(leads[1]);
-        Self { surface, points, next: usize::from(leads[0]), end, place: Place::Start, work }
+        Self { surface, points, next: usize::from(leads[0]), end, place: RoutePlace::Start, work }
     }
 
     /// The TIN it goes over.
@@ -79,7 +79,7 @@ impl<'a> Route<'a> {
     }
 
     fn best_guess(&self) -> Option<DrapedVertex> {
-        if let Place::Start = self.place {
+        if let RoutePlace::Start = self.place {
             // A line with a lead-in starts on the boundary. Where it starts is not guessed, because that would need a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
             return locate(self.surface, point, self.work)
@@ -88,10 +88,10 @@ impl<'a> Route<'a> {
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
         let line = Line { surface: self.surface, p, q, work: self.work };
         let vertex = match self.place {
-            Place::Triangle(triangle) => line.after_point(triangle),
-            Place::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
-            Place::Vertex(vertex) => line.after_vertex(vertex),
-            Place::Start | Place::Outside => None,
+            RoutePlace::Triangle(triangle) => line.after_point(triangle),
+            RoutePlace::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
+            RoutePlace::Vertex(vertex) => line.after_vertex(vertex),
+            RoutePlace::Start | RoutePlace::Outside => None,
         }?;
         // The lead-out is a direction, never reached.
         (self.next < self.end || !matches!(vertex, DrapedVertex::Source { .. })).then_some(vertex)
@@ -103,12 +103,12 @@ impl<'a> Route<'a> {
         self.place = match vertex {
             DrapedVertex::Source { triangle, .. } => {
                 self.next += 1;
-                Place::Triangle(triangle)
+                RoutePlace::Triangle(triangle)
             }
             DrapedVertex::Crossing { a, b } => {
-                self.entering(a, b).map_or(Place::Outside, Place::HalfEdge)
+                self.entering(a, b).map_or(RoutePlace::Outside, RoutePlace::HalfEdge)
             }
-            DrapedVertex::Vertex { vertex } => Place::Vertex(vertex),
+            DrapedVertex::Vertex { vertex } => RoutePlace::Vertex(vertex),
         };
         self.work.check()
     }
@@ -180,7 +180,7 @@ impl Line<'_> {
         })
     }
 
-    /// From the source point p in `triangle`.
+    /// The vertex that follows the source point p in `triangle`.
     fn after_point(&self, triangle: u32) -> Option<DrapedVertex> {
         let corners = self.corners(triangle);
         if let Some(k) = corners.iter().position(|&corner| corner == self.p) {
@@ -196,7 +196,7 @@ impl Line<'_> {
         }
     }
 
-    /// From a TIN vertex on the line.
+    /// The vertex that follows a TIN vertex on the line.
     fn after_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
         let here = self.surface.points()[vertex as usize];
         let fan = self.surface.fan(vertex);

@@ -1,3 +1,5 @@
+//! Each kind of section has a bit of its own and stands in the specification.
+
 use super::*;
 
 #[test]

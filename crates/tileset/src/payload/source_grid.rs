@@ -1,6 +1,6 @@
 //! The grid that OSM's own coordinates lie on, as far as it can be seen in a package.
 
-use corniche_geom::{Frame, LatticePoint};
+use corniche_geom::{GridFrame, LatticePoint};
 
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
@@ -14,7 +14,7 @@ const PARTS_OF_A_DEGREE: f64 = 1e7;
 /// The lattice is some 15 times finer than OSM's grid, so that a number on it has four digits more that say nothing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SourceGrid<'f> {
-    frame: &'f Frame,
+    frame: &'f GridFrame,
     /// East and north, working metres.
     step_m: [f64; 2],
 }
@@ -24,7 +24,7 @@ pub(crate) const GRID_BYTES: usize = 16;
 
 impl<'f> SourceGrid<'f> {
     /// Takes the steps that a section begins with.
-    pub(crate) fn read(cursor: &mut Cursor<'_>, frame: &'f Frame) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>, frame: &'f GridFrame) -> Result<Self, Damage> {
         let step_m = [f64::from_le_bytes(cursor.array()?), f64::from_le_bytes(cursor.array()?)];
         // No comparison is true for NaN.
         if step_m.iter().all(|&step_m| step_m > 0.0 && step_m.is_finite()) {
@@ -54,7 +54,7 @@ impl<'f> SourceGrid<'f> {
     ///
     /// `metres_per_unit`: working metres to a unit of the CRS; a degree, where there is such a grid.
     pub(crate) fn of_osm(
-        frame: &'f Frame,
+        frame: &'f GridFrame,
         metres_per_unit: [f64; 2],
         points: impl Iterator<Item = LatticePoint>,
     ) -> Option<Self> {

@@ -1,6 +1,6 @@
 //! What the ground of a tile states about itself, without its triangles.
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 
 use crate::payload::context::Context;
 use crate::payload::damage::DecodeError;
@@ -19,7 +19,7 @@ use crate::payload::tile_payload::TerrainSummary;
 pub fn terrain_summary(
     bytes: &[u8],
     id: TileId,
-    frame: &Frame,
+    frame: &GridFrame,
     quantum_m: f64,
 ) -> Result<Option<TerrainSummary>, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };

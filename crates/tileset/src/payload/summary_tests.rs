@@ -1,3 +1,5 @@
+//! The summary of a terrain section agrees with the decoded ground.
+
 use std::path::Path;
 
 use super::terrain_summary;

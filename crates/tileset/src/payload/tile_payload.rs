@@ -1,3 +1,5 @@
+//! A decoded tile: its ground, its roads for both methods, and what is known of their ways.
+
 use corniche_drape::{DrapedLine, SvLine};
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "these tests print figures")]
 
 use corniche_drape::{DrapedVertex, drape};
-use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{GridFrame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_testing::srtm_heights;
 use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m, triangulate};
 
@@ -148,7 +148,7 @@ fn following_roads_stays_far_below_the_limit() {
     let Some(heights) = srtm_heights(SRTM, 300, 500) else { return };
     let spec = TinSpec { max_error_m: 5.0, quantum_m: 0.125 };
     let tin = triangulate(&heights, spec).expect("usable heights");
-    let frame = Frame::new([0.0; 2], 90.0, NodeIndex { i: 0, j: 256 }, 0).expect("a frame");
+    let frame = GridFrame::new([0.0; 2], 90.0, NodeIndex { i: 0, j: 256 }, 0).expect("a frame");
     let surface = Surface::new(&tin, Placement::of_tile(&frame, TileId::ROOT, spec.quantum_m));
     let bounds = frame.tile_lattice_bounds(TileId::ROOT);
     let side = bounds.max.u - bounds.min.u;

@@ -1,4 +1,4 @@
-//! Header and directories.
+//! Hostile packages with a wrong header or wrong directories.
 
 use corniche_tileset::limits::MAX_DIRECTORY_ENTRIES;
 

@@ -1,4 +1,4 @@
-//! Road sections and road attributes.
+//! Hostile packages with wrong road sections or road attributes.
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_roads::FunctionalRoadClass;

@@ -1,4 +1,4 @@
-//! A payload's envelope and its terrain.
+//! Hostile packages with a wrong envelope of a payload or wrong terrain.
 
 use corniche_testing::{package, payload::Section, pmtiles::put_varint};
 

@@ -3,7 +3,7 @@
 
 use std::{fs, io::Cursor};
 
-use corniche_geom::{Cell, Frame, NodeIndex, TileId};
+use corniche_geom::{Cell, GridFrame, NodeIndex, TileId};
 use corniche_testing::package;
 use corniche_tileset::{
     FilePackage, LevelRecord, Manifest, MemorySource, OpenError, Package, PayloadContext,
@@ -14,7 +14,7 @@ use corniche_tin::{Tin, TinVertex};
 
 fn manifest(max_level: u8) -> Manifest {
     let frame =
-        Frame::new([0.1, 0.7], 1.0 / 3.0, NodeIndex { i: 0, j: 256 << max_level }, max_level)
+        GridFrame::new([0.1, 0.7], 1.0 / 3.0, NodeIndex { i: 0, j: 256 << max_level }, max_level)
             .unwrap();
     let sound = package::manifest_of(frame);
     let level = |record: LevelRecord| LevelRecord {

@@ -6,7 +6,7 @@
 )]
 
 use corniche_drape::{DrapedVertex, drape};
-use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{GridFrame, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::srtm_heights;
 use corniche_tileset::{GeoRoad, PayloadContext, Sections, Terrain, TilePayload, decode, encode};
@@ -40,7 +40,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         let Some(grid) = srtm_heights("liechtenstein/N47E009.hgt", 300, 500) else { return };
         let quantum_m = height_quantum_m(max_error_m);
         let tin = triangulate(&grid, TinSpec { max_error_m, quantum_m }).unwrap();
-        let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 256 }, 0).unwrap();
+        let frame = GridFrame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 256 }, 0).unwrap();
         let id = TileId::ROOT;
         let corner = frame.lattice_of_node(frame.tile_corner(id));
         let node_steps = frame.node_steps(0);

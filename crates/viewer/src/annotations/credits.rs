@@ -1,3 +1,5 @@
+//! Credits are written into the lower right corner of a picture.
+
 use image::RgbaImage;
 
 use super::letters::{Letters, draw_box, line_px};

@@ -1,3 +1,5 @@
+//! Credits stand in the lower right corner, and long ones are broken into lines.
+
 use ab_glyph::{Font as _, FontRef};
 
 use super::*;

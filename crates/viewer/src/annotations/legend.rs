@@ -1,3 +1,5 @@
+//! A legend is drawn into the lower left corner of a picture: classes, scale bar and an arrow to the north.
+
 use image::RgbaImage;
 
 use super::letters::{INK, Letters, blend, draw_box, fill, line_px};

@@ -1,3 +1,5 @@
+//! A legend shows each class, a scale bar of the right length and where north is.
+
 use super::*;
 
 fn picture() -> RgbaImage {

@@ -1,3 +1,5 @@
+//! Errors of flights: keyframes that make no path.
+
 use super::keyframe::KEYFRAMES;
 
 /// Why there is no flight.

@@ -1,3 +1,5 @@
+//! A keyframe of a flight: a time, a position and a direction of view.
+
 use crate::camera::Orientation;
 
 /// How many keyframes a flight may have. The most is an hour with 25 keyframes a second, and some more.

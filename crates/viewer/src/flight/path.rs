@@ -1,3 +1,5 @@
+//! The path of a flight: smooth curves through its keyframes that never overshoot.
+
 use super::{FlightError, Keyframe, Pose, keyframe::KEYFRAMES};
 use crate::camera::Orientation;
 

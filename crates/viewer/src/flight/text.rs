@@ -1,3 +1,5 @@
+//! Flights are read from text and written to it, in the coordinates of a CRS.
+
 use corniche_geom::CoordinateTable;
 use corniche_tileset::Manifest;
 use serde::{Deserialize, Serialize};
@@ -42,7 +44,7 @@ impl Flight {
         Self::of_record(&record, working, coordinates)
     }
 
-    /// As [`Self::parse`], of a text that was read already.
+    /// Does the same as [`Self::parse`] for a text that was read already.
     ///
     /// # Errors
     /// When it has impossible values, or is for a package in another CRS.

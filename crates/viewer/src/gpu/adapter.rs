@@ -1,3 +1,5 @@
+//! The choice of a graphics adapter.
+
 use super::GpuError;
 
 /// The adapter that the environment names, else the fastest, else a software adapter.

@@ -52,7 +52,7 @@ pub(crate) struct AreaBuffers {
     triangles: Buffer,
     boxes: Buffer,
     classes: Vec<ClassVolumes>,
-    /// Around all of them, as in [`AreaVolumes`].
+    /// The box around all of them, as in [`AreaVolumes`].
     box_in_tile: [[f32; 3]; 2],
 }
 

@@ -1,3 +1,5 @@
+//! Layouts and bind groups, in one place for all drawables.
+
 use wgpu::{
     BindGroup, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
     BindingResource, BindingType, Device, ShaderStages, TextureSampleType, TextureView,

@@ -1,3 +1,5 @@
+//! The graphics device: how it is opened, what it can do, and how its faults are noticed.
+
 use std::sync::{
     Arc, Mutex, PoisonError,
     atomic::{AtomicBool, Ordering},
@@ -69,7 +71,7 @@ impl Gpu {
         }
     }
 
-    /// As [`Gpu::new`], with these backends only.
+    /// Does the same as [`Gpu::new`] with these backends only.
     ///
     /// # Errors
     /// When they have no adapter, or none with the name that the environment asks for, or it gives no device.

@@ -1,3 +1,5 @@
+//! Errors of graphics devices and of reading pixels back.
+
 /// Why there is no graphics device, or it cannot draw what is asked.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]

@@ -1,3 +1,5 @@
+//! Edges of the ground are drawn once, and indices are as narrow as they can be.
+
 use super::*;
 
 #[test]

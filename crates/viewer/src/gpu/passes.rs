@@ -1,3 +1,5 @@
+//! Render passes are begun here, always with the same rules for what is cleared.
+
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPipeline, StoreOp, TextureView};
 
 /// Begins a pass. With `LoadOp::Clear(())` its targets are cleared first: colours 0, depth 0, which is infinitely far. With

@@ -1,3 +1,5 @@
+//! The picture on the graphics card that passes draw into, with its samples for each pixel.
+
 use wgpu::TextureView;
 
 use super::{

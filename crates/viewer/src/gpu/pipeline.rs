@@ -1,3 +1,5 @@
+//! Render pipelines are made of recipes, and shaders are joined from their files.
+
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
     FrontFace, PrimitiveTopology, RenderPipeline, VertexBufferLayout,
@@ -31,7 +33,7 @@ pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthSte
     }
 }
 
-/// In what pipelines differ.
+/// What pipelines differ in.
 #[derive(Clone)]
 pub(crate) struct PipelineRecipe<'a> {
     pub(crate) shader: Shader,

@@ -1,3 +1,5 @@
+//! Textures are read back from the graphics card, in bands where they are large.
+
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout};
@@ -14,7 +16,7 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>
     read_by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
 }
 
-/// As [`read_texture`], in bands of rows. A band has at most `most_bytes`, but at least one row: the largest pictures have
+/// Does the same as [`read_texture`] in bands of rows. A band has at most `most_bytes`, but at least one row: the largest pictures have
 /// more bytes than a buffer may have. Bands are read one after another, so that there is one buffer at a time.
 fn read_by_bands(
     gpu: &Gpu,

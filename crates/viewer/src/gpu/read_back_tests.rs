@@ -1,3 +1,5 @@
+//! Textures that are read back in bands come back whole.
+
 use std::time::{Duration, Instant};
 
 use super::*;

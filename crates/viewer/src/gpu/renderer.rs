@@ -1,3 +1,5 @@
+//! The renderer draws tiles into targets, pass by pass, and holds nothing of any frame.
+
 use std::sync::OnceLock;
 
 use wgpu::{CommandEncoder, LoadOp};
@@ -70,7 +72,7 @@ impl Renderer {
         self.draw_timed(gpu, view, tiles, targets, None);
     }
 
-    /// As [`Renderer::draw`]; `timer` notes how long each pass takes.
+    /// Does the same as [`Renderer::draw`]; `timer` notes how long each pass takes.
     pub fn draw_timed(
         &self,
         gpu: &Gpu,
@@ -265,9 +267,9 @@ impl Renderer {
 
 /// The roads of all tiles of a frame, or their lines of one layer.
 struct LabelledLines<'a> {
-    /// By tile.
+    /// The roads of each tile.
     of_tiles: Vec<Option<&'a RoadBuffers>>,
-    /// By tile, the classes that are shown somewhere on it.
+    /// The classes that are shown somewhere on each tile.
     shown: Vec<ClassSet>,
     connectors: LevelConnectors,
 }

@@ -1,3 +1,5 @@
+//! The tiles that lie on the graphics card while the view changes.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;

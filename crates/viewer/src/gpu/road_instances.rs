@@ -37,7 +37,7 @@ pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
     }
 }
 
-/// In what the pipelines of the two methods differ.
+/// What the pipelines of the two methods differ in.
 pub(crate) struct RoadRecipe<'a> {
     pub(crate) shader: Shader,
     pub(crate) instance_bytes: u64,

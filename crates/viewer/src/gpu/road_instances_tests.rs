@@ -1,3 +1,5 @@
+//! Road classes side by side are drawn at once.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! The slopes of a tile and of the tiles above it, as textures for shading.
+
 use corniche_geom::{TILE_CELLS, TileId};
 use wgpu::{TextureFormat, TextureView};
 

@@ -1,3 +1,5 @@
+//! A square texture is made of its texels.
+
 use wgpu::{
     TextureFormat, TextureView,
     util::{DeviceExt as _, TextureDataOrder},

@@ -1,3 +1,5 @@
+//! A texture that passes draw into, with its only view.
+
 use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
 use super::{Gpu, ReadBackError, read_back::read_texture};

@@ -1,3 +1,5 @@
+//! All textures that the passes of a frame draw into.
+
 use std::sync::OnceLock;
 
 use super::{

@@ -1,3 +1,5 @@
+//! The buffers of a tile on the graphics card, and how many bytes they take.
+
 use corniche_geom::TileId;
 use glam::DVec3;
 
@@ -33,7 +35,7 @@ pub struct TileBuffers {
     pub(crate) textures: TileTextures,
     /// `None` without areas.
     areas: Option<AreaBuffers>,
-    /// Those that a person draws.
+    /// The areas that a person draws.
     drawn_areas: Option<AreaBuffers>,
     segments: RoadBuffers,
     volumes: RoadBuffers,

@@ -18,11 +18,11 @@ const FRAMES: usize = 4;
 /// Milliseconds that the passes of a frame took on the graphics card.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassTimes {
-    /// Terrain.
+    /// The pass of the terrain.
     pub terrain_ms: f64,
     /// Areas; 0 where none were drawn.
     pub areas_ms: f64,
-    /// Roads.
+    /// The passes of roads.
     pub roads_ms: f64,
     /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
     pub composite_ms: f64,
@@ -43,7 +43,7 @@ pub struct PassTimer {
     free: Vec<usize>,
     /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
-    /// For each readable buffer whether its frame has areas.
+    /// Tells for each readable buffer whether its frame has areas.
     has_areas: [bool; FRAMES],
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
@@ -54,7 +54,7 @@ pub struct PassTimer {
 type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
 
 impl PassTimes {
-    /// Of all passes together.
+    /// The time of all passes together.
     #[must_use]
     pub fn total_ms(&self) -> f64 {
         self.terrain_ms + self.areas_ms + self.roads_ms + self.composite_ms

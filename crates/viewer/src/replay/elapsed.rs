@@ -1,3 +1,5 @@
+//! Milliseconds since an instant.
+
 use std::time::Instant;
 
 /// Milliseconds since `started`.

@@ -1,3 +1,5 @@
+//! Errors of flying a flight frame by frame.
+
 use crate::{
     gpu::{GpuError, ReadBackError},
     range::OutOfRange,

@@ -1,3 +1,5 @@
+//! All finest tiles of a package, loaded before a flight begins.
+
 use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;

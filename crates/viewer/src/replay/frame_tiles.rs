@@ -1,9 +1,11 @@
+//! The tiles of one frame of a flight, and what it took to have them.
+
 use crate::lod::Drawn;
 
 /// The tiles of one frame, and what was done to have them.
 #[derive(Default)]
 pub(crate) struct FrameTiles {
-    /// To draw.
+    /// The tiles to draw.
     pub(crate) drawn: Vec<Drawn>,
     /// How many were read and decoded.
     pub(crate) loaded: usize,

@@ -1,3 +1,5 @@
+//! Options of a flight: which ground is drawn, how tiles are loaded and how frames are timed.
+
 use corniche_styles::Style;
 
 use crate::{

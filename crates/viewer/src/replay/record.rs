@@ -1,3 +1,5 @@
+//! The numbers that a flight records of each frame.
+
 use crate::{flight::Pose, gpu::PassTimes};
 
 /// The numbers of one frame.

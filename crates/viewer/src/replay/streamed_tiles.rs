@@ -1,3 +1,5 @@
+//! Tiles that are loaded and evicted while a flight goes on, as the streamer plans.
+
 use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;

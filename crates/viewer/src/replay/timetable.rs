@@ -1,6 +1,8 @@
+//! The times of the frames of a flight.
+
 use crate::flight::Flight;
 
-/// When each frame of a flight is.
+/// The times of the frames of a flight.
 #[derive(Clone, Copy)]
 pub(crate) struct Timetable<'a> {
     pub(crate) flight: &'a Flight,

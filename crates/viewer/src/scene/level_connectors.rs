@@ -1,3 +1,5 @@
+//! Short pieces of road that join roads of neighbouring tiles with different levels.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;

@@ -1,3 +1,5 @@
+//! A way is connected to where it goes on in a tile of another level, and to nothing else.
+
 use super::*;
 use crate::tiles::roads::ends::Side;
 

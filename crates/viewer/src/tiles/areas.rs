@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use corniche_areas::{AreaClass, AreaObject};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use self::{
@@ -64,7 +64,7 @@ pub struct AreaWall {
 pub struct AreaCorner {
     /// Metres from the tile's reference point, east and north.
     pub place_in_tile: [f32; 2],
-    /// As in [`AreaWall`].
+    /// The heights as in [`AreaWall`].
     pub heights_in_tile: [f32; 2],
 }
 
@@ -86,7 +86,7 @@ pub struct ClassVolumes {
 /// All volumes of a tile, by class.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AreaVolumes {
-    /// Walls.
+    /// The walls of the volumes.
     #[serde(with = "blocks::plain")]
     pub walls: Vec<AreaWall>,
     /// Corners of caps.
@@ -106,7 +106,7 @@ impl AreaVolumes {
     pub(crate) fn new(
         areas: &[AreaRecord],
         id: TileId,
-        frame: &Frame,
+        frame: &GridFrame,
         ground: &GroundMesh,
         reference_m: [f64; 3],
     ) -> Result<Self, BadArea> {
@@ -227,7 +227,7 @@ fn united([low, high]: [[f32; 3]; 2], [other_low, other_high]: [[f32; 3]; 2]) ->
 
 /// Where the areas of a tile are placed.
 struct Site<'a> {
-    frame: &'a Frame,
+    frame: &'a GridFrame,
     tile: LatticeBounds,
     ground: &'a GroundMesh,
     reference_m: [f64; 3],
@@ -236,7 +236,12 @@ struct Site<'a> {
 }
 
 impl<'a> Site<'a> {
-    fn new(id: TileId, frame: &'a Frame, ground: &'a GroundMesh, reference_m: [f64; 3]) -> Self {
+    fn new(
+        id: TileId,
+        frame: &'a GridFrame,
+        ground: &'a GroundMesh,
+        reference_m: [f64; 3],
+    ) -> Self {
         let tile = frame.tile_lattice_bounds(id);
         let wide = frame.node_steps(id.z()).map(|steps| (steps as f64 * STRIP_CELLS) as i64);
         Self {

@@ -1,3 +1,5 @@
+//! Prisms over areas are closed, and areas reach a little beyond their tile.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::{Cell, NodeIndex};
@@ -104,9 +106,9 @@ fn sides_along_the_border_are_moved_outwards() {
     assert_eq!(stripped(&whole), ring(&[[-5, -7], [105, -7], [105, 107], [-5, 107]]));
 }
 
-fn frame() -> Frame {
+fn frame() -> GridFrame {
     let cell = Cell { east_m: 10.0, north_m: 10.0 }.fitted();
-    Frame::new([0.0, 0.0], cell, NodeIndex { i: 0, j: 256 }, 0).expect("a frame")
+    GridFrame::new([0.0, 0.0], cell, NodeIndex { i: 0, j: 256 }, 0).expect("a frame")
 }
 
 /// Ground over the whole tile: level in the west, and rising from the middle to 300 m in the east.
@@ -121,7 +123,7 @@ fn ground(reference_m: [f64; 3]) -> GroundMesh {
     GroundMesh::of_surface(vertices.collect(), indices.into_iter())
 }
 
-fn area(class: AreaClass, frame: &Frame, corners_m: &[[f64; 2]]) -> AreaRecord {
+fn area(class: AreaClass, frame: &GridFrame, corners_m: &[[f64; 2]]) -> AreaRecord {
     let ring = corners_m.iter().map(|at| frame.snap(*at).expect("on the lattice")).collect();
     AreaRecord {
         object: AreaObject::Way(7),

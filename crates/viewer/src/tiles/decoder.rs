@@ -90,7 +90,7 @@ impl TileDecoder {
         Self { overlays, ..self }
     }
 
-    /// For which methods lines are prepared: those of the roads that are read.
+    /// The methods for which lines are prepared: those of the roads that are read.
     fn line_methods(&self) -> LineMethods {
         match [Sections::ROADS_GEO, Sections::ROADS_SV].map(|of| self.sections.contains(of)) {
             [true, true] => LineMethods::Both,

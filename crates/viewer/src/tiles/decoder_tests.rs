@@ -1,3 +1,5 @@
+//! A tile comes from a worker as it was sent.
+
 use corniche_testing::package::{encoded, ids, manifest};
 
 use super::*;

@@ -1,7 +1,7 @@
 //! Areas that a person draws.
 
 use corniche_areas::{AreaObject, Polygon, cut_out, surrounded};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint};
 use corniche_styles::Style;
 use corniche_tileset::{AreaRecord, AreaRings};
 
@@ -22,7 +22,7 @@ impl DrawnArea {
 
     /// The volumes over the part of it in a tile; none where that is far too intricate. Their class is [`Style::DRAWN_AREAS`].
     #[must_use]
-    pub fn over(&self, tile: &TileGeometry, frame: &Frame) -> AreaVolumes {
+    pub fn over(&self, tile: &TileGeometry, frame: &GridFrame) -> AreaVolumes {
         let bounds = frame.tile_lattice_bounds(tile.id);
         let is_near = |polygon: &&Polygon| {
             let around = LatticeBounds::of(polygon.outer().points());

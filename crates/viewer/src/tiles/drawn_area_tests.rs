@@ -1,3 +1,5 @@
+//! The parts of a drawn area in all tiles make up the area.
+
 use corniche_testing::package::written;
 
 use super::*;

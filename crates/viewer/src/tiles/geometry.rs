@@ -1,4 +1,6 @@
-use corniche_geom::{Bounds, Frame, TileId, barycentric};
+//! A decoded tile that is ready for the graphics card.
+
+use corniche_geom::{Bounds, GridFrame, TileId, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, Terrain, TilePayload};
@@ -90,7 +92,7 @@ impl TileGeometry {
         id: TileId,
         terrain: Option<&Terrain>,
         lines: &TileLines,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
     ) -> Self {
         let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
@@ -98,13 +100,13 @@ impl TileGeometry {
         Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
     }
 
-    /// As [`TileGeometry::assemble`], on the `surface` of the terrain, which is needed only if there are roads.
+    /// Does the same as [`TileGeometry::assemble`] on the `surface` of the terrain, which is needed only if there are roads.
     fn on_surface(
         id: TileId,
         terrain: Option<&Terrain>,
         surface: Option<&Surface>,
         lines: &TileLines,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
     ) -> Self {
         let bounds = frame.tile_bounds(id);
@@ -162,7 +164,7 @@ impl TileGeometry {
     /// When a road does not fit the ground.
     pub fn from_payload(
         payload: &TilePayload,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
         width_margin_m: f64,
         scale: PlanScale,
@@ -182,7 +184,7 @@ impl TileGeometry {
     ///
     /// # Errors
     /// When an outline crosses itself.
-    pub fn with_areas(self, areas: &[AreaRecord], frame: &Frame) -> Result<Self, BadArea> {
+    pub fn with_areas(self, areas: &[AreaRecord], frame: &GridFrame) -> Result<Self, BadArea> {
         let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
         Ok(Self { areas, ..self })
     }
@@ -283,7 +285,7 @@ pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
 #[derive(Clone, Copy)]
 pub(crate) struct LineGround<'a> {
     pub(crate) terrain: Option<&'a Terrain>,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     /// The height of one step of the TIN's heights.
     pub(crate) quantum_m: f64,
     pub(crate) scale: &'a PlanScale,
@@ -295,7 +297,7 @@ pub(crate) struct LineGround<'a> {
 fn surface(
     id: TileId,
     terrain: Option<&Terrain>,
-    frame: &Frame,
+    frame: &GridFrame,
     quantum_m: f64,
 ) -> Option<Surface> {
     terrain.map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)))

@@ -1,5 +1,7 @@
+//! The mesh of a tile's ground, with skirts and with walls along voids.
+
 use bytemuck::{Pod, Zeroable};
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +45,7 @@ impl GroundMesh {
         id: TileId,
         tin: &Tin,
         normals: &[[i8; 2]],
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
         reference_m: [f64; 3],
     ) -> Self {

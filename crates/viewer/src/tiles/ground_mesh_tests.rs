@@ -1,3 +1,5 @@
+//! Vertices are relative to the reference point, and skirts hang from the borders alone.
+
 use corniche_geom::NodeIndex;
 use corniche_tin::TinVertex;
 
@@ -9,7 +11,7 @@ fn square() -> GroundMesh {
     let corners =
         vec![vertex(0, 0, 0), vertex(0, 256, 256), vertex(256, 0, 0), vertex(256, 256, 256)];
     let tin = Tin::new(corners, &[[0, 2, 1], [1, 2, 3]]).unwrap();
-    let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
+    let frame = GridFrame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
     GroundMesh::new(TileId::ROOT, &tin, &[[0, 0]; 4], &frame, 0.5, [1280.0, 1280.0, 64.0])
 }
 

@@ -52,9 +52,9 @@ impl From<BoundaryRecord> for LayerLine {
 /// What a tile has of one layer, ready to be uploaded: nothing of a method that is not wanted.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TileLayer {
-    /// As geometry (GEO). The place of a road's class is that of the line's style.
+    /// The pieces as geometry (GEO). The place of a road's class is that of the line's style.
     pub segments: RoadSegments,
-    /// As volumes (SV), likewise.
+    /// The pieces as volumes (SV), likewise.
     pub volumes: RoadVolumes,
 }
 
@@ -92,7 +92,7 @@ impl LineLayers {
     }
 }
 
-/// For which methods lines are prepared.
+/// The methods for which lines are prepared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say what they are")]
 pub enum LineMethods {

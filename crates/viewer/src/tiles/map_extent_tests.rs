@@ -1,3 +1,5 @@
+//! The extent of a map is where its roads are, and one far road does not widen it.
+
 use super::*;
 
 const DATA: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100_000.0, max_y: 50_000.0 };

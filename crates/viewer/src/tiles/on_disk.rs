@@ -1,6 +1,8 @@
+//! The tiles of a package for threads that may wait, from a file or a similar source.
+
 use std::{path::Path, sync::Arc};
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{AnySource, FilePackage, Manifest, OpenError};
 
@@ -56,7 +58,7 @@ impl PackageSource {
 }
 
 impl TileCatalog for PackageSource {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         self.0.frame()
     }
 

@@ -1,6 +1,8 @@
+//! The tiles of a package are loaded from any source of bytes, without blocking a thread.
+
 use std::{collections::BTreeSet, sync::Arc};
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{
     ByteSource, Manifest, OpenError, Package, Sections, decode, terrain_summary,
@@ -129,7 +131,7 @@ impl<S: ByteSource> PackageTiles<S> {
 }
 
 impl<S: ByteSource> TileCatalog for PackageTiles<S> {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.manifest().frame
     }
 

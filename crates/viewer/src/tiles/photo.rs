@@ -1,3 +1,5 @@
+//! The photo of a tile in four sizes, ready for the graphics card.
+
 use corniche_tileset::Photo;
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! Each size of a photo is the mean of the one before and keeps the border.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Working metres to a true metre within one tile, east and north.
+
 use corniche_geom::{Bounds, CoordinateTable, width_factor};
 
 /// How many working metres there are to a true metre in a tile, towards the east and towards the

@@ -1,3 +1,5 @@
+//! Between the corners of a tile the scale is that of the coordinate table.
+
 use corniche_testing::FlatProjection;
 
 use super::*;

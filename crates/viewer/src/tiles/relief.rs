@@ -1,5 +1,7 @@
+//! What the roads of a tile ask of its ground when they are placed.
+
 use corniche_drape::{RoadPiece, near_ground, road_bed};
-use corniche_geom::{Bounds, Frame, TileId};
+use corniche_geom::{Bounds, GridFrame, TileId};
 use corniche_tin::Surface;
 
 use super::{
@@ -13,7 +15,7 @@ use super::{
 /// This is computed when a tile is decoded. It is not stored, because it follows from what is stored and takes only a few
 /// microseconds a segment.
 pub(crate) struct Relief<'a> {
-    frame: &'a Frame,
+    frame: &'a GridFrame,
     /// `None` without ground or without roads.
     surface: Option<&'a Surface>,
     tile: Bounds,
@@ -26,7 +28,7 @@ impl<'a> Relief<'a> {
     pub(crate) fn new(
         id: TileId,
         surface: Option<&'a Surface>,
-        frame: &'a Frame,
+        frame: &'a GridFrame,
         width_margin_m: f64,
     ) -> Self {
         let tile = frame.tile_bounds(id);

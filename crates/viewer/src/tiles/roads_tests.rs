@@ -1,3 +1,5 @@
+//! Pieces of roads are in order of class, and lines end on the border where they were cut.
+
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
 use corniche_geom::Bounds;

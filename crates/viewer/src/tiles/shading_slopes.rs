@@ -1,3 +1,5 @@
+//! The slopes of a tile's ground as texels for shading.
+
 use corniche_geom::{Cell, TILE_NODES};
 use corniche_tileset::Relief;
 use half::f16;
@@ -26,7 +28,7 @@ impl ShadingSlopes {
     /// Texels on a side.
     pub(crate) const SIDE: usize = TILE_NODES;
 
-    /// From a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
+    /// The slopes of a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
     pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
         // By way of f32, as some processors do it anyway: else it would be rounded twice on these and once on others.
         let half = |slope: f64| f16::from_f32(slope.clamp(-STEEPEST, STEEPEST) as f32).to_bits();

@@ -1,3 +1,5 @@
+//! Texels of slopes are the slopes of the ground.
+
 use corniche_geom::HeightGrid;
 
 use super::*;

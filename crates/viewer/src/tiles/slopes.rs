@@ -1,6 +1,8 @@
+//! The ground of a tile in squares: the mean slope of each, and how far the ground departs from it.
+
 use std::ops::RangeInclusive;
 
-use corniche_geom::{Bounds, Frame};
+use corniche_geom::{Bounds, GridFrame};
 use corniche_tin::Surface;
 
 /// Squares along each side of a tile.
@@ -51,7 +53,7 @@ struct Triangle {
 }
 
 impl Slopes {
-    pub(crate) fn of_surface(surface: &Surface, tile: Bounds, frame: &Frame) -> Self {
+    pub(crate) fn of_surface(surface: &Surface, tile: Bounds, frame: &GridFrame) -> Self {
         let side_m = [tile.width() / SIDE as f64, tile.height() / SIDE as f64];
         let mut slopes = Self { tile, side_m, squares: vec![None; SIDE * SIDE] };
         let triangles: Vec<Triangle> = (0_u32..)

@@ -1,3 +1,5 @@
+//! No ground departs from a plane by more than the bounds from its slopes.
+
 use corniche_geom::{Cell, NodeIndex, TILE_CELLS, TileId};
 use corniche_tin::{Placement, Tin, TinVertex};
 use proptest::prelude::*;
@@ -8,8 +10,8 @@ const STEP: u16 = 8;
 
 /// A tile with a vertex at every eighth node. `height_q` gives heights by column and row of the vertices, in steps of half a
 /// metre.
-fn ground(height_q: impl Fn(u16, u16) -> i32) -> (Frame, Surface) {
-    let frame = Frame::new(
+fn ground(height_q: impl Fn(u16, u16) -> i32) -> (GridFrame, Surface) {
+    let frame = GridFrame::new(
         [0.5, 0.25],
         Cell { east_m: 10.0, north_m: 15.0 }.fitted(),
         NodeIndex { i: 0, j: 256 },

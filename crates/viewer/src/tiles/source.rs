@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, TileId};
+//! Interfaces of what has tiles: which tiles there are, and how threads load them.
+
+use corniche_geom::{GridFrame, TileId};
 use corniche_tileset::Manifest;
 
 use super::TileGeometry;
@@ -17,7 +19,7 @@ pub struct LoadTileError {
 /// Which tiles there are. This is all that choosing tiles asks of a package; the answers are there at once.
 pub trait TileCatalog {
     /// The grid.
-    fn frame(&self) -> &Frame;
+    fn frame(&self) -> &GridFrame;
     /// Whether the tile or anything beneath it exists.
     fn exists(&self, id: TileId) -> bool;
 

@@ -1,3 +1,5 @@
+//! The tiles that were loaded so far, for a picture that needs all of them at once.
+
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TileId};
@@ -15,7 +17,7 @@ pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
 pub struct TileStore<'a> {
     source: &'a dyn TileSource,
     tiles: BTreeMap<TileId, TileGeometry>,
-    /// Of all tiles that were read in any way.
+    /// The summaries of all tiles that were read in any way.
     summaries: BTreeMap<TileId, Option<GroundSummary>>,
     /// Tiles of which nothing but slopes is drawn.
     coarser: BTreeMap<TileId, TileGeometry>,

@@ -1,4 +1,6 @@
-use corniche_geom::{Frame, LatticePoint, TileId};
+//! The ground of a tile that is shown, on which lines can be laid later.
+
+use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
@@ -51,7 +53,7 @@ impl TileSurface {
 
     /// Lines on this ground.
     #[must_use]
-    pub fn lay(&self, lines: &[LayerLine], frame: &Frame, methods: LineMethods) -> TileLayer {
+    pub fn lay(&self, lines: &[LayerLine], frame: &GridFrame, methods: LineMethods) -> TileLayer {
         let on = TileGround {
             id: self.id,
             surface: &self.surface,
@@ -66,7 +68,7 @@ impl TileSurface {
 }
 
 /// The TIN that a tile was made of.
-fn tin_of(tile: &TileGeometry, frame: &Frame, quantum_m: f64) -> Option<Tin> {
+fn tin_of(tile: &TileGeometry, frame: &GridFrame, quantum_m: f64) -> Option<Tin> {
     let mesh = &tile.ground;
     let triangles = mesh.indices[..mesh.surface_indices].as_chunks::<3>().0;
     let count = triangles.as_flattened().iter().max().map_or(0, |last| *last as usize + 1);

@@ -1,3 +1,5 @@
+//! A drawn tile gives its TIN back, and lines laid later lie on it.
+
 use corniche_testing::package::written;
 use corniche_tileset::{FilePackage, Sections};
 

@@ -1,3 +1,5 @@
+//! A grid that finds the triangles of a surface near a place.
+
 use std::ops::RangeInclusive;
 
 use corniche_geom::IndexLists;

@@ -1,3 +1,5 @@
+//! Every triangle that holds a place is found in the grid.
+
 use corniche_geom::barycentric;
 use proptest::prelude::*;
 

@@ -12,7 +12,7 @@ pub(crate) mod package;
 pub(crate) mod scene;
 pub(crate) mod scenes;
 
-use corniche_geom::{Cell, Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{Cell, GridFrame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{RoadBand, RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_tileset::Terrain;
@@ -77,9 +77,9 @@ pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
 }
 
 /// Two levels of a grid far from the origin, as real ones are.
-pub(crate) fn frame() -> Frame {
+pub(crate) fn frame() -> GridFrame {
     let cell = world().cell(CELL_M);
-    Frame::new([0.25, 0.75], cell, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+    GridFrame::new([0.25, 0.75], cell, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
 }
 
 pub(crate) fn class(number: u8) -> FunctionalRoadClass {

@@ -1,3 +1,5 @@
+//! What the window knows of the graphics adapter, and how long its passes take.
+
 use corniche_viewer::{RoadMethod, gpu::PassTimes};
 
 use crate::{WindowError, canvas::Canvas};

@@ -1,3 +1,5 @@
+//! A lost device does not hide why other pictures were not taken.
+
 use super::*;
 use crate::{
     canvas::tests::{canvas, scene_of_size},

@@ -159,7 +159,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// On the screen, in points; `None` behind the eye or where there is no ground.
+    /// The place on the screen, in points; `None` behind the eye or where there is no ground.
     fn at(&self, point: &Point) -> Option<DVec2> {
         let [x, y] = point.at_m;
         let height = self.ground.height(point.at_m)?;

@@ -30,7 +30,7 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// With the lines of a file. Those with a point that has no place in the package's CRS are not shown; tells how many these are.
+    /// The drawing with the lines of a file. Those with a point that has no place in the package's CRS are not shown; tells how many these are.
     pub(crate) fn new(
         lines: &[DrawnLine],
         (save, clock_s): (SaveDrawing, ClockS),

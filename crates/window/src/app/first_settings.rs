@@ -1,3 +1,5 @@
+//! The settings with which a window opens.
+
 use std::collections::BTreeSet;
 
 use corniche_roads::FunctionalRoadClass;

@@ -40,12 +40,12 @@ pub(crate) struct FrameInput {
     pub(crate) ui: egui::RawInput,
 }
 
-/// What the window system has to do.
-pub(crate) struct Frame {
+/// What comes of a frame: what the window system has to do.
+pub(crate) struct FrameOutput {
     /// The window's contents, to be painted with [`Canvas::paint`].
     pub(crate) primitives: Vec<egui::ClippedPrimitive>,
     pub(crate) screen: ScreenDescriptor,
-    /// For [`Canvas::free_textures`], after painting.
+    /// The textures that [`Canvas::free_textures`] frees after painting.
     pub(crate) unused_textures: Vec<egui::TextureId>,
     /// What the panel's toolkit wants of the window system, such as a shape of the cursor.
     pub(crate) platform: egui::PlatformOutput,
@@ -62,7 +62,7 @@ impl App {
         canvas: &mut Canvas,
         ui: &egui::Context,
         input: FrameInput,
-    ) -> Result<Frame, WindowError> {
+    ) -> Result<FrameOutput, WindowError> {
         let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
         self.frame += 1;
         self.take_news(now_s);
@@ -92,7 +92,13 @@ impl App {
         let is_one_of_many = drew.is_new && (is_busy || self.camera.is_dragging());
         self.pace.note(now_s, is_one_of_many, is_busy);
         let redraw = self.next_redraw(canvas, now_s, is_busy || is_changed, &output);
-        Ok(Frame { primitives, screen, unused_textures, platform: output.platform_output, redraw })
+        Ok(FrameOutput {
+            primitives,
+            screen,
+            unused_textures,
+            platform: output.platform_output,
+            redraw,
+        })
     }
 
     /// When the next frame is due; `is_at_once` says that this one left something to do.

@@ -1,3 +1,5 @@
+//! When the next frame is due, and how long frames take.
+
 use crate::frame_times::FrameTimes;
 
 /// After a pause longer than this between two frames, the second does not tell how long a frame takes.
@@ -6,16 +8,16 @@ const PAUSE_S: f64 = 0.5;
 /// When the next frame is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Redraw {
-    /// As soon as possible.
+    /// The next frame is due as soon as possible.
     Now,
-    /// At a time, unless something happens before.
+    /// The next frame is due at a time, unless something happens before.
     At(f64),
-    /// When something happens.
+    /// The next frame is due when something happens.
     Asked,
 }
 
 impl Redraw {
-    /// After the shortest of these times; without any, when something happens.
+    /// The next frame is due after the shortest of these times; without any, when something happens.
     pub(crate) fn after<const N: usize>(now_s: f64, rests_s: [Option<f64>; N]) -> Self {
         let soonest_s = rests_s.into_iter().flatten().reduce(f64::min);
         soonest_s.map_or(Self::Asked, |rest_s| Self::At(now_s + rest_s))

@@ -1,3 +1,5 @@
+//! The next frame is due in time, and pauses do not count as frame times.
+
 use super::*;
 
 #[test]

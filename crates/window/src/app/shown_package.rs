@@ -1,3 +1,5 @@
+//! The package that a window shows, after the checks that need no tile.
+
 use std::sync::Arc;
 
 use corniche_geom::TileId;

@@ -1,3 +1,5 @@
+//! The styles of a window, of which the first may be read again while the window is open.
+
 use corniche_styles::Style;
 
 use crate::{NamedStyle, Reload};
@@ -7,7 +9,7 @@ const RELOAD_S: f64 = 1.0;
 
 /// The styles to choose from. The first of them may change while the window is open.
 pub(crate) struct StyleList {
-    /// At least one.
+    /// The styles, at least one.
     styles: Vec<NamedStyle>,
     names: Vec<String>,
     reload: Option<Reload>,

@@ -1,3 +1,5 @@
+//! The first style is read again once a second, and the others never.
+
 use std::collections::VecDeque;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! What the canvas draws of the map, and what came of drawing it.
+
 use corniche_live::MapScene;
 
 use crate::{map_pictures::Pictures, settings::Compare};

@@ -6,12 +6,12 @@ use wgpu::{TextureFormat, TextureUsages};
 
 /// A picture that is being taken.
 pub(crate) struct Snapshot {
-    left: Part,
+    left: PictureTexels,
     /// The picture that is seen from a column on, and that column.
-    right: Option<(Part, u32)>,
+    right: Option<(PictureTexels, u32)>,
 }
 
-struct Part {
+struct PictureTexels {
     size_px: [u32; 2],
     has_blue_first: bool,
     texels: ReadBack,
@@ -20,7 +20,7 @@ struct Part {
 impl Snapshot {
     /// Begins to read one picture of the map, or two: the second is seen from `column` on.
     pub(crate) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
-        let part = |picture: &Picture| Part {
+        let part = |picture: &Picture| PictureTexels {
             size_px: picture.size_px(),
             has_blue_first: false,
             texels: picture.begin_read(gpu),
@@ -30,7 +30,7 @@ impl Snapshot {
 
     /// Begins to read what is painted into a [`texture`].
     pub(crate) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
-        let part = Part {
+        let part = PictureTexels {
             size_px: [texture.width(), texture.height()],
             has_blue_first: matches!(
                 texture.format(),
@@ -71,7 +71,7 @@ impl Snapshot {
     }
 }
 
-impl Part {
+impl PictureTexels {
     fn into_image(self, gpu: &Gpu) -> Result<RgbaImage, ReadBackError> {
         let mut bytes = self.texels.into_texels(gpu)?;
         let (pixels, _) = bytes.as_chunks_mut::<4>();

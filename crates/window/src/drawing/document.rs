@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-/// So many changes can be taken back.
+/// How many changes can be taken back.
 const MOST_CHANGES: usize = 1000;
 
 /// A point of a line.
@@ -50,7 +50,7 @@ pub(crate) struct Document {
 }
 
 impl Document {
-    /// With lines that are saved already: which feature of the file each is, whether it is an area, and its points.
+    /// The document of lines that are saved already: which feature of the file each is, whether it is an area, and its points.
     pub(crate) fn of(lines: Vec<(Option<usize>, bool, Vec<Point>)>) -> Self {
         let mut document = Self::default();
         for (feature, is_area, points) in lines {

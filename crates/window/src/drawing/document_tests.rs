@@ -1,3 +1,5 @@
+//! Every change of drawn lines can be taken back.
+
 use proptest::prelude::*;
 
 use super::*;

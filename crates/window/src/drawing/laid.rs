@@ -5,7 +5,7 @@ use std::{
     sync::Arc,
 };
 
-use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{
     AreaVolumes, DrawnArea, LayerLine, LineMethods, Overlays, TileGeometry, TileLayer, TileSurface,
@@ -95,7 +95,7 @@ impl LaidLines {
     }
 
     /// Simplifies lines for all levels.
-    fn prepare(&mut self, document: &Document, frame: &Frame) {
+    fn prepare(&mut self, document: &Document, frame: &GridFrame) {
         let ids: BTreeSet<u64> = document.lines().iter().map(|line| line.id).collect();
         self.prepared.retain(|id, _| ids.contains(id));
         for line in document.lines() {
@@ -108,7 +108,7 @@ impl LaidLines {
 }
 
 impl PreparedLine {
-    fn new(line: &Arc<Line>, frame: &Frame) -> Self {
+    fn new(line: &Arc<Line>, frame: &GridFrame) -> Self {
         let mut points: Vec<LatticePoint> =
             line.points.iter().filter_map(|point| frame.snap(point.at_m)).collect();
         let area = if line.is_area { DrawnArea::new(&points) } else { None };

@@ -1,3 +1,5 @@
+//! An edit lays only the line that it changed, and areas are filled.
+
 use corniche_testing::package::written;
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileSource as _};
 

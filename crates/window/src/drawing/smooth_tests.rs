@@ -1,3 +1,5 @@
+//! Smoothing keeps the points of a line and rounds its corners.
+
 use super::*;
 
 fn place(at_m: [f64; 2]) -> Point {

@@ -1,3 +1,5 @@
+//! Clicks and drags of the drawing tool change the lines that they should.
+
 #![expect(clippy::unnecessary_wraps, reason = "as the tool asks for them")]
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Reasons for which a drawn line was not changed as a person asked.
+
 /// Why a line was not changed as asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unchanged {
@@ -10,7 +12,7 @@ pub(crate) enum Unchanged {
     /// It would have far more points than a person draws.
     #[error("the line has more than {most} points")]
     ManyPoints {
-        /// So many may be rounded.
+        /// How many may be rounded.
         most: usize,
     },
 }

@@ -1,3 +1,5 @@
+//! What a person clicked on the overlay.
+
 use egui::Rect;
 
 use crate::command::Command;

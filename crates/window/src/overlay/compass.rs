@@ -1,3 +1,5 @@
+//! The compass in a corner of the map.
+
 use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
 
 use super::{

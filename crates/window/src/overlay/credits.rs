@@ -1,3 +1,5 @@
+//! The credits of a package in the lower right corner of the map.
+
 use std::sync::Arc;
 
 use egui::{CornerRadius, FontId, Galley, Rect, Ui, vec2};

@@ -1,3 +1,5 @@
+//! The line between the two pictures of a split screen, and the names of the pictures.
+
 use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{

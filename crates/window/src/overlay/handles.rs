@@ -1,3 +1,5 @@
+//! The points of drawn lines are painted so that a person can drag them.
+
 use egui::{Color32, Stroke, Ui, pos2};
 
 use crate::window_content::DrawingContent;

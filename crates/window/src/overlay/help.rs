@@ -1,3 +1,5 @@
+//! The page of keys and mouse.
+
 use egui::{CornerRadius, Grid, Rect, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2};
 
 use super::{

@@ -1,3 +1,5 @@
+//! The legend of a picture of differences.
+
 use corniche_viewer::gpu::{DIFFERENCE_COLORS, DifferenceColors};
 use egui::{Color32, CornerRadius, FontId, Rect, Ui, Vec2, pos2, vec2};
 

@@ -1,3 +1,5 @@
+//! A note where the middle of the map has no ground.
+
 use egui::{CornerRadius, FontId, Rect, Stroke, Ui, vec2};
 
 use super::palette::{AMBER, CHALK, MARGIN, SLATE};

@@ -1,3 +1,5 @@
+//! The newest notices are laid out over the map.
+
 use std::sync::Arc;
 
 use egui::{Color32, CornerRadius, FontId, Galley, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};

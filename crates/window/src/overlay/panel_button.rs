@@ -1,3 +1,5 @@
+//! The button that opens the panel.
+
 use egui::{CornerRadius, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{

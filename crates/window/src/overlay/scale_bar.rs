@@ -1,3 +1,5 @@
+//! The scale bar of the map.
+
 use corniche_viewer::{bar_length, bar_length_m};
 use egui::{CornerRadius, FontId, Rect, Stroke, Ui, pos2, vec2};
 

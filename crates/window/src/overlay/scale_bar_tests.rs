@@ -1,3 +1,5 @@
+//! Scale bars are the longest round length that fits.
+
 use super::*;
 
 #[test]

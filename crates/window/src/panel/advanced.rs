@@ -1,3 +1,5 @@
+//! The panel's section for what few people need: details of roads, widths and the fineness of the ground.
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{CapTest, Caps, Outline, Quads, WidthGrowth};
 use egui::{ComboBox, Grid, Ui};

@@ -1,3 +1,5 @@
+//! The panel's section that moves the camera.
+
 use egui::{Key, TextEdit, Ui};
 
 use corniche_live::controls::Mode;

@@ -1,3 +1,5 @@
+//! The panel's section for lines that a person draws.
+
 use egui::Ui;
 
 use crate::{

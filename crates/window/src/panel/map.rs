@@ -1,3 +1,5 @@
+//! The panel's section for style, heights, areas, lines of files and photos.
+
 use egui::{Color32, ComboBox, RichText, Slider, Ui};
 
 use super::slide::slide;

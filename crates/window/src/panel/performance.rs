@@ -1,3 +1,5 @@
+//! The panel's section that shows what a frame costs.
+
 use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 

@@ -1,3 +1,5 @@
+//! The panel's section that saves pictures and records flights.
+
 use egui::Ui;
 
 use crate::{

@@ -1,3 +1,5 @@
+//! The panel's sections for the methods of drawing roads and for their classes.
+
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::RoadMethod;
 use egui::{Color32, Grid, Ui, vec2};

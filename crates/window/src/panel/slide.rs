@@ -1,3 +1,5 @@
+//! A logarithmic slider that keeps values from outside its range.
+
 use std::ops::RangeInclusive;
 
 use egui::{Response, Slider, SliderClamping, Ui, emath::Numeric};

@@ -1,3 +1,5 @@
+//! The line at the lower edge of the window, whose items give way when there is little room.
+
 use corniche_live::controls::Mode;
 use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, FontId, Label, RichText, Ui};

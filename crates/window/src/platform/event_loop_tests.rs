@@ -1,3 +1,5 @@
+//! An error of the window system is told without places in source code.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Keys mean the same on every keyboard.
+
 use winit::keyboard::Key as Logical;
 
 use super::*;

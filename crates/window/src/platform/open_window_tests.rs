@@ -1,3 +1,5 @@
+//! A device may be lost now and then, but not twice in a row.
+
 use super::*;
 
 #[test]

@@ -1,3 +1,5 @@
+//! Pictures keep their shape and touch two sides of the window.
+
 use super::*;
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use corniche_testing::Random;
 use e2e::ground::{FromEarth, Region};
 
-use super::tiles::{Part, Tile, Tiles};
+use super::tiles::{NamedTriangles, Tile, Tiles};
 
 /// How far the ground of tiles is from the package's.
 #[derive(Debug, Default)]
@@ -19,7 +19,7 @@ pub(crate) struct Findings {
     pub(crate) off_ground: usize,
 }
 
-fn ground(tile: &Tile) -> impl Iterator<Item = &Part> {
+fn ground(tile: &Tile) -> impl Iterator<Item = &NamedTriangles> {
     tile.parts.iter().filter(|part| part.name != "skirt")
 }
 
@@ -60,15 +60,15 @@ pub(crate) fn check_heights(tiles: &Tiles, region: &Region, inside: usize) -> Fi
     found
 }
 
-type Place = [u64; 3];
+type PositionBits = [u64; 3];
 
-fn place(at: [f64; 3]) -> Place {
+fn place(at: [f64; 3]) -> PositionBits {
     at.map(|axis| (axis + 0.0).to_bits())
 }
 
 /// The edges of a tile's ground that only one triangle has, by their places.
-fn open_edges(tile: &Tile) -> Result<HashSet<[Place; 2]>, String> {
-    let mut balance: HashMap<[Place; 2], i32> = HashMap::new();
+fn open_edges(tile: &Tile) -> Result<HashSet<[PositionBits; 2]>, String> {
+    let mut balance: HashMap<[PositionBits; 2], i32> = HashMap::new();
     for part in ground(tile) {
         for corners in &part.triangles {
             let at = corners.map(|k| place(part.at_m[k]));
@@ -124,7 +124,7 @@ pub(crate) fn check_watertight(tiles: &Tiles, region: &Region) -> Result<(), Str
 
 /// Tiles of a level have the same points on the border between them.
 pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String> {
-    let mut open: BTreeMap<[u32; 3], HashSet<[Place; 2]>> = BTreeMap::new();
+    let mut open: BTreeMap<[u32; 3], HashSet<[PositionBits; 2]>> = BTreeMap::new();
     for tile in &tiles.tiles {
         let name: Vec<u32> = tile.name.split('/').map(|part| part.parse().unwrap()).collect();
         open.insert(name.try_into().unwrap(), open_edges(tile)?);
@@ -133,8 +133,8 @@ pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String
     let grounds: BTreeMap<&str, &Tile> =
         tiles.tiles.iter().map(|tile| (tile.name.as_str(), tile)).collect();
     // The places of a tile's open edges that lie on a line of the CRS where its neighbour has ground, too.
-    let on_line = |edges: &HashSet<[Place; 2]>, beside: &Tile, axis: usize, line: f64| {
-        let places: Vec<Place> = edges.iter().flatten().copied().collect();
+    let on_line = |edges: &HashSet<[PositionBits; 2]>, beside: &Tile, axis: usize, line: f64| {
+        let places: Vec<PositionBits> = edges.iter().flatten().copied().collect();
         let on_earth: Vec<_> =
             places.iter().map(|at| tiles.on_earth(at.map(f64::from_bits))).collect();
         let carried = from_earth.carry(&on_earth);
@@ -146,7 +146,7 @@ pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String
             .zip(carried)
             .filter(|(_, at)| is_shared(at))
             .map(|(at, _)| at)
-            .collect::<HashSet<Place>>()
+            .collect::<HashSet<PositionBits>>()
     };
     let mut shared = 0;
     for (&[z, x, y], edges) in &open {

@@ -1,4 +1,4 @@
-//! Photos as pictures of the ground.
+//! Photos in 3D Tiles lie on the ground as they do in the package.
 
 use std::fs;
 

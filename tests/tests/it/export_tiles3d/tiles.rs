@@ -15,7 +15,7 @@ use super::glb::Glb;
 
 /// A list of triangles with its name.
 #[derive(Clone)]
-pub(crate) struct Part {
+pub(crate) struct NamedTriangles {
     pub(crate) name: String,
     /// In the root frame, metres.
     pub(crate) at_m: Vec<[f64; 3]>,
@@ -27,7 +27,7 @@ pub(crate) struct Part {
 #[derive(Clone)]
 pub(crate) struct Tile {
     pub(crate) name: String,
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<NamedTriangles>,
     pub(crate) ground: Rc<Ground>,
     pub(crate) error_m: f64,
     bounding_box: Vec<f64>,
@@ -99,7 +99,7 @@ impl Tiles {
         let parts = glb
             .primitives
             .iter()
-            .map(|primitive| Part {
+            .map(|primitive| NamedTriangles {
                 name: primitive.name.clone(),
                 at_m: primitive.at_m.clone(),
                 triangles: primitive
@@ -206,7 +206,7 @@ impl Tiles {
                 assert!(far(&in_crs[nearest]) < 0.01, "a corner of the package is no vertex");
                 at_m[nearest]
             };
-            tile.parts = vec![Part {
+            tile.parts = vec![NamedTriangles {
                 name: "terrain".to_owned(),
                 at_m: tile.ground.corners.iter().map(vertex_at).collect(),
                 triangles: tile.ground.triangles.clone(),

@@ -1,6 +1,6 @@
-//! Where a package lies.
+//! Where a package lies, in the document of `corniche info`.
 
-use corniche_geom::{Bounds, Frame, NodeIndex};
+use corniche_geom::{Bounds, GridFrame, NodeIndex};
 use corniche_tileset::ClipRecord;
 use serde::Serialize;
 
@@ -79,8 +79,8 @@ pub(crate) struct CoordinatesSchema {
     samples_deg: Vec<[f64; 2]>,
 }
 
-impl From<&Frame> for FrameDocument {
-    fn from(frame: &Frame) -> Self {
+impl From<&GridFrame> for FrameDocument {
+    fn from(frame: &GridFrame) -> Self {
         let NodeIndex { i, j } = frame.root_corner();
         Self {
             origin_m: frame.origin_m(),

@@ -1,4 +1,4 @@
-//! Levels of a package.
+//! The levels of a package, in the document of `corniche info`.
 
 use corniche_tileset::LevelRecord;
 use serde::Serialize;

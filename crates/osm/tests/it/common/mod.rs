@@ -15,7 +15,7 @@ use std::{
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{
-    Defect, ExtractSummary, Kept, KeptKinds, Place, ReadOsmError, ReadRequest, read_roads,
+    Defect, ExtractSummary, Kept, KeptKinds, ReadOsmError, ReadRequest, ToLattice, read_roads,
     read_roads_from,
 };
 use corniche_presets::parse_frc_table;
@@ -97,13 +97,13 @@ impl Extract {
 pub(crate) fn read_with(
     path: &Path,
     threads: usize,
-    place: &Place<'_>,
+    place: &ToLattice<'_>,
 ) -> Result<Extract, ReadOsmError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     read_in(path, &pool, place)
 }
 
-fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract, ReadOsmError> {
+fn read_in(path: &Path, pool: &ThreadPool, place: &ToLattice<'_>) -> Result<Extract, ReadOsmError> {
     let scratch = MemoryScratch::default();
     let request = request(path, pool, place, &scratch);
     gather(|sink, on_defect| read_roads(&request, sink, on_defect, &|| false))
@@ -113,7 +113,7 @@ fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract,
 pub(crate) fn request<'a>(
     path: &'a Path,
     pool: &'a ThreadPool,
-    place: &'a Place<'a>,
+    place: &'a ToLattice<'a>,
     scratch: &'a dyn Scratch,
 ) -> ReadRequest<'a> {
     let (table, memory_bytes) = (&*TABLE, 1 << 30);

@@ -14,14 +14,14 @@ use crate::{
 
 /// Costs of tiles on all levels, microseconds of one core.
 pub(crate) struct Grounds {
-    /// Of the step *heights*; `None` where the terrain comes from a package and there are no photos.
+    /// What the step *heights* costs; `None` where the terrain comes from a package and there are no photos.
     pub(crate) heights: Option<Vec<(TileId, u64)>>,
-    /// Of the step *tiles*, without roads.
+    /// What the step *tiles* costs without roads.
     pub(crate) tiles: Vec<(TileId, u64)>,
 }
 
 impl Grounds {
-    /// Of elevation files, from the nodes of each finest tile.
+    /// The costs of ground from elevation files, by the nodes of each finest tile.
     pub(crate) fn measured(opened: &Opened, nodes: &[(TileId, u64)]) -> Self {
         let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
         let triangles_per_node = rates::triangles_per_node(opened.max_error_m / usual_m);
@@ -49,7 +49,7 @@ impl Grounds {
         }
     }
 
-    /// Of the terrain of a package: of each tile with ground the same, because only its levels say how much they hold.
+    /// The costs of ground from a package: the same for each tile with ground, because only its levels say how much they hold.
     pub(crate) fn recorded(opened: &Opened, terrain: &RecordedTerrain) -> Result<Self, BuildError> {
         let levels = &terrain.manifest().levels;
         let with_ground: BTreeSet<TileId> = terrain.package().tile_ids()?.into_iter().collect();
@@ -80,7 +80,7 @@ fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
     })
 }
 
-/// For each tile above some finest ones the nodes of its own level that lie in the data.
+/// The nodes of its own level that lie in the data, for each tile above some finest ones.
 fn nodes_above(finest: &[(TileId, u64)]) -> BTreeMap<TileId, f64> {
     let mut all = BTreeMap::new();
     let mut level: BTreeMap<TileId, f64> =

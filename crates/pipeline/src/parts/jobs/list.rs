@@ -50,7 +50,7 @@ pub(crate) struct Costs {
 /// What the reading of an extract costs, microseconds of one core.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ExtractCosts {
-    /// So many are worth it; 1: the step *roads* reads the extract itself.
+    /// How many shares are worth it; with 1 the step *roads* reads the extract itself.
     pub(crate) shares: u16,
     /// Both passes.
     pub(crate) ways_us: u64,
@@ -170,7 +170,7 @@ pub(crate) fn micros(seconds: f64) -> u64 {
     (seconds * 1e6).round() as u64
 }
 
-/// To the millisecond.
+/// Rounds to the millisecond.
 fn seconds(micros: u64) -> f64 {
     micros.div_ceil(1000) as f64 / 1e3
 }

@@ -1,3 +1,5 @@
+//! Every tile is in one job, large jobs come first, and each says what it waits for.
+
 use std::collections::BTreeSet;
 
 use corniche_geom::TileId;

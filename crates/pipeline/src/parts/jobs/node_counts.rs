@@ -1,6 +1,6 @@
 //! How many nodes of each finest tile lie in the rectangles of files.
 
-use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{GridFrame, NodeIndex, TILE_CELLS, TileId};
 
 use crate::heights::data_tiles::DataTiles;
 
@@ -10,7 +10,7 @@ const TILE_NODES: u64 = (TILE_CELLS * TILE_CELLS) as u64;
 /// All tiles of `data`, row by row, each with the number of its nodes in the rectangles, which are given by their south-western and
 /// north-eastern node. Where rectangles overlap, nodes count twice, but no tile has more than all its nodes.
 pub(crate) fn nodes_by_tile(
-    frame: &Frame,
+    frame: &GridFrame,
     data: &DataTiles,
     rectangles: &[[NodeIndex; 2]],
 ) -> Vec<(TileId, u64)> {
@@ -36,7 +36,7 @@ pub(crate) fn nodes_by_tile(
     counted
 }
 
-/// Of nodes from `low` to `high` along an axis: how many belong to each tile from `first` to `last`, where it is any.
+/// How many of the nodes from `low` to `high` along an axis belong to each tile from `first` to `last`, where it is any.
 fn overlaps([low, high]: [i64; 2], [first, last]: [u32; 2]) -> Vec<(u32, u64)> {
     let tile_of = |node: i64| node.div_euclid(TILE_CELLS);
     let from = tile_of(low).max(i64::from(first));

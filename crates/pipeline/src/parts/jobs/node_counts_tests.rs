@@ -1,3 +1,5 @@
+//! Every node of the elevation files counts for one tile.
+
 use super::*;
 
 fn node(i: i64, j: i64) -> NodeIndex {
@@ -11,7 +13,7 @@ fn of(counts: &[(TileId, u64)], x: u32, y: u32) -> u64 {
 #[test]
 fn every_node_counts_for_one_tile() {
     let (south_west, north_east) = (node(-300, 100), node(700, 900));
-    let frame = Frame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
+    let frame = GridFrame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
     let data = DataTiles::between(&frame, south_west, north_east);
     let counts = nodes_by_tile(&frame, &data, &[[south_west, north_east]]);
     assert_eq!(counts.iter().map(|(_, nodes)| nodes).sum::<u64>(), 1001 * 801);
@@ -31,7 +33,7 @@ fn every_node_counts_for_one_tile() {
 #[test]
 fn tiles_between_files_have_no_node_and_those_of_two_files_no_more_than_all() {
     let (south_west, north_east) = (node(0, 0), node(256 * 4 - 1, 256 * 4));
-    let frame = Frame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
+    let frame = GridFrame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
     let data = DataTiles::between(&frame, south_west, north_east);
     // The north-western tile, twice, and a corner of the south-eastern one.
     let north_west = [node(0, 256 * 3 + 1), node(255, 256 * 4)];

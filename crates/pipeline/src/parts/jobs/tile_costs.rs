@@ -31,7 +31,7 @@ pub(crate) struct Subtree {
 }
 
 impl TileCosts {
-    /// From the costs of tiles in any order; those of the same tile are added up. No tile is below `max_level`.
+    /// Takes the costs of tiles in any order; those of the same tile are added up. No tile is below `max_level`.
     pub(crate) fn new(max_level: u8, costs: impl IntoIterator<Item = (TileId, u64)>) -> Self {
         let mut by_place: Vec<BTreeMap<u64, u64>> =
             vec![BTreeMap::new(); usize::from(max_level) + 1];

@@ -1,3 +1,5 @@
+//! The cost of a subtree is the sum of its tiles', and subtrees hold every tile once.
+
 use proptest::prelude::*;
 
 use super::*;

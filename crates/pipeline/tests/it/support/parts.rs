@@ -6,7 +6,7 @@ use std::{
     sync::LazyLock,
 };
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_pipeline::{
     CheckId, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
 };
@@ -146,7 +146,7 @@ impl Parts {
         SOUND.parts.clone()
     }
 
-    pub(crate) fn frame(&self) -> &Frame {
+    pub(crate) fn frame(&self) -> &GridFrame {
         &self.manifest.frame
     }
 

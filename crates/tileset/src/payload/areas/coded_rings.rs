@@ -26,7 +26,7 @@ enum Followed {
     None,
     /// The point before was there already, with this number.
     From(usize),
-    /// So was the one before it, beside it in the same ring: the way leads on or back.
+    /// The point before that one was there already, too, beside it in the same ring: the way leads on or back.
     Along(usize, Way),
 }
 
@@ -40,7 +40,7 @@ enum Way {
 /// What a coder knows of a section's rings.
 pub(crate) struct RingCoder {
     bounds: LatticeBounds,
-    /// Of the coarse lattice.
+    /// The spacing of the coarse lattice.
     step: i64,
     goes_on: Model,
     is_next: Model,
@@ -52,7 +52,7 @@ pub(crate) struct RingCoder {
     is_beside: Model,
     beside: [Magnitudes<1, 1>; 2],
     points: Vec<LatticePoint>,
-    /// By point: the number of its ring.
+    /// The number of each point's ring.
     ring_of: Vec<u32>,
     /// The points of each ring that is whole.
     rings: Vec<Range<usize>>,

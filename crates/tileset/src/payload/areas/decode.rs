@@ -1,3 +1,5 @@
+//! The areas section is decoded, and damage is found before memory is taken for it.
+
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint};
 
@@ -177,7 +179,7 @@ struct Places<S, B> {
     steps: S,
     beside: B,
     step: i64,
-    /// In steps of the coarse lattice.
+    /// The last coordinate, in steps of the coarse lattice.
     last: i64,
 }
 

@@ -1,5 +1,7 @@
+//! The areas of a tile are encoded as a section.
+
 use corniche_areas::AreaObject;
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 
 use super::coded_rings::RingCoder;
 use super::decode::{self, PlacesOfSection};
@@ -30,7 +32,7 @@ impl AreasSection {
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn decode(&self, tile: TileId, frame: &Frame) -> Result<Vec<AreaRecord>, DecodeError> {
+    pub fn decode(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<AreaRecord>, DecodeError> {
         let failed = |damage| DecodeError { tile, part: Kind::Areas.name(), damage };
         let bounds = frame.tile_lattice_bounds(tile);
         decode::decode(&self.bytes, self.is_coded, bounds).map_err(failed)
@@ -54,7 +56,7 @@ impl AreasSection {
 /// When a point lies outside the tile, a polygon has no rings or a ring too few points, or there is more than a reader accepts.
 pub fn encode_areas(
     tile: TileId,
-    frame: &Frame,
+    frame: &GridFrame,
     step: i64,
     areas: &[AreaRecord],
 ) -> Result<Option<AreasSection>, EncodeError> {
@@ -187,9 +189,9 @@ struct Columns {
     name_bytes: Vec<u64>,
     names: Vec<u8>,
     polygons: Vec<u64>,
-    /// Of each polygon, without the outer one.
+    /// The number of rings of each polygon, without the outer one.
     rings: Vec<u64>,
-    /// Of each ring, less three.
+    /// The number of points of each ring, less three.
     points: Vec<u64>,
     all_points: Vec<LatticePoint>,
     last_id: i64,

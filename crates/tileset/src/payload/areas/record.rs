@@ -1,3 +1,5 @@
+//! An area as a tile holds it: its class, its object and its rings inside the tile.
+
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::LatticePoint;
 

@@ -1,3 +1,5 @@
+//! The boundaries of a tile are encoded as a section.
+
 use corniche_geom::TileId;
 
 use super::{BoundaryRecord, FARTHEST, MOST_STEP, decode};

@@ -1,3 +1,5 @@
+//! The photo section is decoded: a JPEG, and a mask of the texels without a photo.
+
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;

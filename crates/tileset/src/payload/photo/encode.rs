@@ -1,3 +1,5 @@
+//! The photo of a tile is encoded as a section: a JPEG, and a mask of the texels without a photo.
+
 use corniche_geom::TileId;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 

@@ -1,3 +1,5 @@
+//! The decoded photo of a tile and the border of texels around it.
+
 use corniche_geom::TILE_CELLS;
 
 /// Texels beyond a tile on each of its sides, which are those of its neighbours: each of the texture's first four sizes (1, 1/2, 1/4,

@@ -1,3 +1,5 @@
+//! Coefficients of every size come back.
+
 use corniche_testing::Random;
 
 use super::*;

@@ -1,4 +1,4 @@
-//! The fixed part of the section.
+//! The fixed part of the relief section.
 
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, unzigzag};

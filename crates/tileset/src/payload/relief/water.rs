@@ -7,7 +7,7 @@ use super::wavelet::SIDE;
 /// Fewer neighbours than this say nothing.
 const LEAST_NEIGHBOURS: usize = 3;
 
-/// For each of the tile's own nodes whether it is water: it lies at or below 0, and its neighbours, eight or those that have a
+/// Tells for each of the tile's own nodes whether it is water: it lies at or below 0, and its neighbours, eight or those that have a
 /// height, have exactly the same height. All tiles that have a node see the same neighbours.
 pub(crate) fn of_raster(with_halo: &HeightGrid) -> Vec<bool> {
     let mut water = Vec::with_capacity(SIDE * SIDE);

@@ -1,3 +1,5 @@
+//! The inverse wavelet gives back every value.
+
 use corniche_testing::Random;
 
 use super::*;

@@ -45,7 +45,7 @@ impl Surprises for Cursor<'_> {
 
 /// What a coder knows of a class's surprises.
 pub(crate) struct SurpriseCoder {
-    /// By the flags of the line: a line with a lead-in always has one.
+    /// The counts, by the flags of the line: a line with a lead-in always has one.
     counts: Magnitudes<4, 1>,
     gaps: Magnitudes<1, 1>,
     kinds: [Model; 4],

@@ -1,3 +1,5 @@
+//! The terrain section is decoded: triangles are found again by the walk that encoding made.
+
 use corniche_tin::{Tin, TinVertex};
 
 use crate::limits::{MAX_VERTICES, max_walk_steps};

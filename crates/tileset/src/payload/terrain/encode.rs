@@ -1,3 +1,5 @@
+//! The TIN of a tile is encoded as a section: positions, triangles, heights and normals.
+
 use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 

@@ -1,4 +1,4 @@
-//! The fixed part of the section, and what its numbers may be.
+//! The fixed part of the terrain section, and what its numbers may be.
 
 use corniche_geom::Cell;
 

@@ -19,7 +19,7 @@ pub(crate) struct Symbols {
     is_first_here: [[[Model; HISTORIES]; 2]; SHAPES],
     is_none: [[Model; HISTORIES]; SHAPES],
     is_next: [[Model; GUESSES as usize]; 2],
-    /// For each vertex: 1, there was a gate without triangle; 2, there was another guess than the first.
+    /// What was met at each vertex: 1, there was a gate without triangle; 2, there was another guess than the first.
     met: Vec<u8>,
     numbers: Magnitudes<1, 1>,
 }

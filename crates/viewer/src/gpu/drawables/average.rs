@@ -17,7 +17,7 @@ pub(crate) const SHADER: Shader = shader!("average": "screen", "average");
 /// Averages the samples of each pixel.
 pub(crate) struct Average {
     layout: BindGroupLayout,
-    /// For 2, 3 and 4 samples on each side of a pixel, made when first used.
+    /// The pipelines for 2, 3 and 4 samples on each side of a pixel, made when first used.
     pipelines: [OnceLock<RenderPipeline>; MAX_SAMPLES_PER_SIDE as usize - 1],
 }
 

@@ -1,3 +1,5 @@
+//! Bounds in 16 bits are never too low.
+
 use super::*;
 
 #[test]

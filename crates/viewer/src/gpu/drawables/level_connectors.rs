@@ -60,7 +60,7 @@ impl LevelConnectors {
         }
     }
 
-    /// For each finer tile its index and the range of its instances.
+    /// The index of each finer tile and the range of its instances.
     fn runs(&self) -> impl Iterator<Item = (usize, Range<u32>)> {
         let mut start = 0;
         self.list.chunk_by(|a, b| a.fine == b.fine).map(move |run| {

@@ -1,3 +1,5 @@
+//! Every shader is valid without a graphics card, and its uniform blocks fit those of the code.
+
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 use wgpu::naga::{Module, TypeInner, front::wgsl, valid};

@@ -23,7 +23,7 @@ use crate::frame_view::{FrameView, Wireframe};
 pub(crate) const SHADER: Shader =
     shader!("terrain": "common", "ground_look", "relief", "photo", "terrain");
 
-/// By how much the direction of the second light is turned, clockwise.
+/// The angle by which the direction of the second light is turned, clockwise.
 const SECOND_LIGHT_DEG: f64 = -60.0;
 
 /// Draws the ground of tiles.

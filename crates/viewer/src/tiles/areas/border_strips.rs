@@ -1,3 +1,5 @@
+//! Areas are continued into a strip around their tile, so that no gap shows between tiles.
+
 use corniche_geom::{LatticeBounds, LatticePoint};
 
 /// The strip around a tile into which its areas are continued.
@@ -40,7 +42,7 @@ pub(crate) fn with_strips(ring: &[LatticePoint], strip: Strip) -> Vec<LatticePoi
 }
 
 impl Strip {
-    /// By how much a segment is moved that lies along the border; `None` for all others.
+    /// How far a segment is moved that lies along the border; `None` for all others.
     fn outwards(self, from: LatticePoint, to: LatticePoint) -> Option<[i64; 2]> {
         let LatticeBounds { min, max } = self.tile;
         let [east, north] = self.wide;

@@ -1,3 +1,5 @@
+//! The inside of rings becomes triangles in plan.
+
 use corniche_geom::LatticePoint;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -63,7 +65,7 @@ fn odd_segments(rings: &[Vec<LatticePoint>], points: &[LatticePoint]) -> Vec<[us
     runs.filter(|run| run.len() % 2 == 1).map(|run| run[0]).collect()
 }
 
-/// For each face whether it is inside: whoever comes from outside has crossed an odd number of constraints.
+/// Tells for each face whether it is inside: whoever comes from outside has crossed an odd number of constraints.
 fn faces_inside(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<bool> {
     let mut is_inside: Vec<Option<bool>> = vec![None; triangulation.num_all_faces()];
     let outer = triangulation.outer_face().fix().index();

@@ -12,7 +12,7 @@ use super::super::DashPlace;
 pub(crate) struct GroundLengths {
     /// Points in plan, working metres.
     points_m: Vec<[f64; 2]>,
-    /// Of each segment: how much of it lies on ground of the tile, in plan and along the ground.
+    /// How much of each segment lies on ground of the tile, in plan and along the ground.
     lengths_m: Vec<[f64; 2]>,
 }
 
@@ -33,7 +33,7 @@ impl GroundLengths {
         }
     }
 
-    /// For each segment, where its dashes are.
+    /// Where the dashes of each segment are.
     pub(crate) fn places(self) -> DashPlaces {
         let mut along_m = 0.0;
         let segments = self.points_m.array_windows::<2>().zip(&self.lengths_m);
@@ -48,11 +48,11 @@ impl GroundLengths {
     }
 }
 
-/// For each segment of a line its start, how far along the line that is, and metres along the line for each metre in plan.
+/// The start of each segment of a line, how far along the line that is, and metres along the line for each metre in plan.
 pub(crate) struct DashPlaces(Vec<([f64; 2], f64, f64)>);
 
 impl DashPlaces {
-    /// For a part of a segment that starts at this point.
+    /// The dashes of a part of a segment that starts at this point.
     pub(crate) fn at(&self, segment: usize, start: [f64; 2]) -> DashPlace {
         let Some((from, start_m, rate)) = self.0.get(segment) else { return DashPlace::flat(0.0) };
         let beyond_m = libm::hypot(start[0] - from[0], start[1] - from[1]);

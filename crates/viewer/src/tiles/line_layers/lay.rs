@@ -1,5 +1,7 @@
+//! Lines of people's files are laid on the ground of a tile.
+
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tin::Surface;
 
@@ -19,7 +21,7 @@ const LONGEST_CELLS: f64 = 8.0;
 pub(crate) struct TileGround<'a> {
     pub(crate) id: TileId,
     pub(crate) surface: &'a Surface,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a GridFrame,
     /// The tile's reference point.
     pub(crate) reference_m: [f64; 3],
     /// Lines are not drawn beyond this half width, working metres.
@@ -161,7 +163,7 @@ fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGrou
     Laid { lines, places }
 }
 
-/// For each piece of a draped line, the number of the path's segment that it is a piece of. `sources` are segments of `part`, in order.
+/// The number of the path's segment that each piece of a draped line is a piece of. `sources` are segments of `part`, in order.
 fn segments_of(sources: &[[LatticePoint; 2]], part: &ClippedPart) -> Vec<usize> {
     let points = part.line.points();
     let mut at = 0;

@@ -1,3 +1,5 @@
+//! Lines of files lie on the ground, and dashes are as long on slopes as on level ground.
+
 use corniche_geom::NodeIndex;
 use corniche_tin::{Placement, Tin, TinVertex};
 
@@ -7,12 +9,12 @@ const CELL_M: f64 = 10.0;
 /// The ground rises by so many metres for each metre to the east.
 const RISE: f64 = 0.75;
 
-fn frame() -> Frame {
-    Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
 }
 
 /// A plane in two triangles.
-fn surface(frame: &Frame) -> Surface {
+fn surface(frame: &GridFrame) -> Surface {
     let rise_q = (256.0 * 2.0 * CELL_M * RISE) as i32;
     let node =
         |row, column| TinVertex { row, column, height_q: if column > 0 { rise_q } else { 0 } };

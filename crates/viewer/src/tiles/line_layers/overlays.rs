@@ -1,6 +1,6 @@
 //! Lines of people's own files, as the tiles of each level need them.
 
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
 
 use super::LayerLine;
@@ -13,7 +13,7 @@ const RUN: usize = 64;
 /// Lines of people's own files, prepared for each level of a package.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
-    /// By level.
+    /// The lines of each level.
     levels: Vec<Vec<LevelLine>>,
 }
 
@@ -27,7 +27,7 @@ struct LevelLine {
 impl Overlays {
     /// Prepares lines. Those that are not two different points long are left out.
     #[must_use]
-    pub fn new(lines: &[LayerLine], frame: &Frame) -> Self {
+    pub fn new(lines: &[LayerLine], frame: &GridFrame) -> Self {
         let levels = (0..=frame.max_level()).map(|level| {
             let tolerance_m = if level == frame.max_level() {
                 0.0
@@ -48,7 +48,7 @@ impl Overlays {
 
     /// The parts of lines in a tile and so many steps of the lattice around it.
     #[must_use]
-    pub fn near(&self, id: TileId, frame: &Frame, margin: i64) -> Vec<LayerLine> {
+    pub fn near(&self, id: TileId, frame: &GridFrame, margin: i64) -> Vec<LayerLine> {
         let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
         let lines = self.levels.get(usize::from(id.z())).into_iter().flatten();
         lines.flat_map(|line| line.near(&around)).collect()

@@ -1,10 +1,12 @@
+//! A tile gets all segments of overlays that are near it.
+
 use corniche_geom::NodeIndex;
 use proptest::prelude::*;
 
 use super::*;
 
-fn frame() -> Frame {
-    Frame::new([0.0, 0.0], 10.0, NodeIndex { i: 0, j: 0 }, 2).unwrap()
+fn frame() -> GridFrame {
+    GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: 0, j: 0 }, 2).unwrap()
 }
 
 fn line(points: Vec<LatticePoint>) -> LayerLine {

@@ -16,7 +16,7 @@ pub struct DashPlace {
 }
 
 impl DashPlace {
-    /// For a segment that starts this far along its line, with so many metres along the line for each metre in plan.
+    /// The dashes of a segment that starts this far along its line, with so many metres along the line for each metre in plan.
     pub(crate) fn new(start_m: f64, rate: f64) -> Self {
         Self { start_m: start_m.rem_euclid(WRAP_M) as f32, rate: rate as f32 }
     }
@@ -26,18 +26,18 @@ impl DashPlace {
         Self::new(start_m, 1.0)
     }
 
-    /// As shaders take it: start and rate.
+    /// The numbers that shaders take: start and rate.
     pub(crate) const fn numbers(self) -> [f32; 2] {
         [self.start_m, self.rate]
     }
 
-    /// That of these numbers.
+    /// The place of dashes that these numbers stand for.
     pub(crate) const fn of_numbers([start_m, rate]: [f32; 2]) -> Self {
         Self { start_m, rate }
     }
 }
 
-/// For each segment of a line, where its dashes are: how far along the road its start is. Dashes are counted from there, so they go on
+/// Where the dashes of each segment of a line are: how far along the road its start is. Dashes are counted from there, so they go on
 /// at the bends of the road.
 ///
 /// ```text

@@ -1,3 +1,5 @@
+//! Dashes go on at bends and tile borders, in both methods alike.
+
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };

@@ -1,3 +1,5 @@
+//! Where roads meet the border of their tile.
+
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use serde::{Deserialize, Serialize};

@@ -23,7 +23,7 @@ pub(crate) struct LineEnds {
     pub(crate) last: Option<[[f64; 2]; 2]>,
 }
 
-/// For each line, whether it is flat at its first and at its last point.
+/// Tells for each line whether it is flat at its first and at its last point.
 ///
 /// ```text
 ///       round                    flat
@@ -66,7 +66,7 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
 
 /// The end of a line at a point.
 struct End {
-    /// Of which line, and which of its ends.
+    /// The number of the line, and which of its ends it is.
     number: usize,
     which: usize,
     height: [u8; 3],

@@ -1,3 +1,5 @@
+//! Of two roads in line the more important one ends flat, and all other ends are round.
+
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };

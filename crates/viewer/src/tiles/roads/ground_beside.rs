@@ -1,3 +1,5 @@
+//! How far the ground beside a piece of a road is below or above it.
+
 use corniche_geom::TILE_CELLS;
 
 /// A plane through a piece of a road, and how far the ground beside it is below or above that plane, true metres.

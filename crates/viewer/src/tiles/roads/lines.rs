@@ -1,5 +1,7 @@
+//! The roads of a decoded tile as lines: on the ground for GEO, in plan for SV.
+
 use corniche_drape::BadLine;
-use corniche_geom::Frame;
+use corniche_geom::GridFrame;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
@@ -19,7 +21,7 @@ pub struct GroundLine {
     pub look: RoadLook,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
-    /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
+    /// Both ends in plan of the segment of the source line that each piece between two vertices is a piece of.
     /// Between two pieces of one segment the road is straight.
     pub sources_m: Vec<[[f64; 2]; 2]>,
     /// Where dashes are, for the start of each segment of the source line that has pieces; `None`: as for roads.
@@ -57,7 +59,7 @@ pub struct PlanLine {
     pub look: RoadLook,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
-    /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
+    /// The lowest and highest true height of the tile's ground within the width margin of each segment.
     pub ground_range_m: Vec<[f64; 2]>,
     /// Where dashes are, for the start of each segment; `None`: as for roads.
     pub dashes: Option<Vec<DashPlace>>,
@@ -66,9 +68,9 @@ pub struct PlanLine {
 /// The roads of a tile.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TileLines {
-    /// On the ground; empty if that section was not read.
+    /// Roads on the ground; empty if that section was not read.
     pub ground: Vec<GroundLine>,
-    /// In plan; empty if that section was not read.
+    /// Roads in plan; empty if that section was not read.
     pub plan: Vec<PlanLine>,
     /// How far the plan lines reach beyond the tile; roads are not drawn beyond this half width.
     pub width_margin_m: f64,
@@ -94,7 +96,7 @@ impl TileLines {
     pub(crate) fn of_payload(
         payload: &TilePayload,
         surface: Option<&Surface>,
-        frame: &Frame,
+        frame: &GridFrame,
         width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
         let ground =
@@ -108,7 +110,7 @@ impl TileLines {
 fn ground_lines(
     payload: &TilePayload,
     surface: &Surface,
-    frame: &Frame,
+    frame: &GridFrame,
 ) -> Result<Vec<GroundLine>, BadRoad> {
     let place = |[u, v, height_m]: [f64; 3]| {
         let [x, y] = frame.position_of_fraction_m([u, v]);
@@ -144,7 +146,7 @@ fn tagged(payload: &TilePayload, way_id: i64) -> (OwnWidth, RoadLook) {
         .unwrap_or_default()
 }
 
-fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
+fn plan_lines(payload: &TilePayload, frame: &GridFrame) -> Vec<PlanLine> {
     let place = |road: &corniche_tileset::SvRoad| {
         let (own_width, look) = tagged(payload, road.way_id);
         PlanLine {

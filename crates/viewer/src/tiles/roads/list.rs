@@ -1,3 +1,5 @@
+//! Pieces of roads in order of their class, so that each class is one range.
+
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 

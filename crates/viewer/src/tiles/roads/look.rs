@@ -1,15 +1,17 @@
+//! Kinds of roads that are drawn differently within their class: slip roads, tunnels and service roads.
+
 use corniche_roads::{Form, RoadAttributes, Structure};
 use serde::{Deserialize, Serialize};
 
 /// What a road is, as far as it changes how it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RoadLook {
-    /// As its class is.
+    /// The road looks as its class does.
     #[default]
     Plain,
     /// A slip road: narrower, without the bands that take less than half of the width.
     Link,
-    /// Under the ground: pale, with a dashed edge, and hidden by every road that is not.
+    /// A road under the ground: pale, with a dashed edge, and hidden by every road that is not.
     Tunnel,
     /// A service road: driveways, parking aisles, ways to yards and barns. Narrower, of one colour, shown one zoom step later than
     /// the rest of its class, and hidden by every other road on the ground.
@@ -41,7 +43,7 @@ impl RoadLook {
         }
     }
 
-    /// That of a number.
+    /// The look of a number.
     pub(crate) fn of_number(number: u32) -> Option<Self> {
         [Self::Plain, Self::Link, Self::Tunnel, Self::Service]
             .into_iter()

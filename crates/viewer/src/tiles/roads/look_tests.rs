@@ -1,3 +1,5 @@
+//! Tunnels, slip roads and service roads are told by their attributes.
+
 use super::*;
 
 #[test]

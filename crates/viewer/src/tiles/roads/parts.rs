@@ -30,7 +30,7 @@ pub(crate) struct KnownNet {
     pub(crate) near_m: f64,
 }
 
-/// For each line, the length of the part of the network to which it belongs among lines of its class and more important
+/// The length of the part of the network to which each line belongs among lines of its class and more important
 /// ones, working metres. [`OPEN_M`] if that part may go on where this tile knows no lines.
 ///
 /// ```text
@@ -92,16 +92,16 @@ impl KnownNet {
 
 /// Parts of the network, as a forest of lines that belong together.
 struct Net {
-    parts: Vec<Part>,
+    parts: Vec<ForestLine>,
     /// A line that comes through a square.
     at: BTreeMap<[i64; 2], usize>,
     near_m: f64,
 }
 
-struct Part {
+struct ForestLine {
     /// Another line of the same part, itself at the root.
     parent: usize,
-    /// Of all lines; known at the root.
+    /// The length of all lines of the part; known at the root.
     length_m: f64,
 }
 
@@ -112,7 +112,7 @@ impl Net {
         let length_m = vertices_m.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
         let length_m = if known.holds(vertices_m) { length_m } else { f64::from(OPEN_M) };
         let number = self.parts.len();
-        self.parts.push(Part { parent: number, length_m });
+        self.parts.push(ForestLine { parent: number, length_m });
         for square in self.squares(vertices_m) {
             for [dx, dy] in [-1, 0, 1].into_iter().flat_map(|dx| [-1, 0, 1].map(|dy| [dx, dy])) {
                 if let Some(&other) = self.at.get(&[square[0] + dx, square[1] + dy]) {

@@ -1,3 +1,5 @@
+//! Parts of the road network are found by class, and no crossing is missed.
+
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 };

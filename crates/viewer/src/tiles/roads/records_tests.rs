@@ -1,3 +1,5 @@
+//! Segments and volumes of roads come from a worker as they were sent.
+
 use proptest::prelude::*;
 
 use super::*;

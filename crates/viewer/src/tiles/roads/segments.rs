@@ -1,3 +1,5 @@
+//! Straight pieces of roads on the ground, as the GEO method draws them.
+
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 

@@ -1,3 +1,5 @@
+//! Straight pieces of roads with a range of heights, as the SV method draws them.
+
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 

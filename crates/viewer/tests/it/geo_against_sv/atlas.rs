@@ -23,7 +23,7 @@ use super::{
         scene::{Scene, Tile},
         scenes::by_own_widths,
     },
-    views::{Place, Seen, View},
+    views::{RoadPlace, Seen, View},
 };
 
 const SIZE: [u32; 2] = [640, 480];
@@ -54,7 +54,7 @@ impl<'a> Atlas<'a> {
     }
 
     /// The middles of the segments of all roads on the finest level.
-    pub(crate) fn places(&self) -> Vec<Place> {
+    pub(crate) fn places(&self) -> Vec<RoadPlace> {
         let manifest = self.package.manifest();
         let ids = self.package.tile_ids().unwrap();
         let finest = ids.iter().map(|id| id.z()).max().unwrap();
@@ -71,7 +71,7 @@ impl<'a> Atlas<'a> {
                     && (bounds.min_y..bounds.max_y).contains(&y)
                 {
                     let lon_lat_deg = manifest.coordinates.wgs84_from_working(at_m);
-                    places.push(Place { at_m, lon_lat_deg });
+                    places.push(RoadPlace { at_m, lon_lat_deg });
                 }
             }
         }

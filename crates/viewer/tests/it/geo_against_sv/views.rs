@@ -7,7 +7,7 @@ use corniche_viewer::camera::Orientation;
 
 /// A place on a road in plan, with its longitude and latitude.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct RoadPlace {
     pub(crate) at_m: [f64; 2],
     pub(crate) lon_lat_deg: [f64; 2],
 }
@@ -15,7 +15,7 @@ pub(crate) struct Place {
 /// Where to look from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
-    pub(crate) place: Place,
+    pub(crate) place: RoadPlace,
     pub(crate) distance_m: f64,
     pub(crate) orientation: Orientation,
 }
@@ -52,12 +52,12 @@ impl Seen {
 
 /// Views without end, the same ones for the same places and seed.
 pub(crate) struct Views {
-    places: Vec<Place>,
+    places: Vec<RoadPlace>,
     random: Random,
 }
 
 impl Views {
-    pub(crate) fn new(places: Vec<Place>, seed: u64) -> Self {
+    pub(crate) fn new(places: Vec<RoadPlace>, seed: u64) -> Self {
         assert!(!places.is_empty(), "a package without roads");
         Self { places, random: Random::new(seed) }
     }

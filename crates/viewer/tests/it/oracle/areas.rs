@@ -2,7 +2,7 @@
 //! whole outlines, which know nothing of tiles, volumes and stencils.
 
 use corniche_areas::AreaClass;
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{GridFrame, TileId};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
@@ -338,7 +338,7 @@ fn areas_agree_with_both_references_across_tiles() {
 }
 
 /// Coarse tiles in the west, fine ones in the east, and a lake, a forest and a settlement over the border.
-fn stepped() -> (Scene, Frame, Vec<PlanArea>) {
+fn stepped() -> (Scene, GridFrame, Vec<PlanArea>) {
     let country = Country::new();
     let tiles = [(2, 1, 1), (2, 1, 2), (4, 8, 7), (4, 8, 8)].map(|(z, x, y)| {
         let id = TileId::new(z, x, y).unwrap();

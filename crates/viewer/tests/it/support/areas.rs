@@ -1,7 +1,7 @@
 //! Areas on scenes: what is drawn is divided by tile as a build does it, what the references ask are whole outlines in f64.
 
 use corniche_areas::{AreaClass, AreaObject, Axis, OutlineWay, Polygon, assemble, divide};
-use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_styles::{AreaStyle, Style};
 use corniche_tileset::{AreaRecord, AreaRings};
 use glam::DVec2;
@@ -24,7 +24,7 @@ impl PlanArea {
     }
 
     /// Its part in a tile.
-    fn record(&self, frame: &Frame, id: TileId) -> Option<AreaRecord> {
+    fn record(&self, frame: &GridFrame, id: TileId) -> Option<AreaRecord> {
         let on_lattice = |ring: &Vec<DVec2>| -> Vec<LatticePoint> {
             ring.iter().chain(ring.first()).map(|at| frame.snap(at.to_array()).unwrap()).collect()
         };
@@ -58,7 +58,7 @@ impl PlanArea {
 }
 
 /// The same scene with areas, which are drawn in the colours of [`flat_color`].
-pub(crate) fn with_areas(scene: &Scene, frame: &Frame, areas: &[PlanArea]) -> Scene {
+pub(crate) fn with_areas(scene: &Scene, frame: &GridFrame, areas: &[PlanArea]) -> Scene {
     let mut scene = Scene { style: flat_style(&scene.style), ..scene.clone() };
     for tile in &mut scene.tiles {
         let id = tile.geometry.id;

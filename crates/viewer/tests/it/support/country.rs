@@ -7,7 +7,7 @@ use std::{
 };
 
 use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
-use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
+use corniche_geom::{GridFrame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
 use corniche_roads::RoadAttributes;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
@@ -25,7 +25,7 @@ pub(crate) const QUANTUM_M: f64 = 1.0 / 16.0;
 
 /// Mountains of three wavelengths over 102 km, with roads; tiles are made when they are asked for.
 pub(crate) struct Country {
-    pub(crate) frame: Frame,
+    pub(crate) frame: GridFrame,
     pub(crate) roads: Vec<(u8, Polyline)>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
 }
 
 /// How far SV lines reach beyond their tile: eight cells of the level.
-pub(crate) fn width_margin_m(frame: &Frame, level: u8) -> f64 {
+pub(crate) fn width_margin_m(frame: &GridFrame, level: u8) -> f64 {
     8.0 * frame.level_cell(level).shorter_m()
 }
 
@@ -62,7 +62,7 @@ impl Country {
     }
 
     pub(crate) fn new() -> Self {
-        let frame = Frame::new(
+        let frame = GridFrame::new(
             [0.0; 2],
             super::world().cell(CELL_M),
             NodeIndex { i: 25_600, j: 204_800 },
@@ -158,7 +158,7 @@ fn record(way_id: i64) -> RoadRecord {
 }
 
 impl TileCatalog for Country {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &GridFrame {
         &self.frame
     }
 

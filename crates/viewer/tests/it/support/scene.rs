@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::{Bounds, Frame, TileId};
+use corniche_geom::{Bounds, GridFrame, TileId};
 use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
@@ -51,7 +51,7 @@ pub(crate) struct Tile {
     /// The SV lines within the width margin of each square of a grid as wide as the margin.
     near: HashMap<[i64; 2], Vec<PlanSegment>>,
     terrain: Terrain,
-    frame: Frame,
+    frame: GridFrame,
     quantum_m: f64,
     lines: TileLines,
 }
@@ -150,7 +150,7 @@ impl Tile {
     /// A tile of a payload.
     pub(crate) fn of_payload(
         payload: &TilePayload,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
         widths: Widths,
         skirt_depth_m: f64,
@@ -237,7 +237,7 @@ impl Tile {
     pub(crate) fn of_lines(
         id: TileId,
         ground: &Terrain,
-        frame: &Frame,
+        frame: &GridFrame,
         quantum_m: f64,
         lines: TileLines,
         triangles: Vec<[DVec3; 3]>,

@@ -1,0 +1,189 @@
+//! The command line: every command with its options.
+
+mod build;
+mod camera;
+mod drawing;
+mod export;
+mod ground;
+mod growth;
+mod look;
+mod matching;
+mod overlay;
+mod part;
+mod profile;
+mod reading;
+mod serve;
+mod shell;
+mod values;
+mod view;
+mod voice;
+
+use std::ffi::OsString;
+
+use clap::{
+    CommandFactory as _, Parser, Subcommand,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
+
+pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
+pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
+pub(crate) use export::{
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportGeoTiffArgs, ExportMeshArgs,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, OnOrNone,
+    TerrainCompress,
+};
+pub(crate) use growth::GrowthArgs;
+pub(crate) use look::Roads;
+pub(crate) use matching::MatchArgs;
+#[cfg(test)]
+pub(crate) use overlay::parse as overlay;
+pub(crate) use overlay::{OverlayArg, styled as with_overlays};
+pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
+pub(crate) use profile::ProfileArgs;
+pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
+pub(crate) use serve::ServeArgs;
+pub(crate) use shell::{CompletionsArgs, ManArgs};
+pub(crate) use view::{Motion, ViewArgs};
+pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
+
+/// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
+#[derive(Debug, Parser)]
+#[command(version, name = "corniche", max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) voice: VoiceArgs,
+}
+
+impl Arguments {
+    /// The command line, checked.
+    ///
+    /// # Errors
+    /// When it cannot be used; also when what is asked for is help or the version.
+    pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let arguments = Self::try_parse_from(words).map_err(with_tip)?;
+        // Conflicts of options before the command's name with those behind it are not the parser's.
+        let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
+        let given = [
+            (is_quiet, "--quiet"),
+            (verbosity > 0, "--verbose"),
+            (json_progress, "--json-progress"),
+        ];
+        let given: Vec<&str> =
+            given.into_iter().filter_map(|(is_given, name)| is_given.then_some(name)).collect();
+        let [first, second, ..] = given[..] else { return Ok(arguments) };
+        let text = format!("the argument '{second}' cannot be used with '{first}'");
+        Err(Self::command().error(ErrorKind::ArgumentConflict, text))
+    }
+
+    /// How the program is to talk.
+    pub(crate) fn voice(&self) -> Voice {
+        self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))
+    }
+}
+
+/// What other programs call a part of the data.
+const NAMES_OF_PARTS: [&str; 3] = ["--bbox", "--clip", "--cutline"];
+
+/// The refusal of an option for a part of the data, as other programs have it, with the names of ours. Its value is written in another way,
+/// so ours have no such names themselves.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    if error.kind() == ErrorKind::UnknownArgument && is_part_of_build(&error) {
+        let tip = "use --bounds W,S,E,N or --polygon FILE".to_owned().into();
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
+}
+
+/// Whether an unknown option is one for a part of the data, of a command that can convert a part.
+fn is_part_of_build(error: &clap::Error) -> bool {
+    let text = |kind| error.get(kind).map(ToString::to_string).unwrap_or_default();
+    let option = text(ContextKind::InvalidArg);
+    let usage = text(ContextKind::Usage);
+    let name = option.split('=').next().unwrap_or_default();
+    NAMES_OF_PARTS.contains(&name)
+        && ["corniche build ", "corniche plan "].iter().any(|command| usage.contains(command))
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Build a tile package from elevation rasters and an OpenStreetMap extract
+    Build(Box<BuildArgs>),
+    /// Tell what a build will make and what it will take, and write its plan
+    Plan(Box<PlanArgs>),
+    /// List the parts of a planned build for so many processes, one JSON object per line
+    Jobs(JobsArgs),
+    /// Make one part of a planned build; prints the path of its file
+    Part(PartArgs),
+    /// Write the package of a plan from all its parts
+    Merge(MergeArgs),
+    /// Tell what a package holds and what became of its inputs
+    Info(InfoArgs),
+    /// Tell what laying roads on the terrain costs, per level and class
+    Growth(GrowthArgs),
+    /// Tell height and grade along roads
+    Profile(ProfileArgs),
+    /// Tell how far roads lie beside what a photo or the slope of the ground shows of them
+    Match(MatchArgs),
+    /// Check every promise a package makes; exits with 1 when one is broken
+    Verify(VerifyArgs),
+    /// Dump one decoded tile
+    Tile(TileArgs),
+    /// Give what a package holds to other programs
+    Export(ExportArgs),
+    /// Draw a package to a PNG, without a window
+    Render(RenderArgs),
+    /// Fly over a package and tell what each frame costs; needs no window
+    Fly(FlyArgs),
+    /// Open a window on a package
+    View(ViewArgs),
+    /// Show packages in web browsers: a small web server with a page, or the files for one
+    Serve(ServeArgs),
+    /// Print a script that completes this command's names and options in a shell
+    Completions(CompletionsArgs),
+    /// Write manual pages, one for the program and one for each command
+    Man(ManArgs),
+}
+
+impl Command {
+    /// Its name on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Build(_) => "build",
+            Self::Plan(_) => "plan",
+            Self::Jobs(_) => "jobs",
+            Self::Part(_) => "part",
+            Self::Merge(_) => "merge",
+            Self::Info(_) => "info",
+            Self::Growth(_) => "growth",
+            Self::Profile(_) => "profile",
+            Self::Match(_) => "match",
+            Self::Verify(_) => "verify",
+            Self::Tile(_) => "tile",
+            Self::Export(_) => "export",
+            Self::Render(_) => "render",
+            Self::Fly(_) => "fly",
+            Self::View(_) => "view",
+            Self::Serve(_) => "serve",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
+        }
+    }
+
+    /// How progress is told, by a command that tells it.
+    fn report(&self) -> Option<ReportArgs> {
+        match self {
+            Self::Build(args) => Some(args.report),
+            Self::Part(args) => Some(args.planned.report),
+            Self::Merge(args) => Some(args.planned.report),
+            Self::Verify(args) => Some(args.report),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "args_tests.rs"]
+mod tests;

@@ -1,0 +1,299 @@
+//! The command line is consistent: its options exclude each other, leave positional arguments alone and give tips.
+
+use std::path::PathBuf;
+
+use corniche_remote::PackagePlace;
+
+use super::*;
+
+#[test]
+fn the_command_line_is_consistent() {
+    Arguments::command().debug_assert();
+}
+
+#[test]
+fn options_that_are_not_there_are_rejected() {
+    let line = "corniche build --dem a.tif -o b --lakes x.tif";
+    assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
+}
+
+#[test]
+fn the_options_of_resumed_builds_and_plans_are_understood() {
+    let parse = |line: &str| Arguments::try_parse_from(line.split(' '));
+    let Ok(Arguments { command: Command::Build(args), .. }) =
+        parse("corniche build --dem a.tif -o b --resume --tmp c --force")
+    else {
+        panic!("it is no build");
+    };
+    assert!(args.resume && args.work.force && !args.overwrite);
+    assert_eq!(args.work.resources.tmp, Some("c".into()));
+    for line in ["--json", "-o plan.json -O", "--osm b.osm.pbf --max-error 5 --threads 3"] {
+        assert!(parse(&format!("corniche plan --dem a.tif {line}")).is_ok(), "{line}");
+    }
+    // What a plan does not depend on is no option of it.
+    for line in ["--resume", "-O", "--defects a.csv"] {
+        assert!(parse(&format!("corniche plan --dem a.tif {line}")).is_err(), "{line}");
+    }
+}
+
+/// `-q`, `-v` and `--log-format` are options of every command, before its name and behind it.
+#[test]
+fn every_command_takes_the_options_of_messages() {
+    let parse = |line: String| Arguments::try_parse_from(line.split_whitespace());
+    let names: Vec<String> = Arguments::command()
+        .get_subcommands()
+        .map(|command| command.get_name().to_owned())
+        .collect();
+    assert!(names.len() >= 12, "{names:?}");
+    let rest = |name: &str| match name {
+        "build" => "--dem a.tif -o b.pmtiles",
+        "plan" => "--dem a.tif",
+        "jobs" => "p.json --slots 2",
+        "part" => "p.json --store s --step top",
+        "merge" => "p.json --store s -o b.pmtiles",
+        "tile" => "a.pmtiles 0/0/0",
+        "export" => "roads a.pmtiles -o a.gpkg",
+        "render" => "a.pmtiles -o a.png",
+        "fly" => "a.pmtiles -o a.csv",
+        "profile" => "a.pmtiles --way 1,-2",
+        "match" => "a.pmtiles --slope",
+        "completions" => "bash",
+        _ => "a.pmtiles",
+    };
+    for name in &names {
+        let quiet = Voice { is_quiet: true, ..Voice::default() };
+        let loud = Voice { verbosity: 2, format: LogFormat::Json, ..Voice::default() };
+        for (line, voice) in [
+            (format!("corniche {name} {} -q", rest(name)), quiet),
+            (format!("corniche --quiet {name} {}", rest(name)), quiet),
+            (format!("corniche {name} -vv --log-format json {}", rest(name)), loud),
+        ] {
+            let arguments = parse(line.clone()).unwrap_or_else(|error| panic!("{line}: {error}"));
+            assert_eq!(
+                (arguments.voice(), arguments.command.name()),
+                (voice, name.as_str()),
+                "{line}"
+            );
+        }
+        assert!(parse(format!("corniche {name} {} -q -v", rest(name))).is_err(), "{name}");
+    }
+    let told = parse("corniche verify a.pmtiles --json-progress".into()).unwrap().voice();
+    assert!(told.json_progress);
+    assert!(parse("corniche verify a.pmtiles --json-progress -q".into()).is_err());
+}
+
+/// Two of `-q`, `-v` and `--json-progress` are refused wherever they stand; the parser alone sees only those of one side.
+#[test]
+fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
+    let parse = |line: &str| Arguments::checked_from(line.split(' ').map(Into::into));
+    let package = "verify a.pmtiles";
+    for line in [
+        format!("corniche -q {package} --json-progress"),
+        format!("corniche {package} -q --json-progress"),
+        format!("corniche -q {package} -v"),
+        format!("corniche -v {package} -q"),
+        format!("corniche -q -v {package}"),
+        "corniche -q build --dem a.tif -o b.pmtiles --json-progress".to_owned(),
+    ] {
+        let refused = parse(&line).expect_err(&line);
+        assert_eq!(refused.kind(), ErrorKind::ArgumentConflict, "{line}");
+        let said = refused.to_string();
+        assert!(said.contains("--quiet") && said.contains("cannot be used with"), "{line}: {said}");
+    }
+    let line = format!("corniche -v {package} --json-progress");
+    let said = parse(&line).expect_err(&line).to_string();
+    assert!(said.contains("'--json-progress' cannot be used with '--verbose'"), "{said}");
+    for option in ["-q", "-v", "-vv"] {
+        assert!(parse(&format!("corniche {option} {package}")).is_ok(), "{option}");
+    }
+    assert!(parse(&format!("corniche {package} --json-progress")).is_ok());
+}
+
+/// Whoever reads records gets the refusal of a command line as one, although it was not understood.
+#[test]
+fn the_voice_of_a_line_that_is_not_understood_is_found() {
+    let voice = |line: &str| Voice::of_unparsed(line.split(' ').map(Into::into));
+    let json = Voice { format: LogFormat::Json, ..Voice::default() };
+    let progress = Voice { json_progress: true, ..Voice::default() };
+    for (line, expected) in [
+        ("info --odd", Voice::default()),
+        ("info --odd --log-format json", json),
+        ("--log-format=json info --odd", json),
+        ("build --json-progress --odd", progress),
+        ("info --log-format text json", Voice::default()),
+        ("info json --log-format", Voice::default()),
+        ("info -- --log-format json --json-progress", Voice::default()),
+    ] {
+        assert_eq!(voice(line), expected, "{line}");
+    }
+}
+
+/// An option with several values takes all that follows it, also a positional argument. Each command that has both finds its
+/// own among them by its name.
+#[test]
+fn options_with_several_values_leave_positional_arguments_alone() {
+    let mut found = Vec::new();
+    for (path, command) in all_commands() {
+        let has_positional = command.get_positionals().next().is_some();
+        let takes_several = |arg: &&clap::Arg| {
+            !arg.is_positional() && arg.get_num_args().is_some_and(|range| range.max_values() > 1)
+        };
+        for option in command.get_arguments().filter(takes_several).filter(|_| has_positional) {
+            found.push(format!("{path} --{}", option.get_long().unwrap()));
+        }
+    }
+    found.sort();
+    let files = |arguments: &Arguments| match &arguments.command {
+        Command::Jobs(args) => args.files().unwrap(),
+        Command::Part(args) => args.planned.files().unwrap(),
+        Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Export(args) => match &args.what {
+            Export::GeoTiff(args) => {
+                let (package, dem) = args.files().unwrap();
+                (path_of(package), dem)
+            }
+            what => panic!("{what:?} has no files to tell apart"),
+        },
+        Command::Match(args) => {
+            let (package, photos) = args.files().unwrap();
+            (path_of(package), photos)
+        }
+        Command::Verify(args) => {
+            let files = args.files().unwrap();
+            (path_of(files.package), [files.dem, files.photo, files.osm].concat())
+        }
+        _ => panic!("{arguments:?} has no files to tell apart"),
+    };
+    // What follows the option, what is meant by the positional argument, and what else the command needs.
+    let known = [
+        ("export geotiff --dem", "p.pmtiles", "-o h.tif"),
+        ("jobs --store", "p.json", "--slots 2"),
+        ("match --photo", "p.pmtiles", "--radius 20"),
+        ("merge --store", "p.json", "-o c.pmtiles"),
+        ("part --store", "p.json", "--step top"),
+        ("verify --dem", "p.pmtiles", "--threads 1"),
+        ("verify --osm", "p.pmtiles", "--threads 1"),
+        ("verify --photo", "p.pmtiles", "--threads 1"),
+    ];
+    let names: Vec<&str> = known.iter().map(|(name, _, _)| *name).collect();
+    assert_eq!(found, names, "a new option with several values needs a line here");
+    for (name, positional, rest) in known {
+        let (command, option) = name.rsplit_once(' ').unwrap();
+        for line in [
+            format!("corniche {command} {option} a b {positional} {rest}"),
+            format!("corniche {command} {rest} {option} a {positional} {option} b"),
+            format!("corniche {command} {positional} {option} a b {rest}"),
+            format!("corniche {command} {option} a b {rest} {positional}"),
+        ] {
+            let arguments = Arguments::try_parse_from(line.split(' '));
+            let arguments = arguments.unwrap_or_else(|error| panic!("{line}: {error}"));
+            assert_eq!(
+                files(&arguments),
+                (positional.into(), vec!["a".into(), "b".into()]),
+                "{line}"
+            );
+        }
+    }
+}
+
+fn path_of(place: PackagePlace) -> PathBuf {
+    match place {
+        PackagePlace::File(path) => path,
+        PackagePlace::Address(address) => panic!("{address} is no file"),
+    }
+}
+
+/// All commands and what is below them, by their words.
+fn all_commands() -> Vec<(String, clap::Command)> {
+    let mut all = vec![(String::new(), Arguments::command())];
+    let mut next = 0;
+    while let Some((path, command)) = all.get(next).cloned() {
+        let below = command
+            .get_subcommands()
+            .map(|below| (format!("{path} {}", below.get_name()).trim().to_owned(), below.clone()));
+        all.extend(below.collect::<Vec<_>>());
+        next += 1;
+    }
+    all
+}
+
+/// Where it cannot be told which name is the plan, or there is none, that is said.
+#[test]
+fn a_plan_that_is_not_named_is_missed() {
+    let refusal = |line: &str| {
+        let arguments = Arguments::try_parse_from(line.split(' ')).unwrap();
+        let Command::Part(args) = arguments.command else { panic!("{line}") };
+        args.planned.files().unwrap_err().to_string()
+    };
+    for (names, word) in [
+        ("a b", "no plan is named"),
+        ("p.json q.json a", "several names"),
+        ("p.json", "--store needs a folder"),
+    ] {
+        let said = refusal(&format!("corniche part --step top --store {names}"));
+        assert!(said.contains(word), "{names}: {said}");
+    }
+    assert!(Arguments::try_parse_from(["corniche", "jobs", "--slots", "2"]).is_err());
+}
+
+/// `--dem` and `--osm` take every name up to the next option; a package among them is told by its ending.
+#[test]
+fn verify_finds_its_package_wherever_it_is_named() {
+    let files = |line: &str| {
+        let arguments =
+            Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
+        let Command::Verify(args) = arguments.command else { panic!("{line}") };
+        let files = args.files().map_err(|failure| failure.to_string())?;
+        Ok::<_, String>((path_of(files.package), files.dem, files.osm))
+    };
+    let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));
+    for line in [
+        "corniche verify p.pmtiles --dem a.tif b.tif",
+        "corniche verify --dem a.tif b.tif p.pmtiles",
+        "corniche verify --dem a.tif p.pmtiles --dem b.tif",
+        "corniche verify --dem a.tif b.tif --json p.pmtiles",
+        "corniche verify --dem a.tif --threads 2 p.pmtiles --dem b.tif",
+    ] {
+        assert_eq!(files(line), expected, "{line}");
+    }
+    let expected = Ok(("p.pmtiles".into(), Vec::new(), vec!["a.pbf".into(), "b.pbf".into()]));
+    for line in [
+        "corniche verify p.pmtiles --osm a.pbf b.pbf",
+        "corniche verify --osm a.pbf b.pbf p.pmtiles",
+        "corniche verify --osm a.pbf --osm b.pbf --json p.pmtiles",
+    ] {
+        assert_eq!(files(line), expected, "{line}");
+    }
+    // A package of another name is found where nothing swallows it.
+    assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, ..)| package == *"old"));
+    assert!(
+        files("corniche verify --dem a.tif b.tif").unwrap_err().contains("no package is named")
+    );
+    assert!(
+        files("corniche verify --dem a.tif p.pmtiles q.pmtiles").unwrap_err().contains("several")
+    );
+    assert!(files("corniche verify").is_err());
+}
+
+/// Whoever looks for a part of the data by another program's option is told ours; of a command without parts nothing is said.
+#[test]
+fn options_of_other_programs_for_a_part_get_a_tip() {
+    let refusal = |line: &str| {
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        let refused = refused.expect_err(line);
+        assert_eq!(refused.kind(), ErrorKind::UnknownArgument, "{line}");
+        refused.to_string()
+    };
+    let tip = "tip: use --bounds W,S,E,N or --polygon FILE";
+    for line in [
+        "corniche build --dem a.tif -o b.pmtiles --clip c.geojson",
+        "corniche build --dem a.tif -o b.pmtiles --cutline=c.geojson",
+        "corniche plan --dem a.tif --bbox 9,47,10,48",
+    ] {
+        let said = refusal(line);
+        assert!(said.contains(tip) && said.matches("tip:").count() == 1, "{line}: {said}");
+    }
+    for line in ["corniche info a.pmtiles --bbox 1", "corniche plan --dem a.tif --odd 1"] {
+        assert!(!refusal(line).contains(tip), "{line}");
+    }
+}

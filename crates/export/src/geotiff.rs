@@ -1,0 +1,23 @@
+//! The heights of a level's TINs as a raster: a `GeoTIFF`, on request with the difference from the elevation files as a second band.
+//!
+//! ```text
+//!                          TINs of the tiles around ──► heights at nodes ──┬──► band 1
+//!   a row of blocks ──► each block                                         ▼
+//!                          elevation files ──► heights at nodes ──► TIN minus DEM ──► band 2, figures
+//! ```
+//!
+//! Pixels are the nodes of the package's finest level, whichever level's TINs are taken: where nodes are samples, the second band is the error at each
+//! sample, and rasters of two levels can be subtracted. A pixel's middle is its node, so the file says `PixelIsPoint`.
+//!
+//! Memory holds some rows of blocks, of 256 nodes along each side, and the TINs beneath them.
+
+mod block;
+mod file;
+mod geotiff_request;
+mod grid;
+mod write_raster;
+
+pub use self::{
+    geotiff_request::{Elevation, GeoTiffRequest},
+    write_raster::{GeoTiffSummary, export_geotiff},
+};

@@ -1,0 +1,191 @@
+//! The heights of a level are written as a GeoTIFF, and on request their difference from the elevation files.
+
+use std::path::Path;
+
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};
+
+use super::{
+    block::{self, Block, Tins},
+    file::{Number, RasterFacts, RasterFile},
+    geotiff_request::{Elevation, GeoTiffRequest},
+    grid::RasterGrid,
+};
+use crate::{
+    error::ExportError,
+    feature_request::Coordinates,
+    observer::Observer,
+    places::Places,
+    read,
+    workers::{Progress, on_all},
+};
+
+/// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
+const BLOCKS_AT_ONCE: usize = 64;
+/// The share of a height quantum that a pixel may lose by its type.
+const LOST_QUANTA: f64 = 0.1;
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeoTiffSummary {
+    /// The level whose TINs were taken.
+    pub level: u8,
+    /// Nodes from west to east.
+    pub columns: u64,
+    /// Nodes from north to south.
+    pub rows: u64,
+    /// Nodes with ground.
+    pub covered: u64,
+    /// The type of pixels: "Float32", or "Float64" where that would lose more than a tenth of the height quantum.
+    pub pixels: &'static str,
+    /// The stored bound of the level's TINs, metres.
+    pub error_bound_m: f64,
+    /// How far the TINs are from the samples of the elevation files, or from the nodes that were made of them; `None` without files.
+    pub sample_error: Option<SampleErrorRecord>,
+    /// What heights are, in words.
+    pub heights: String,
+    /// Whether the file names the package's CRS as it is: `GeoTIFF` has no words for some.
+    pub has_same_crs: bool,
+}
+
+/// Writes the heights of a level's TINs, and on request their difference from the elevation files, to a new `GeoTIFF` at `path`. After an error that file is
+/// of no use.
+///
+/// # Errors
+/// When the package has no such level or no ground there, the package is damaged, an elevation file cannot be read, or something cannot be written.
+pub fn export_geotiff(
+    package: &FilePackage,
+    request: &GeoTiffRequest<'_>,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<GeoTiffSummary, ExportError> {
+    let manifest = package.manifest();
+    let level = read::level(package, request.level)?;
+    let grid = RasterGrid::of(package, request.bounds.as_ref())?;
+    let places = Places::new(manifest, Coordinates::Package)?;
+    let facts = facts(package, level, request, &places, &grid);
+    let writing = Writing { package, level, request, grid, observer };
+    let (written, pixels) = if fits_f32(manifest) {
+        (writing.write::<f32>(path, &facts)?, "Float32")
+    } else {
+        (writing.write::<f64>(path, &facts)?, "Float64")
+    };
+    Ok(GeoTiffSummary {
+        level,
+        columns: grid.columns as u64,
+        rows: grid.rows as u64,
+        covered: written.covered,
+        pixels,
+        error_bound_m: bound_m(manifest, level),
+        sample_error: request.elevation.is_some().then(|| written.sums.record()),
+        heights: places.heights().to_owned(),
+        has_same_crs: written.has_same_crs,
+    })
+}
+
+/// Whether f32 keeps all heights of a package to a tenth of its quantum.
+///
+/// Rounding moves a height by half the step between neighbours in f32 at most, and the step is largest where heights are.
+fn fits_f32(manifest: &Manifest) -> bool {
+    let [low, high] = manifest.vertical.range_m;
+    let farthest = low.abs().max(high.abs()) as f32;
+    let step = f64::from(farthest.next_up()) - f64::from(farthest);
+    step / 2.0 <= LOST_QUANTA * manifest.vertical.quantum_m
+}
+
+/// The largest stored error of a level's tiles.
+fn bound_m(manifest: &Manifest, level: u8) -> f64 {
+    manifest.levels.get(usize::from(level)).map_or(0.0, |record| record.geometric_error_m)
+}
+
+fn facts(
+    package: &FilePackage,
+    level: u8,
+    request: &GeoTiffRequest<'_>,
+    places: &Places<'_>,
+    grid: &RasterGrid,
+) -> RasterFacts {
+    let manifest = package.manifest();
+    let name = package.file_name().to_owned();
+    let bound_m = bound_m(manifest, level);
+    let attribution = manifest.attribution.join("; ");
+    let mut descriptions = vec!["height of the TIN, metres".to_owned()];
+    let mut metadata = vec![
+        ("TIFFTAG_IMAGEDESCRIPTION", format!("Heights of the TINs of level {level} of {name}")),
+        ("TIFFTAG_SOFTWARE", manifest.generator.clone()),
+        ("TIFFTAG_COPYRIGHT", attribution.clone()),
+        ("ATTRIBUTION", attribution),
+        ("PACKAGE", name),
+        ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+        ("LEVEL", level.to_string()),
+        ("ERROR_BOUND_M", bound_m.to_string()),
+        ("HEIGHTS", places.heights().to_owned()),
+        ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
+        ("NODES", manifest.resampling.clone()),
+    ];
+    if request.elevation.is_some() {
+        descriptions.push("height of the TIN minus DEM, metres".to_owned());
+        let of_dem = |input: &&corniche_tileset::InputRecord| input.kind == "dem";
+        let names: Vec<&str> =
+            manifest.inputs.iter().filter(of_dem).map(|input| input.name.as_str()).collect();
+        metadata.push(("DEM", names.join("; ")));
+    }
+    RasterFacts {
+        crs: places.crs().to_owned(),
+        crs_from_pixel: grid.crs_from_pixel(manifest),
+        descriptions,
+        metadata,
+    }
+}
+
+struct Writing<'a> {
+    package: &'a FilePackage,
+    level: u8,
+    request: &'a GeoTiffRequest<'a>,
+    grid: RasterGrid,
+    observer: &'a dyn Observer,
+}
+
+struct Written {
+    covered: u64,
+    sums: SampleSums,
+    has_same_crs: bool,
+}
+
+impl Writing<'_> {
+    fn write<T: Number>(&self, path: &Path, facts: &RasterFacts) -> Result<Written, ExportError> {
+        let Self { package, level, request, grid, observer } = self;
+        let mut file = RasterFile::<T>::create(path, grid, facts)?;
+        let tins = Tins::new(package, *level);
+        let mut sums = SampleSums::new(package.manifest().vertical.quantum_m);
+        let mut covered = 0;
+        let [columns, rows] = grid.blocks();
+        let total = (columns * rows) as u64;
+        let rows_at_once = BLOCKS_AT_ONCE.div_ceil(columns);
+        for first in (0..rows).step_by(rows_at_once) {
+            let places: Vec<[usize; 2]> = (first..rows.min(first + rows_at_once))
+                .flat_map(|row| (0..columns).map(move |column| [column, row]))
+                .collect();
+            tins.forget_north_of(grid.window([0, first]).corner.j);
+            let made: Vec<Block<T>> = on_all(
+                &places,
+                request.threads,
+                Progress { observer: *observer, done: (first * columns) as u64, total },
+                || Ok(request.elevation.map(|Elevation { dem, plan }| dem.reader(plan))),
+                |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut()),
+            )?;
+            for Block { heights_m, errors_m, covered: own, sums: own_sums } in made {
+                file.push(0, heights_m)?;
+                if request.elevation.is_some() {
+                    file.push(1, errors_m)?;
+                }
+                covered += own;
+                sums.merge(&own_sums);
+            }
+        }
+        if covered == 0 {
+            return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+        }
+        let has_same_crs = file.finish()?;
+        Ok(Written { covered, sums, has_same_crs })
+    }
+}

@@ -1,0 +1,23 @@
+//! The ground of a level, with its roads as lines, as a model for 3D programs: GLB, PLY, OBJ.
+//!
+//! ```text
+//!   tiles of a level ──► ground in local metres, road lines or surfaces ──► a writer for each format ──► one file
+//! ```
+//!
+//! Memory holds one tile, and where tiles meet. Positions are those of the package: nothing is simplified or moved.
+
+mod glb;
+mod local;
+mod mesh_request;
+mod model;
+mod obj;
+mod ply;
+mod spill;
+mod weld;
+mod write_model;
+mod writer;
+
+pub use self::{
+    mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
+    write_model::{MeshSummary, export_mesh},
+};

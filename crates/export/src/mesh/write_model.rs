@@ -1,0 +1,130 @@
+//! The ground of a level is written as one model, with its roads as lines or as surfaces.
+
+use std::{fs::File, io::BufWriter, path::Path};
+
+use corniche_geom::{Bounds, TileId};
+use corniche_tileset::{FilePackage, Manifest};
+
+use super::{
+    glb::GlbWriter,
+    local::LocalMetres,
+    mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
+    model::TileReading,
+    obj::ObjWriter,
+    ply::PlyWriter,
+    writer::{About, MeshWriter},
+};
+use crate::{
+    error::ExportError,
+    feature_request::Coordinates,
+    observer::{Observer, Stage, stop_if_asked},
+    places::Places,
+    read,
+    surfaces::{RoadLook, TileLines},
+};
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshSummary {
+    /// The level that was taken.
+    pub level: u8,
+    /// Tiles with ground.
+    pub tiles: u64,
+    /// Triangles of the ground, roads as surfaces included.
+    pub triangles: u64,
+    /// Triangles of roads.
+    pub road_triangles: u64,
+    /// Lines of roads.
+    pub lines: u64,
+    /// The model's origin in the package's CRS.
+    pub origin: [f64; 2],
+}
+
+/// Writes the ground of a level, with its roads as lines or as surfaces, to a new file at `path`. After an error that file is of no use.
+///
+/// Positions are local: true metres east and north of an origin in the middle, and heights of the package.
+///
+/// # Errors
+/// When the package has no such level or no ground there, glTF is asked for another axis than y upwards, the package is damaged, or something
+/// cannot be written.
+pub fn export_mesh(
+    package: &FilePackage,
+    request: &MeshRequest,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<MeshSummary, ExportError> {
+    if request.format == MeshFormat::Glb && request.up == UpAxis::Z {
+        return Err(ExportError::GlbAxis);
+    }
+    let manifest = package.manifest();
+    let level = read::level(package, request.level)?;
+    let places = Places::new(manifest, Coordinates::Package)?;
+    let ids = read::tiles(package, level, request.bounds.as_ref())?;
+    let nothing = || ExportError::NoGround { package: package.path().to_path_buf() };
+    let ground = ground_of(manifest, &ids).ok_or_else(nothing)?;
+    let local = LocalMetres::about(ground, manifest);
+    let failed = |source| ExportError::WriteModel { path: path.to_path_buf(), source };
+    let mut writer: Box<dyn MeshWriter> = match request.format {
+        MeshFormat::Glb => Box::new(GlbWriter::new(path, &request.colors()).map_err(failed)?),
+        MeshFormat::Ply => {
+            let colors = (request.roads == ModelRoads::Surfaces).then(|| request.colors());
+            Box::new(PlyWriter::new(path, request.up, colors).map_err(failed)?)
+        }
+        MeshFormat::Obj => {
+            let file = request.material_file.clone();
+            Box::new(ObjWriter::new(path, request.up, file).map_err(failed)?)
+        }
+    };
+    let origin = local.origin(manifest);
+    let mut summary =
+        MeshSummary { level, tiles: 0, triangles: 0, road_triangles: 0, lines: 0, origin };
+    let look = RoadLook { classes: &request.classes, style: &request.style };
+    let lines =
+        (request.roads == ModelRoads::Surfaces).then(|| TileLines::new(package, look, level));
+    let reading = TileReading { package, request, places: &places, local, lines };
+    for (done, &id) in ids.iter().enumerate() {
+        stop_if_asked(observer)?;
+        observer.done(Stage::Tiles, done as u64, ids.len() as u64);
+        if let Some(tile) = reading.read(id)? {
+            summary.tiles += 1;
+            summary.triangles += tile.triangles.len() as u64;
+            summary.road_triangles += tile.classes.iter().flatten().count() as u64;
+            summary.lines += tile.roads.len() as u64;
+            writer.tile(&tile).map_err(failed)?;
+        }
+    }
+    if summary.tiles == 0 {
+        return Err(nothing());
+    }
+    let mut facts = local.described(manifest);
+    facts.push(("level", level.to_string()));
+    let up = match request.up {
+        UpAxis::Y => "x east, y up, z south",
+        UpAxis::Z => "x east, y north, z up",
+    };
+    facts.push(("axes", up.to_owned()));
+    let mut file = BufWriter::new(File::create(path).map_err(failed)?);
+    writer.finish(&mut file, &About { facts }).map_err(failed)?;
+    file.into_inner().map_err(|error| failed(error.into_error()))?.sync_all().map_err(failed)?;
+    Ok(summary)
+}
+
+/// The rectangle of the data on some tiles; `None` without tiles.
+fn ground_of(manifest: &Manifest, ids: &[TileId]) -> Option<Bounds> {
+    let data = manifest.data_bounds;
+    let tiles = ids.iter().map(|&id| manifest.frame.tile_bounds(id));
+    tiles
+        // Tiles on the edge reach beyond the data.
+        .map(|tile| Bounds {
+            min_x: tile.min_x.max(data.min_x),
+            min_y: tile.min_y.max(data.min_y),
+            max_x: tile.max_x.min(data.max_x),
+            max_y: tile.max_y.min(data.max_y),
+        })
+        .reduce(|one, other| Bounds {
+            min_x: one.min_x.min(other.min_x),
+            min_y: one.min_y.min(other.min_y),
+            max_x: one.max_x.max(other.max_x),
+            max_y: one.max_y.max(other.max_y),
+        })
+}

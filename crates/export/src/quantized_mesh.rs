@@ -1,0 +1,29 @@
+//! A package's ground as quantized-mesh 1.0, the terrain tiles of CesiumJS, with layer.json.
+//!
+//! ```text
+//!   tile of the globe's grid ──► raster of places ──► heights of the package's finest ground ──► voids filled ──► TIN ──► bytes
+//!                                                                 │                                            │
+//!                                                                 └───────────► deviation, measured ◄──────────┘
+//! ```
+//!
+//! The grid of tiles is that of the globe, not the package's, so heights are sampled again, and each level follows the finest ground to the error that
+//! CesiumJS takes it to have: the format has no field for an error.
+//!
+//! Source: Cesium, *quantized-mesh-1.0 terrain format*, <https://github.com/CesiumGS/quantized-mesh>.
+
+mod available;
+mod encode;
+mod ground;
+mod horizon;
+mod layer;
+mod mesh;
+mod quantized_mesh_request;
+mod raster;
+mod summary;
+mod tiling;
+mod write_tiles;
+
+pub use quantized_mesh_request::{Availability, QuantizedMeshRequest};
+pub use summary::{QuantizedMeshLevel, QuantizedMeshSummary};
+pub use tiling::Tiling;
+pub use write_tiles::export_quantized_mesh;

@@ -1,0 +1,317 @@
+//! A package is written as quantized-mesh terrain tiles into an empty folder.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    io::{self, Write as _},
+    path::Path,
+};
+
+use corniche_geom::{Bounds, wgs84::radii_m};
+use corniche_tileset::{FilePackage, LevelRecord, Manifest};
+use corniche_tin::TriangulateError;
+use flate2::{Compression, write::GzEncoder};
+
+use super::{
+    available::{Block, blocks},
+    encode::encode,
+    ground::Ground,
+    layer::{LAYER, layer, metadata},
+    mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, tin_of},
+    quantized_mesh_request::QuantizedMeshRequest,
+    raster::TileRaster,
+    summary::{QuantizedMeshLevel, QuantizedMeshSummary},
+    tiling::{FINEST, Nodes, TerrainTile, Tiling},
+};
+use crate::{
+    error::ExportError,
+    feature_request::Coordinates,
+    observer::Observer,
+    places::Places,
+    read,
+    workers::{Progress, on_all},
+};
+
+/// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices of the package's own triangles.
+const CELLS: [i64; 2] = [16, 128];
+/// The most tiles of the finest level. Some hundred bytes are kept for each.
+const MOST_TILES: i64 = 4_000_000;
+/// How far apart places along edges are, as a share of a level's error.
+const SPACING: f64 = 0.25;
+/// Parts of a cell on borders and where the ground ends, the fewest and the most.
+const PARTS: [f64; 2] = [4.0, 32.0];
+
+/// Writes a package as terrain tiles into an empty folder. After an error what is in it is of no use.
+///
+/// # Errors
+/// When heights cannot be told above the ellipsoid, the package has no ground or is damaged, or something cannot be written.
+pub fn export_quantized_mesh(
+    package: &FilePackage,
+    request: &QuantizedMeshRequest,
+    folder: &Path,
+    observer: &dyn Observer,
+) -> Result<QuantizedMeshSummary, ExportError> {
+    let manifest = package.manifest();
+    within_grid(manifest, request.tiling)?;
+    let finest = finest_level(manifest, request);
+    let heights = heights_in_words(manifest, request.coordinates)?;
+    let candidates = candidates(package, request.tiling, finest)?;
+    let job = Job { package, request, folder };
+    let total = with_ancestors(request.tiling, &candidates).len() as u64;
+    // Which tiles have ground is told by those of the finest level.
+    let (made, finest_tiles) = {
+        let candidates = in_curve_order(&candidates);
+        let progress = Progress { observer, done: 0, total };
+        let made = job.make(&candidates, Emptiness::IsLeftOut, &[], progress)?;
+        let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
+        (made, tiles)
+    };
+    if made.is_empty() {
+        return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+    }
+    let tiles = with_ancestors(request.tiling, &finest_tiles);
+    let above = tiles.difference(&finest_tiles).copied().collect();
+    let available = blocks(&tiles);
+    let progress = Progress { observer, done: candidates.len() as u64, total };
+    let coarser = job.make(&in_curve_order(&above), Emptiness::IsWritten, &available, progress)?;
+    let mut levels: Vec<QuantizedMeshLevel> =
+        (0..=finest).map(|level| job.empty_level(level)).collect();
+    let mut deviations = vec![Deviation::default(); levels.len()];
+    for (tile, made) in made.iter().chain(&coarser) {
+        let level = usize::from(tile.z);
+        levels[level].tiles += 1;
+        levels[level].triangles += made.triangles;
+        levels[level].bytes += made.bytes;
+        deviations[level].add(&made.deviation);
+    }
+    for (level, deviation) in levels.iter_mut().zip(&deviations) {
+        level.places = deviation.places;
+        level.deviation_m = deviation.largest_m;
+        level.deviation_rms_m = (deviation.squares_m2 / deviation.places.max(1) as f64).sqrt();
+    }
+    let summary = QuantizedMeshSummary { levels, heights };
+    let text = serde_json::to_vec_pretty(&layer(manifest, request, &available, &summary))
+        .map_err(|error| ExportError::WriteTiles(error.into()))?;
+    fs::write(folder.join(LAYER), text).map_err(ExportError::WriteTiles)?;
+    Ok(summary)
+}
+
+/// Fails where the data reach beyond the grid's latitudes: a part would be left out.
+fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), ExportError> {
+    let [south, north] = [0, 1].map(|row| tiling.lat_deg(0, row));
+    let data = manifest.wgs84_bounds;
+    let beyond = [data.min_y, data.max_y].into_iter().find(|lat| !(south..=north).contains(lat));
+    match beyond {
+        Some(lat) => Err(ExportError::BeyondGrid { lat, north }),
+        None => Ok(()),
+    }
+}
+
+/// The level that is asked for. Otherwise the first one whose error is at most the package's, or whose coarsest raster is finer than the package: where the
+/// ground is flat, no level has an error as small.
+fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
+    let of_package = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
+    let is_fine_enough = |level: &u8| {
+        let nodes = nodes(manifest, request.tiling, *level);
+        request.tiling.level_error_m(*level) <= of_package || nodes.per_tile == CELLS[0]
+    };
+    let by_error = || (0..=FINEST).find(is_fine_enough).unwrap_or(FINEST);
+    request.max_level.unwrap_or_else(by_error).min(FINEST)
+}
+
+fn heights_in_words(manifest: &Manifest, coordinates: Coordinates) -> Result<String, ExportError> {
+    let places = Places::new(manifest, coordinates)?;
+    let datum = &manifest.vertical.datum;
+    Ok(match coordinates {
+        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights()),
+        _ => places.heights().to_owned(),
+    })
+}
+
+/// Tiles that may have ground: those around the package's finest ones.
+fn candidates(
+    package: &FilePackage,
+    tiling: Tiling,
+    level: u8,
+) -> Result<BTreeSet<TerrainTile>, ExportError> {
+    let manifest = package.manifest();
+    let mut found = BTreeSet::new();
+    let mut count = 0;
+    let package_level = manifest.frame.max_level();
+    for id in package.tile_ids()?.into_iter().filter(|id| id.z() == package_level) {
+        let mut around = Bounds::EMPTY;
+        for place in read::places_deg(manifest, id) {
+            around.include(place);
+        }
+        // Sides bend a little between these places.
+        let margin = 0.01 * (around.max_x - around.min_x).max(around.max_y - around.min_y);
+        let columns =
+            [around.min_x - margin, around.max_x + margin].map(|lon| tiling.column_of(level, lon));
+        let rows =
+            [around.min_y - margin, around.max_y + margin].map(|lat| tiling.row_of(level, lat));
+        let last = columns[1].min(columns[0] + tiling.columns(level) - 1);
+        count += (last - columns[0] + 1) * (rows[1] - rows[0] + 1);
+        if count > MOST_TILES {
+            return Err(ExportError::TooManyTiles { level, most: MOST_TILES });
+        }
+        for x in columns[0]..=last {
+            let x = x.rem_euclid(tiling.columns(level)) as u32;
+            found.extend((rows[0]..=rows[1]).map(|y| TerrainTile { z: level, x, y: y as u32 }));
+        }
+    }
+    Ok(found)
+}
+
+/// The tiles, all above them, and the roots, which a viewer asks for in any case.
+fn with_ancestors(tiling: Tiling, tiles: &BTreeSet<TerrainTile>) -> BTreeSet<TerrainTile> {
+    let mut all: BTreeSet<TerrainTile> = tiling.roots().collect();
+    for tile in tiles {
+        let mut next = Some(*tile);
+        while let Some(tile) = next.filter(|tile| all.insert(*tile)) {
+            next = tile.parent();
+        }
+    }
+    all
+}
+
+/// Finest tiles first, and neighbours together, so that tiles of the package are read seldom.
+fn in_curve_order(tiles: &BTreeSet<TerrainTile>) -> Vec<TerrainTile> {
+    let key = |tile: &TerrainTile| {
+        let bits = (0..32).map(|bit| {
+            u64::from(tile.x >> bit & 1) << (2 * bit)
+                | u64::from(tile.y >> bit & 1) << (2 * bit + 1)
+        });
+        (u8::MAX - tile.z, bits.sum::<u64>())
+    };
+    let mut ordered: Vec<TerrainTile> = tiles.iter().copied().collect();
+    ordered.sort_by_key(key);
+    ordered
+}
+
+/// What becomes of tiles without ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Emptiness {
+    IsLeftOut,
+    IsWritten,
+}
+
+/// A tile that was written.
+struct Made {
+    triangles: u64,
+    bytes: u64,
+    deviation: Deviation,
+}
+
+struct Job<'a> {
+    package: &'a FilePackage,
+    request: &'a QuantizedMeshRequest,
+    folder: &'a Path,
+}
+
+impl<'a> Job<'a> {
+    fn make(
+        &self,
+        tiles: &[TerrainTile],
+        emptiness: Emptiness,
+        available: &[Vec<Block>],
+        progress: Progress<'_>,
+    ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
+        let (package, coordinates) = (self.package, self.request.coordinates);
+        let made = on_all(
+            tiles,
+            self.request.threads,
+            progress,
+            || Ok(Ground::new(package, Places::new(package.manifest(), coordinates)?)),
+            |ground, tile| self.tile(*tile, ground, emptiness, available),
+        )?;
+        Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
+    }
+
+    fn tile(
+        &self,
+        tile: TerrainTile,
+        ground: &mut Ground<'a>,
+        emptiness: Emptiness,
+        available: &[Vec<Block>],
+    ) -> Result<Option<Made>, ExportError> {
+        let tiling = self.request.tiling;
+        let error_m = tiling.level_error_m(tile.z);
+        let nodes = nodes(self.package.manifest(), tiling, tile.z);
+        let raster = TileRaster::sample(nodes, tile, ground)?;
+        let samples = raster.samples(self.sampled_level(error_m), error_m * SPACING, ground)?;
+        if emptiness == Emptiness::IsLeftOut && samples.all().next().is_none() {
+            return Ok(None);
+        }
+        let failed = |source| ExportError::Triangulate { tile: tile.to_string(), source };
+        let tin = tin_of(&raster, error_m).map_err(failed)?;
+        let inserted = |source| failed(TriangulateError::Insert(source));
+        let mut mesh = Mesh::new(&raster, &tin).map_err(inserted)?;
+        for border in &samples.borders {
+            mesh.refine_border(&raster, border, error_m).map_err(inserted)?;
+        }
+        mesh.refine(&raster, &samples.inside, error_m).map_err(inserted)?;
+        mesh.finish();
+        let deviation = mesh.deviation(samples.all());
+        let mesh = mesh.to_tile();
+        let metadata = metadata(self.request, available, tile);
+        let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
+        let bytes = self.write(tile, &bytes).map_err(ExportError::WriteTiles)?;
+        Ok(Some(Made { triangles: mesh.triangles.len() as u64, bytes, deviation }))
+    }
+
+    fn write(&self, TerrainTile { z, x, y }: TerrainTile, bytes: &[u8]) -> io::Result<u64> {
+        let column = self.folder.join(z.to_string()).join(x.to_string());
+        fs::create_dir_all(&column)?;
+        let path = column.join(format!("{y}.terrain"));
+        if !self.request.gzip {
+            fs::write(path, bytes)?;
+            return Ok(bytes.len() as u64);
+        }
+        let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+        packed.write_all(bytes)?;
+        let packed = packed.finish()?;
+        fs::write(path, &packed)?;
+        Ok(packed.len() as u64)
+    }
+
+    /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.
+    fn sampled_level(&self, error_m: f64) -> u8 {
+        let Manifest { levels, frame, .. } = self.package.manifest();
+        let near = |level: &&LevelRecord| level.geometric_error_m <= error_m * SHARE_OF_SAMPLES;
+        levels.iter().find(near).map_or(frame.max_level(), |level| level.level)
+    }
+
+    fn empty_level(&self, level: u8) -> QuantizedMeshLevel {
+        QuantizedMeshLevel {
+            level,
+            cells: nodes(self.package.manifest(), self.request.tiling, level).per_tile as u64,
+            assumed_error_m: self.request.tiling.level_error_m(level),
+            ..QuantizedMeshLevel::default()
+        }
+    }
+}
+
+/// The raster of a level: cells no longer than the package's, as long as tiles have few enough of them.
+fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> Nodes {
+    let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
+    let [_, meridian_m] = radii_m(lat);
+    let row = tiling.row_of(level, lat);
+    let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
+    let [parallel_m, _] = radii_m(lat);
+    let column = tiling.column_of(level, lon);
+    let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
+    let side_m =
+        ((north - south).to_radians() * meridian_m).max((east - west).to_radians() * parallel_m);
+    let cell = manifest.frame.cell();
+    let [scale_x, scale_y] = manifest.scale.center;
+    let cell_m = (cell.east_m / scale_x).min(cell.north_m / scale_y);
+    let [fewest, most] = CELLS;
+    let mut per_tile = fewest;
+    while per_tile < most && side_m / per_tile as f64 > cell_m {
+        per_tile *= 2;
+    }
+    // As finely as the package has the ground.
+    let [least, largest] = PARTS;
+    let cells = (side_m / per_tile as f64 / cell_m).ceil().clamp(least, largest);
+    Nodes { tiling, level, per_tile, parts: cells as i64 }
+}

@@ -1,0 +1,194 @@
+//! A store of sealed parts in object storage.
+//!
+//! ```text
+//! PREFIX/plan.json                what the prefix is bound to, as the caller wrote it
+//!        store                    its header, as the file of a store in a folder
+//!        parts/NAME.DIGEST.part   a sealed part
+//! ```
+//!
+//! Each is written once, on the condition that there is none. Whoever writes `plan.json` first has bound the prefix; the header comes after it and
+//! says that it is whole.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
+
+use corniche_store::{
+    PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError, StoredPlan,
+    check_sealed, part_of_sealed, plan_of_header, store_header,
+};
+
+use crate::{
+    BlockCache, Bucket, Existing, Found, ObjectAddress, ObjectError, Storage, Upload,
+    object_part::ObjectPart,
+};
+
+/// The store under a prefix.
+#[derive(Debug)]
+pub struct ObjectPlace {
+    bucket: Bucket,
+    address: ObjectAddress,
+    /// The address, where others have a path.
+    name: PathBuf,
+    blocks: Arc<BlockCache>,
+    /// What it is bound to never changes.
+    plan: OnceLock<StoredPlan>,
+    /// What was listed last, by file name: length and `ETag` come with it, so that nobody need ask for them.
+    listed: Mutex<BTreeMap<String, Found>>,
+}
+
+impl ObjectPlace {
+    /// The store at an address. Nothing is asked of the server yet.
+    ///
+    /// # Errors
+    /// [`ObjectError::Settings`].
+    pub fn new(
+        storage: &Storage,
+        address: &ObjectAddress,
+        blocks: &Arc<BlockCache>,
+    ) -> Result<Self, ObjectError> {
+        Ok(Self {
+            bucket: storage.bucket(&address.bucket)?,
+            address: address.clone(),
+            name: address.to_string().into(),
+            blocks: Arc::clone(blocks),
+            plan: OnceLock::new(),
+            listed: Mutex::default(),
+        })
+    }
+
+    fn parts_key(&self) -> String {
+        self.address.beneath(PARTS_NAME)
+    }
+
+    fn header_path(&self) -> PathBuf {
+        self.bucket.address(&self.address.beneath(STORE_NAME)).to_string().into()
+    }
+
+    /// Fails if the prefix holds what no store makes.
+    fn refuse_others(&self) -> Result<(), StoreError> {
+        let own = [PLAN_NAME, STORE_NAME].map(|name| self.address.beneath(name));
+        let (found, folders) = self.bucket.list(&self.address.key)?;
+        let parts = self.parts_key();
+        // Programs that show folders make an object for the prefix itself.
+        let is_other = |key: &String| !own.contains(key) && *key != self.address.key;
+        let others = found.into_iter().map(|found| found.key).filter(is_other);
+        let folders = folders.into_iter().filter(|folder| *folder != parts);
+        match others.chain(folders).next() {
+            Some(other) => Err(StoreError::NotAStore {
+                path: self.name.clone(),
+                what: format!("it holds {}", self.bucket.address(&other)),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn find_part(&self, file_name: &str) -> Result<Option<Found>, ObjectError> {
+        self.bucket.find(&format!("{}/{file_name}", self.parts_key()))
+    }
+}
+
+impl PartsPlace for ObjectPlace {
+    fn name(&self) -> &Path {
+        &self.name
+    }
+
+    fn stored_plan(&self) -> Result<Option<StoredPlan>, StoreError> {
+        if let Some(plan) = self.plan.get() {
+            return Ok(Some(plan.clone()));
+        }
+        let Some(header) = self.bucket.get(&self.address.beneath(STORE_NAME))? else {
+            return Ok(None);
+        };
+        let path = self.header_path();
+        let Some(bytes) = self.bucket.get(&self.address.beneath(PLAN_NAME))? else {
+            let what =
+                format!("{PLAN_NAME} is missing beside it; remove all objects of this prefix");
+            return Err(StoreError::Damaged { path, what });
+        };
+        let plan = plan_of_header(&header, bytes, &path)?;
+        Ok(Some(self.plan.get_or_init(|| plan).clone()))
+    }
+
+    fn parts(&self) -> Result<Vec<String>, StoreError> {
+        let (found, _) = self.bucket.list(&self.parts_key())?;
+        let named = found.into_iter().filter_map(|found| {
+            let name = found.key.rsplit('/').next()?.to_owned();
+            part_of_sealed(&name).is_some().then_some((name, found))
+        });
+        let listed: BTreeMap<String, Found> = named.collect();
+        let names = listed.keys().cloned().collect();
+        *self.listed.lock().unwrap_or_else(PoisonError::into_inner) = listed;
+        Ok(names)
+    }
+
+    fn open(&self, file_name: &str) -> Result<Box<dyn PartFile>, StoreError> {
+        let listed = self.listed.lock().unwrap_or_else(PoisonError::into_inner);
+        let listed = listed.get(file_name).cloned();
+        let found = match listed {
+            Some(found) => found,
+            None => self.find_part(file_name)?.ok_or_else(|| {
+                let address = self.bucket.address(&format!("{}/{file_name}", self.parts_key()));
+                ObjectError::Missing { name: address.to_string() }
+            })?,
+        };
+        Ok(Box::new(ObjectPart::new(self.bucket.clone(), found, Arc::clone(&self.blocks))))
+    }
+}
+
+impl Publish for ObjectPlace {
+    fn bind(&self, plan: &StoredPlan) -> Result<StoredPlan, StoreError> {
+        if let Some(bound) = self.stored_plan()? {
+            return Ok(bound);
+        }
+        self.refuse_others()?;
+        let key = self.address.beneath(PLAN_NAME);
+        if self.bucket.create(&key, plan.bytes.clone())? {
+            // A server that ignores the condition would let writers replace each other's parts.
+            if self.bucket.create(&key, plan.bytes.clone())? {
+                let name = self.bucket.address(&key).to_string();
+                return Err(ObjectError::NoConditions { name }.into());
+            }
+        } else {
+            // Someone else came first, now or before, and was perhaps killed before the header.
+            let missing = || ObjectError::Missing { name: self.bucket.address(&key).to_string() };
+            let bytes = self.bucket.get(&key)?.ok_or_else(missing)?;
+            if bytes != plan.bytes {
+                return Ok(StoredPlan { hash: [0; 32], bytes });
+            }
+        }
+        self.bucket.create(&self.address.beneath(STORE_NAME), store_header(plan))?;
+        let bound = self.stored_plan()?;
+        bound.ok_or_else(|| {
+            ObjectError::Missing { name: self.header_path().display().to_string() }.into()
+        })
+    }
+
+    fn publish(
+        &self,
+        sealed: &Path,
+        should_stop: &dyn Fn() -> bool,
+    ) -> Result<PathBuf, StoreError> {
+        let name = sealed.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let key = format!("{}/{name}", self.parts_key());
+        let address = PathBuf::from(self.bucket.address(&key).to_string());
+        let upload = Upload { file: sealed, key: &key, existing: Existing::Keep, should_stop };
+        if self.find_part(name)?.is_some() {
+            // Someone else sent it, perhaps after this machine had begun to.
+            self.bucket.end_earlier(sealed)?;
+        } else {
+            match self.bucket.upload(&upload) {
+                Ok(_) => return Ok(address),
+                Err(ObjectError::Exists { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        // Its name says what it holds. In which order threads put that may differ, so only its list can be compared.
+        let plan =
+            self.stored_plan()?.ok_or_else(|| StoreError::NoStore { path: self.name.clone() })?;
+        check_sealed(&*self.open(name)?, &plan.hash)?;
+        Ok(address)
+    }
+}

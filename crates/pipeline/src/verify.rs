@@ -1,0 +1,108 @@
+//! Checks whether a package keeps its promises, by looking at every tile.
+
+pub(crate) mod area_seams;
+mod areas;
+mod attributes;
+mod boundaries;
+mod checks;
+mod dem;
+mod dem_inputs;
+mod derived_records;
+mod deviation_checks;
+mod deviations;
+mod each_tile;
+mod elevation;
+mod error;
+mod geo_against_sv;
+mod georeference;
+mod grid;
+mod header;
+mod manifest_sums;
+mod one_tile;
+mod osm;
+mod osm_areas;
+mod osm_boundaries;
+mod osm_tile;
+mod photo_against_files;
+mod photo_files;
+mod photos;
+mod polygon;
+mod relief;
+mod report;
+mod roads_of_parent;
+mod roads_on_tin;
+mod samples;
+mod seams;
+mod temporary_store;
+mod tile_place;
+mod tile_sums;
+mod tiles;
+mod tin_against_parent;
+mod triangle_soup;
+mod verify_settings;
+mod vertices_against_dem;
+
+use corniche_tileset::FilePackage;
+
+use crate::Observer;
+
+pub use self::{
+    checks::{Check, CheckId, Needs},
+    elevation::RecordedElevation,
+    error::VerifyError,
+    report::{ErrorFigures, GapFigures, VerifyReport},
+    verify_settings::{VerifyOsm, VerifySettings},
+};
+
+/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or
+/// the extract it also checks what the package says about them. [`CheckId`] lists the checks.
+///
+/// # Errors
+/// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of the build. A broken promise is a
+/// finding, not an error.
+pub fn verify(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
+    let report = look_at_all(package, settings, observer);
+    // Not all checks look after each tile.
+    each_tile::check_readable(package)?;
+    report
+}
+
+fn look_at_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
+    // Before the long work.
+    if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
+        polygon::check(package.manifest(), settings.polygon.as_ref())?;
+    }
+    let mut given = vec![Needs::Package];
+    let (mut report, mut findings) = tiles::verify(package, settings.threads, observer)?;
+    photos::verify(package, settings.threads, &mut findings, observer)?;
+    areas::verify(package, settings.threads, &mut findings, observer)?;
+    boundaries::verify(package, settings.threads, &mut findings, observer)?;
+    manifest_sums::verify(package.manifest(), &mut findings);
+    derived_records::verify(package.manifest(), &mut findings);
+    header::verify(package, &mut findings)?;
+    grid::verify(package.manifest(), &mut findings);
+    georeference::verify(package.manifest(), &mut findings);
+    if !settings.dem.is_empty() {
+        given.push(Needs::Dem);
+        dem::verify(package, settings, &mut report, observer)?;
+    }
+    if !settings.photo.is_empty() {
+        given.push(Needs::Photo);
+        photo_files::verify(package, settings, &mut findings, observer)?;
+    }
+    if let Some(osm) = &settings.osm {
+        given.push(Needs::Osm);
+        osm::verify(package, osm, settings, &mut findings, observer)?;
+    }
+    findings.merge(std::mem::take(&mut report.checks));
+    report.checks = findings.into_checks(&given);
+    Ok(report)
+}

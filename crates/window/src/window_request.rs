@@ -1,0 +1,141 @@
+//! What a caller asks of a window: package, styles, layers, and how files are written.
+
+use std::{collections::BTreeSet, io, path::PathBuf};
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::{Rgb, Style};
+use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, Wireframe, stream::StreamBudget};
+
+use crate::{Inertia, NotSaved};
+
+/// A style and what it is called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedStyle {
+    /// The name that the panel lists.
+    pub name: String,
+    /// How the map looks.
+    pub style: Style,
+}
+
+/// Whether a layer is drawn, where the package has it: areas, or boundaries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Visibility {
+    /// The classes that the style draws are shown.
+    Shown,
+    /// No class is shown.
+    Hidden,
+}
+
+/// What a window shows, as far as a picture of the same view needs it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShownView {
+    /// Where it looks from; never the overview.
+    pub camera: CameraRequest,
+    /// Width and height of the map, pixels.
+    pub size_px: [u32; 2],
+    /// How roads are drawn.
+    pub roads: RoadOptions,
+    /// The name of the style.
+    pub style: String,
+    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says, or not at all.
+    pub areas: Visibility,
+    /// Whether boundaries are drawn as the style says, or not at all.
+    pub boundaries: Visibility,
+    /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
+    pub hidden_overlays: BTreeSet<usize>,
+    /// Colours of the lines of all files, in the style that is shown.
+    pub overlay_colors: Vec<Rgb>,
+    /// Factor on heights.
+    pub exaggeration: f64,
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
+    /// Samples per pixel along each side.
+    pub samples_per_side: u32,
+    /// Whether edges of triangles are drawn.
+    pub wireframe: Wireframe,
+}
+
+/// The command line that draws a view as a picture.
+pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
+
+/// Called about once a second: has the first style changed? `None` if not; else the new style, which is shown from then on,
+/// or in words why it cannot be used: these words are shown, and the old style stays.
+pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
+
+/// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
+/// meanwhile.
+pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
+
+/// A line that a person draws or has drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnLine {
+    /// Which feature of the file it comes from; `None` for one that was drawn here.
+    pub feature: Option<usize>,
+    /// Whether it is the outline of an area: its first point comes after the last one.
+    pub is_area: bool,
+    /// Longitude and latitude of each point, WGS84.
+    pub points_deg: Vec<[f64; 2]>,
+}
+
+/// Saves all lines, and tells where.
+pub type SaveDrawing = Box<dyn FnMut(&[DrawnLine]) -> Result<PathBuf, NotSaved>>;
+
+/// Tells the time, seconds since any moment.
+pub type ClockS = Box<dyn Fn() -> f64>;
+
+/// How to open a window, and what it shows at first.
+pub struct WindowRequest {
+    /// What the package is called.
+    pub name: String,
+    /// Width and height of the window's inside at first, pixels.
+    pub size_px: [u32; 2],
+    /// Where to look from at first.
+    pub camera: CameraRequest,
+    /// How roads are drawn at first.
+    pub roads: RoadOptions,
+    /// The method by which roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
+    pub software_method: Option<RoadMethod>,
+    /// What people call the roads of each class, 0 first.
+    pub class_labels: [String; FunctionalRoadClass::COUNT],
+    /// Tells the command that draws a view, which a person can copy.
+    pub command_of: CommandOf,
+    /// Styles to choose from, at least one; the first is shown at first.
+    pub styles: Vec<NamedStyle>,
+    /// Tells whether the first style has changed; `None` if it cannot change.
+    pub reload: Option<Reload>,
+    /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
+    /// Whether areas are drawn at first, as the style says, or not at all.
+    pub areas: Visibility,
+    /// Whether boundaries are drawn at first, as the style says, or not at all.
+    pub boundaries: Visibility,
+    /// What the files of lines are called that the package's tiles carry, in the order of the style's
+    /// [`overlays`](corniche_styles::Style::overlays).
+    pub overlays: Vec<String>,
+    /// Lines that can be changed in the window.
+    pub drawn_lines: Vec<DrawnLine>,
+    /// Saves them.
+    pub save_drawing: SaveDrawing,
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
+    /// Samples per pixel along each side; without it 2, and 1 where the processor draws.
+    pub samples_per_side: Option<u32>,
+    /// What may be loaded and kept.
+    pub budget: StreamBudget,
+    /// Whether movements slow down gradually or end at once.
+    pub inertia: Inertia,
+    /// Where pictures and flights are saved; no existing file is replaced.
+    pub folder: PathBuf,
+    /// A diagnostic: opens what a line for each frame is written to.
+    pub trace: Option<BeginTrace>,
+    /// Called several times a second: must the program end, for instance because of a signal?
+    pub is_stopped: Box<dyn Fn() -> bool>,
+}

@@ -1,0 +1,413 @@
+//! Which crates start threads, say `unsafe` or open files: each of them stands in a list here, with its reason.
+//!
+//! What is found are paths in the syntax tree, followed through the file's own imports; comments, texts and test code do not count.
+//! A method of a value whose type is not named is not seen, except for those of GDAL's drivers that make files.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+};
+
+use corniche_tidy::{crates_of, read_crate, root};
+use proc_macro2::{TokenStream, TokenTree};
+use syn::{Attribute, ImplItem, Item, Stmt, UseTree, visit::Visit};
+
+/// Crates that start threads, or work in the threads of a pool.
+const THREADS: [(&str, &str); 9] = [
+    (
+        "cli",
+        "signals, the end of standard input, progress while nothing moves, a flight that is shown in a window",
+    ),
+    ("export", "tiles of an export side by side"),
+    ("live", "tiles are loaded while another thread draws"),
+    ("objects", "the runtime of the library for object storage"),
+    ("osm", "blobs are decoded in the pool that the caller hands in"),
+    ("pipeline", "tiles and roads of a build side by side"),
+    ("remote", "a thread that waits for the network"),
+    ("serve", "connections side by side"),
+    ("window", "files are written while the window draws"),
+];
+
+/// Crates with `unsafe` code.
+const UNSAFE: [(&str, &str); 2] = [
+    ("cli", "a call of the C library, by which free memory goes back to the system"),
+    ("dem", "functions of GDAL that the `gdal` crate does not hand out"),
+];
+
+/// Crates that open files.
+const FILES: [(&str, &str); 11] = [
+    ("cli", "settings, styles, lists, pages and everything that commands write"),
+    ("dem", "elevation files, polygons, lists of files"),
+    ("export", "the files that it makes, and scratch space"),
+    ("objects", "the file that is sent, and the note of an upload that was begun"),
+    ("osm", "extracts"),
+    ("overlay", "the file of lines that a person draws"),
+    (
+        "pipeline",
+        "hashes of inputs, the package while it is written, what the system says of its memory",
+    ),
+    ("serve", "the files that it serves"),
+    ("store", "the store's own files"),
+    ("tileset", "packages"),
+    ("window", "pictures and flights that a person saves"),
+];
+
+/// Things that only some crates do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Deed {
+    StartsThreads,
+    IsUnsafe,
+    OpensFiles,
+}
+
+/// Methods of GDAL's drivers that make a file.
+const DRIVER_METHODS: [&str; 4] = [
+    "create_copy",
+    "create_vector_only",
+    "create_with_band_type",
+    "create_with_band_type_with_options",
+];
+
+/// Functions of `std::fs` that open a file.
+const FS_FUNCTIONS: [&str; 4] = ["copy", "read", "read_to_string", "write"];
+/// Functions of `std::fs::File` that open a file.
+const FILE_FUNCTIONS: [&str; 4] = ["create", "create_new", "open", "options"];
+
+/// What a path does, given from its root: `std::thread::spawn`.
+fn deed_of(path: &[&str]) -> Option<Deed> {
+    match path {
+        ["std", "thread", "spawn" | "scope" | "Builder", ..]
+        | ["tokio", "runtime" | "spawn" | "task", ..] => Some(Deed::StartsThreads),
+        ["rayon", "ThreadPool"] => None,
+        ["rayon", ..] => Some(Deed::StartsThreads),
+        ["std" | "tokio", "fs", "OpenOptions", ..] | ["tempfile", ..] => Some(Deed::OpensFiles),
+        ["std" | "tokio", "fs", "File", function, ..] if FILE_FUNCTIONS.contains(function) => {
+            Some(Deed::OpensFiles)
+        }
+        ["std" | "tokio", "fs", function] if FS_FUNCTIONS.contains(function) => {
+            Some(Deed::OpensFiles)
+        }
+        ["rustix", "fs", "open" | "openat"]
+        | ["gdal", "Dataset", "open" | "open_ex"]
+        | ["gdal_sys", "VSIFOpenL"] => Some(Deed::OpensFiles),
+        _ => None,
+    }
+}
+
+/// What the code of a file does outside tests.
+#[derive(Default)]
+struct Finder {
+    imports: BTreeMap<String, Vec<String>>,
+    uses_gdal: bool,
+    found: BTreeSet<Deed>,
+}
+
+impl Finder {
+    /// Reads a file's text.
+    fn deeds(text: &str) -> BTreeSet<Deed> {
+        let file = syn::parse_file(text).expect("it is Rust");
+        let mut imports = Imports::default();
+        imports.visit_file(&file);
+        let uses_gdal =
+            imports.found.values().any(|path| path.first().is_some_and(|first| first == "gdal"));
+        let mut finder = Self { imports: imports.found, uses_gdal, found: BTreeSet::new() };
+        finder.visit_file(&file);
+        finder.found
+    }
+
+    /// Takes a path as the code names it.
+    fn take(&mut self, named: &[String]) {
+        let Some((first, rest)) = named.split_first() else { return };
+        let whole: Vec<&str> = match self.imports.get(first) {
+            Some(path) => path.iter().chain(rest).map(String::as_str).collect(),
+            None => named.iter().map(String::as_str).collect(),
+        };
+        self.found.extend(deed_of(&whole));
+    }
+
+    /// Looks for paths and for `unsafe` in the tokens of a macro.
+    fn take_tokens(&mut self, tokens: TokenStream) {
+        let mut path: Vec<String> = Vec::new();
+        let mut colons = 0;
+        for token in tokens {
+            match token {
+                TokenTree::Ident(ident) => {
+                    if ident == "unsafe" {
+                        self.found.insert(Deed::IsUnsafe);
+                    }
+                    if colons != 2 {
+                        self.take(&path);
+                        path.clear();
+                    }
+                    path.push(ident.to_string());
+                    colons = 0;
+                }
+                TokenTree::Punct(punct) if punct.as_char() == ':' => colons += 1,
+                other => {
+                    self.take(&path);
+                    path.clear();
+                    colons = 0;
+                    if let TokenTree::Group(group) = other {
+                        self.take_tokens(group.stream());
+                    }
+                }
+            }
+        }
+        self.take(&path);
+    }
+}
+
+impl<'ast> Visit<'ast> for Finder {
+    fn visit_item(&mut self, item: &'ast Item) {
+        if !is_test(attributes_of(item)) {
+            syn::visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_impl_item(&mut self, item: &'ast ImplItem) {
+        let is_test = matches!(item, ImplItem::Fn(function) if is_test(&function.attrs));
+        if !is_test {
+            syn::visit::visit_impl_item(self, item);
+        }
+    }
+
+    fn visit_stmt(&mut self, statement: &'ast Stmt) {
+        let is_test = matches!(statement, Stmt::Local(local) if is_test(&local.attrs));
+        if !is_test {
+            syn::visit::visit_stmt(self, statement);
+        }
+    }
+
+    fn visit_item_use(&mut self, import: &'ast syn::ItemUse) {
+        let mut leaves = Vec::new();
+        flatten(&import.tree, &mut Vec::new(), &mut leaves);
+        for (_, path) in leaves {
+            self.found.extend(deed_of(&path.iter().map(String::as_str).collect::<Vec<_>>()));
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let named: Vec<String> =
+            path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        self.take(&named);
+        syn::visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, invocation: &'ast syn::Macro) {
+        self.take_tokens(invocation.tokens.clone());
+    }
+
+    fn visit_expr_method_call(&mut self, call: &'ast syn::ExprMethodCall) {
+        if self.uses_gdal && DRIVER_METHODS.iter().any(|name| call.method == name) {
+            self.found.insert(Deed::OpensFiles);
+        }
+        syn::visit::visit_expr_method_call(self, call);
+    }
+
+    fn visit_expr_unsafe(&mut self, block: &'ast syn::ExprUnsafe) {
+        self.found.insert(Deed::IsUnsafe);
+        syn::visit::visit_expr_unsafe(self, block);
+    }
+
+    fn visit_signature(&mut self, signature: &'ast syn::Signature) {
+        self.found.extend(signature.unsafety.map(|_| Deed::IsUnsafe));
+        syn::visit::visit_signature(self, signature);
+    }
+
+    fn visit_item_impl(&mut self, block: &'ast syn::ItemImpl) {
+        self.found.extend(block.unsafety.map(|_| Deed::IsUnsafe));
+        syn::visit::visit_item_impl(self, block);
+    }
+
+    fn visit_item_trait(&mut self, item: &'ast syn::ItemTrait) {
+        self.found.extend(item.unsafety.map(|_| Deed::IsUnsafe));
+        syn::visit::visit_item_trait(self, item);
+    }
+
+    fn visit_item_foreign_mod(&mut self, block: &'ast syn::ItemForeignMod) {
+        self.found.insert(Deed::IsUnsafe);
+        syn::visit::visit_item_foreign_mod(self, block);
+    }
+}
+
+/// All imports of a file, wherever they stand outside tests: the name that each gives, and its path.
+#[derive(Default)]
+struct Imports {
+    found: BTreeMap<String, Vec<String>>,
+}
+
+impl<'ast> Visit<'ast> for Imports {
+    fn visit_item(&mut self, item: &'ast Item) {
+        if !is_test(attributes_of(item)) {
+            syn::visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_item_use(&mut self, import: &'ast syn::ItemUse) {
+        let mut leaves = Vec::new();
+        flatten(&import.tree, &mut Vec::new(), &mut leaves);
+        self.found.extend(leaves.into_iter().filter_map(|(name, path)| Some((name?, path))));
+    }
+}
+
+/// The leaves of a `use`: the name that each gives, `None` for `*`, and its path.
+fn flatten(
+    tree: &UseTree,
+    prefix: &mut Vec<String>,
+    into: &mut Vec<(Option<String>, Vec<String>)>,
+) {
+    let with = |prefix: &[String], leaf: &syn::Ident| {
+        let mut path = prefix.to_vec();
+        if leaf != "self" {
+            path.push(leaf.to_string());
+        }
+        path
+    };
+    match tree {
+        UseTree::Path(path) => {
+            prefix.push(path.ident.to_string());
+            flatten(&path.tree, prefix, into);
+            prefix.pop();
+        }
+        UseTree::Group(group) => {
+            for tree in &group.items {
+                flatten(tree, prefix, into);
+            }
+        }
+        UseTree::Glob(_) => into.push((None, prefix.clone())),
+        UseTree::Name(leaf) => {
+            let path = with(prefix, &leaf.ident);
+            into.push((path.last().cloned(), path));
+        }
+        UseTree::Rename(leaf) => {
+            into.push((Some(leaf.rename.to_string()), with(prefix, &leaf.ident)));
+        }
+    }
+}
+
+/// Whether what has these attributes is there for tests only.
+fn is_test(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        attribute.path().is_ident("test")
+            || attribute.path().is_ident("cfg")
+                && attribute.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"))
+    })
+}
+
+fn attributes_of(item: &Item) -> &[Attribute] {
+    match item {
+        Item::Const(item) => &item.attrs,
+        Item::Enum(item) => &item.attrs,
+        Item::Fn(item) => &item.attrs,
+        Item::Impl(item) => &item.attrs,
+        Item::Macro(item) => &item.attrs,
+        Item::Mod(item) => &item.attrs,
+        Item::Static(item) => &item.attrs,
+        Item::Struct(item) => &item.attrs,
+        Item::Trait(item) => &item.attrs,
+        Item::Type(item) => &item.attrs,
+        Item::Use(item) => &item.attrs,
+        _ => &[],
+    }
+}
+
+/// What each crate of the workspace does in its own code, with one of the files that do it. The crate `testing` is there for tests.
+fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
+    let mut found = BTreeMap::new();
+    for folder in crates_of(&root()).unwrap() {
+        let read = read_crate(&folder).unwrap();
+        if read.name == "testing" {
+            continue;
+        }
+        let files: BTreeSet<_> = read.modules.iter().map(|module| &module.file).collect();
+        for file in files {
+            let path = folder.join("src").join(file);
+            let text = fs::read_to_string(&path).unwrap();
+            for deed in Finder::deeds(&text) {
+                found.entry((deed, read.name.clone())).or_insert(path.display().to_string());
+            }
+        }
+    }
+    found
+}
+
+/// Compares what crates do with a list of those that may.
+fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
+    let found = deeds_of_crates();
+    let doers = found.iter().filter(|((what, _), _)| *what == deed);
+    for ((_, name), file) in doers {
+        let is_listed = allowed.iter().any(|(listed, _)| listed == name);
+        assert!(
+            is_listed,
+            "{name} {deed:?} in {file}: do it elsewhere, or add it to {list} with a reason"
+        );
+    }
+    for (name, reason) in allowed {
+        assert!(!reason.is_empty(), "{name} has no reason in {list}");
+        let does = found.contains_key(&(deed, (*name).to_owned()));
+        assert!(does, "{name} stands in {list} and no longer {deed:?}");
+    }
+}
+
+#[test]
+fn crates_that_start_threads_are_listed() {
+    check(Deed::StartsThreads, &THREADS, "THREADS");
+}
+
+#[test]
+fn crates_with_unsafe_code_are_listed() {
+    check(Deed::IsUnsafe, &UNSAFE, "UNSAFE");
+}
+
+#[test]
+fn crates_that_open_files_are_listed() {
+    check(Deed::OpensFiles, &FILES, "FILES");
+}
+
+/// Each way to do it is seen, whatever the imports are.
+#[test]
+fn what_is_planted_is_found() {
+    let planted = [
+        ("fn f() { std::thread::spawn(|| ()); }", Deed::StartsThreads),
+        ("use std::thread; fn f() { thread::scope(|_| ()); }", Deed::StartsThreads),
+        ("use std::thread::{self as t}; fn f() { t::Builder::new(); }", Deed::StartsThreads),
+        ("use rayon::prelude::*;", Deed::StartsThreads),
+        ("fn f() { rayon::ThreadPoolBuilder::new(); }", Deed::StartsThreads),
+        ("use tokio::{runtime::Builder, time}; fn f() {}", Deed::StartsThreads),
+        ("fn f() { g(tokio::spawn) }", Deed::StartsThreads),
+        ("fn f() { unsafe { g() } }", Deed::IsUnsafe),
+        ("unsafe fn f() {}", Deed::IsUnsafe),
+        ("struct S; unsafe impl Send for S {}", Deed::IsUnsafe),
+        ("impl S { fn f() { assert!(unsafe { g() }); } }", Deed::IsUnsafe),
+        ("use std::fs::File; fn f() { File::open(path); }", Deed::OpensFiles),
+        ("use std::{fs, io}; fn f() { paths.map(fs::read); }", Deed::OpensFiles),
+        ("use std::fs::read_to_string as text; fn f() { text(path); }", Deed::OpensFiles),
+        ("fn f() { println!(\"{}\", std::fs::read(path).len()); }", Deed::OpensFiles),
+        ("fn f() { std::fs::OpenOptions::new(); }", Deed::OpensFiles),
+        ("use tempfile::NamedTempFile; struct S(NamedTempFile);", Deed::OpensFiles),
+        ("use gdal::Dataset; fn f() { Dataset::open(path); }", Deed::OpensFiles),
+        ("use gdal::Driver; fn f(d: Driver) { d.create_vector_only(p); }", Deed::OpensFiles),
+    ];
+    for (text, deed) in planted {
+        assert_eq!(Finder::deeds(text), BTreeSet::from([deed]), "{text}");
+    }
+}
+
+/// Comments, texts, tests and things with similar names are none of it.
+#[test]
+fn what_only_looks_like_it_is_not_found() {
+    let harmless = [
+        "/// unsafe: `std::thread::spawn`\nfn f() {} // std::fs::read",
+        "const TEXT: &str = \"unsafe std::fs::read(path)\";",
+        "#[cfg(test)] mod tests { fn f() { std::thread::spawn(|| ()); } }",
+        "#[test] fn f() { std::fs::read(path); }",
+        "impl S { #[cfg(test)] fn f() { unsafe { g() } } }",
+        "use std::{fs, thread}; fn f() { fs::metadata(path); thread::sleep(time); }",
+        "use crate::{File, OpenOptions}; fn f() { File::open(path); OpenOptions::default(); }",
+        "fn f(pool: &rayon::ThreadPool) { pool.install(g); }",
+        "fn f() { maker.create_copy(); }",
+    ];
+    for text in harmless {
+        assert_eq!(Finder::deeds(text), BTreeSet::new(), "{text}");
+    }
+}
