@@ -50,7 +50,7 @@ fn the_tables_of_options_in_the_docs_are_those_of_the_program() {
 
 #[test]
 fn a_cell_has_what_comes_first() {
-    let split = |help| cells("--x", help);
+    let split = |help: &str| cells("--x", help);
     assert_eq!(split("Print it [default: no]; always"), ("Print it; always".into(), "no".into()));
     assert_eq!(split("One. Two [default: a|b]"), ("One".into(), "a\\|b".into()));
     let long = ["word"; 20].join(" ");
@@ -159,7 +159,7 @@ fn cells(name: &str, help: &str) -> (String, String) {
 fn marked(text: &str) -> String {
     let text = text.replace('|', "\\|").replace('*', "\\*").replace('<', "&lt;");
     let word = |word: &str| {
-        let begin = word.find(|letter| letter != '(').unwrap_or(0);
+        let begin = word.find(|letter: char| letter != '(').unwrap_or(0);
         let (open, rest) = word.split_at(begin);
         let is_option = rest.strip_prefix('-').is_some_and(|name| {
             name.trim_start_matches('-').starts_with(|letter: char| letter.is_ascii_alphabetic())
