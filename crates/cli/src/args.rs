@@ -8,11 +8,14 @@ mod ground;
 mod growth;
 mod look;
 mod matching;
+#[cfg(test)]
+mod options_page_tests;
 mod overlay;
 mod part;
 mod profile;
 mod reading;
 mod serve;
+mod shared;
 mod shell;
 mod values;
 mod view;
@@ -29,8 +32,7 @@ pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
     Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportGeoTiffArgs, ExportMeshArgs,
-    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTarget, ExportTiles3dArgs, OnOrNone,
-    TerrainCompress,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, Format, OnOrNone, TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
@@ -86,25 +88,45 @@ impl Arguments {
 /// What other programs call a part of the data.
 const NAMES_OF_PARTS: [&str; 3] = ["--bbox", "--clip", "--cutline"];
 
-/// The refusal of an option for a part of the data, as other programs have it, with the names of ours. Its value is written in another way,
-/// so ours have no such names themselves.
+/// A refusal, with what to write instead where that is known.
 fn with_tip(mut error: clap::Error) -> clap::Error {
-    if error.kind() == ErrorKind::UnknownArgument && is_part_of_build(&error) {
-        let tip = "use --bounds W,S,E,N or --polygon FILE".to_owned().into();
+    let tip = match error.kind() {
+        ErrorKind::UnknownArgument => tip_for_part(&error),
+        ErrorKind::InvalidValue => tip_for_caps(&error),
+        _ => None,
+    };
+    if let Some(tip) = tip {
         error.remove(ContextKind::SuggestedArg);
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+        error.remove(ContextKind::SuggestedValue);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
     error
 }
 
-/// Whether an unknown option is one for a part of the data, of a command that can convert a part.
-fn is_part_of_build(error: &clap::Error) -> bool {
-    let text = |kind| error.get(kind).map(ToString::to_string).unwrap_or_default();
-    let option = text(ContextKind::InvalidArg);
-    let usage = text(ContextKind::Usage);
+fn text_of(error: &clap::Error, kind: ContextKind) -> String {
+    error.get(kind).map(ToString::to_string).unwrap_or_default()
+}
+
+/// For an unknown option that is one for a part of the data in other programs, of a command that can convert a part. Its value is written in
+/// another way, so ours have no such names themselves.
+fn tip_for_part(error: &clap::Error) -> Option<String> {
+    let option = text_of(error, ContextKind::InvalidArg);
+    let usage = text_of(error, ContextKind::Usage);
     let name = option.split('=').next().unwrap_or_default();
-    NAMES_OF_PARTS.contains(&name)
-        && ["corniche build ", "corniche plan "].iter().any(|command| usage.contains(command))
+    let has_parts =
+        ["corniche build ", "corniche plan "].iter().any(|command| usage.contains(command));
+    (has_parts && NAMES_OF_PARTS.contains(&name))
+        .then(|| "use --bounds W,S,E,N or --polygon FILE".to_owned())
+}
+
+/// For a method without caps, which `fly` alone has, of a command that has the method itself.
+fn tip_for_caps(error: &clap::Error) -> Option<String> {
+    let value = text_of(error, ContextKind::InvalidValue);
+    let method = value.strip_suffix("-no-caps")?;
+    let is_of_roads = text_of(error, ContextKind::InvalidArg).starts_with("--roads ");
+    let valid = text_of(error, ContextKind::ValidValue);
+    (is_of_roads && valid.split(", ").any(|valid| valid == method))
+        .then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
 }
 
 #[derive(Debug, Subcommand)]

@@ -275,6 +275,48 @@ fn verify_finds_its_package_wherever_it_is_named() {
     assert!(files("corniche verify").is_err());
 }
 
+/// The methods without caps are for `fly`, which may take several; elsewhere the refusal says what to write.
+#[test]
+fn caps_are_an_option_wherever_one_method_is_drawn() {
+    let parse = |line: &str| Arguments::checked_from(line.split(' ').map(Into::into));
+    for command in ["render a.pmtiles -o a.png", "view a.pmtiles"] {
+        for method in ["geo", "sv"] {
+            let line = format!("corniche {command} --roads {method}-no-caps");
+            let said = parse(&line).expect_err(&line).to_string();
+            let tip = format!(
+                "tip: write --roads {method} --caps none; {method}-no-caps is for fly alone"
+            );
+            assert!(said.contains(&tip) && said.matches("tip:").count() == 1, "{line}: {said}");
+            assert!(said.contains("[possible values: geo, sv, none]"), "{line}: {said}");
+            let line = format!("corniche {command} --roads {method} --caps none");
+            assert!(parse(&line).is_ok(), "{line}");
+        }
+        let line = format!("corniche {command} --roads none-no-caps");
+        assert!(!parse(&line).expect_err(&line).to_string().contains("fly alone"), "{line}");
+    }
+    assert!(parse("corniche fly a.pmtiles -o a.csv --roads geo,geo-no-caps,sv-no-caps").is_ok());
+    let line = "corniche export mesh a.pmtiles -o a.glb --roads sv-no-caps";
+    assert!(!parse(line).expect_err(line).to_string().contains("fly alone"), "{line}");
+}
+
+/// What is there for comparisons is not in the way of others: the long help has it, under its own heading.
+#[test]
+fn what_compares_with_the_papers_is_in_the_long_help_alone() {
+    let papers = ["caps", "width-growth", "outline", "cap-test", "geo-quads"];
+    for command in ["render", "fly", "view"] {
+        let mut program = Arguments::command();
+        let command = program.find_subcommand_mut(command).unwrap();
+        let (short, long) =
+            (command.render_help().to_string(), command.render_long_help().to_string());
+        let (_, compared) = long.split_once("Comparing with the papers:").unwrap();
+        for option in papers {
+            let option = format!("--{option} ");
+            assert!(!short.contains(&option) && compared.contains(&option), "{option}: {short}");
+        }
+        assert!(short.contains("--style ") && !short.contains("Comparing"), "{short}");
+    }
+}
+
 /// Whoever looks for a part of the data by another program's option is told ours; of a command without parts nothing is said.
 #[test]
 fn options_of_other_programs_for_a_part_get_a_tip() {

@@ -6,7 +6,7 @@ mod quantized_mesh;
 mod tiles3d;
 mod unknown_ending;
 
-use std::io::stderr;
+use std::{io::stderr, path::Path};
 
 use corniche_areas::AreaClass;
 use corniche_export::{
@@ -17,7 +17,7 @@ use corniche_tileset::Manifest;
 
 use self::unknown_ending::unknown_ending;
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, ExportTarget},
+    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
     exit::ExitCode,
     export_bars::{Bars, named},
     failure::Failure,
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
 }
 
 fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let format = format(&args.target)?;
+    let format = format(args.format, &args.file.output)?;
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, None) => Coordinates::Package,
         (ExportCrs::Wgs84, None) => Coordinates::Wgs84,
@@ -54,35 +54,35 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
             ));
         }
     };
-    let package = packages::open(&args.target.package)?;
+    let package = packages::open(&args.from.package)?;
     let request = RoadsRequest {
         format,
-        level: args.level,
-        classes: args.classes.classes(),
-        bounds: args.bounds,
+        level: args.at.level,
+        classes: args.filter.classes.classes(),
+        bounds: args.within.bounds,
         pieces: args.pieces,
         coordinates,
         memory_bytes: MEMORY_BYTES,
     };
     let name = format!("roads.{}", format.ending());
-    let existing = existing_of(args.target.overwrite);
+    let existing = existing_of(args.file.overwrite);
     let output =
-        NamedOutput::create(&args.target.output, existing, name, &[args.target.package.name()])?;
+        NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let bars = Bars::default();
     let exported = export_roads(&package, &request, &output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.target.output))?;
+    let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
-    let format = format(&args.target)?;
-    let package = packages::open(&args.target.package)?;
+    let format = format(args.format, &args.file.output)?;
+    let package = packages::open(&args.from.package)?;
     let request = AreasRequest {
         format,
-        level: args.level,
+        level: args.at.level,
         classes: if args.classes.is_empty() {
             AreaClass::ALL.to_vec()
         } else {
@@ -95,13 +95,13 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let name = format!("areas.{}", format.ending());
-    let existing = existing_of(args.target.overwrite);
+    let existing = existing_of(args.file.overwrite);
     let output =
-        NamedOutput::create(&args.target.output, existing, name, &[args.target.package.name()])?;
+        NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let bars = Bars::default();
     let exported = export_areas(&package, &request, &output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.target.output))?;
+    let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
     if summary.unjoined > 0 {
         messages::warning(&format!(
@@ -126,7 +126,7 @@ fn areas_to_text(
     };
     format!(
         "{}: {} areas of level {}, {:.3} km², {} polygons, {} points, {}\ncoordinates: {}\nto be shown with it: {}",
-        args.target.output.display(),
+        args.file.output.display(),
         count(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
@@ -139,8 +139,7 @@ fn areas_to_text(
 }
 
 /// The format that is named, or that of the ending.
-fn format(target: &ExportTarget) -> Result<VectorFormat, Failure> {
-    let ExportTarget { format, output, .. } = target;
+fn format(format: Option<Format>, output: &Path) -> Result<VectorFormat, Failure> {
     let named = format.map(VectorFormat::from);
     named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
@@ -167,7 +166,7 @@ fn to_text(
     };
     format!(
         "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
-        args.target.output.display(),
+        args.file.output.display(),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),

@@ -34,21 +34,18 @@ use corniche_viewer::{
     Detail, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
-    stream::StreamBudget,
     tiles::{BlockingPackage, MapPackage as _, Overlays},
 };
 use corniche_window::{Watched, watch};
 
 /// Longest file of keyframes that is read; a hundred thousand keyframes are shorter.
 const MAX_PATH_BYTES: u64 = 32 << 20;
-/// Tiles being decoded at once.
-const TILES_IN_FLIGHT: usize = 8;
 
 pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let outputs = Outputs::create(args)?;
     let style = args.look.styled(styles::style(&args.look.style)?);
     let methods = args.look.roads(&args.drawing.roads)?;
-    let package = packages::source(&args.package)?;
+    let package = packages::source(&args.from.package)?;
     let flight = flight(args, &package)?;
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let (flown, methods) = (&flight, &methods);
@@ -101,11 +98,7 @@ fn options(
         exaggeration: args.drawing.ground.exaggeration,
         supersampling: args.drawing.supersampling,
         style: style.clone(),
-        budget: StreamBudget {
-            tiles_in_flight: TILES_IN_FLIGHT,
-            upload_bytes_per_frame: args.drawing.upload_per_frame,
-            gpu_bytes: args.drawing.gpu_memory,
-        },
+        budget: args.drawing.gpu.budget(),
         ahead_s: args.drawing.ahead,
         frames: frames(args, flight)?,
     })
@@ -149,7 +142,7 @@ impl Plan<'_> {
         let (window, pictures) = mpsc::sync_channel(1);
         let is_gone = AtomicBool::new(false);
         let watcher = Watcher { window, is_gone: &is_gone };
-        let name = self.args.package.file_name();
+        let name = self.args.from.package.file_name();
         thread::scope(|scope| {
             // When the thread ends, the watcher is dropped, the channel closes, and with it the window.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
@@ -203,8 +196,8 @@ impl Plan<'_> {
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
-        let package =
-            packages::source(&self.args.package)?.for_look(options.roads.method, &options.style);
+        let package = packages::source(&self.args.from.package)?
+            .for_look(options.roads.method, &options.style);
         let package = package.with_overlays(Arc::clone(&self.overlays));
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));

@@ -22,7 +22,7 @@ use crate::{
 const NAMES: usize = 13;
 
 pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let mut out = io::stdout().lock();
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();

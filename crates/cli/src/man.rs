@@ -54,6 +54,8 @@ fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     commands
         .into_iter()
         .map(|command| {
+            // What the short help leaves out is told by a page, which has room for it.
+            let command = command.mut_args(|arg| arg.hide_short_help(false));
             let man = Man::new(command).manual("Corniche");
             let mut page = Vec::new();
             man.render(&mut page)?;

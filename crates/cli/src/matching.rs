@@ -31,7 +31,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
     let request = MatchRequest {
-        classes: args.classes.classes(),
+        classes: args.filter.classes.classes(),
         radius_m: args.radius,
         region_m: args.region,
     };

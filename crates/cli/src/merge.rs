@@ -36,7 +36,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         tmp: planned.tmp.clone(),
         output: args.output.clone(),
         existing: output::existing_of(args.overwrite),
-        resources: settings::resources(planned.threads, planned.memory.as_deref())?,
+        resources: settings::resources(planned.cpu.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
     let merged = corniche_pipeline::merge(&merge, &watch);

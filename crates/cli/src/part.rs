@@ -27,7 +27,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         step: args.step.into(),
         subtree: args.subtree,
         share: args.share,
-        resources: settings::resources(planned.threads, planned.memory.as_deref())?,
+        resources: settings::resources(planned.cpu.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
     let progress = Progress::new();

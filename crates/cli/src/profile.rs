@@ -26,18 +26,18 @@ const HEIGHT: RGBColor = RGBColor(90, 60, 30);
 const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
     // Both places are looked at before any work is done.
     let inputs: Vec<&Path> =
-        [args.package.name()].into_iter().chain(args.line.as_deref()).collect();
+        [args.from.package.name()].into_iter().chain(args.line.as_deref()).collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
     let lines = args.line.as_deref().map(|path| placed_lines(path, &package)).transpose()?;
     let bars = Bars::default();
     let found = match &lines {
-        Some(lines) => profile_of_lines(&package, lines, args.level, &bars),
-        None => profile(&package, &args.way, args.level, &bars),
+        Some(lines) => profile_of_lines(&package, lines, args.at.level, &bars),
+        None => profile(&package, &args.way, args.at.level, &bars),
     };
     bars.end();
     let found = found?;

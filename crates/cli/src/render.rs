@@ -18,7 +18,7 @@ use crate::{
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let overlay_files = args.look.overlay.iter().map(OverlayArg::path);
-    let used: Vec<&Path> = [Some(args.package.name()), styles::file_of(&args.look.style)]
+    let used: Vec<&Path> = [Some(args.from.package.name()), styles::file_of(&args.look.style)]
         .into_iter()
         .flatten()
         .chain(overlay_files)
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
     let request = RenderRequest {
-        name: args.package.to_string(),
+        name: args.from.package.to_string(),
         size_px: args.size,
         roads: args.look.road_options(roads),
         camera: args.from_above.request(&args.camera),
@@ -41,7 +41,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     Format::Picture.refuse_others(&args.output)?;
     request.check()?;
-    let package = packages::source(&args.package)?.for_look(request.roads.method, &request.style);
+    let package =
+        packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let package = package.with_overlays(overlays);
     let legend = args.legend.then(|| class_labels(&package.manifest().settings.frc_table));

@@ -21,7 +21,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let payload = match (args.id, args.at) {
         (Some(id), _) => payload(&package, id)?.ok_or_else(|| no_tile(args, id))?,
         (None, Some(at)) => payload_at(args, &package, at)?,
@@ -52,7 +52,7 @@ fn areas(package: &FilePackage, id: TileId) -> Result<Vec<AreaRecord>, Failure> 
 }
 
 fn no_tile(args: &TileArgs, id: TileId) -> Failure {
-    let package = &args.package;
+    let package = &args.from.package;
     Failure::unusable(format!("{package} has no tile {id}; corniche info --json lists its tiles"))
 }
 
@@ -88,7 +88,7 @@ fn payload_at(
 
 /// Why there is no tile at a place, and what to do.
 fn no_tile_at(args: &TileArgs, manifest: &Manifest, [lon_deg, lat_deg]: [f64; 2]) -> String {
-    let package = &args.package;
+    let package = &args.from.package;
     let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
     let place = format!("longitude {lon_deg}, latitude {lat_deg}");
     let [west, south, east, north] = manifest.wgs84_bounds.to_array();

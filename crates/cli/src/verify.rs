@@ -34,7 +34,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         photo: corniche_pipeline::photo_names(&photo)?,
         osm,
         polygon: args.polygon.clone().map(polygon).transpose()?,
-        threads: threads(args.threads),
+        threads: threads(args.cpu.threads),
     };
     let report = corniche_pipeline::verify(&package, &settings, &Progress::new())?;
     let text = if args.json {

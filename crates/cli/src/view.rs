@@ -4,7 +4,7 @@ use std::{fs, io, path::Path, sync::Arc};
 
 use corniche_presets::class_labels;
 use corniche_styles::style_preset_names;
-use corniche_viewer::{RoadMethod, stream::StreamBudget, tiles::MapPackage as _};
+use corniche_viewer::{RoadMethod, tiles::MapPackage as _};
 use corniche_window::{
     BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
     run as open_window,
@@ -22,9 +22,6 @@ use crate::{
     view_command::command_of,
 };
 
-/// Tiles being decoded at once.
-const TILES_IN_FLIGHT: usize = 8;
-
 pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     let chosen = &args.look.style;
     let mut styles = vec![NamedStyle { name: chosen.clone(), style: style(chosen)? }];
@@ -32,7 +29,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
-    let own = [Some(args.package.name()), file_of(chosen)].into_iter().flatten();
+    let own = [Some(args.from.package.name()), file_of(chosen)].into_iter().flatten();
     let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(OverlayArg::path)).collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
@@ -41,7 +38,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             args.folder.display()
         )));
     }
-    let package = packages::source(&args.package)?;
+    let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let package = Arc::new(package.with_overlays(overlays));
     let draw = args.draw.as_deref();
@@ -50,13 +47,13 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         named.style = with_overlays(&args.look.overlay, named.style.clone());
     }
     let request = WindowRequest {
-        name: args.package.file_name(),
+        name: args.from.package.file_name(),
         size_px: args.size,
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
         software_method: software_method(args),
         class_labels: class_labels(&package.manifest().settings.frc_table),
-        command_of: command_of(args.package.name(), &args.look.overlay),
+        command_of: command_of(args.from.package.name(), &args.look.overlay),
         styles,
         photo: args.look.photo,
         areas: args.look.areas.in_window(),
@@ -69,11 +66,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
-        budget: StreamBudget {
-            tiles_in_flight: TILES_IN_FLIGHT,
-            upload_bytes_per_frame: args.upload_per_frame,
-            gpu_bytes: args.gpu_memory,
-        },
+        budget: args.gpu.budget(),
         inertia: match args.motion {
             Motion::Soft => Inertia::On,
             Motion::Prompt => Inertia::Off,

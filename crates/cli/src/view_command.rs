@@ -32,7 +32,7 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     let mut words = vec!["corniche".to_owned(), "render".to_owned(), package.to_owned()];
     let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     option("-o", PICTURE.to_owned());
-    option("--roads", method(shown.roads).word().to_owned());
+    option("--roads", method(shown.roads.method).word().to_owned());
     option("--style", shown.style.clone());
     let [width, height] = shown.size_px;
     option("--size", format!("{width}x{height}"));
@@ -93,19 +93,20 @@ fn hex(color: Rgb) -> String {
     format!("#{red:02X}{green:02X}{blue:02X}")
 }
 
-fn method(roads: RoadOptions) -> Roads {
-    match (roads.method, roads.caps) {
-        (RoadMethod::Geometry, Caps::Round) => Roads::Geo,
-        (RoadMethod::Geometry, Caps::None) => Roads::GeoNoCaps,
-        (RoadMethod::ShadowVolumes, Caps::Round) => Roads::Sv,
-        (RoadMethod::ShadowVolumes, Caps::None) => Roads::SvNoCaps,
-        (RoadMethod::None, _) => Roads::None,
+fn method(method: RoadMethod) -> Roads {
+    match method {
+        RoadMethod::Geometry => Roads::Geo,
+        RoadMethod::ShadowVolumes => Roads::Sv,
+        RoadMethod::None => Roads::None,
     }
 }
 
 /// Options of roads that differ from what `render` does where nothing is said.
 fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     let mut given = Vec::new();
+    if roads.caps == Caps::None && roads.method != RoadMethod::None {
+        given.push(("--caps", "none"));
+    }
     match roads.width_growth {
         WidthGrowth::None => given.push(("--width-growth", "none")),
         WidthGrowth::Constant => given.push(("--width-growth", "constant")),
@@ -118,7 +119,8 @@ fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
         Outline::OfStyle => {}
     }
     // The option is refused where no shadow volume has caps.
-    if roads.cap_test == CapTest::PaperQuadratic && method(roads) == Roads::Sv {
+    let has_caps = roads.method == RoadMethod::ShadowVolumes && roads.caps == Caps::Round;
+    if roads.cap_test == CapTest::PaperQuadratic && has_caps {
         given.push(("--cap-test", "paper"));
     }
     if roads.quads == Quads::Level && roads.method == RoadMethod::Geometry {

@@ -55,7 +55,7 @@ fn read(package: &str, shown: &ShownView) -> RenderArgs {
 fn the_command_draws_what_the_window_shows() {
     let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
     let args = read("my maps/$HOME.pmtiles", &shown);
-    assert_eq!(args.package, PackagePlace::File("my maps/$HOME.pmtiles".into()));
+    assert_eq!(args.from.package, PackagePlace::File("my maps/$HOME.pmtiles".into()));
     assert_eq!(args.look.style, shown.style);
     assert_eq!(args.size, [1234, 567]);
     assert_eq!(args.supersampling, 3);

@@ -114,8 +114,8 @@ pub struct RoadOptions {
     /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file [default: default]
     #[arg(long, value_name = "PRESET|FILE")]
     pub frc_table: Option<String>,
-    /// Functional road classes that become roads, such as 0-8 or 0,1,2: 0 is motorways, 7 service roads and tracks, 8 ways for people on
-    /// foot, on horses or on bicycles; others are left out, and counted with their lengths [default: what the FRC table has on, 0-7 in the default one]
+    /// Functional road classes that become roads, such as 0-8 or 0,1,2; others are left out, and counted with their lengths. 0 is motorways,
+    /// 7 service roads and tracks, 8 ways for people on foot, on horses or on bicycles [default: what the FRC table has on, 0-7 in the default one]
     #[arg(long, value_name = "LIST", value_parser = Classes::parse)]
     pub classes: Option<Classes>,
     /// Show every class that is on (see --classes) on every level; without it, coarse levels show important classes alone

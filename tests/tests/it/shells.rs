@@ -65,6 +65,8 @@ fn bash_completes_commands_options_and_values() {
     assert!(options.contains("--max-error") && options.contains("--log-format"), "{options:?}");
     assert!(options.is_subset(&offered), "{:?}", options.difference(&offered));
     let values = complete(&["corniche", "render", "--roads", ""]).unwrap();
+    assert!(values.contains("geo") && !values.contains("sv-no-caps"), "{values:?}");
+    let values = complete(&["corniche", "fly", "--roads", ""]).unwrap();
     assert!(values.contains("geo") && values.contains("sv-no-caps"), "{values:?}");
 }
 
@@ -115,6 +117,8 @@ fn each_command_has_a_manual_page_with_its_options() {
     };
     assert_eq!(written(&pages), names);
     assert!(page("corniche-verify.1").contains("P2.bound"), "the checks are on its page");
+    let told = page("corniche-render.1").contains("How shadow volumes find their round ends");
+    assert!(told, "what -h leaves out is told");
     if let Ok(shown) =
         Command::new("man").args(["--warnings", "-l"]).arg(pages.join("corniche-build.1")).output()
     {

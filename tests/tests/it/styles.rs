@@ -48,6 +48,9 @@ fn every_option_of_the_look_shows_in_the_picture() {
     let ran = render(&package, &png, &["--roads", "geo", "--cap-test", "paper"]).unwrap();
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("--cap-test") && ran.err.contains("--roads sv"), "{}", ran.err);
+    let ran = render(&package, &png, &["--roads", "sv-no-caps"]).unwrap();
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("write --roads sv --caps none"), "{}", ran.err);
 }
 
 #[test]

@@ -17,8 +17,8 @@ pub(crate) struct WorkArgs {
     /// text file with a name on each line), .gz, .zip, and https:// and s3:// addresses
     #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present_any = ["terrain_of", "config"])]
     pub(crate) dem: Vec<PathBuf>,
-    /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters:
-    /// the result is the same, sooner; terrain settings and credits that are not given are the package's
+    /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters;
+    /// the result is the same, sooner. Terrain settings and credits that are not given are the package's
     #[arg(long = "terrain", value_name = "PACKAGE", conflicts_with = "dem")]
     pub(crate) terrain_of: Option<PathBuf>,
     /// OpenStreetMap extract (.osm.pbf), or several: what is in two of them counts once. Also folders, patterns and @LIST. Without it the package

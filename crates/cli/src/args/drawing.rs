@@ -2,22 +2,20 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum, ValueHint};
-use corniche_presets::parse_bytes;
-use corniche_remote::PackagePlace;
+use clap::{Args, ValueEnum};
 
 use super::{
     camera::{CameraArgs, FromAboveArgs},
     ground::GroundArgs,
     look::{LookArgs, Roads},
-    values::{package_place, parse_size},
+    shared::{GpuArgs, PackageArg},
+    values::parse_size,
 };
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// The picture to write (.png)
     #[arg(short, long, value_name = "PNG")]
     pub(crate) output: PathBuf,
@@ -25,7 +23,7 @@ pub(crate) struct RenderArgs {
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// How roads are drawn
-    #[arg(long, value_enum, default_value_t = Roads::DEFAULT)]
+    #[arg(long, value_parser = Roads::one_method(), default_value = Roads::DEFAULT.word())]
     pub(crate) roads: Roads,
     #[command(flatten)]
     pub(crate) look: LookArgs,
@@ -74,9 +72,8 @@ impl Lod {
 
 #[derive(Debug, Args)]
 pub(crate) struct FlyArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// The list to write (.csv): one line per frame, with the tiles, triangles, bytes and milliseconds it took
     #[arg(short, long, value_name = "CSV")]
     pub(crate) output: PathBuf,
@@ -135,12 +132,8 @@ pub(crate) struct DrawingArgs {
     /// figures, which have one
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
-    /// Memory for tiles on the graphics card, such as 512M or 4G
-    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
-    pub(crate) gpu_memory: u64,
-    /// Most bytes to upload to the graphics card in one frame; at least one whole tile is uploaded
-    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
-    pub(crate) upload_per_frame: u64,
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
     /// Load for where the camera will be in so many seconds; 0 loads nothing in advance
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
     pub(crate) ahead: f64,

@@ -1,16 +1,18 @@
 //! Commands that give what a package holds to other programs.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use corniche_areas::AreaClass;
 use corniche_export::{
-    Availability, DegreeBounds, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
+    Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
-use corniche_presets::{BoundsChoice, Classes};
 use corniche_remote::PackagePlace;
 
-use super::values::{package_among, package_place};
+use super::{
+    shared::{BoundsArg, ClassesArg, FileArgs, FolderArgs, LevelArg, PackageArg, ThreadsArg},
+    values::{package_among, package_place},
+};
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
@@ -38,39 +40,25 @@ pub(crate) enum Export {
     QuantizedMesh(Box<ExportQuantizedMeshArgs>),
 }
 
-// What is read, and the file that is written.
 #[derive(Debug, Args)]
-pub(crate) struct ExportTarget {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
-    /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
-    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+#[command(mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")))]
+pub(crate) struct ExportRoadsArgs {
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
+    pub(crate) file: FileArgs,
     /// The format of a file with another ending
     #[arg(short, long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExportRoadsArgs {
     #[command(flatten)]
-    pub(crate) target: ExportTarget,
-    /// The level whose roads are taken [default: the finest]
-    #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
+    pub(crate) at: LevelArg,
     /// One feature for each piece of a road as the tiles have them, in place of one for each way
     #[arg(long)]
     pub(crate) pieces: bool,
-    /// Functional road classes that are taken, such as 0-4,7
-    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
-    pub(crate) classes: Classes,
-    /// Cut roads at a rectangle of WGS84 degrees; a west beyond the east crosses 180°
-    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
-    pub(crate) bounds: Option<DegreeBounds>,
+    #[command(flatten)]
+    pub(crate) filter: ClassesArg,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// The coordinates: "package" (its CRS and heights, exactly) or "EPSG:4979" (longitude, latitude and height above the
     /// ellipsoid of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_crs)]
@@ -81,12 +69,17 @@ pub(crate) struct ExportRoadsArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")))]
 pub(crate) struct ExportAreasArgs {
     #[command(flatten)]
-    pub(crate) target: ExportTarget,
-    /// The level whose areas are taken [default: the finest]
-    #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
+    pub(crate) file: FileArgs,
+    /// The format of a file with another ending
+    #[arg(short, long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    #[command(flatten)]
+    pub(crate) at: LevelArg,
     /// Classes that are taken, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
     pub(crate) classes: Vec<AreaClass>,
@@ -96,25 +89,22 @@ pub(crate) struct ExportAreasArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    mut_arg("output", |arg| arg.help("The file to write; its ending is its format: .glb, .ply or .obj")),
+    mut_arg("bounds", |arg| arg.help("Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°")),
+)]
 pub(crate) struct ExportMeshArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
-    /// The file to write; its ending is its format: .glb, .ply or .obj
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
-    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
+    pub(crate) file: FileArgs,
     /// The format of a file with another ending
     #[arg(short, long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<ModelFormat>,
-    /// The level that is taken [default: the finest]
-    #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
-    /// Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°
-    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
-    pub(crate) bounds: Option<DegreeBounds>,
+    #[command(flatten)]
+    pub(crate) at: LevelArg,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or
     /// none
     #[arg(
@@ -128,9 +118,8 @@ pub(crate) struct ExportMeshArgs {
     /// Colours and widths of roads: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
     pub(crate) style: String,
-    /// Functional road classes that are taken, such as 0-4,7
-    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
-    pub(crate) classes: Classes,
+    #[command(flatten)]
+    pub(crate) filter: ClassesArg,
     /// With .glb: normal maps of the ground from the package's relief [default: on for .glb]
     #[arg(long, value_enum, value_name = "on|none", hide_possible_values = true)]
     pub(crate) relief: Option<OnOrNone>,
@@ -140,32 +129,30 @@ pub(crate) struct ExportMeshArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>")]
+#[command(
+    override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>",
+    mut_arg("output", |arg| arg.help("The file to write: .tif or .tiff")),
+    mut_arg("level", |arg| arg.help("The level whose triangles are taken [default: the finest]; pixels are the nodes of the finest level in any case")),
+    mut_arg("bounds", |arg| arg.help("Take the nodes in a rectangle of WGS84 degrees, rounded outwards; a west beyond the east crosses 180°")),
+)]
 pub(crate) struct ExportGeoTiffArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present = "dem", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
     package: Option<PackagePlace>,
-    /// The file to write: .tif or .tiff
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
-    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
-    /// The level whose triangles are taken [default: the finest]; pixels are the nodes of the finest level in any case
-    #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
-    /// Take the nodes in a rectangle of WGS84 degrees, rounded outwards; a west beyond the east crosses 180°
-    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
-    pub(crate) bounds: Option<DegreeBounds>,
+    #[command(flatten)]
+    pub(crate) file: FileArgs,
+    #[command(flatten)]
+    pub(crate) at: LevelArg,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM
     #[arg(long, value_name = "FILE", num_args = 1..)]
     dem: Vec<PathBuf>,
     /// With --dem: the polygon that the package was cut with
     #[arg(long, value_name = "FILE", requires = "dem")]
     pub(crate) polygon: Option<PathBuf>,
-    /// Worker threads [default: one per processor]
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
 }
 
 impl ExportGeoTiffArgs {
@@ -183,19 +170,15 @@ impl ExportGeoTiffArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
 pub(crate) struct ExportTiles3dArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
-    /// The folder to write: tileset.json and what it names
-    #[arg(short, long, value_name = "FOLDER")]
-    pub(crate) output: PathBuf,
-    /// Replace the folder, once the new one is complete, if it is an earlier export
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
-    /// How roads are there: cut (surfaces of their true width in the ground's own triangles), line (centre-lines just above
-    /// the ground), vector (centre-lines as vector content for CesiumJS, in a second tileset, roads/tileset.json; a draft, and
-    /// not valid glTF 2.0 for others) or none
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
+    pub(crate) folder: FolderArgs,
+    /// How roads are there: cut (surfaces of their true width), line (centre-lines just above the ground), vector (the same as vector
+    /// content for CesiumJS) or none. Surfaces are in the ground's own triangles; vector content is in a second tileset,
+    /// roads/tileset.json, a draft, and not valid glTF 2.0 for others
     #[arg(
         long,
         value_enum,
@@ -204,19 +187,16 @@ pub(crate) struct ExportTiles3dArgs {
         hide_possible_values = true
     )]
     pub(crate) roads: TileRoadsArg,
-    /// Functional road classes that are taken, such as 0-4,7
-    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
-    pub(crate) classes: Classes,
+    #[command(flatten)]
+    pub(crate) filter: ClassesArg,
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
     pub(crate) style: String,
     /// The finest level that is written [default: the package's finest]
     #[arg(long, value_name = "Z")]
     pub(crate) finest_level: Option<u8>,
-    /// Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east
-    /// crosses 180°
-    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
-    pub(crate) bounds: Option<DegreeBounds>,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// Normal maps of the ground from the package's relief
     #[arg(
         long,
@@ -247,22 +227,17 @@ pub(crate) struct ExportTiles3dArgs {
     /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
-    /// Worker threads [default: one per processor]
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")))]
 pub(crate) struct ExportQuantizedMeshArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
-    /// The folder to write: layer.json and a folder for each level
-    #[arg(short, long, value_name = "FOLDER")]
-    pub(crate) output: PathBuf,
-    /// Replace the folder, once the new one is complete, if it is an earlier export
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
+    pub(crate) folder: FolderArgs,
     /// The grid of tiles: geographic (EPSG:4326) or web-mercator (EPSG:3857)
     #[arg(
         long,
@@ -275,7 +250,7 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// The finest level [default: the first one whose error, as CesiumJS assumes it, is at most the package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
     pub(crate) max_level: Option<u8>,
-    /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with very many tiles)
+    /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with many tiles)
     #[arg(
         long,
         value_enum,
@@ -296,9 +271,8 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
-    /// Worker threads [default: one per processor]
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
 }
 
 /// Grids of terrain tiles.
@@ -474,20 +448,6 @@ pub(crate) enum ExportCrs {
 pub(crate) enum Heights {
     /// The package's heights
     AsIs,
-}
-
-pub(crate) fn parse_classes(text: &str) -> Result<Classes, String> {
-    Classes::parse(text).map_err(|_| "write classes from 0 to 8 like 0-4,7".to_owned())
-}
-
-fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
-    let advice = "write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28";
-    match BoundsChoice::parse(text)? {
-        BoundsChoice::Degrees(degrees) => {
-            DegreeBounds::new(degrees).ok_or_else(|| advice.to_owned())
-        }
-        BoundsChoice::Osm => Err(format!("a package does not know the extract's box; {advice}")),
-    }
 }
 
 fn parse_area_class(text: &str) -> Result<AreaClass, String> {

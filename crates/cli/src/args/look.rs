@@ -1,13 +1,19 @@
 //! How roads are drawn and how everything looks, for all commands that draw.
 
-use clap::{Args, ValueEnum};
+use clap::{
+    Args, ValueEnum,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
 use super::overlay::{self, OverlayArg};
 use crate::failure::Failure;
 
-/// How roads are drawn.
+/// The heading in the help under which options stand that are there for comparisons with published methods.
+const COMPARING: &str = "Comparing with the papers";
+
+/// How roads are drawn. The methods without caps are named by `fly` alone, which can so take one flight with and without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Roads {
     /// As geometry on the TIN
@@ -43,6 +49,13 @@ impl Roads {
             Self::Sv | Self::SvNoCaps => RoadMethod::ShadowVolumes,
             Self::None => RoadMethod::None,
         }
+    }
+
+    /// The value of `--roads` in commands that draw with one method; whether roads have caps is said by `--caps` there.
+    pub(crate) fn one_method() -> impl TypedValueParser<Value = Self> {
+        let methods = [Self::Geo, Self::Sv, Self::None];
+        PossibleValuesParser::new(methods.iter().filter_map(ValueEnum::to_possible_value))
+            .try_map(|word| Self::from_str(&word, false))
     }
 
     /// The same method drawn without caps.
@@ -153,19 +166,19 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
     pub(crate) overlay: Vec<OverlayArg>,
     /// How roads begin, bend and end
-    #[arg(long, value_enum, default_value_t = Caps::Round)]
+    #[arg(long, value_enum, default_value_t = Caps::Round, help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,
     /// How widths depend on the distance from the eye
-    #[arg(long, value_enum, default_value_t = WidthGrowth::Distance)]
+    #[arg(long, value_enum, default_value_t = WidthGrowth::Distance, help_heading = COMPARING, hide_short_help = true)]
     width_growth: WidthGrowth,
     /// Outline of roads: the style's, none, or one from a kernel of 3 or 5 pixels
-    #[arg(long, value_enum, default_value_t = Outline::Style)]
+    #[arg(long, value_enum, default_value_t = Outline::Style, help_heading = COMPARING, hide_short_help = true)]
     outline: Outline,
     /// How shadow volumes find their round ends [default: distance]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = COMPARING, hide_short_help = true)]
     cap_test: Option<CapTest>,
     /// What the quads of roads as geometry cover [default: beds]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = COMPARING, hide_short_help = true)]
     geo_quads: Option<Quads>,
 }
 

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueHint};
-use corniche_presets::Classes;
 use corniche_remote::PackagePlace;
 
-use super::values::{package_among, package_place};
+use super::{
+    shared::ClassesArg,
+    values::{package_among, package_place},
+};
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
@@ -14,6 +16,7 @@ use crate::failure::Failure;
     group = ArgGroup::new("target").args(["photo", "slope"]).required(true),
     override_usage = "corniche match [OPTIONS] <--photo <FILE>...|--slope> <PACKAGE>",
     group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
+    mut_arg("classes", |arg| arg.help("Functional road classes that are compared, such as 0-4,7")),
 )]
 pub(crate) struct MatchArgs {
     /// The package: a file, or an address on a web server (https://…)
@@ -31,9 +34,8 @@ pub(crate) struct MatchArgs {
     /// The side of the squares for which offsets are told, metres
     #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = parse_metres)]
     pub(crate) region: f64,
-    /// Functional road classes that are compared, such as 0-4,7
-    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = super::export::parse_classes)]
-    pub(crate) classes: Classes,
+    #[command(flatten)]
+    pub(crate) filter: ClassesArg,
     /// Also write a line for each way (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,

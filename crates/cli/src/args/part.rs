@@ -1,15 +1,12 @@
 //! Commands that make a package in parts.
 
-use std::{
-    num::{NonZeroU32, NonZeroUsize},
-    path::PathBuf,
-};
+use std::{num::NonZeroU32, path::PathBuf};
 
 use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
 use corniche_pipeline::{Share, Step};
 
-use super::ReportArgs;
+use super::{ReportArgs, shared::ThreadsArg};
 use crate::failure::Failure;
 
 /// A step of a build that a process can do alone.
@@ -57,9 +54,8 @@ pub(crate) struct PlannedArgs {
     /// With object storage: where a part or a package is made before it is sent [default: the system's temporary folder]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) tmp: Option<PathBuf>,
-    /// Worker threads [default: one per processor]
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
     /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
     #[arg(long, value_name = "BYTES")]
     pub(crate) memory: Option<String>,

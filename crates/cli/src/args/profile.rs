@@ -2,29 +2,27 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, ValueHint};
-use corniche_remote::PackagePlace;
+use clap::{ArgGroup, Args};
 
-use super::values::package_place;
+use super::shared::{LevelArg, PackageArg};
 
 #[derive(Debug, Args)]
 #[command(
     group = ArgGroup::new("drawn").args(["csv", "svg"]).multiple(true),
     group = ArgGroup::new("what").args(["way", "line"]).required(true),
+    mut_arg("level", |arg| arg.help("The level on whose ground they lie [default: the finest]")),
 )]
 pub(crate) struct ProfileArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
     #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) way: Vec<i64>,
     /// The lines to follow instead: those of a file (GeoJSON, GPX, GeoPackage, Shapefile …), one after the other
     #[arg(long, value_name = "FILE")]
     pub(crate) line: Option<PathBuf>,
-    /// The level on whose ground they lie [default: the finest]
-    #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
+    #[command(flatten)]
+    pub(crate) at: LevelArg,
     /// Also write a line for each vertex (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,

@@ -1,6 +1,6 @@
 //! Commands that tell what a package holds.
 
-use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
+use std::{fmt::Write as _, path::PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
 use corniche_geom::TileId;
@@ -9,6 +9,7 @@ use corniche_remote::PackagePlace;
 
 use super::{
     ReportArgs,
+    shared::{PackageArg, ThreadsArg},
     values::{may_be_package, package_place, parse_position, place_of},
 };
 use crate::failure::Failure;
@@ -28,9 +29,8 @@ fn checks() -> String {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
@@ -60,9 +60,8 @@ pub(crate) struct VerifyArgs {
     /// With --osm: the table of areas it was made with [default: the preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) areas: Option<String>,
-    /// Worker threads [default: one per processor]
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
@@ -122,9 +121,8 @@ pub(crate) enum Coordinates {
 
 #[derive(Debug, Args)]
 pub(crate) struct TileArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y", required_unless_present = "at")]
     pub(crate) id: Option<TileId>,

@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum, ValueHint};
-use corniche_presets::parse_bytes;
-use corniche_remote::PackagePlace;
+use clap::{Args, ValueEnum};
 
 use super::{
     camera::CameraArgs,
     ground::GroundArgs,
     look::{LookArgs, Roads},
-    values::{package_place, parse_size},
+    shared::{GpuArgs, PackageArg},
+    values::parse_size,
 };
 
 /// How movements of the camera end.
@@ -24,11 +23,10 @@ pub(crate) enum Motion {
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     /// How roads are drawn at first [default: sv, and geo without a graphics card, where sv takes long]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = Roads::one_method())]
     pub(crate) roads: Option<Roads>,
     #[command(flatten)]
     pub(crate) look: LookArgs,
@@ -42,12 +40,8 @@ pub(crate) struct ViewArgs {
     /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card, where more is too slow to move about]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: Option<u32>,
-    /// Memory for tiles on the graphics card, such as 512M or 4G
-    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
-    pub(crate) gpu_memory: u64,
-    /// Most bytes to upload to the graphics card in one frame; at least one whole tile is uploaded
-    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
-    pub(crate) upload_per_frame: u64,
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
     /// How movements end
     #[arg(long, value_enum, default_value_t = Motion::Soft)]
     pub(crate) motion: Motion,

@@ -27,27 +27,28 @@ use crate::{
 const ENDINGS: [&str; 2] = ["tif", "tiff"];
 
 pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
-    let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let ending = args.file.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     if !ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) {
         return Err(Failure::unusable(format!(
             "{} is a raster; give it the ending .tif",
-            args.output.display()
+            args.file.output.display()
         )));
     }
     let (place, dem) = args.files()?;
     let package = packages::open(&place)?;
-    let existing = existing_of(args.overwrite);
+    let existing = existing_of(args.file.overwrite);
     let inputs: Vec<&Path> =
         [place.name()].into_iter().chain(dem.iter().map(AsRef::as_ref)).collect();
-    let output = NamedOutput::create(&args.output, existing, "heights.tif".to_owned(), &inputs)?;
+    let output =
+        NamedOutput::create(&args.file.output, existing, "heights.tif".to_owned(), &inputs)?;
     let elevation = elevation(args, &dem, &package)?;
     let request = GeoTiffRequest {
-        level: args.level,
-        bounds: args.bounds,
+        level: args.at.level,
+        bounds: args.within.bounds,
         elevation: elevation
             .as_ref()
             .map(|RecordedElevation { dem, plan, .. }| Elevation { dem, plan }),
-        threads: threads(args.threads),
+        threads: threads(args.cpu.threads),
     };
     let bars = Bars::default();
     let exported = export_geotiff(&package, &request, &output.path(), &bars);
@@ -56,7 +57,7 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
         // A file that changed may be the cause of any other error.
         elevation.check_unchanged()?;
     }
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
     if !summary.has_same_crs {
         messages::warning(&format!(
@@ -100,7 +101,7 @@ fn to_text(
     });
     format!(
         "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
-        args.output.display(),
+        args.file.output.display(),
         summary.level,
         count(summary.columns),
         count(summary.rows),

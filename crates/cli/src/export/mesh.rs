@@ -23,10 +23,11 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
-    let format = args.format.map(MeshFormat::from).or_else(|| MeshFormat::of_path(&args.output));
+    let format =
+        args.format.map(MeshFormat::from).or_else(|| MeshFormat::of_path(&args.file.output));
     let format = format.ok_or_else(|| {
         let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        unknown_ending(&args.output, &endings)
+        unknown_ending(&args.file.output, &endings)
     })?;
     if args.relief == Some(OnOrNone::On) && format != MeshFormat::Glb {
         return Err(Failure::unusable(format!(
@@ -35,29 +36,30 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         )));
     }
     let style = styles::style(&args.style)?;
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let roads = ModelRoads::from(args.roads);
     let has_materials = format == MeshFormat::Obj && roads == ModelRoads::Surfaces;
-    let materials = has_materials.then(|| args.output.with_extension("mtl"));
+    let materials = has_materials.then(|| args.file.output.with_extension("mtl"));
     let request = MeshRequest {
         format,
         up: args.up.map_or(format.usual_up(), UpAxis::from),
-        level: args.level,
-        bounds: args.bounds,
+        level: args.at.level,
+        bounds: args.within.bounds,
         roads,
-        classes: args.classes.classes(),
+        classes: args.filter.classes.classes(),
         relief: args.relief != Some(OnOrNone::None),
         style,
         material_file: materials.as_deref().map(file_name),
     };
     let name = format!("model.{}", format.ending());
-    let existing = existing_of(args.overwrite);
-    let output = NamedOutput::create(&args.output, existing, name, &[args.package.name()])?;
+    let existing = existing_of(args.file.overwrite);
+    let output =
+        NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
     let bars = Bars::default();
     let exported = export_mesh(&package, &request, &output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let placed = materials.map(|materials| materials.place(&request)).transpose()?;
     let size = output.place().inspect_err(|_| {
         // Materials without a model are of no use, but those that were there before belong to another one.
@@ -85,7 +87,8 @@ struct Placed {
 impl Materials {
     /// An unusable place is reported here, before any work is done.
     fn begin(path: PathBuf, existing: Existing, args: &ExportMeshArgs) -> Result<Self, Failure> {
-        let output = Output::create(&path, existing, &[args.package.name(), &args.output])?;
+        let output =
+            Output::create(&path, existing, &[args.from.package.name(), &args.file.output])?;
         Ok(Self { path, output })
     }
 
@@ -111,7 +114,7 @@ fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, si
     };
     format!(
         "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})\nto be shown with it: {}",
-        args.output.display(),
+        args.file.output.display(),
         summary.level,
         count(summary.tiles),
         count(summary.triangles),

@@ -21,7 +21,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let request = QuantizedMeshRequest {
         tiling: Tiling::from(args.tiling),
         max_level: args.max_level,
@@ -31,14 +31,14 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         },
         availability: Availability::from(args.availability),
         gzip: args.compress == TerrainCompress::Gzip,
-        threads: settings::threads(args.threads),
+        threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.overwrite);
-    let output = FolderOutput::create(&args.output, existing, &[args.package.name()])?;
+    let existing = existing_of(args.folder.overwrite);
+    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
     let bars = Bars::default();
     let exported = export_quantized_mesh(&package, &request, output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("quantized-mesh")?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
@@ -76,7 +76,7 @@ fn to_text(
     let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
     format!(
         "{}: {} tiles, {}\n{}heights: {}\nto be shown with it: {}",
-        args.output.display(),
+        args.folder.output.display(),
         count(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),

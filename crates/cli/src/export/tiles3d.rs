@@ -21,12 +21,12 @@ use crate::{
 
 pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.style)?;
-    let package = packages::open(&args.package)?;
+    let package = packages::open(&args.from.package)?;
     let request = Tiles3dRequest {
         finest_level: args.finest_level,
-        bounds: args.bounds,
+        bounds: args.within.bounds,
         roads: TileRoads::from(args.roads),
-        classes: args.classes.classes(),
+        classes: args.filter.classes.classes(),
         style,
         relief: args.relief == OnOrNone::On,
         skirts: args.skirts == OnOrNone::On,
@@ -35,14 +35,14 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
             None => Coordinates::Wgs84,
             Some(_) => Coordinates::Wgs84WithPackageHeights,
         },
-        threads: settings::threads(args.threads),
+        threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.overwrite);
-    let output = FolderOutput::create(&args.output, existing, &[args.package.name()])?;
+    let existing = existing_of(args.folder.overwrite);
+    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
     let bars = Bars::default();
     let exported = export_tiles3d(&package, &request, output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("3D Tiles")?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
@@ -71,7 +71,7 @@ fn to_text(
     let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
     format!(
         "{}: {} tiles, {}, {} tileset documents\n{}heights: {}\nto be shown with it: {}",
-        args.output.display(),
+        args.folder.output.display(),
         count(total(|level| level.tiles)),
         bytes(size),
         count(summary.documents),

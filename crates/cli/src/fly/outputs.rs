@@ -29,7 +29,7 @@ impl Outputs {
     /// Begins the files that are asked for. None of them may be an input of the command, and no two may be the same.
     pub(crate) fn create(args: &FlyArgs) -> Result<Self, Failure> {
         let existing = existing_of(args.overwrite);
-        let mut used: Vec<&Path> = vec![args.package.name()];
+        let mut used: Vec<&Path> = vec![args.from.package.name()];
         used.extend(args.flight.path.as_deref());
         used.extend(styles::file_of(&args.look.style));
         let csv = Output::create(&args.output, existing, &used)?;

@@ -1,0 +1,113 @@
+//! Arguments that several commands have. Where the help of one says more of it, it does so by `mut_arg`.
+
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::{Args, ValueHint};
+use corniche_export::DegreeBounds;
+use corniche_presets::{BoundsChoice, Classes, parse_bytes};
+use corniche_remote::PackagePlace;
+use corniche_viewer::stream::StreamBudget;
+
+use super::values::package_place;
+
+// The package that is read.
+#[derive(Debug, Args)]
+pub(crate) struct PackageArg {
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    pub(crate) package: PackagePlace,
+}
+
+// The file that an export writes.
+#[derive(Debug, Args)]
+pub(crate) struct FileArgs {
+    /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+}
+
+// The folder that an export writes.
+#[derive(Debug, Args)]
+pub(crate) struct FolderArgs {
+    /// The folder to write: tileset.json and what it names
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+    /// Replace the folder, once the new one is complete, if it is an earlier export
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+}
+
+// One level of a package.
+#[derive(Debug, Args)]
+pub(crate) struct LevelArg {
+    /// The level that is taken [default: the finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+}
+
+// A part of a package.
+#[derive(Debug, Args)]
+pub(crate) struct BoundsArg {
+    /// Cut roads at a rectangle of WGS84 degrees; a west beyond the east crosses 180°
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
+    pub(crate) bounds: Option<DegreeBounds>,
+}
+
+// Some classes of roads.
+#[derive(Debug, Args)]
+pub(crate) struct ClassesArg {
+    /// Functional road classes that are taken, such as 0-4,7
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
+    pub(crate) classes: Classes,
+}
+
+// What a command may use of the processor.
+#[derive(Debug, Args)]
+pub(crate) struct ThreadsArg {
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+// What drawing frame by frame may use of the graphics card.
+#[derive(Debug, Args)]
+pub(crate) struct GpuArgs {
+    /// Memory for tiles on the graphics card, such as 512M or 4G
+    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
+    gpu_memory: u64,
+    /// Most bytes to upload to the graphics card in one frame; at least one whole tile is uploaded
+    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
+    upload_per_frame: u64,
+}
+
+impl GpuArgs {
+    /// What the viewer may use, with eight tiles decoded at once.
+    pub(crate) fn budget(&self) -> StreamBudget {
+        StreamBudget {
+            tiles_in_flight: 8,
+            upload_bytes_per_frame: self.upload_per_frame,
+            gpu_bytes: self.gpu_memory,
+        }
+    }
+}
+
+fn parse_classes(text: &str) -> Result<Classes, String> {
+    Classes::parse(text).map_err(|_| "write classes from 0 to 8 like 0-4,7".to_owned())
+}
+
+fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
+    let advice = "write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28";
+    match BoundsChoice::parse(text)? {
+        BoundsChoice::Degrees(degrees) => {
+            DegreeBounds::new(degrees).ok_or_else(|| advice.to_owned())
+        }
+        BoundsChoice::Osm => Err(format!("a package does not know the extract's box; {advice}")),
+    }
+}
+
+#[cfg(test)]
+#[path = "shared_tests.rs"]
+mod tests;
