@@ -12,7 +12,7 @@ use std::{
 };
 
 use corniche_testing::pictures::Golden;
-use e2e::{corniche, draw, json, manifest, root, skipped, text};
+use e2e::{corniche, draw, json, manifest, root, skip, text};
 use gdal::{Dataset, vector::LayerAccess as _};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -217,7 +217,7 @@ fn it_is_drawn_as_it_was() {
         let Some(ran) = draw("render", &recorded(), &png, &options) else { return };
         assert_eq!(ran.code, 0, "{}", ran.err);
         if !["llvmpipe", "vulkan"].iter().all(|part| ran.err.contains(part)) {
-            skipped(&format!("these pictures are llvmpipe's, and this is {}", ran.err));
+            skip(&format!("these pictures are llvmpipe's, and this is {}", ran.err));
             return;
         }
         let picture = image::open(&png).unwrap().to_rgba8();
