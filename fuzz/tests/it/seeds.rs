@@ -1,5 +1,5 @@
 //! The seeds of the fuzz target `package` (`corpus/package`), and some of `payload`, are made here and are what the target reads to its end.
-//! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/seeds.rs`.
+//! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/it/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, fs, path::Path};

@@ -2,7 +2,7 @@
 //! wireframe and differences are put together. Which pixel is which road is the oracle's business.
 //!
 //! They hold for software Vulkan (llvmpipe) alone; cards differ by more than the tolerance at every edge.
-//! `CORNICHE_BLESS=1 cargo test -p corniche-viewer --test golden` accepts the pictures drawn now. Look at them.
+//! `CORNICHE_BLESS=1 cargo test -p corniche-viewer --test it golden` accepts the pictures drawn now. Look at them.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::support;

@@ -8,7 +8,7 @@
 //!
 //! Both answer by distance in plan to the lines of the tile that owns the pixel. A pixel whose answer would
 //! change within a band around it is left out: 0.05 pixels for O1, which knows the ground as the card does, half a
-//! pixel for O2. `cargo test -p corniche-viewer --test oracle -- --nocapture` prints the table of figures.
+//! pixel for O2. `cargo test -p corniche-viewer --test it oracle -- --nocapture` prints the table of figures.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::support;
