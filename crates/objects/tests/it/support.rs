@@ -1,8 +1,5 @@
 //! What the tests of object storage share: a small server that speaks S3 and misbehaves when it is told to.
-#![allow(
-    clippy::unwrap_used,
-    reason = "each test file uses some of it; tests may unwrap"
-)]
+#![allow(clippy::unwrap_used, reason = "each test file uses some of it; tests may unwrap")]
 
 pub(crate) mod request;
 pub(crate) mod server;

@@ -123,7 +123,7 @@ fn read_areas(
     let Some(AreaInput { table, data }) = input.areas else { return Ok(()) };
     observer.begin(Stage::MapAreas, None);
     let frame = input.levels.frame();
-    let splitting = areas::split::RoadSplitting { frame, data, clip: input.clip };
+    let splitting = areas::split::AreaSplitting { frame, data, clip: input.clip };
     let (osm, data) = (input.osm, input.data_bounds);
     let sea = SeaPlace { osm, data, frame, projection: input.projection };
     on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
@@ -151,7 +151,7 @@ fn read_boundaries(
     let Some(data) = input.boundaries else { return Ok(()) };
     observer.begin(Stage::Boundaries, None);
     let splitting =
-        boundaries::split::RoadSplitting { levels: input.levels, data, clip: input.clip };
+        boundaries::split::BoundarySplitting { levels: input.levels, data, clip: input.clip };
     on_extract(input, (scratch, Stage::Boundaries), observer, |request| {
         let mut on_defect = |defect| defects.push(defect);
         let how = (&splitting, input.lengths);

@@ -1,8 +1,5 @@
 //! A web server on the loopback that misbehaves when it is told to.
-#![allow(
-    clippy::unwrap_used,
-    reason = "each test file uses some of it; tests may unwrap"
-)]
+#![allow(clippy::unwrap_used, reason = "each test file uses some of it; tests may unwrap")]
 
 use std::{
     io::{self, BufRead as _, BufReader, Write as _},

@@ -25,8 +25,6 @@ pub(crate) enum Fault {
     Short,
     /// Headers of the request with this beginning are ignored.
     Ignore(&'static str),
-    /// The answer has another `ETag`.
-    OtherEtag,
     /// The answer leads elsewhere.
     Redirect,
 }
@@ -148,10 +146,6 @@ impl Server {
             Some(Fault::Lost) => return Err(cut()),
             Some(Fault::CutBody(bytes)) => most = *bytes,
             Some(Fault::Short) => drop(answer.body.pop()),
-            Some(Fault::OtherEtag) => {
-                answer.headers.retain(|(name, _)| name != "ETag");
-                answer.headers.push(("ETag".to_owned(), "\"another\"".to_owned()));
-            }
             _ => {}
         }
         answer.send(&mut stream.try_clone()?, &request.method, most)?;
