@@ -128,6 +128,11 @@ proptest! {
         }
     }
 
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(corniche_testing::cases(12, 40, 256)))]
+
     /// A node counts exactly if a point of the inside of one of its four cells is in the region: cells are looked at point by point.
     #[test]
     fn nodes_agree_with_a_look_at_every_point(star in star(), steps in prop::array::uniform2(3_i64..40)) {
@@ -154,6 +159,9 @@ proptest! {
         }
     }
 
+}
+
+proptest! {
     /// A node counts or not, whichever window asks.
     #[test]
     fn nodes_do_not_depend_on_the_window(star in star(), west in -9_i64..3, north in -3_i64..9) {

@@ -15,6 +15,7 @@ use std::{
 use crate::support::{Options, Raster, extract, settings};
 use corniche_pipeline::{BuildError, BuildSettings, Leftovers, Silent, build_on};
 use corniche_testing::{
+    cases,
     Random,
     disks::{Failure, MemoryDisk},
 };
@@ -102,15 +103,15 @@ impl Small {
         assert_eq!(disk.paths(), Vec::<PathBuf>::new(), "{what}");
     }
 
-    /// Lets each call fail in turn until none does. `check` is told what came of it; then the build must go on. Returns how many calls
-    /// there were.
+    /// Lets each call fail in turn until none does (in full; else some of them). `check` is told what came of it; then the build must go on. Returns about how many
+    /// calls there were.
     fn every_call(
         &self,
         failure: Failure,
         interval: Duration,
         check: impl Fn(&MemoryDisk, Result<(), BuildError>, &str) -> MemoryDisk,
     ) -> u64 {
-        for call in 0.. {
+        for call in (0..).step_by(cases(41, 11, 1)) {
             let disk = empty_disk();
             disk.fail_after(call, failure);
             let result = self.build(&disk, interval);

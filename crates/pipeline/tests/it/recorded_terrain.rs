@@ -114,7 +114,8 @@ fn every_terrain_with_voids_on_borders_gives_the_same_package() {
     // The first border of tiles lies so many columns and rows from the first sample.
     let corner = [200, 130];
     let shift = corner.map(|nodes| TILE - nodes);
-    for (number, (name, relief)) in TERRAINS.into_iter().enumerate() {
+    let every = corniche_testing::cases(3, 2, 1);
+    for (number, (name, relief)) in TERRAINS.into_iter().enumerate().step_by(every) {
         for fill_voids in [0, 8] {
             let raster = Raster::new(size, shift, |column, row| {
                 let is_void = scattered_void(column, row) || (column > 420 && row > 380);

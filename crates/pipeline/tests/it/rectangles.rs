@@ -49,7 +49,7 @@ fn manifest(package: &std::path::Path) -> Manifest {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 6, max_shrink_iters: 8, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: corniche_testing::cases(1, 3, 24), max_shrink_iters: 8, ..ProptestConfig::default() })]
 
     /// Seams, drape, errors: all that packages promise holds whatever the sides of a cell.
     #[test]

@@ -262,7 +262,7 @@ fn name_of(manifest: &Value, at: &str) -> String {
     name
 }
 
-/// Every leaf of the manifest's JSON has a change here, and every change is seen as it says.
+/// Every leaf of the manifest's JSON has a change here, and every change is seen as it says (in full; else each so many-th).
 #[test]
 fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
     let sound = serde_json::to_value(&SOUND.parts.manifest).unwrap();
@@ -280,7 +280,7 @@ fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/promises.md"))
             .unwrap();
     let mut failed = Vec::new();
-    for change in MANIFEST {
+    for change in MANIFEST.iter().step_by(corniche_testing::cases(8, 3, 1)) {
         let name = name_of(&sound, change.at);
         println!("{}", row(&name, change.seen));
         if let Unseen(reason) = change.seen {

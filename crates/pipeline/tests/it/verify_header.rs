@@ -28,7 +28,7 @@ fn in_a_file<T>(bytes: &[u8], look: impl FnOnce(&Path) -> T) -> T {
 /// so are compressions and type.
 #[test]
 fn every_byte_of_the_header_behind_the_places_is_seen() {
-    for at in 72..FOR_TOOLS.end {
+    for at in (72..FOR_TOOLS.end).step_by(corniche_testing::cases(7, 3, 1)) {
         let mut bytes = SOUND.bytes.clone();
         bytes[at] ^= 1;
         in_a_file(&bytes, |path| {

@@ -405,7 +405,7 @@ fn every_field_of_a_payload_is_seen() {
 
     let mut failed = Vec::new();
     println!("{}", row("TilePayload.id", By(C::Whole)));
-    for &(name, change, seen) in CHANGES {
+    for &(name, change, seen) in CHANGES.iter().step_by(corniche_testing::cases(6, 3, 1)) {
         println!("{}", row(name, seen));
         let mut parts = Parts::sound();
         change(&mut parts);

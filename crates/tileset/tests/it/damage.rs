@@ -52,9 +52,11 @@ fn no_flipped_bit_changes_the_content() {
     let covered: usize = regions.iter().map(|(_, range, _)| range.len()).sum();
     assert_eq!(covered, whole.len(), "the regions are all of the file");
     println!("| bits of | tried | refused | content equal |\n|---|---|---|---|");
+    // Odd steps come to every bit of a byte.
+    let sparser = corniche_testing::cases(61, 9, 1);
     for (name, range, step) in regions {
         let mut outcomes = [0_u32; 2];
-        for bit in (8 * range.start..8 * range.end).step_by(step) {
+        for bit in (8 * range.start..8 * range.end).step_by(step * sparser) {
             let mut damaged = whole.clone();
             damaged[bit / 8] ^= 1 << (bit % 8);
             match read(damaged) {
