@@ -6,6 +6,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
+    sync::LazyLock,
 };
 
 use corniche_tidy::{crates_of, read_crate, root};
@@ -225,7 +226,8 @@ impl<'ast> Visit<'ast> for Finder {
     }
 
     fn visit_item_foreign_mod(&mut self, block: &'ast syn::ItemForeignMod) {
-        self.found.insert(Deed::IsUnsafe);
+        // The blocks of `wasm-bindgen` are not marked: it makes safe functions of them.
+        self.found.extend(block.unsafety.map(|_| Deed::IsUnsafe));
         syn::visit::visit_item_foreign_mod(self, block);
     }
 }
@@ -311,7 +313,10 @@ fn attributes_of(item: &Item) -> &[Attribute] {
     }
 }
 
-/// What each crate of the workspace does in its own code, with one of the files that do it. The crate `testing` is there for tests.
+/// What each crate of the workspace does in its own code, with one of the files that do it.
+static DEEDS: LazyLock<BTreeMap<(Deed, String), String>> = LazyLock::new(deeds_of_crates);
+
+/// Reads all crates but `testing`, which is there for tests.
 fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
     let mut found = BTreeMap::new();
     for folder in crates_of(&root()).unwrap() {
@@ -333,8 +338,7 @@ fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
 
 /// Compares what crates do with a list of those that may.
 fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
-    let found = deeds_of_crates();
-    let doers = found.iter().filter(|((what, _), _)| *what == deed);
+    let doers = DEEDS.iter().filter(|((what, _), _)| *what == deed);
     for ((_, name), file) in doers {
         let is_listed = allowed.iter().any(|(listed, _)| listed == name);
         assert!(
@@ -344,7 +348,7 @@ fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
     }
     for (name, reason) in allowed {
         assert!(!reason.is_empty(), "{name} has no reason in {list}");
-        let does = found.contains_key(&(deed, (*name).to_owned()));
+        let does = DEEDS.contains_key(&(deed, (*name).to_owned()));
         assert!(does, "{name} stands in {list} and no longer {deed:?}");
     }
 }
@@ -378,6 +382,7 @@ fn what_is_planted_is_found() {
         ("fn f() { unsafe { g() } }", Deed::IsUnsafe),
         ("unsafe fn f() {}", Deed::IsUnsafe),
         ("struct S; unsafe impl Send for S {}", Deed::IsUnsafe),
+        ("unsafe extern \"C\" { fn f(); }", Deed::IsUnsafe),
         ("impl S { fn f() { assert!(unsafe { g() }); } }", Deed::IsUnsafe),
         ("use std::fs::File; fn f() { File::open(path); }", Deed::OpensFiles),
         ("use std::{fs, io}; fn f() { paths.map(fs::read); }", Deed::OpensFiles),
