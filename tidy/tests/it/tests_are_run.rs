@@ -199,6 +199,7 @@ fn commands(text: &str) -> Vec<String> {
     let joined = text.replace("\\\n", " ");
     let lines = joined
         .lines()
+        .filter(|line| !line.trim_start().starts_with("# "))
         .flat_map(|line| line.match_indices("cargo test").map(move |(at, _)| &line[at..]));
     let ends = |c: char| "`\"')#|&>;".contains(c);
     lines.map(|line| line.split(ends).next().unwrap_or_default().trim().to_owned()).collect()

@@ -269,6 +269,7 @@ fn areas_agree_with_both_references_at_a_grazing_angle_and_behind_ridges() {
 }
 
 #[test]
+#[ignore = "slow: many pictures, each pixel by two references"]
 fn areas_agree_with_both_references_with_the_eye_inside_a_volume() {
     let (scene, areas) = (on_hills(), areas());
     for (name, place) in [
@@ -314,6 +315,7 @@ fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
 }
 
 #[test]
+#[ignore = "slow: many pictures, each pixel by two references"]
 fn areas_agree_with_both_references_where_the_near_plane_cuts_volumes() {
     let (scene, areas) = (on_hills(), areas());
     // The near plane is at a thousandth of the focus or so: far focus, far near plane.
@@ -364,6 +366,7 @@ fn stepped() -> (Scene, GridFrame, Vec<PlanArea>) {
 }
 
 #[test]
+#[ignore = "slow: many pictures, each pixel by two references"]
 fn areas_agree_with_both_references_over_the_border_of_two_levels_and_on_its_skirts() {
     let (scene, frame, areas) = stepped();
     let [x, y] = frame.tile_bounds(TileId::ROOT).center();

@@ -25,6 +25,7 @@ fn straight_roads_on_flat_ground_have_their_width_to_a_tenth_of_a_pixel() {
 
 /// By how a circle of true metres is stretched: two of its tangents along the road are so far apart.
 #[test]
+#[ignore = "slow: many pictures, each pixel by the reference"]
 fn straight_roads_have_their_true_width_where_working_metres_are_longer_northwards() {
     let scale = DVec2::new(0.8, 1.25);
     let world = World { ratio: 1.25, scale: scale.to_array() };
