@@ -9,7 +9,7 @@ count_tests() {
         /^test result:/ { passed += $4; failed += $6; slow += $8 }
         END { print passed + 0, failed + 0, slow + 0 }' "$1")
     # A test may say several times that a part of it is skipped; it is one test.
-    skipped=$(sed 's/: .*//' | sort -u | wc -l)
+    skipped=$(sed 's/: .*//' "$2" | sort -u | wc -l)
     if [ "$failed" -gt 0 ]; then
         say ""
         say "failed:"

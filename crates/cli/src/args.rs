@@ -125,7 +125,8 @@ fn tip_for_caps(error: &clap::Error) -> Option<String> {
     let method = value.strip_suffix("-no-caps")?;
     let is_of_roads = text_of(error, ContextKind::InvalidArg).starts_with("--roads ");
     let valid = text_of(error, ContextKind::ValidValue);
-    (is_of_roads && valid.split(", ").any(|valid| valid == method))
+    let has_caps = matches!(method, "geo" | "sv");
+    (has_caps && is_of_roads && valid.split(", ").any(|valid| valid == method))
         .then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
 }
 
