@@ -24,7 +24,7 @@ mod voice;
 use std::ffi::OsString;
 
 use clap::{
-    CommandFactory as _, Parser, Subcommand,
+    CommandFactory as _, Parser, Subcommand, ValueEnum as _,
     error::{ContextKind, ContextValue, ErrorKind},
 };
 
@@ -122,12 +122,11 @@ fn tip_for_part(error: &clap::Error) -> Option<String> {
 /// For a method without caps, which `fly` alone has, of a command that has the method itself.
 fn tip_for_caps(error: &clap::Error) -> Option<String> {
     let value = text_of(error, ContextKind::InvalidValue);
-    let method = value.strip_suffix("-no-caps")?;
-    let is_of_roads = text_of(error, ContextKind::InvalidArg).starts_with("--roads ");
+    let method =
+        value.strip_suffix("-no-caps").filter(|_| Roads::from_str(&value, false).is_ok())?;
     let valid = text_of(error, ContextKind::ValidValue);
-    let has_caps = matches!(method, "geo" | "sv");
-    (has_caps && is_of_roads && valid.split(", ").any(|valid| valid == method))
-        .then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
+    let has_method = valid.split(", ").any(|valid| valid == method);
+    has_method.then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
 }
 
 #[derive(Debug, Subcommand)]

@@ -176,8 +176,8 @@ pub(crate) struct ExportTiles3dArgs {
     pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) folder: FolderArgs,
-    /// How roads are there: cut (surfaces of their true width), line (centre-lines just above the ground), vector (vector content for
-    /// CesiumJS) or none. Surfaces are in the ground's own triangles; vector content is in a second tileset,
+    /// How roads are there: cut (surfaces of true width), line (centre-lines just above the ground), vector (these as vector content
+    /// for CesiumJS) or none. Surfaces are in the ground's own triangles; vector content is in a second tileset,
     /// roads/tileset.json, a draft, and not valid glTF 2.0 for others
     #[arg(
         long,
