@@ -1,7 +1,7 @@
 //! One function per reader of foreign bytes. It panics if an input breaks a promise of the reader.
 //!
 //! ```text
-//!  corpus/NAME, regressions/NAME ──► tests/replay.rs ──┐
+//!  corpus/NAME, regressions/NAME ──► tests/it/replay.rs ──┐
 //!                                                      ├──► this crate's function NAME
 //!  libFuzzer ──► fuzz_targets/NAME.rs ─────────────────┘
 //! ```

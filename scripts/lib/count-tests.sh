@@ -2,29 +2,31 @@
 # shellcheck shell=bash
 
 # count_tests OUTPUT SKIPPED TIER: sums up what cargo test printed, and shows why tests were skipped: those that said so (lines
-# `test: reason` in the file SKIPPED) and those left out of this tier as slow.
+# `binary test: reason` in the file SKIPPED) and those left out of the quick tier as slow.
 count_tests() {
-    local passed failed slow skipped names
+    local passed failed slow skipped
     read -r passed failed slow < <(awk '
         /^test result:/ { passed += $4; failed += $6; slow += $8 }
         END { print passed + 0, failed + 0, slow + 0 }' "$1")
+    if ! grep -q '^test result:' "$1"; then say "no test ran: they do not compile, see above"; fi
     # A test may say several times that a part of it is skipped; it is one test.
-    skipped=$(sed 's/: .*//' "$2" | sort -u | wc -l)
+    skipped=$(sed 's/: .*//' "$2" | sort -u | wc -l | tr -d ' ')
     if [ "$failed" -gt 0 ]; then
         say ""
         say "failed:"
-        names=$(awk '/^test .* FAILED$/ { print "  " $2 }' "$1" | sort -u)
-        say "$names"
+        say "$(awk '/^test .* FAILED$/ { print "  " $2 }' "$1" | sort -u)"
     fi
     if [ "$skipped" -gt 0 ]; then
         say ""
-        say "skipped, and why:"
+        say "skipped, or a part of them, and why:"
         # The reason follows the first `: `; names of tests hold `::` alone.
-        say "$(sed 's/^[^ ]*: //' "$2" | sort | uniq -c | sort -rn)"
+        say "$(sed 's/^[^:]*\(::[^:]*\)*: //' "$2" | sort | uniq -c | sort -rn)"
     fi
-    if [ "$slow" -gt 0 ]; then
+    if [ "$3" = quick ]; then
         say ""
-        say "$slow slow tests are not part of this tier; scripts/test ci runs them, too"
+        say "not part of this tier: $slow slow tests, and the examples in doc comments; scripts/test ci runs them"
+    else
+        slow=0
     fi
     if [ "$3" != full ]; then say "scripts/test full runs all cases; CONTRIBUTING.md names the campaigns beyond it"; fi
     say ""

@@ -7,6 +7,7 @@ make_dask_environment() {
     local package=python/corniche-dask
     dask_env=${CARGO_TARGET_DIR:-target}/dask-env
     if python_folder "$dask_env" $package/lock.txt -e "$package[test]"; then return 0; fi
+    if [ "${CI:-}" = true ] && [ ! -x "$dask_env/bin/python" ]; then fail 1 "no virtual environment can be made; see above"; fi
     if [ "${CI:-}" = true ] && "$dask_env/bin/python" -m pip install --quiet --disable-pip-version-check distributed; then
         fail 1 "corniche-dask cannot be installed, though its dependencies can; see above"
     fi

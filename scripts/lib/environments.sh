@@ -10,10 +10,10 @@ missing_for_environments() {
     python_for_environments >/dev/null || echo python3-venv
 }
 
-# Prints a Python interpreter of version 3.10 or newer that can make virtual environments.
+# Prints a Python interpreter of version 3.11 or newer, as the lock files need it, that can make virtual environments.
 python_for_environments() {
     local found
-    found=$(python_with venv ensurepip) && "$found" -c 'import sys; sys.exit(sys.version_info < (3, 10))' && echo "$found"
+    found=$(python_with venv ensurepip) && "$found" -c 'import sys; sys.exit(sys.version_info < (3, 11))' && echo "$found"
 }
 
 # hash_of FILE…: of their contents, in this order.
@@ -28,9 +28,8 @@ npm_folder() {
     (install_missing missing_for_node) || return 1
     new=$(hash_of "$manifest" "$lock")
     if is_made_of "$folder" "$new"; then return 0; fi
-    mkdir -p "$folder"
-    cp "$manifest" "$folder/package.json"
-    cp "$lock" "$folder/package-lock.json"
+    mkdir -p "$folder" && rm -f "$folder/made-of" || return 1
+    cp "$manifest" "$folder/package.json" && cp "$lock" "$folder/package-lock.json" || return 1
     # Node 20 of some systems is older than cesium's own tools want; the library itself does not care.
     (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error --engine-strict=false) >&2 || return 1
     printf '%s\n' "$new" >"$folder/made-of"
@@ -42,10 +41,14 @@ python_folder() {
     local folder=$1 lock=$2 base new
     shift 2
     (install_missing missing_for_environments) && base=$(python_for_environments) || {
-        say "there is no python3 of version 3.10 or newer with the module venv"
+        say "there is no python3 of version 3.11 or newer with the module venv"
         return 1
     }
-    new=$("$base" -c 'import sys; print(sys.version_info[:2])') && new="$new $* $(hash_of "$lock")"
+    # A package of ours lies beside its lock file, and says what it needs.
+    local project
+    project=$(dirname "$lock")/pyproject.toml
+    [ -f "$project" ] || project=
+    new=$("$base" -c 'import sys; print(sys.version_info[:2])') && new="$new $* $(hash_of "$lock" ${project:+"$project"})"
     if is_made_of "$folder" "$new"; then return 0; fi
     rm -rf "$folder"
     if [ $# -gt 0 ]; then set -- -c "$lock" "$@"; else set -- -r "$lock"; fi

@@ -1,7 +1,7 @@
 //! Builds and verifies packages: the order of the stages, their threads, memory, defects and progress.
 //!
 //! This crate never parses arguments and never prints. Its worker threads are spawned in one module, `workers`; which other crates start
-//! threads stands in `tidy/tests/invariants.rs`.
+//! threads stands in `tidy/tests/it/invariants.rs`.
 
 mod areas;
 mod artifacts;

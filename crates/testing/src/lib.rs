@@ -47,4 +47,4 @@ pub use random::Random;
 #[cfg(feature = "rasters")]
 pub use raster::{Raster, raster_creation_options};
 pub use skip::skip;
-pub use tier::{Tier, cases, is_full};
+pub use tier::{Tier, cases, is_full, some_of};

@@ -41,6 +41,21 @@ pub fn cases<T>(quick: T, ci: T, full: T) -> T {
     }
 }
 
+/// Each so many-th of some cases: `every` is for the quick tier, for CI and for full. `CORNICHE_TURN`, a number, says with which to
+/// begin, so that runs of CI on different days look at different ones.
+///
+/// # Panics
+/// When the variable is no number.
+pub fn some_of<I: IntoIterator>(
+    cases_of_all: I,
+    every: [usize; 3],
+) -> impl Iterator<Item = I::Item> {
+    let [quick, ci, full] = every;
+    let step = cases(quick, ci, full);
+    let turn: usize = env::var("CORNICHE_TURN").map_or(0, |turn| turn.parse().expect("a number"));
+    cases_of_all.into_iter().skip(turn % step).step_by(step)
+}
+
 /// Whether this run looks at everything; where it does not, the test that asks is skipped. `reason` says what it takes.
 #[must_use]
 pub fn is_full(reason: &str) -> bool {

@@ -7,4 +7,5 @@ mod invariants;
 mod links;
 mod module_graph;
 mod names;
+mod pages;
 mod tests_are_run;

@@ -101,28 +101,35 @@ fn every_file_of_tests_is_a_module() {
     assert!(checked > 100, "only {checked} files were looked at");
 }
 
-/// Paths of the tests of a binary, `module::function`, as `libtest` names them; without those that a macro makes.
+/// The names of the functions of a text that are tests, also those within `proptest!`.
+fn tests_of(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut is_test = false;
+    for line in text.lines().map(str::trim_start) {
+        if let Some((name, _)) = line.strip_prefix("fn ").and_then(|rest| rest.split_once('(')) {
+            names.extend(is_test.then(|| name.to_owned()));
+        }
+        // Other attributes may stand between.
+        is_test = line == "#[test]" || is_test && line.starts_with("#[");
+    }
+    names
+}
+
+/// Paths of the tests of a binary, `module::function`, as `libtest` names them.
 fn test_names(root_file: &Path) -> Vec<String> {
     let folder = root_file.parent().unwrap();
     let is_folder = root_file.ends_with("main.rs");
     let files =
         if is_folder { files_below(folder, "rs").unwrap() } else { vec![root_file.to_owned()] };
-    let mut names = Vec::new();
-    for file in files {
+    let of_file = |file: &PathBuf| {
         let inside = file.strip_prefix(folder).unwrap().with_extension("");
         let modules = inside.iter().map(|part| part.to_string_lossy().into_owned());
-        let module: Vec<String> =
+        let modules: Vec<String> =
             modules.filter(|part| is_folder && part != "main" && part != "mod").collect();
-        let text = fs::read_to_string(&file).unwrap();
-        for line in text.lines() {
-            let function =
-                line.trim_start().strip_prefix("fn ").and_then(|rest| rest.split_once('('));
-            if let Some((function, _)) = function {
-                names.push([&module[..], &[function.to_owned()]].concat().join("::"));
-            }
-        }
-    }
-    names
+        let names = tests_of(&fs::read_to_string(file).unwrap());
+        names.into_iter().map(move |name| [&modules[..], &[name]].concat().join("::"))
+    };
+    files.iter().flat_map(of_file).collect()
 }
 
 /// What follows this word in a command.
@@ -171,22 +178,14 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
         tests.extend(found.iter().flat_map(|file| test_names(file)));
     }
     if targets.is_empty() {
+        let of_file = |file: PathBuf| {
+            let stem = file.file_stem().unwrap().to_string_lossy().into_owned();
+            let module = stem.trim_end_matches("_tests").to_owned();
+            let names = tests_of(&fs::read_to_string(&file).unwrap());
+            names.into_iter().map(move |name| format!("{module}::{name}"))
+        };
         let files = chosen.iter().flat_map(|folder| files_below(folder, "rs").unwrap());
-        tests = files
-            .flat_map(|file| {
-                let stem = file
-                    .file_stem()
-                    .unwrap()
-                    .to_string_lossy()
-                    .trim_end_matches("_tests")
-                    .to_owned();
-                let text = fs::read_to_string(&file).unwrap();
-                let functions = text
-                    .lines()
-                    .filter_map(|line| line.trim_start().strip_prefix("fn ")?.split_once('('));
-                functions.map(|(name, _)| format!("{stem}::{name}")).collect::<Vec<_>>()
-            })
-            .collect();
+        tests = files.flat_map(of_file).collect();
     }
     // A page may leave the name to the reader.
     let filter = filter.filter(|filter| *filter != "NAME")?;
@@ -194,15 +193,28 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
     (!runs).then(|| format!("no test is called {filter}"))
 }
 
-/// The commands `cargo test …` of a text: to the end of the line, or of the code in which they stand.
+/// The commands `cargo test …` of a text: to the end of the line, or of the code in which they stand. `scripts/test TIER NAME` is given
+/// as what it runs.
 fn commands(text: &str) -> Vec<String> {
     let joined = text.replace("\\\n", " ");
-    let lines = joined
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("# "))
-        .flat_map(|line| line.match_indices("cargo test").map(move |(at, _)| &line[at..]));
     let ends = |c: char| "`\"')#|&>;".contains(c);
-    lines.map(|line| line.split(ends).next().unwrap_or_default().trim().to_owned()).collect()
+    let mut found = Vec::new();
+    for line in joined.lines().filter(|line| !line.trim_start().starts_with("# ")) {
+        let from = |begin: &str| -> Vec<String> {
+            let places = line.match_indices(begin).map(|(at, _)| &line[at..]);
+            places
+                .map(|rest| rest.split(ends).next().unwrap_or_default().trim().to_owned())
+                .collect()
+        };
+        found.extend(from("cargo test"));
+        for command in from("scripts/test ") {
+            let words: Vec<&str> = command.split_whitespace().collect();
+            if let ["scripts/test", "quick" | "ci" | "full", name, ..] = words[..] {
+                found.push(format!("cargo test --workspace {name}"));
+            }
+        }
+    }
+    found
 }
 
 /// Commands in pages, scripts and comments run at least one test.
@@ -244,6 +256,9 @@ fn wrong_commands_are_seen() {
         ("cargo test -p corniche-tidy --test files", "no test binary files"),
         ("cargo test -p corniche-tidy --test it nothing_of_this_name", "no test is called"),
         ("cargo test --locked --test it nothing_of_this_name -- --ignored", "no test is called"),
+        // A helper is no test.
+        ("cargo test -p corniche-tidy --test it finds_nothing", "no test is called"),
+        ("cargo test -p corniche-tidy finds_nothing", "no test is called"),
     ] {
         assert!(wrong(command).is_some_and(|said| said.contains(why)), "{command}");
     }

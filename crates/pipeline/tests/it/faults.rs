@@ -15,9 +15,9 @@ use std::{
 use crate::support::{Options, Raster, extract, settings};
 use corniche_pipeline::{BuildError, BuildSettings, Leftovers, Silent, build_on};
 use corniche_testing::{
-    cases,
     Random,
     disks::{Failure, MemoryDisk},
+    some_of,
 };
 use corniche_tileset::FilePackage;
 use tempfile::TempDir;
@@ -111,7 +111,7 @@ impl Small {
         interval: Duration,
         check: impl Fn(&MemoryDisk, Result<(), BuildError>, &str) -> MemoryDisk,
     ) -> u64 {
-        for call in (0..).step_by(cases(41, 11, 1)) {
+        for call in some_of(0.., [41, 11, 1]) {
             let disk = empty_disk();
             disk.fail_after(call, failure);
             let result = self.build(&disk, interval);

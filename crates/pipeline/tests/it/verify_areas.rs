@@ -2,6 +2,7 @@
 //! the expected checks are broken.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+use corniche_testing::some_of;
 use std::{collections::BTreeMap, path::PathBuf};
 
 use crate::support::{
@@ -292,7 +293,7 @@ fn fields_of_areas_in_the_manifest() {
         |manifest| manifest.areas.as_mut().unwrap().levels[0].bytes += 1,
         |manifest| manifest.areas.as_mut().unwrap().levels.truncate(1),
     ];
-    for change in changes.into_iter().step_by(corniche_testing::cases(5, 3, 1)) {
+    for change in some_of(changes, [5, 3, 1]) {
         let mut apart = Apart::sound();
         change(&mut apart.manifest);
         rehash(&mut apart.manifest);

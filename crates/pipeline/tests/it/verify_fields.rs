@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
+use corniche_testing::some_of;
 use std::fmt::Write as _;
 
 use crate::support::{
@@ -280,13 +281,16 @@ fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/promises.md"))
             .unwrap();
     let mut failed = Vec::new();
-    for change in MANIFEST.iter().step_by(corniche_testing::cases(8, 3, 1)) {
+    for change in MANIFEST {
         let name = name_of(&sound, change.at);
-        println!("{}", row(&name, change.seen));
         if let Unseen(reason) = change.seen {
             let line = format!("| `{name}` | {reason} |");
             assert!(document.contains(&line), "docs/promises.md has no line {line}");
         }
+    }
+    for change in some_of(MANIFEST, [8, 3, 1]) {
+        let name = name_of(&sound, change.at);
+        println!("{}", row(&name, change.seen));
         if let Err(found) = look_at(&sound, change) {
             failed.push(format!("{name}: expected {:?}, found {found}", change.seen));
         }

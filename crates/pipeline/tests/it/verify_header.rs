@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
+use corniche_testing::some_of;
 use std::{fs, io::Read as _, ops::Range, path::Path};
 
 use crate::support::parts::{Against, SOUND, assert_broken, report_on, verify_against};
@@ -28,7 +29,7 @@ fn in_a_file<T>(bytes: &[u8], look: impl FnOnce(&Path) -> T) -> T {
 /// so are compressions and type.
 #[test]
 fn every_byte_of_the_header_behind_the_places_is_seen() {
-    for at in (72..FOR_TOOLS.end).step_by(corniche_testing::cases(7, 3, 1)) {
+    for at in some_of(72..FOR_TOOLS.end, [7, 3, 1]) {
         let mut bytes = SOUND.bytes.clone();
         bytes[at] ^= 1;
         in_a_file(&bytes, |path| {

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
+use corniche_testing::some_of;
 use std::{
     collections::BTreeMap,
     num::{NonZeroU8, NonZeroU32},
@@ -405,7 +406,7 @@ fn every_field_of_a_payload_is_seen() {
 
     let mut failed = Vec::new();
     println!("{}", row("TilePayload.id", By(C::Whole)));
-    for &(name, change, seen) in CHANGES.iter().step_by(corniche_testing::cases(6, 3, 1)) {
+    for &(name, change, seen) in some_of(CHANGES, [6, 3, 1]) {
         println!("{}", row(name, seen));
         let mut parts = Parts::sound();
         change(&mut parts);

@@ -9,6 +9,7 @@ mod roads;
 use crate::support;
 
 use corniche_pipeline::BuildError;
+use corniche_testing::some_of;
 use counting::{check_ground, filled};
 use support::{
     Options, Raster, TILE, build_raster,
@@ -48,7 +49,7 @@ fn in_square([column, row]: [i64; 2], [east, south]: [i64; 2], side: i64) -> boo
 
 #[test]
 fn holes_of_every_size_on_corners_borders_and_inside() {
-    for side in [1, 65, 2, 17, 3].into_iter().step_by(corniche_testing::cases(3, 2, 1)) {
+    for side in some_of([1, 65, 2, 17, 3], [3, 2, 1]) {
         let hole = |c, r| ANCHORS.iter().any(|&anchor| in_square([c, r], anchor, side));
         check(&format!("holes of {side}"), &hole, 0);
         check(&format!("holes of {side}, filled within 8"), &hole, 8);

@@ -7,6 +7,7 @@
 
 use corniche_geom::TileId;
 use corniche_testing::package::{encoded, ids, written};
+use corniche_testing::some_of;
 use corniche_tileset::{Manifest, MemorySource, Package, Sections, TilePayload};
 
 type Content = (Manifest, Vec<TileId>, Vec<TilePayload>);
@@ -53,10 +54,9 @@ fn no_flipped_bit_changes_the_content() {
     assert_eq!(covered, whole.len(), "the regions are all of the file");
     println!("| bits of | tried | refused | content equal |\n|---|---|---|---|");
     // Odd steps come to every bit of a byte.
-    let sparser = corniche_testing::cases(61, 9, 1);
     for (name, range, step) in regions {
         let mut outcomes = [0_u32; 2];
-        for bit in (8 * range.start..8 * range.end).step_by(step * sparser) {
+        for bit in some_of((8 * range.start..8 * range.end).step_by(step), [61, 9, 1]) {
             let mut damaged = whole.clone();
             damaged[bit / 8] ^= 1 << (bit % 8);
             match read(damaged) {

@@ -3,7 +3,7 @@
 
 use corniche_areas::AreaClass;
 use corniche_geom::{GridFrame, TileId};
-use corniche_testing::cases;
+use corniche_testing::some_of;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
@@ -290,15 +290,13 @@ fn areas_agree_with_both_references_with_the_eye_inside_a_volume() {
 fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
     let (scene, areas) = (on_hills(), areas());
     // The common side of two forests runs at y = −70, and the sides of both at x = 180 and 430.
-    for (name, place, heading_deg) in [
+    let places = [
         ("along the common side", [-300.0, -70.0], 90.0),
         ("along the western sides", [180.0, -700.0], 0.0),
         ("on a wall", [300.0, -70.0], 90.0),
         ("on an edge", [180.0, -70.0], 45.0),
-    ]
-    .into_iter()
-    .step_by(cases(4, 2, 1))
-    {
+    ];
+    for (name, place, heading_deg) in some_of(places, [4, 2, 1]) {
         // Near the ground most is behind hills.
         for (height_m, least) in [(above(place, 5.0), 0), (480.0, 200)] {
             let camera = eye_at(place, height_m, 300.0, [heading_deg, 80.0]);
