@@ -23,7 +23,7 @@ use std::{
 pub use binary::binary;
 pub use corniche_testing::{
     cases, extract_with_areas, extract_with_boundaries, extract_with_coast, is_full, real_data,
-    root, sample, skip,
+    root, sample, skip, some_of,
 };
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};

@@ -40,6 +40,7 @@ fn render(package: &Path, png: &Path, options: &[&str]) -> Option<(Ran, Vec<u8>)
 }
 
 #[test]
+#[ignore = "slow: two builds of a country and six pictures"]
 fn areas_are_drawn_unless_they_are_off_and_then_nothing_is_different_from_a_package_without() {
     let folder = tempfile::tempdir().unwrap();
     let [with, without] = ["default", "off"].map(|areas| build(folder.path(), areas));

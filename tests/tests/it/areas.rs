@@ -49,6 +49,7 @@ fn areas_of(package: &Path) -> BTreeMap<(u64, String), f64> {
 }
 
 #[test]
+#[ignore = "slow: several builds of a country"]
 fn areas_are_the_same_however_the_package_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -117,6 +118,7 @@ fn areas_are_the_same_however_the_package_is_made() {
 }
 
 #[test]
+#[ignore = "slow: several builds of a country"]
 fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_areas(folder.path())];

@@ -15,6 +15,7 @@ fn succeed(ran: Ran) -> Ran {
 }
 
 #[test]
+#[ignore = "slow: several builds of a country"]
 fn boundaries_are_the_same_however_the_package_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -66,6 +67,7 @@ fn boundaries_are_the_same_however_the_package_is_made() {
 }
 
 #[test]
+#[ignore = "slow: several builds of a country"]
 fn a_build_with_boundaries_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path())];

@@ -90,6 +90,7 @@ fn wait_for_work(store: &Path, child: &mut Child) {
 }
 
 #[test]
+#[ignore = "slow: waits for processes that end"]
 fn a_part_ends_when_its_pipe_closes_and_is_gone_on_with() {
     // So long that work becomes durable, every two seconds, before it is done.
     let planned = Planned::new("0.25");

@@ -60,6 +60,7 @@ fn tiles_are_the_package_s_ground_with_its_roads() {
 
 /// The same on real elevation and roads, in degrees and with voids. SRTM's heights are above EGM96; those of the others are taken to be.
 #[test]
+#[ignore = "slow: exports of two regions"]
 fn real_regions_are_the_package_s_ground_with_its_roads() {
     for (dem, osm) in [
         ("liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf"),

@@ -98,6 +98,7 @@ fn subtrees(jobs: &[Value], step: &str) -> BTreeMap<String, f64> {
 
 /// Subtrees of the step heights and those of the step tiles need not be the same: either can be the larger ones.
 #[test]
+#[ignore = "slow: some twenty runs of the program"]
 fn jobs_done_one_after_the_other_make_the_bytes_of_a_build() {
     let planned = Planned::pass();
     for [slots_before, slots_after] in [["1", "40"], ["40", "1"], ["3", "3"]] {
@@ -141,6 +142,7 @@ fn roads_in_the_store_change_the_work_of_tiles_alone() {
 
 /// A wide file and a narrow one far from it: parts are small where there is much, and large where there is little.
 #[test]
+#[ignore = "slow: plans and builds of several data"]
 fn subtrees_of_uneven_data_come_from_several_levels() {
     let folder = tempfile::tempdir().unwrap();
     let [wide, narrow] = ["wide.asc", "narrow.asc"].map(|name| folder.path().join(name));

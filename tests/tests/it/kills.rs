@@ -81,23 +81,26 @@ fn went_on(ran: &Ran) -> bool {
 fn killed_builds(seeds: std::ops::Range<u64>, threads: &'static str) {
     let campaign = Campaign::new(threads);
     let (mut kills, mut with_work) = (0, 0);
-    for seed in seeds.clone() {
+    let seeds: Vec<u64> = e2e::some_of(seeds, [6, 3, 1]).collect();
+    for &seed in &seeds {
         let (more, had_work) = campaign.kill(seed);
         kills += more;
         with_work += u64::from(had_work);
     }
-    let builds = seeds.count() as u64;
+    let builds = seeds.len() as u64;
     assert!(u64::from(kills) >= builds / 2, "only {kills} kills met a build at work");
     // On a machine so fast that nothing is durable before the end this would see nothing.
     assert!(with_work >= builds / 4, "only {with_work} of {builds} builds had durable work");
 }
 
 #[test]
+#[ignore = "slow: many builds, each killed several times"]
 fn twelve_killed_builds_with_one_thread_go_on_to_the_same_bytes() {
     killed_builds(0..12, "1");
 }
 
 #[test]
+#[ignore = "slow: many builds, each killed several times"]
 fn twelve_killed_builds_with_two_threads_go_on_to_the_same_bytes() {
     killed_builds(12..24, "2");
 }

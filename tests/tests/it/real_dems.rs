@@ -126,6 +126,7 @@ fn print_levels(name: &str, report: &Value, [build_s, verify_s]: [f64; 2]) {
 }
 
 #[test]
+#[ignore = "slow: builds and verifies real elevation models"]
 fn errors_are_true_and_tight_in_the_alps() {
     check(&dem(&["liechtenstein/N47E009.hgt"], &[]));
     check(&dem(&["liechtenstein/N47E010.hgt"], &[]));
@@ -148,6 +149,7 @@ const DATELINE: &[&str] = &["--cell", "240", "--height-range", "0,65535"];
 
 /// With voids of all kinds, in other units, upside down, across the antimeridian.
 #[test]
+#[ignore = "slow: builds and verifies real elevation models"]
 fn errors_are_true_and_tight_on_awkward_rasters() {
     check(&dem(&["nasty/dem/portland-ned-nodata.tif"], &[]));
     check(&dem(&["nasty/dem/qgis-dem_gaps.tif"], &[]));
@@ -161,6 +163,7 @@ fn errors_are_true_and_tight_on_awkward_rasters() {
 
 /// Cells several samples wide: heights are area averages.
 #[test]
+#[ignore = "slow: builds and verifies real elevation models"]
 fn errors_are_true_and_tight_when_averaged() {
     check(&dem(SRTM3_BLOCK, &["--cell", "250"]));
     check(&dem(JUAN_DE_FUCA, &["--cell", "120"]));

@@ -48,11 +48,13 @@ fn check_liechtenstein(options: &[&str]) {
 }
 
 #[test]
+#[ignore = "slow: three builds of a country"]
 fn liechtenstein_of_2021_on_the_terrain_of_2013() {
     check_liechtenstein(&[]);
 }
 
 #[test]
+#[ignore = "slow: three builds of a country"]
 fn liechtenstein_of_2021_on_the_terrain_of_2013_resampled() {
     check_liechtenstein(&["--crs", "utm", "--cell", "60"]);
 }
