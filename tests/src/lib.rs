@@ -217,9 +217,12 @@ pub fn build_pass(package: &Path, options: &[&str]) {
     build_from([&dem, &osm], package, options);
 }
 
+/// The bytes of a package, once it was built.
+type Built = Arc<OnceLock<Vec<u8>>>;
+
 /// Packages of the sample that were built in this process, by their options. What `build` makes of the same options is the
 /// same bytes, which `packages` and `kills` test.
-static PASSES: Mutex<BTreeMap<Vec<String>, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
+static PASSES: Mutex<BTreeMap<Vec<String>, Built>> = Mutex::new(BTreeMap::new());
 
 /// Puts the package of the `pass` sample with these options at `package`; it is built once in a process.
 ///
