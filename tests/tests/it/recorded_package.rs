@@ -100,7 +100,9 @@ fn add(sum: &mut crc32fast::Hasher, value: &Value) {
 /// Adds named members of each object of a list.
 fn add_each(sum: &mut crc32fast::Hasher, list: &[Value], members: &[&str]) {
     for object in list {
-        members.iter().for_each(|&member| add(sum, &object[member]));
+        for &member in members {
+            add(sum, &object[member]);
+        }
     }
 }
 
@@ -192,7 +194,9 @@ fn its_tiles_are_decoded_to_the_same_numbers() {
         let found = [&vertices, &triangles, &geo, &sv, &ways, &areas].map(Vec::len);
         assert_eq!(found, expected, "{id}");
         let mut sum = crc32fast::Hasher::new();
-        ["vertices", "normals", "triangles"].iter().for_each(|&name| add(&mut sum, &tin[name]));
+        for name in ["vertices", "normals", "triangles"] {
+            add(&mut sum, &tin[name]);
+        }
         add_each(&mut sum, &geo, &["way_id", "part", "frc", "line"]);
         add_each(&mut sum, &sv, &["way_id", "part", "frc", "line", "ground_range_m"]);
         add_each(&mut sum, &areas, &["id", "polygons"]);
