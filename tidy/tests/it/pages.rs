@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use corniche_tidy::root;
+use corniche_tidy::{files_below, root};
 
 /// The most words that a page may have.
 const MOST_WORDS: [(&str, usize); 3] =
@@ -18,9 +18,10 @@ fn read(page: &str) -> String {
 
 /// The pages of a folder.
 fn pages(folder: &str) -> Vec<String> {
-    let entries = fs::read_dir(root().join(folder)).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}")).collect()
+    let folder_path = root().join(folder);
+    let pages = files_below(&folder_path, "md").unwrap();
+    let own = pages.into_iter().filter(|page| page.parent() == Some(&folder_path));
+    own.map(|page| format!("{folder}/{}", page.file_name().unwrap().to_string_lossy())).collect()
 }
 
 #[test]
