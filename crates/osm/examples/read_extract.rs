@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let threads: usize = threads.first().map_or(Ok(2), |text| text.parse())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let table = parse_frc_table(corniche_presets::frc_preset("default").unwrap())?;
+    let table =
+        parse_frc_table(corniche_presets::frc_preset("default").ok_or("a preset is missing")?)?;
     let scratch = FileScratch::new()?;
     let request = ReadRequest {
         path: file.as_ref(),
