@@ -3,7 +3,6 @@
 //! `CORNICHE_TILES=FOLDER cargo bench -p corniche-drape --bench real_tiles`.
 
 #![expect(missing_docs, reason = "criterion's macros make public functions without")]
-#![expect(clippy::print_stderr, reason = "says why nothing is timed")]
 
 use std::{collections::BTreeMap, fs, hint::black_box, path::Path};
 
