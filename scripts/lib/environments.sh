@@ -1,5 +1,8 @@
 # Sourced by scripts/lib/setup.sh: folders with packages of npm and of Python, in the target folder, each made once from a lock file.
 # shellcheck shell=bash
+#
+# Lock files are made anew by hand, and committed: `npm install --package-lock-only --omit-lockfile-registry-resolved` beside a package.json,
+# and the versions that `pip install --dry-run --ignore-installed --report - PACKAGE` tells.
 
 missing_for_node() {
     command -v node >/dev/null || echo nodejs
