@@ -1,4 +1,4 @@
-//! Classes, bounds and coordinate systems of exports are read or refused.
+//! Coordinate systems of exports are read or refused.
 
 use super::*;
 

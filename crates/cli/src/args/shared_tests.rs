@@ -1,3 +1,5 @@
+//! Arguments that several commands share are read or refused.
+
 use super::*;
 
 #[test]
