@@ -126,7 +126,7 @@ require_cargo() {
 }
 
 # Compiling takes about this much in the target folder.
-BUILD_DISK_GB=5
+BUILD_DISK_GB=4
 
 # Says so before a build that cannot fit; a target folder that exists has most of it already.
 require_disk() {
