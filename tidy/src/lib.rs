@@ -23,5 +23,5 @@ mod uses;
 pub use figures::{CrateFigures, Function, figures};
 pub use files::{files_below, root};
 pub use graph::{Cycle, Graph};
-pub use source::{Crate, Module, crates_of, read_crate};
+pub use source::{Crate, Module, attributes_of, crates_of, is_test, read_crate};
 pub use uses::{Use, uses};

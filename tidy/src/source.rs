@@ -89,8 +89,9 @@ pub fn read_crate(folder: &Path) -> Result<Crate> {
     Ok(Crate { name, folder: folder.to_owned(), modules: reader.modules })
 }
 
-/// Whether an item is there for tests only.
-pub(crate) fn is_test(attributes: &[Attribute]) -> bool {
+/// Whether what has these attributes is there for tests only.
+#[must_use]
+pub fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("test")
             || attribute.path().is_ident("cfg")
@@ -268,7 +269,9 @@ fn gather_definitions(tokens: TokenStream, into: &mut Vec<String>) {
     }
 }
 
-pub(crate) fn attributes_of(item: &Item) -> &[Attribute] {
+/// The attributes of an item; none of the kinds that hold no code.
+#[must_use]
+pub fn attributes_of(item: &Item) -> &[Attribute] {
     match item {
         Item::Const(item) => &item.attrs,
         Item::Enum(item) => &item.attrs,

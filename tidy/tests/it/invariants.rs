@@ -9,9 +9,9 @@ use std::{
     sync::LazyLock,
 };
 
-use corniche_tidy::{crates_of, read_crate, root};
+use corniche_tidy::{attributes_of, crates_of, is_test, read_crate, root};
 use proc_macro2::{TokenStream, TokenTree};
-use syn::{Attribute, ImplItem, Item, Stmt, UseTree, visit::Visit};
+use syn::{ImplItem, Item, Stmt, UseTree, visit::Visit};
 
 /// Crates that start threads, or work in the threads of a pool.
 const THREADS: [(&str, &str); 9] = [
@@ -285,32 +285,6 @@ fn flatten(
         UseTree::Rename(leaf) => {
             into.push((Some(leaf.rename.to_string()), with(prefix, &leaf.ident)));
         }
-    }
-}
-
-/// Whether what has these attributes is there for tests only.
-fn is_test(attributes: &[Attribute]) -> bool {
-    attributes.iter().any(|attribute| {
-        attribute.path().is_ident("test")
-            || attribute.path().is_ident("cfg")
-                && attribute.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"))
-    })
-}
-
-fn attributes_of(item: &Item) -> &[Attribute] {
-    match item {
-        Item::Const(item) => &item.attrs,
-        Item::Enum(item) => &item.attrs,
-        Item::Fn(item) => &item.attrs,
-        Item::Impl(item) => &item.attrs,
-        Item::Macro(item) => &item.attrs,
-        Item::Mod(item) => &item.attrs,
-        Item::Static(item) => &item.attrs,
-        Item::Struct(item) => &item.attrs,
-        Item::Trait(item) => &item.attrs,
-        Item::Type(item) => &item.attrs,
-        Item::Use(item) => &item.attrs,
-        _ => &[],
     }
 }
 
