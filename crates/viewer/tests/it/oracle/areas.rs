@@ -108,12 +108,12 @@ fn segments(area: &PlanArea) -> impl Iterator<Item = [DVec2; 2]> {
         .flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b]))
 }
 
-/// Compares each sample of a drawing.
+/// Compares each sample of a drawing by its depth, and many by rays.
 fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing) -> Found {
-    let (caster, outlines) = (Caster::new(scene, camera), Outlines::new(areas));
+    let outlines = Outlines::new(areas);
     let mut found = Found::default();
     for (index, pixel) in drawing.pixels() {
-        let drawn = class_of(&drawing.ground[4 * index..4 * index + 4]);
+        let drawn = drawn_at(drawing, index);
         if matches!(drawing.owners[index], Owner::Nobody | Owner::Wall(_)) {
             assert_eq!(drawn, None, "painted without ground at {pixel}");
             continue;
@@ -134,18 +134,26 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
             }
             found.wrong_by_depth += usize::from(expected != drawn);
         }
-        if matches!(drawing.owners[index], Owner::Skirt(_)) {
+    }
+    let caster = Caster::new(scene, camera);
+    let seen = |at: DVec2| caster.hit(at).map(|hit| outlines.topmost(hit.at.truncate()));
+    for (index, pixel) in some_of(drawing.pixels(), [5, 5, 1]) {
+        if !matches!(drawing.owners[index], Owner::Ground(_)) {
             continue;
         }
-        let seen = |at: DVec2| caster.hit(at).map(|hit| outlines.topmost(hit.at.truncate()));
         let expected = seen(pixel);
         let around = (0..9).map(|k| DVec2::new(f64::from(k % 3 - 1), f64::from(k / 3 - 1)) * 0.5);
         if expected.is_some() && around.into_iter().all(|by| seen(pixel + by) == expected) {
             found.by_rays += 1;
-            found.wrong_by_rays += usize::from(expected != Some(drawn));
+            found.wrong_by_rays += usize::from(expected != Some(drawn_at(drawing, index)));
         }
     }
     found
+}
+
+/// The class that a sample shows.
+fn drawn_at(drawing: &Drawing, index: usize) -> Option<AreaClass> {
+    class_of(&drawing.ground[4 * index..4 * index + 4])
 }
 
 fn draw(scene: &Scene, camera: &Camera) -> Option<Drawing> {
@@ -272,17 +280,18 @@ fn areas_agree_with_both_references_at_a_grazing_angle_and_behind_ridges() {
 #[ignore = "slow: many pictures, each pixel by two references"]
 fn areas_agree_with_both_references_with_the_eye_inside_a_volume() {
     let (scene, areas) = (on_hills(), areas());
-    for (name, place) in [
+    let places = [
         ("forest", [300.0, -180.0]),
         ("lake", [-540.0, 50.0]),
         ("settlement", [-230.0, -300.0]),
         ("island", [-350.0, 160.0]),
-    ] {
-        for (heading_deg, pitch_deg) in [(0.0, 80.0), (130.0, 60.0), (250.0, 92.0)] {
-            let height_m = above(place, 4.0);
-            let camera = eye_at(place, height_m, 60.0, [heading_deg, pitch_deg]);
-            check(&format!("in the {name}, {heading_deg}°"), &scene, &areas, &camera, 1);
-        }
+    ];
+    let views = [(0.0, 80.0), (130.0, 60.0), (250.0, 92.0)];
+    let all = places.into_iter().flat_map(|place| views.map(|view| (place, view)));
+    for ((name, place), (heading_deg, pitch_deg)) in some_of(all, [5, 5, 1]) {
+        let height_m = above(place, 4.0);
+        let camera = eye_at(place, height_m, 60.0, [heading_deg, pitch_deg]);
+        check(&format!("in the {name}, {heading_deg}°"), &scene, &areas, &camera, 1);
     }
 }
 
@@ -317,9 +326,8 @@ fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
 fn areas_agree_with_both_references_where_the_near_plane_cuts_volumes() {
     let (scene, areas) = (on_hills(), areas());
     // The near plane is at a thousandth of the focus or so: far focus, far near plane.
-    for (place, heading_deg) in
-        [([170.0, -200.0], 90.0), ([440.0, -100.0], 270.0), ([-620.0, 60.0], 90.0)]
-    {
+    let places = [([170.0, -200.0], 90.0), ([440.0, -100.0], 270.0), ([-620.0, 60.0], 90.0)];
+    for (place, heading_deg) in some_of(places, [3, 3, 1]) {
         for focus_m in [3000.0, 9000.0] {
             let camera = eye_at(place, above(place, 12.0), focus_m, [heading_deg, 75.0]);
             check(&format!("cut from {place:?}, {focus_m} m"), &scene, &areas, &camera, 200);
@@ -369,9 +377,8 @@ fn areas_agree_with_both_references_over_the_border_of_two_levels_and_on_its_ski
     let (scene, frame, areas) = stepped();
     let [x, y] = frame.tile_bounds(TileId::ROOT).center();
     let mut skirts = 0;
-    for (heading_deg, pitch_deg, distance_m) in
-        [(90.0, 60.0, 6000.0), (270.0, 75.0, 4000.0), (45.0, 30.0, 12_000.0)]
-    {
+    let views = [(90.0, 60.0, 6000.0), (270.0, 75.0, 4000.0), (45.0, 30.0, 12_000.0)];
+    for (heading_deg, pitch_deg, distance_m) in some_of(views, [2, 2, 1]) {
         let target = DVec3::new(x, y, country::height_m(x, y));
         let orientation = Orientation { heading_deg, pitch_deg };
         let camera = Camera::look_at(target, distance_m, orientation, SIZE);
@@ -381,7 +388,7 @@ fn areas_agree_with_both_references_over_the_border_of_two_levels_and_on_its_ski
             .pixels()
             .filter(|(index, _)| {
                 matches!(drawing.owners[*index], Owner::Skirt(_))
-                    && class_of(&drawing.ground[4 * index..4 * index + 4]).is_some()
+                    && drawn_at(&drawing, *index).is_some()
             })
             .count();
     }

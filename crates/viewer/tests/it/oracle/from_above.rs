@@ -1,5 +1,6 @@
 //! Views from above with parallel rays: both references agree with what is drawn, and a width is the same everywhere.
 
+use corniche_testing::some_of;
 use corniche_viewer::{RoadOptions, camera::Camera};
 use glam::DVec2;
 
@@ -22,7 +23,7 @@ fn from_above(pixel_m: f64, heading_deg: f64) -> Camera {
 #[test]
 #[ignore = "slow: many pictures, each pixel by two references"]
 fn both_methods_agree_with_the_references_in_views_from_above() {
-    for named in scenes::all() {
+    for named in some_of(scenes::all(), [4, 4, 1]) {
         let cameras = vec![from_above(4.0, 0.0), from_above(1.5, 57.0)];
         check(&Named { cameras, ..named });
     }

@@ -1,5 +1,6 @@
 //! O2: the label of each pixel from rays at the triangles that were drawn.
 
+use corniche_testing::some_of;
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
@@ -83,7 +84,7 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// Compares the pixels whose nine rays, to centre, corners and sides, all say the same. Counts pixels that have or
+/// Compares many of the pixels whose nine rays, to centre, corners and sides, all say the same. Counts pixels that have or
 /// should have a road, and of these the ones with another label. Widths must have no least width in pixels.
 pub(crate) fn compare(
     scene: &Scene,
@@ -115,7 +116,7 @@ pub(crate) fn compare(
             .min();
         class.map_or(0, |class| road_label(class, 0))
     };
-    for (index, at) in drawing.pixels() {
+    for (index, at) in some_of(drawing.pixels(), [5, 5, 1]) {
         if matches!(drawing.owners[index], Owner::Skirt(_)) {
             continue;
         }
