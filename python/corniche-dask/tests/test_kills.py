@@ -1,6 +1,6 @@
 """Workers, nannies, scheduler, client and children are killed at seeded moments: the same command then makes the same bytes, and nothing is left.
 
-``CORNICHE_KILLS`` says how many; scripts/torture asks for more.
+``CORNICHE_KILLS`` says how many, fewer in CI; scripts/torture asks for more.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import pytest
 from conftest import Planned, none_left
 from rig import KINDS, PATIENCE, Rig
 
-KILLS = int(os.environ.get("CORNICHE_KILLS", "6"))
+KILLS = int(os.environ.get("CORNICHE_KILLS") or (2 if os.environ.get("CORNICHE_TIER") == "ci" else 6))
 #: The command is given again so often at most.
 TRIES = 5
 #: What one run of it may take, in seconds.
