@@ -91,14 +91,16 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     let line = |one: &LeftOut| {
         let LeftOut { number, length_um, what, remedy } = one;
         let remedy = remedy.map(|remedy| format!(": {remedy}")).unwrap_or_default();
-        format!("{} {what}, {}{remedy}", digits.count(*number), length(*length_um))
+        let long = if *length_um > 0 { format!(", {}", length(*length_um)) } else { String::new() };
+        format!("{} {what}{long}{remedy}", digits.count(*number))
     };
     let mut lines: Vec<String> = all[..told].iter().map(line).collect();
     if let rest @ [_, ..] = &all[told..] {
         let number: u64 = rest.iter().map(|one| one.number).sum();
         let length_um = rest.iter().map(|one| one.length_um).sum();
         let number = digits.count(number);
-        lines.push(format!("{number} ways or roads for other reasons, {}", length(length_um)));
+        let why = if told == 0 { "for several reasons" } else { "more for other reasons" };
+        lines.push(format!("{number} {why}, {}", length(length_um)));
     }
     let name = |index: usize| if index == 0 { "left out" } else { "" };
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()

@@ -58,7 +58,7 @@ fn the_verdict_has_at_most_eight_lines_and_names_what_is_left_out() {
     assert!(lines.iter().all(|line| line.chars().count() <= 100), "{text}");
     assert_eq!(lines[0], "roads        4900 of 4956 kept, 850.0 km of 876.0 km");
     // There is room for one line: the whole is told in it, and nothing is said to be all.
-    assert_eq!(lines[1], "left out     2087 ways or roads for other reasons, 469.0 km");
+    assert_eq!(lines[1], "left out     2087 for several reasons, 469.0 km");
     assert!(lines[4].starts_with("datum        unknown: "), "{text}");
     assert_eq!(
         lines[7],
@@ -78,7 +78,7 @@ fn what_can_be_had_comes_first_with_its_option() {
         [
             "left out     2002 ways, class is off (path, footway, cycleway, …), 441.0 km: --classes 0-8 has them",
             "             50 whole roads outside the elevation data, 25.0 km: give --dem files that cover them",
-            "             35 ways or roads for other reasons, 3.0 km",
+            "             35 more for other reasons, 3.0 km",
         ]
     );
     assert!(!text.contains("defects"), "an outline of a surface is no defect: {text}");

@@ -59,8 +59,7 @@ pub(crate) struct BoundsArg {
 // What heights are measured from, of a package that does not know it.
 #[derive(Debug, Args)]
 pub(crate) struct DatumArg {
-    /// Vertical CRS of the package's heights, where it was built without one (its datum is "unknown"): changes no height, but says from
-    /// where they are carried to the ellipsoid
+    /// Vertical CRS of a package that knows none, from which heights are carried to the ellipsoid
     #[arg(long, value_name = "EPSG:N")]
     pub(crate) dem_vertical_crs: Option<String>,
 }
