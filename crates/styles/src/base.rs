@@ -53,7 +53,9 @@ pub(crate) fn table(text: &str) -> Result<Spanned<DeTable<'_>>, StyleError> {
 fn inherit<'t>(own: &mut DeTable<'t>, mut base: DeTable<'t>) {
     for (given, others) in TOGETHER {
         if own.contains_key(given) {
-            others.iter().for_each(|other| drop(base.remove(*other)));
+            for other in others {
+                base.remove(*other);
+            }
         }
     }
     for (key, inherited) in base {

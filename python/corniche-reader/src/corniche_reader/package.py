@@ -98,11 +98,8 @@ class Package:
 
     def tile(self, z: int, x: int, y: int) -> Tile:
         """Decodes a tile."""
-        place = self._places.get((z, x, y))
-        if place is None:
-            raise UnknownTile(f"the package has no tile {z}/{x}/{y}")
-        found = sections(read_at(self._file, place.offset, place.length, f"tile {z}/{x}/{y}"), (z, x, y))
-        terrain = read_terrain(found[1], self.grid, (z, x, y)) if 1 in found else None
+        found = self._sections((z, x, y))
+        terrain = self._terrain((z, x, y), found)
         roads: list[Road] = []
         kind = 10 if 10 in found else 2
         if kind in found:
@@ -113,6 +110,15 @@ class Package:
         if 5 in found:
             attributes = with_tags(attributes, found[5], f"tags of tile {z}/{x}/{y}")
         return Tile(z, x, y, terrain, roads, attributes, found)
+
+    def _sections(self, name: tuple[int, int, int]) -> dict[int, bytes]:
+        place, what = self._places.get(name), "tile {}/{}/{}".format(*name)
+        if place is None:
+            raise UnknownTile(f"the package has no {what}")
+        return sections(read_at(self._file, place.offset, place.length, what), name)
+
+    def _terrain(self, name: tuple[int, int, int], found: dict[int, bytes]) -> Terrain | None:
+        return read_terrain(found[1], self.grid, name) if 1 in found else None
 
     def degrees(self, positions: ArrayLike) -> NDArray[np.float64]:
         """[longitude, latitude] in WGS84 of each [x, y, …], such as the vertices of a road or the positions of the ground; to the centimetre."""
@@ -132,7 +138,7 @@ class Package:
 
     def _height_in(self, name: tuple[int, int, int], point: tuple[int, int]) -> float | None:
         if name not in self._grounds:
-            terrain = self.tile(*name).terrain if name in self._places else None
+            terrain = self._terrain(name, self._sections(name)) if name in self._places else None
             self._grounds[name] = None if terrain is None else Ground.of(terrain, self.grid, name)
             if len(self._grounds) > KEPT_TILES:
                 self._grounds.popitem(last=False)
