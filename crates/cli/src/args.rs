@@ -44,6 +44,7 @@ pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use serve::ServeArgs;
+pub(crate) use shared::DatumArg;
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
@@ -93,6 +94,7 @@ fn with_tip(mut error: clap::Error) -> clap::Error {
     let tip = match error.kind() {
         ErrorKind::UnknownArgument => tip_for_part(&error),
         ErrorKind::InvalidValue => tip_for_caps(&error),
+        ErrorKind::ArgumentConflict => tip_for_site(&error),
         _ => None,
     };
     if let Some(tip) = tip {
@@ -127,6 +129,16 @@ fn tip_for_caps(error: &clap::Error) -> Option<String> {
     let valid = text_of(error, ContextKind::ValidValue);
     let has_method = valid.split(", ").any(|valid| valid == method);
     has_method.then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
+}
+
+/// For an address or a port together with a site, which no server of ours serves.
+fn tip_for_site(error: &clap::Error) -> Option<String> {
+    let both = [ContextKind::InvalidArg, ContextKind::PriorArg].map(|kind| text_of(error, kind));
+    both.iter().any(|option| option.starts_with("--site")).then(|| {
+        "--site writes files for another web server and listens nowhere; leave --port and --address out, or leave --site out to \
+         serve the packages"
+            .to_owned()
+    })
 }
 
 #[derive(Debug, Subcommand)]

@@ -339,3 +339,25 @@ fn options_of_other_programs_for_a_part_get_a_tip() {
         assert!(!refusal(line).contains(tip), "{line}");
     }
 }
+
+/// A site is files: the refusal of a port beside it says why, in whatever order they stand.
+#[test]
+fn an_address_beside_a_site_is_refused_with_the_reason() {
+    for line in [
+        "corniche serve --port 8090 --site F a.pmtiles",
+        "corniche serve --site F --port 8090 a.pmtiles",
+        "corniche serve a.pmtiles --site F --address 0.0.0.0",
+        "corniche serve a.pmtiles --address 0.0.0.0 --port 0 --site F",
+    ] {
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        let said = refused.expect_err(line).to_string();
+        let tip = "tip: --site writes files for another web server and listens nowhere";
+        assert!(
+            said.contains(tip) && said.contains("leave --port and --address out"),
+            "{line}: {said}"
+        );
+    }
+    let other = "corniche verify a.pmtiles -q --json-progress";
+    let refused = Arguments::checked_from(other.split(' ').map(Into::into));
+    assert!(!refused.expect_err(other).to_string().contains("tip:"), "{other}");
+}

@@ -16,6 +16,7 @@ use crate::{
     part::make_tmp,
     settings::{self, Work},
     table::Digits,
+    verdict,
 };
 
 pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
@@ -56,17 +57,21 @@ pub(crate) fn finish(
     let listed = watch.defects.filter(|_| is_complete).map_or(Ok(()), DefectList::finish);
     let summary = built?;
     listed?;
+    let BuildSummary { manifest, package_bytes } = summary;
+    for warning in info::warnings(&manifest) {
+        messages::warning(&warning);
+    }
     if messages::is_for_people() {
         let digits = Digits::on(&io::stderr());
-        let text = info::to_text(&summary.manifest, summary.package_bytes, digits);
-        messages::write_line(&format!("\n{text}"));
-    } else {
-        // The text has them, too.
-        for warning in info::warnings(&summary.manifest) {
-            messages::warning(&warning);
+        let verdict = verdict::to_text(&manifest, package_bytes, output, digits);
+        messages::write_line(&format!("\n{}", verdict.trim_end()));
+        if messages::is_detailed() {
+            let text = info::to_text(&manifest, package_bytes, digits);
+            messages::write_line(&format!("\n{text}"));
         }
+    } else {
+        messages::note(&format!("wrote {}", output.display()));
     }
-    messages::note(&format!("wrote {}", output.display()));
     watch.progress.tell_costs();
     Ok(ExitCode::Done)
 }

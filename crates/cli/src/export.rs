@@ -54,7 +54,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
             ));
         }
     };
-    let package = packages::open(&args.from.package)?;
+    let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = RoadsRequest {
         format,
         level: args.at.level,

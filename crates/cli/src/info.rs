@@ -7,7 +7,9 @@ use std::{
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
-use corniche_tileset::{AreasRecord, BoundariesRecord, Manifest, SampleErrorRecord, ScaleRecord};
+use corniche_tileset::{
+    AreasRecord, BoundariesRecord, Counts, Manifest, SampleErrorRecord, ScaleRecord,
+};
 
 use crate::{
     args::InfoArgs,
@@ -356,6 +358,14 @@ fn odd_heights(manifest: &Manifest) -> Option<String> {
     ))
 }
 
+/// What is wrong with an extract. Ways that are no road, and values that are read as others, are counted with their reasons, too, but are no
+/// faults: they are told elsewhere.
+pub(crate) fn defects(counts: &Counts) -> impl Iterator<Item = &(String, u64)> {
+    const TOLD_ELSEWHERE: [&str; 3] =
+        ["area", "unknown highway value", "tag taken for another value"];
+    counts.defects.iter().filter(|(name, _)| !TOLD_ELSEWHERE.contains(&name.as_str()))
+}
+
 fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
     if counts.roads_in == 0 {
@@ -408,7 +418,7 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
             let _ = writeln!(text, "    highway={}: {ways}, {length}", plain(&left_out.highway));
         }
     }
-    for (name, number) in &counts.defects {
+    for (name, number) in defects(counts) {
         let _ = writeln!(text, "defect: {}: {}", plain(name), digits.count(*number));
     }
     for (value, number) in &counts.unknown_highways {

@@ -43,6 +43,7 @@ mod settings;
 mod styles;
 mod table;
 mod tile;
+mod verdict;
 mod verify;
 mod version;
 mod view;

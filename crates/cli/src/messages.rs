@@ -74,6 +74,11 @@ pub(crate) fn is_for_people() -> bool {
     !is_quiet && !json_progress && format == LogFormat::Text
 }
 
+/// Whether people who read along want more than what matters most (`-v`).
+pub(crate) fn is_detailed() -> bool {
+    is_for_people() && voice().verbosity > 0
+}
+
 /// Something good to know.
 pub(crate) fn note(text: &str) {
     if !voice().json_progress {

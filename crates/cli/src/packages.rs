@@ -2,11 +2,12 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use corniche_export::with_vertical_crs;
 use corniche_remote::{HttpSettings, HttpSource, PackagePlace, Requests, Web};
 use corniche_tileset::FilePackage;
 use corniche_viewer::tiles::PackageSource;
 
-use crate::{exit::ExitCode, failure::Failure};
+use crate::{args::DatumArg, exit::ExitCode, failure::Failure};
 
 /// What asks web servers, once it is needed.
 static WEB: OnceLock<Web> = OnceLock::new();
@@ -36,6 +37,18 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
     };
     drop(sources);
     Ok(FilePackage::of_source(place.name(), place.file_name(), source)?)
+}
+
+/// Opens a package to export it with heights of the datum that is said, if one is.
+pub(crate) fn open_with_datum(
+    place: &PackagePlace,
+    said: &DatumArg,
+) -> Result<FilePackage, Failure> {
+    let package = open(place)?;
+    match &said.dem_vertical_crs {
+        None => Ok(package),
+        Some(text) => Ok(with_vertical_crs(package, text)?),
+    }
 }
 
 /// Opens a package to draw it.

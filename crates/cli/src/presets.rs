@@ -8,10 +8,11 @@ use std::{
 
 use corniche_areas::AreaTable;
 use corniche_presets::{
-    Config, area_preset, area_preset_names, frc_preset, frc_preset_names, parse_area_table,
-    parse_frc_table,
+    Config, area_preset, area_preset_names, class_labels as preset_labels, frc_preset,
+    frc_preset_names, parse_area_table, parse_frc_table,
 };
-use corniche_roads::FrcTable;
+use corniche_roads::{FrcTable, FunctionalRoadClass};
+use corniche_tileset::Manifest;
 
 use crate::failure::Failure;
 
@@ -30,7 +31,16 @@ pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
             "--frc-table {name_or_path:?} is neither a preset ({names}) nor a readable file: {error}"
         ))
     })?;
-    parse_frc_table(&text).map_err(|error| refuse(&what, &error))
+    let table = parse_frc_table(&text).map_err(|error| refuse(&what, &error))?;
+    // Of a copy of a preset the name says it all.
+    let is_known = preset_labels(table.name()) == table.class_labels();
+    Ok(if is_known { table } else { table.with_recorded_labels() })
+}
+
+/// What the roads of each class of a package are called: as it records, else as the table of its name has them.
+pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass::COUNT] {
+    let settings = &manifest.settings;
+    settings.recorded_labels().unwrap_or_else(|| preset_labels(&settings.frc_table))
 }
 
 /// A preset by its name, else a file by its path.

@@ -135,15 +135,14 @@ impl Progress {
         Self { shared, ticker }
     }
 
-    /// Tells what the stages took, as a table or as one JSON object; nothing with `--quiet`.
+    /// Tells what the stages took: as one JSON object, or as a table for people who want the details.
     pub(crate) fn tell_costs(&self) {
         let state = self.shared.state();
         let wall = state.begun.elapsed();
         let used = Usage::now().since(&state.used_before);
         match self.shared.manner {
-            Manner::Quiet => {}
             Manner::Json => write_line(&to_line(&state.costs.record(wall, &used))),
-            Manner::Bars | Manner::Lines => {
+            Manner::Lines if messages::is_detailed() => {
                 let table = state.costs.to_text(wall, &used, digits());
                 write_line(&format!("\n{}", table.trim_end()));
             }
@@ -155,6 +154,7 @@ impl Progress {
                 written_bytes = used.written_bytes,
                 "all stages"
             ),
+            Manner::Quiet | Manner::Bars | Manner::Lines => {}
         }
     }
 }

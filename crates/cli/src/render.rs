@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use corniche_presets::class_labels;
 use corniche_styles::OwnWidths;
 use corniche_viewer::{RenderError, RenderRequest, Wireframe, render, tiles::MapPackage as _};
 
@@ -13,7 +12,7 @@ use crate::{
     interrupt, messages,
     names::Format,
     output::{Output, existing_of, png},
-    overlays, packages, styles,
+    overlays, packages, presets, styles,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
@@ -45,7 +44,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
     let overlays = overlays::load(&args.look.overlay, package.manifest())?;
     let package = package.with_overlays(overlays);
-    let legend = args.legend.then(|| class_labels(&package.manifest().settings.frc_table));
+    let legend = args.legend.then(|| presets::class_labels(package.manifest()));
     let request = RenderRequest { legend, ..request };
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;

@@ -169,8 +169,16 @@ fn verdict(report: &VerifyReport, missing: &Missing) -> String {
         1 => format!("1 of {made} checks is broken"),
         _ => format!("{broken} of {made} checks are broken"),
     };
-    if not_made > 0 {
-        let _ = write!(text, "; {not_made} could not be made");
+    match (not_made, broken) {
+        (0, _) => {}
+        (1, 0) => text.push_str("; 1 does not apply"),
+        (_, 0) => {
+            let _ = write!(text, "; {not_made} do not apply");
+        }
+        // What is broken may be why.
+        _ => {
+            let _ = write!(text, "; {not_made} not made");
+        }
     }
     if let Some(more) = missing.text() {
         let _ = write!(text, "; {more}");
@@ -178,12 +186,13 @@ fn verdict(report: &VerifyReport, missing: &Missing) -> String {
     text
 }
 
-/// A check with what breaks it.
-fn check_text(check: &Check, digits: Digits) -> String {
+/// A check with what breaks it. Where nothing `is_broken`, a check was not made because the package has nothing of its kind.
+fn check_text(check: &Check, is_broken: bool, digits: Digits) -> String {
     let verdict = match check.verdict() {
         Some(true) => "holds   ",
         Some(false) => "BROKEN  ",
-        None => "not made",
+        None if is_broken => "not made",
+        None => "no case ",
     };
     let (id, promise) = (check.id.id(), check.id.promise());
     let mut text = format!("{verdict}  {id}: {promise} ({} looked at", digits.count(check.checked));
@@ -200,13 +209,14 @@ fn check_text(check: &Check, digits: Digits) -> String {
 /// What is broken, and the verdict.
 fn to_short_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     let broken = report.checks.iter().filter(|check| !check.holds());
-    let broken: String = broken.map(|check| check_text(check, digits)).collect();
+    let broken: String = broken.map(|check| check_text(check, true, digits)).collect();
     format!("{broken}{}\n", verdict(report, missing))
 }
 
 /// Every check, the figures, and the verdict.
 fn to_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
-    let checks = report.checks.iter().map(|check| check_text(check, digits));
+    let is_broken = !report.holds();
+    let checks = report.checks.iter().map(|check| check_text(check, is_broken, digits));
     let mut text: String = checks.collect();
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
     let _ = write!(

@@ -20,21 +20,23 @@ fn report(checks: Vec<Check>) -> VerifyReport {
 }
 
 #[test]
-fn a_check_of_an_input_that_looked_at_nothing_is_not_made() {
-    let report = report(vec![
-        check(CheckId::Seams, 0, 0),
-        check(CheckId::DemPlan, 1, 0),
-        check(CheckId::Bound, 0, 0),
-    ]);
-    let text = to_text(&report, &Missing::default(), Digits::Plain);
-    let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
-    assert_eq!(verdict(" P3:"), Some("holds   "));
-    assert_eq!(verdict(" dem.plan:"), Some("holds   "));
-    assert_eq!(verdict(" P2.bound:"), Some("not made"));
-    let document = serde_json::to_value(VerifyDocument::from(&report)).unwrap();
-    let checks = document["checks"].clone();
-    assert_eq!(checks[1]["holds"], true);
-    assert!(checks[2]["holds"].is_null(), "{checks}");
+fn a_check_of_an_input_that_looked_at_nothing_does_not_apply_or_was_not_made() {
+    // A broken check may be why another one was not made; a package that is whole has nothing of its kind.
+    for (broken, expected) in [(0, ["holds   ", "no case "]), (1, ["BROKEN  ", "not made"])] {
+        let report = report(vec![
+            check(CheckId::Seams, 0, 0),
+            check(CheckId::DemPlan, 1, broken),
+            check(CheckId::Bound, 0, 0),
+        ]);
+        let text = to_text(&report, &Missing::default(), Digits::Plain);
+        let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
+        assert_eq!(verdict(" P3:"), Some("holds   "));
+        assert_eq!([verdict(" dem.plan:"), verdict(" P2.bound:")], expected.map(Some));
+        let document = serde_json::to_value(VerifyDocument::from(&report)).unwrap();
+        let checks = document["checks"].clone();
+        assert_eq!(checks[1]["holds"], broken == 0);
+        assert!(checks[2]["holds"].is_null(), "{checks}");
+    }
 }
 
 #[test]
@@ -50,6 +52,9 @@ fn the_last_line_is_the_verdict() {
     let (plan, bound) = (CheckId::DemPlan, CheckId::Bound);
     let package = vec![check(seams, 1, 0), check(order, 1, 0)];
     let dem = vec![check(seams, 1, 1), check(plan, 1, 0), check(bound, 0, 0)];
+    let without_case = |number| vec![check(bound, 0, 0); number];
+    let whole =
+        |number| [vec![check(seams, 1, 0), check(plan, 1, 0)], without_case(number)].concat();
     let all = vec![check(seams, 1, 1), check(plan, 1, 1), check(CheckId::OsmGeo, 1, 0)];
     for (checks, holds, expected) in [
         (
@@ -62,9 +67,11 @@ fn the_last_line_is_the_verdict() {
         (
             dem.clone(),
             roads,
-            format!("1 of 2 checks is broken; 1 could not be made; {of_osm} more need --osm"),
+            format!("1 of 2 checks is broken; 1 not made; {of_osm} more need --osm"),
         ),
-        (dem, none, "1 of 2 checks is broken; 1 could not be made".to_owned()),
+        (dem, none, "1 of 2 checks is broken; 1 not made".to_owned()),
+        (whole(1), none, "all 2 checks hold; 1 does not apply".to_owned()),
+        (whole(4), none, "all 2 checks hold; 4 do not apply".to_owned()),
         (all, roads, "2 of 3 checks are broken".to_owned()),
     ] {
         let report = report(checks);

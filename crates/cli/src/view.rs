@@ -2,7 +2,6 @@
 
 use std::{fs, io, path::Path, sync::Arc};
 
-use corniche_presets::class_labels;
 use corniche_styles::style_preset_names;
 use corniche_viewer::{RoadMethod, tiles::MapPackage as _};
 use corniche_window::{
@@ -17,7 +16,7 @@ use crate::{
     failure::Failure,
     interrupt, messages,
     output::{Existing, Output},
-    overlays, packages,
+    overlays, packages, presets,
     styles::{StyleFile, file_of, style},
     view_command::command_of,
 };
@@ -52,7 +51,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
         software_method: software_method(args),
-        class_labels: class_labels(&package.manifest().settings.frc_table),
+        class_labels: presets::class_labels(package.manifest()),
         command_of: command_of(args.from.package.name(), &args.look.overlay),
         styles,
         photo: args.look.photo,

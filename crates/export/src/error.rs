@@ -86,10 +86,21 @@ pub enum ExportError {
     )]
     GeoJsonCrs,
     #[error(
-        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; build it with \
-         --dem-vertical-crs, or keep the heights as they are with --heights as-is"
+        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; say it with \
+         --dem-vertical-crs EPSG:N, here or when the package is built, or keep the heights as they are with --heights as-is"
     )]
     UnknownDatum { datum: String },
+    #[error(
+        "what the package's heights are measured from is known, {datum:?}; leave --dem-vertical-crs out"
+    )]
+    KnownDatum { datum: String },
+    #[error("--dem-vertical-crs cannot be used")]
+    VerticalCrs(#[source] Box<DemError>),
+    #[error(
+        "--dem-vertical-crs {text} is not in metres upwards, and the package has taken its heights for metres; build it again with \
+         --dem-vertical-crs {text}"
+    )]
+    NotInMetres { text: String },
     #[error(
         "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
          (Debian: package proj-bin), or keep the heights as they are with --heights as-is"

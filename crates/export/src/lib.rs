@@ -34,6 +34,7 @@ mod area_piece;
 mod areas;
 mod bounds;
 mod cut;
+mod datum;
 mod error;
 mod feature;
 mod feature_request;
@@ -64,6 +65,7 @@ mod workers;
 
 pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
+pub use datum::with_vertical_crs;
 pub use error::{CutError, ExportError};
 pub use feature::road_fields;
 pub use feature_request::{AreasRequest, Coordinates, RoadsRequest};

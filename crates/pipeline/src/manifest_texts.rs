@@ -1,7 +1,7 @@
 //! Texts and records that every manifest has: written by the build, compared by `verify`.
 
 use corniche_dem::{Clip, GridPlan};
-use corniche_tileset::ClipRecord;
+use corniche_tileset::{ClipRecord, VerticalRecord};
 
 /// How tiles are numbered.
 pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
@@ -21,5 +21,5 @@ pub(crate) fn clip(plan: &GridPlan) -> Option<ClipRecord> {
 
 /// What heights are measured from.
 pub(crate) fn datum(plan: &GridPlan) -> &str {
-    plan.vertical_datum.as_deref().unwrap_or("unknown")
+    plan.vertical_datum.as_deref().unwrap_or(VerticalRecord::UNKNOWN_DATUM)
 }

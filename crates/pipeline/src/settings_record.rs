@@ -47,6 +47,7 @@ pub(crate) fn of(
         relief: *relief,
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
+        class_labels: table.recorded_labels().map(Vec::from),
         classes: table.chosen_classes(),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         simplify_cells: *simplify_cells,

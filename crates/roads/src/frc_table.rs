@@ -19,6 +19,8 @@ pub struct FrcTable {
     least_class: FunctionalRoadClass,
     /// Which classes are on, where that is not what `least_class` says.
     chosen: Option<[bool; FunctionalRoadClass::COUNT]>,
+    /// Whether packages record what its classes are called.
+    tells_labels: bool,
 }
 
 /// Why entries do not make an [`FrcTable`].
@@ -112,7 +114,7 @@ impl FrcTable {
             }
             values.insert(value, class);
         }
-        Ok(Self { name, values, least_class: least, chosen: None })
+        Ok(Self { name, values, least_class: least, chosen: None, tells_labels: false })
     }
 
     /// Its name, as packages record it.
@@ -173,6 +175,18 @@ impl FrcTable {
     #[must_use]
     pub fn with_least_class(self, least_class: FunctionalRoadClass) -> Self {
         Self { least_class, chosen: None, ..self }
+    }
+
+    /// The same table, of which packages record what its classes are called: those who read them do not know it by its name.
+    #[must_use]
+    pub fn with_recorded_labels(self) -> Self {
+        Self { tells_labels: true, ..self }
+    }
+
+    /// What packages record of the names of its classes.
+    #[must_use]
+    pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
+        self.tells_labels.then(|| self.class_labels())
     }
 
     /// All listed values with their class, by value; `None` for those that are no roads.

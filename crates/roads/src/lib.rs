@@ -11,6 +11,7 @@
 mod attribute_parts;
 mod attributes;
 mod class_filter;
+mod class_labels;
 mod frc_table;
 mod quantities;
 mod road;

@@ -1,5 +1,7 @@
 //! Errors of reading a style.
 
+use crate::style_preset_names;
+
 /// Why a text is no style. The caller knows which file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
@@ -9,11 +11,18 @@ pub enum StyleError {
     TooLong { bytes: usize, limit: usize },
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
+    #[error(
+        "base: {text:?} is no style that comes along; these are {}, and a file cannot be one: begin with a copy of it instead",
+        style_preset_names().collect::<Vec<_>>().join(", ")
+    )]
+    Base { text: String },
     #[error("{entry} of {value} is out of range; it must be {least} to {most}")]
     Range { entry: String, value: f64, least: f64, most: f64 },
     #[error("roads.{text:?} is no class; classes are 0 to 8")]
     Class { text: String },
-    #[error("[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks")]
+    #[error(
+        "[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks, or begins with base = \"road-atlas\""
+    )]
     MissingClass { class: String },
     #[error(
         "areas.{text:?} is no class of areas; these are sea, water, glacier, forest, meadow, settlement, park, rock"

@@ -3,14 +3,15 @@
 //!
 //! ```text
 //!  text (TOML) ──► parse_style ──► Style ──► viewer, window
-//!       ▲
-//!  style_preset
+//!       ▲            ▲
+//!  style_preset ─────┘ base
 //! ```
 //!
 //! This crate never opens a file, never draws and knows no graphics card, so that it also builds for WebAssembly.
 
 mod area_sheet;
 mod area_style;
+mod base;
 pub mod climate;
 mod color;
 mod dash;

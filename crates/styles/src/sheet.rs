@@ -9,6 +9,7 @@ use serde::Deserialize;
 use crate::{
     AreaStyle, LineStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
     area_sheet::{AreaSheet, areas},
+    base,
     ground_sheet::{LightSheet, TintSheet, tint},
     line_sheet::{LineSheet, boundaries},
     road_sheet::RoadSheet,
@@ -123,11 +124,11 @@ fn photos_alone() -> f64 {
     1.0
 }
 
-/// Reads a style's text.
+/// Reads a style's text. With `base`, the name of a style that comes along, it has the entries of that style where it says nothing.
 ///
 /// # Errors
 /// When it is no TOML, leaves something out or says something unknown (the message names the line); when a number is
-/// out of its range, a class is missing, or the tint does not ascend from 0 to 1 (the message names the entry).
+/// out of its range, a class or the base is missing, or the tint does not ascend from 0 to 1 (the message names the entry).
 pub fn parse_style(text: &str) -> Result<Style, StyleError> {
     parse_sheet(text).map(|sheet| Style::from(&sheet))
 }
@@ -136,7 +137,11 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(StyleError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });
     }
-    let file: StyleFile = toml::from_str(text)?;
+    let file = StyleFile::deserialize(toml::Deserializer::from(base::table(text)?));
+    let file = file.map_err(|mut error: toml::de::Error| {
+        error.set_input(Some(text));
+        error
+    })?;
     let StyleFile {
         outline_px,
         shortest_part_px,

@@ -94,6 +94,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
             relief: corniche_tileset::ReliefLevels::Off,
             scale_latitude_deg: None,
             frc_table: "default".to_owned(),
+            class_labels: None,
             classes: None,
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],

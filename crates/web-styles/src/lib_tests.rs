@@ -18,6 +18,12 @@ fn a_style_arrives_as_it_was_written() {
         let text = style_preset(name).unwrap();
         let table = style_table("styles/mine.toml", text).unwrap();
         assert_eq!(read(&table), [("styles/mine.toml".to_owned(), parse_style(text).unwrap())]);
+        // A style of a page has its base as one of the program.
+        let own = format!("base = \"{name}\"\n[roads.2]\nwidth_m = 31\n");
+        let arrived = read(&style_table("styles/mine.toml", &own).unwrap()).remove(0).1;
+        let mut expected = parse_style(text).unwrap();
+        expected.roads[2].width_m = 31.0;
+        assert_eq!(arrived, expected);
     }
 }
 
@@ -32,6 +38,7 @@ fn what_is_no_style_is_told_as_by_the_program() {
         (&unknown, "unknown field `neon`"),
         (&out_of_range, "outline_px of 9 is out of range; it must be 0 to 4"),
         (&too_long, "far more than any settings"),
+        ("base = \"mine.toml\"", "no style that comes along"),
     ] {
         let why = style_table("mine.toml", text).unwrap_err();
         assert!(why.contains(told), "{why}");

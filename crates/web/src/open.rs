@@ -179,7 +179,10 @@ pub(crate) async fn open(
         StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
     let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(package);
     let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
-    let labels = tables::class_labels(&manifest.settings.frc_table);
+    let settings_record = &manifest.settings;
+    let labels = settings_record
+        .recorded_labels()
+        .unwrap_or_else(|| tables::class_labels(&settings_record.frc_table));
     Ok(Map {
         address,
         canvas: page_canvas,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import subprocess
@@ -42,10 +43,12 @@ def compare(path: Path) -> None:
                 assert (road.way_id, road.part, road.road_class) == (other["way_id"], other["part"], other["frc"])
                 assert np.array_equal(road.vertices, np.array(other["line"])), (z, x, y, road.way_id)
             for known, other in zip(tile.attributes, expected.get("attributes") or [], strict=True):
-                assert (known.way_id, known.form, known.structure, known.layer, known.oneway) == tuple(
-                    other[key] for key in ("way_id", "form", "structure", "layer", "oneway")
-                )
-                assert (known.name, known.reference, known.surface) == tuple(other[key] or "" for key in ("name", "ref", "surface"))
+                structure = "bridge" if known.bridge else "tunnel" if known.tunnel else "ground"
+                oneway = {"no": "no", "forward": "yes", "backward": "-1"}[other["oneway"]]
+                assert (structure, known.oneway, known.width) == (other["structure"], oneway, other["width_m"])
+                assert not (known.bridge and known.tunnel)
+                for key in ("way_id", "form", "layer", "name", "ref", "surface", "highway", "lanes", "maxspeed", "sac_scale", "tracktype"):
+                    assert getattr(known, key) == other[key], (z, x, y, known.way_id, key)
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
@@ -61,3 +64,60 @@ def test_real_packages_are_read_as_corniche_reads_them(name, tmp_path):
     package = tmp_path / f"{name}.pmtiles"
     subprocess.run([str(PROGRAM), "build", "--dem", str(dem), "--osm", str(osm), "--quiet", "-o", str(package)], check=True)
     compare(package)
+
+
+def exported(path: Path, folder: Path) -> list[dict[str, str]]:
+    """The rows of `corniche export roads --pieces`."""
+    rows = folder / "pieces.csv"
+    subprocess.run([str(PROGRAM), "export", "roads", str(path), "--pieces", "--quiet", "-o", str(rows)], check=True)
+    with open(rows, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_fields_are_those_of_exports(path, tmp_path):
+    rows = {(row["tile"], row["way_id"], row["part"]): row for row in exported(path, tmp_path)}
+    assert rows
+    with Package.open(path) as package:
+        for name in (name for name in package.tiles() if name[0] == package.grid.max_level):
+            tile = package.tile(*name)
+            for road in tile.roads:
+                fields = tile.fields(road)
+                row = rows.pop((fields["tile"], str(fields["way_id"]), str(fields["part"])))
+                assert [key for key in row if key in fields] == list(fields)
+                for key, value in fields.items():
+                    said = "" if value is None else str(int(value)) if isinstance(value, bool) else str(value)
+                    assert float(row[key]) == value if key == "width" and value else row[key] == said, (fields, key)
+    assert not rows
+
+
+@pytest.mark.parametrize(("path", "level"), list(zip(GOLDEN, (2, 0), strict=True)), ids=("projected", "degrees"))
+def test_places_and_heights_are_those_of_profiles(path, level, tmp_path):
+    with Package.open(path) as package:
+        roads = [road for name in package.tiles() if name[0] == level for road in package.tile(*name).roads]
+    profile = tmp_path / "profile.csv"
+    ways = ",".join(sorted({str(road.way_id) for road in roads}))
+    command = [str(PROGRAM), "profile", str(path), "--way", ways, "--level", str(level), "--csv", str(profile), "--quiet"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    with open(profile, encoding="utf-8", newline="") as file, Package.open(path) as package:
+        rows = list(csv.DictReader(file))
+        places = np.array([[float(row["lon"]), float(row["lat"])] for row in rows])
+        found = package.degrees(np.concatenate([road.vertices for road in roads]))
+        # Profiles have eight decimals.
+        away = np.abs(places[:, None, :] - found[None, :, :]).max(axis=2).min(axis=1)
+        assert away.max() < 6e-9
+        # Such a place is within a millimetre of its own, and a slope of 45 degrees as much higher.
+        for row, (lon, lat) in list(zip(rows, places, strict=True))[::5]:
+            height = package.height_at(lon, lat, None if level == package.grid.max_level else level)
+            assert height is not None and abs(height - float(row["height_m"])) < 0.01, row
+        assert package.height_at(0.0, 0.0) is None and package.height_at(-170.0, -40.0) is None
+
+
+def test_the_ground_has_its_own_heights_at_its_vertices():
+    with Package.open(GOLDEN[0]) as package:
+        for level in range(package.grid.max_level + 1):
+            for name in (name for name in package.tiles() if name[0] == level):
+                positions = package.tile(*name).terrain.positions[::97]
+                for (lon, lat), z in zip(package.degrees(positions), positions[:, 2], strict=True):
+                    # On a border that two tiles share, both have this vertex.
+                    assert abs(package.height_at(lon, lat, level) - z) < 0.01, (name, lon, lat)

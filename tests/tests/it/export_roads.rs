@@ -329,6 +329,40 @@ fn same(expected: &[Road], found: &[Road], largest: [f64; 3]) {
     }
 }
 
+/// What heights are measured from may be said when they are exported, of a package that does not know it: as if it had been said to the build. It
+/// is not said twice, and not in feet, as the build has taken the numbers for metres.
+#[test]
+fn the_datum_may_be_said_when_roads_are_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plain, told] = ["plain", "told"].map(|name| folder.path().join(format!("{name}.pmtiles")));
+    copy_pass(&plain, &["--quiet"]);
+    copy_pass(&told, &["--quiet", "--dem-vertical-crs", "EPSG:5773"]);
+    let said = ["--dem-vertical-crs", "EPSG:5773"];
+    for (crs, name) in [("package", "own.csv"), ("EPSG:4979", "earth.csv")] {
+        let at = |package: &str| folder.path().join(format!("{package}-{name}"));
+        let (late, early) = (at("late"), at("early"));
+        let _ = exported(&plain, &late, &[&["--crs", crs], &said[..]].concat());
+        let _ = exported(&told, &early, &["--crs", crs]);
+        assert_eq!(fs::read(late).unwrap(), fs::read(early).unwrap(), "{crs}");
+    }
+    let layer = folder.path().join("late.gpkg");
+    let _ = exported(&plain, &layer, &said);
+    let crs = Dataset::open(&layer).unwrap().layer(0).unwrap().spatial_ref().unwrap();
+    assert!(crs.is_compound() && crs.to_wkt().unwrap().contains("EGM96 height"));
+    let out = folder.path().join("refused.gpkg");
+    for (package, crs, words) in [
+        (&told, "EPSG:5773", ["is known, \"EGM96 height\"", "leave --dem-vertical-crs out"]),
+        (&plain, "EPSG:6360", ["not in metres upwards", "build it again"]),
+        (&plain, "EPSG:4326", ["--dem-vertical-crs", "EPSG:4326"]),
+    ] {
+        let line = ["export", "roads", text(package), "-o", text(&out), "--dem-vertical-crs", crs];
+        let ran = corniche(line);
+        assert_eq!(ran.code, 2, "{}", ran.err);
+        assert!(words.iter().all(|word| ran.err.contains(word)), "{crs}: {}", ran.err);
+        assert!(!out.exists(), "{crs}");
+    }
+}
+
 /// Positions in EPSG:4979 are those that PROJ gives for the compound CRS, to a centimetre. PROJ's grid for it comes with PROJ.
 #[test]
 fn ellipsoidal_heights_are_those_of_proj() {

@@ -54,5 +54,6 @@ mod shells;
 mod styles;
 mod terrain;
 mod terrain_reuse;
+mod verdict;
 mod view;
 mod view_files;

@@ -348,7 +348,7 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
             &["s3://maps/alps", "address"],
         ),
         (&[&package, "--page", &page, "--site", text(&other)], 2, &["other.pmtiles: it is a file"]),
-        (&[&package, "--site", "x", "--port", "0"], 2, &["--site", "--port"]),
+        (&[&package, "--site", "x", "--port", "0"], 2, &["--site", "--port", "listens nowhere"]),
     ];
     for (words, code, said) in lines {
         let ran = corniche([&["serve"], words].concat());

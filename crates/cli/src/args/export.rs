@@ -10,7 +10,9 @@ use corniche_export::{
 use corniche_remote::PackagePlace;
 
 use super::{
-    shared::{BoundsArg, ClassesArg, FileArgs, FolderArgs, LevelArg, PackageArg, ThreadsArg},
+    shared::{
+        BoundsArg, ClassesArg, DatumArg, FileArgs, FolderArgs, LevelArg, PackageArg, ThreadsArg,
+    },
     values::{package_among, package_place},
 };
 use crate::failure::Failure;
@@ -66,6 +68,8 @@ pub(crate) struct ExportRoadsArgs {
     /// With --crs EPSG:4979: keep the package's heights as they are (the CRS is then EPSG:4326)
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
+    #[command(flatten)]
+    pub(crate) datum: DatumArg,
 }
 
 #[derive(Debug, Args)]
@@ -148,6 +152,8 @@ pub(crate) struct ExportGeoTiffArgs {
     /// The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM
     #[arg(long, value_name = "FILE", num_args = 1..)]
     dem: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) datum: DatumArg,
     /// With --dem: the polygon that the package was cut with
     #[arg(long, value_name = "FILE", requires = "dem")]
     pub(crate) polygon: Option<PathBuf>,
@@ -228,6 +234,8 @@ pub(crate) struct ExportTiles3dArgs {
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
     #[command(flatten)]
+    pub(crate) datum: DatumArg,
+    #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
 }
 
@@ -271,6 +279,8 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
+    #[command(flatten)]
+    pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
 }

@@ -56,6 +56,14 @@ pub(crate) struct BoundsArg {
     pub(crate) bounds: Option<DegreeBounds>,
 }
 
+// What heights are measured from, of a package that does not know it.
+#[derive(Debug, Args)]
+pub(crate) struct DatumArg {
+    /// Vertical CRS of a package that knows none, from which heights are carried to the ellipsoid
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) dem_vertical_crs: Option<String>,
+}
+
 // Some classes of roads.
 #[derive(Debug, Args)]
 pub(crate) struct ClassesArg {

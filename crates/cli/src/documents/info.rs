@@ -163,6 +163,9 @@ struct SettingsDocument {
     frc_table: String,
     /// SHA-256 of the FRC table's text.
     frc_table_sha256: String,
+    /// What the roads of each class are called, class 0 first; left out for FRC tables that come with the program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    class_labels: Option<Vec<String>>,
     /// `--classes`: the classes that become roads; left out where the table decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     classes: Option<Vec<u8>>,
@@ -297,6 +300,7 @@ impl From<SettingsRecord> for SettingsDocument {
             relief: settings.relief.name(),
             frc_table: settings.frc_table,
             frc_table_sha256: settings.frc_table_sha256,
+            class_labels: settings.class_labels,
             classes: settings.classes,
             class_max_cell_m: settings.class_max_cell_m,
             simplify_cells: settings.simplify_cells,

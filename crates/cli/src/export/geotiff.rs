@@ -35,7 +35,7 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
         )));
     }
     let (place, dem) = args.files()?;
-    let package = packages::open(&place)?;
+    let package = packages::open_with_datum(&place, &args.datum)?;
     let existing = existing_of(args.file.overwrite);
     let inputs: Vec<&Path> =
         [place.name()].into_iter().chain(dem.iter().map(AsRef::as_ref)).collect();

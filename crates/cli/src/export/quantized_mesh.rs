@@ -21,7 +21,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.from.package)?;
+    let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = QuantizedMeshRequest {
         tiling: Tiling::from(args.tiling),
         max_level: args.max_level,

@@ -21,7 +21,7 @@ use crate::{
 
 pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.style)?;
-    let package = packages::open(&args.from.package)?;
+    let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = Tiles3dRequest {
         finest_level: args.finest_level,
         bounds: args.within.bounds,

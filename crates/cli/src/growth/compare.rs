@@ -100,6 +100,8 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         relief: _,
         frc_table,
         frc_table_sha256,
+        // They follow from the table.
+        class_labels: _,
         classes: chosen,
         class_max_cell_m,
         simplify_cells,

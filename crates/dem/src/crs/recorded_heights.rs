@@ -76,6 +76,16 @@ impl RecordedHeights {
         }))
     }
 
+    /// The name that packages record for heights in metres upwards of the vertical CRS `text`; `None` for one in other units or of depths.
+    ///
+    /// # Errors
+    /// When it is no vertical CRS that PROJ knows.
+    pub fn datum_in_metres(text: &str) -> Result<Option<String>, DemError> {
+        library_error::quiet();
+        let vertical = VerticalCrs::from_text("--dem-vertical-crs", text)?;
+        Ok(is_plain(&vertical).then(|| vertical.label()))
+    }
+
     /// WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS, or one with three axes.
     /// `None` for ellipsoidal heights of another system than the horizontal one, which WKT has no words for.
     #[must_use]
@@ -119,11 +129,14 @@ impl RecordedHeights {
     }
 }
 
+/// Whether a system is one of metres upwards.
+fn is_plain(vertical: &VerticalCrs) -> bool {
+    (vertical.unit_m - 1.0).abs() < f64::EPSILON && !vertical.is_down
+}
+
 /// The registered system of the same datum in metres upwards, for one in feet or downwards: formats that name systems by codes, such as `GeoTIFF`,
 /// have no words for one without. `None` where the system is one of metres upwards itself, or there is no other.
 fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
-    let is_plain =
-        |vertical: &VerticalCrs| (vertical.unit_m - 1.0).abs() < f64::EPSILON && !vertical.is_down;
     let datum = vertical.datum.as_ref().filter(|_| !is_plain(vertical))?;
     let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();
     let is_meant = |found: &VerticalCrs| is_plain(found) && found.datum.as_ref() == Some(datum);

@@ -29,6 +29,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     let mut theirs = SettingsRecord {
         frc_table: ours.frc_table.clone(),
         frc_table_sha256: ours.frc_table_sha256.clone(),
+        class_labels: ours.class_labels.clone(),
         classes: ours.classes.clone(),
         class_max_cell_m: ours.class_max_cell_m.clone(),
         simplify_cells: ours.simplify_cells,
@@ -124,6 +125,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
+        class_labels: _,
         classes: chosen_classes,
         class_max_cell_m,
         simplify_cells,

@@ -161,6 +161,12 @@ fn check_inputs(
             VerifyError::OtherTable { given, expected }
         });
     }
+    // Packages of before recorded no names of classes.
+    let names_of_classes = settings.class_labels.as_ref();
+    let is_so_called = names_of_classes.is_none_or(|labels| osm.table.class_labels() == **labels);
+    findings.look(CheckId::OsmInputs, is_so_called, || {
+        format!("the classes of FRC table {:?} are not called as recorded", settings.frc_table)
+    });
     findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {
         format!("the FRC table is {:?}, {:?} is recorded", osm.table.name(), settings.frc_table)
     });

@@ -212,7 +212,7 @@ pub(crate) fn table() -> FrcTable {
         ("track", 7),
     ];
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
-    FrcTable::new("test", classes, vec![], 7).unwrap()
+    FrcTable::new("test", classes, vec![], 7).unwrap().with_recorded_labels()
 }
 
 /// Builds a package from files.

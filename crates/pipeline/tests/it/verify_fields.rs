@@ -167,6 +167,7 @@ const MANIFEST: &[Change] = &[
     change("/settings/relief", |_| json!("finest"), By(C::ReliefThere)),
     change("/settings/frc_table", text, By(C::OsmInputs)),
     change("/settings/frc_table_sha256", text, OtherInput(Against::Osm)),
+    change("/settings/class_labels/3", text, By(C::OsmInputs)),
     change("/settings/class_max_cell_m/5", |_| json!(70.0), By(C::LevelRecords)),
     change("/settings/simplify_cells", little_more, By(C::LevelRecords)),
     change("/settings_sha256", text, By(C::SettingsHash)),

@@ -5,6 +5,7 @@
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
+use corniche_roads::FrcTable;
 
 use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::{
@@ -160,6 +161,14 @@ impl Manifest {
         measure("settings.max_error_m", settings.max_error_m)?;
         measure("settings.simplify_cells", settings.simplify_cells)?;
         all_positive("settings.cell_m", settings.cell_m.map_or([1.0; 2], Cell::to_array))?;
+        if let Some(labels) = &settings.class_labels {
+            let is_label = |label: &String| {
+                (1..=FrcTable::LONGEST_LABEL).contains(&label.chars().count())
+                    && !label.chars().any(char::is_control)
+            };
+            let is_right = labels.len() == CLASSES && labels.iter().all(is_label);
+            that(is_right, "settings.class_labels", labels.join("; "))?;
+        }
         all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
         that(
             settings.nodata.len() <= MAX_NODATA,

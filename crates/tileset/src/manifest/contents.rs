@@ -1,6 +1,7 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
 use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, NodeIndex};
+use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
@@ -137,6 +138,9 @@ pub struct VerticalRecord {
 }
 
 impl VerticalRecord {
+    /// The datum of inputs that name none.
+    pub const UNKNOWN_DATUM: &str = "unknown";
+
     /// Ratios of errors are taken of errors at least so large: below, they are ratios of rounding.
     ///
     /// A height quantum over √2. Errors that are simple fractions of a quantum are common (they are differences of
@@ -188,6 +192,9 @@ pub struct SettingsRecord {
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.
     pub frc_table_sha256: String,
+    /// What the roads of each class are called, 0 first, where the FRC table does not come with the program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_labels: Option<Vec<String>>,
     /// Classes that are on, where `--classes` says other ones than the table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub classes: Option<Vec<u8>>,
@@ -204,6 +211,14 @@ pub struct SettingsRecord {
     /// Whether there are boundaries (`--boundaries`); left out without any.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub boundaries: bool,
+}
+
+impl SettingsRecord {
+    /// What the roads of each class are called, 0 first, where it is recorded.
+    #[must_use]
+    pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
+        self.class_labels.clone()?.try_into().ok()
+    }
 }
 
 /// The table of classes of areas.

@@ -52,6 +52,12 @@ impl FilePackage {
         self.package
     }
 
+    /// See [`Package::with_datum`].
+    #[must_use]
+    pub fn with_datum(self, datum: String, dem_vertical_crs: &str) -> Self {
+        Self { package: self.package.with_datum(datum, dem_vertical_crs), ..self }
+    }
+
     /// The file, or the address in its place.
     #[must_use]
     pub fn path(&self) -> &Path {

@@ -80,6 +80,16 @@ impl<S: ByteSource> Package<S> {
         &self.manifest
     }
 
+    /// The same package, whose heights are said to be those of another datum, as if it had been built with this `--dem-vertical-crs`. The heights
+    /// themselves stay as they are.
+    #[must_use]
+    pub fn with_datum(self, datum: String, dem_vertical_crs: &str) -> Self {
+        let mut package = self;
+        package.manifest.vertical.datum = datum;
+        package.manifest.settings.dem_vertical_crs = Some(dem_vertical_crs.to_owned());
+        package
+    }
+
     /// The metadata in which the manifest is, as JSON: another instance of this program reads it with [`Manifest::in_metadata`]. It is read from the
     /// file again.
     ///

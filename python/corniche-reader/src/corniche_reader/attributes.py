@@ -1,47 +1,110 @@
-"""The road attributes section (section 9 of the format)."""
+"""Road attributes and road tags (section 9 of the format), under the names that `corniche export roads` has for them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .codes import Cursor
 from .errors import PayloadError
 
 FORMS = ("ordinary", "dual_carriageway", "link", "roundabout")
 STRUCTURES = ("ground", "bridge", "tunnel")
-ONEWAYS = ("no", "forward", "backward")
+#: As OSM tags a way: open in both directions, along the line alone, against it alone.
+ONEWAYS = ("no", "yes", "-1")
 
 
 @dataclass(frozen=True)
 class Attributes:
-    """What is known of a way. An absent tag is the empty text."""
+    """What is known of a way. Names and values are those of exports; an absent tag is None."""
 
     way_id: int
+    #: OSM's `highway`; None in packages of the first programs, which do not have it.
+    highway: str | None
     form: str
-    structure: str
+    name: str | None
+    ref: str | None
+    bridge: bool
+    tunnel: bool
     layer: int
     oneway: str
-    name: str
-    reference: str
-    surface: str
+    surface: str | None
+    #: In both directions together.
+    lanes: int | None
+    #: Metres.
+    width: float | None
+    #: A number is km/h, `30 mph` miles an hour; else as tagged.
+    maxspeed: str | None
+    sac_scale: str | None
+    tracktype: str | None
 
 
 def read_attributes(data: bytes, what: str) -> list[Attributes]:
-    """Decodes the section, a record of bincode."""
+    """Decodes the section of attributes, a record of bincode. The tags are in another one."""
     cursor = Cursor(data, what)
     texts = [cursor.take(_word(cursor, 8)) for _ in range(_length(cursor))]
     steps, forms, structures, layers, oneways, *names = ([_word(cursor, width) for _ in range(_length(cursor))] for width in (8, 1, 1, 1, 1, 4, 4, 4))
     cursor.end()
     found, way = [], 0
     try:
-        text = [content.decode() for content in texts]
+        text = [content.decode() or None for content in texts]
         for step, form, structure, layer, oneway, name, reference, surface in zip(steps, forms, structures, layers, oneways, *names, strict=True):
             way += step - (step >> 63 << 64)
-            tags = text[name], text[reference], text[surface]
-            found.append(Attributes(way, FORMS[form], STRUCTURES[structure], layer - (layer >> 7 << 8), ONEWAYS[oneway], *tags))
+            lies = STRUCTURES[structure]
+            found.append(
+                Attributes(
+                    way_id=way,
+                    highway=None,
+                    form=FORMS[form],
+                    name=text[name],
+                    ref=text[reference],
+                    bridge=lies == "bridge",
+                    tunnel=lies == "tunnel",
+                    layer=layer - (layer >> 7 << 8),
+                    oneway=ONEWAYS[oneway],
+                    surface=text[surface],
+                    lanes=None,
+                    width=None,
+                    maxspeed=None,
+                    sac_scale=None,
+                    tracktype=None,
+                )
+            )
     except (ValueError, IndexError) as cause:
         raise PayloadError(f"{what}: {cause}") from cause
     return found
+
+
+def with_tags(ways: list[Attributes], data: bytes, what: str) -> list[Attributes]:
+    """The same ways with what the section of tags says of them."""
+    cursor = Cursor(data, what)
+    count = cursor.varint()
+    if count > len(data):
+        raise PayloadError(f"{what}: more texts than bytes")
+    contents = [cursor.take(cursor.varint()) for _ in range(count)]
+    if not all(contents) or any(one >= other for one, other in zip(contents, contents[1:], strict=False)):
+        raise PayloadError(f"{what}: texts are empty or not sorted")
+    columns = [cursor.planes(len(ways)) for _ in range(6)]
+    cursor.end()
+    try:
+        texts = [None, *(content.decode() for content in contents)]
+        highway, maxspeed, sac_scale, tracktype = ([texts[index] for index in column] for column in columns[:4])
+    except (ValueError, IndexError) as cause:
+        raise PayloadError(f"{what}: {cause}") from cause
+    lanes, widths = columns[4:]
+    if max(lanes, default=0) > 255 or max(widths, default=0) >= 1 << 32:
+        raise PayloadError(f"{what}: lanes or a width beyond their limits")
+    return [
+        replace(
+            way,
+            highway=highway[i],
+            maxspeed=maxspeed[i],
+            sac_scale=sac_scale[i],
+            tracktype=tracktype[i],
+            lanes=lanes[i] or None,
+            width=widths[i] / 1000 if widths[i] else None,
+        )
+        for i, way in enumerate(ways)
+    ]
 
 
 def _word(cursor: Cursor, width: int) -> int:

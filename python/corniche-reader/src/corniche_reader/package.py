@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import OrderedDict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from .attributes import Attributes, read_attributes
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .attributes import Attributes, read_attributes, with_tags
 from .container import Place, parts, read_at
+from .coordinates import Coordinates
 from .errors import ContainerError, PayloadError, UnknownTile
 from .grid import Grid
+from .height import Ground, tiles_at
 from .payload import sections
 from .roads import Road, read_roads
 from .terrain import Terrain, read_terrain
+
+
+#: Tiles whose triangles are kept for the next height.
+KEPT_TILES = 32
 
 
 @dataclass(frozen=True)
@@ -27,6 +37,15 @@ class Tile:
     roads: list[Road]
     attributes: list[Attributes]
     sections: dict[int, bytes]
+
+    def fields(self, road: Road) -> dict[str, Any]:
+        """What `corniche export roads --pieces` says of a part of a way, under the same names, but for what is measured along it."""
+        of_way = next((way for way in self.attributes if way.way_id == road.way_id), None)
+        if of_way is None:
+            raise PayloadError(f"tile {self.z}/{self.x}/{self.y} knows nothing of way {road.way_id}, which it holds")
+        fields = asdict(of_way)
+        way_id = fields.pop("way_id")
+        return {"way_id": way_id, "class": road.road_class, **fields, "tile": f"{self.z}/{self.x}/{self.y}", "part": road.part}
 
 
 class Package:
@@ -44,6 +63,8 @@ class Package:
             raise ContainerError(f"the package has version {manifest.get('format_version')} of the format; this reader knows version 1")
         self.manifest: dict[str, Any] = manifest
         self.grid = Grid.of(manifest)
+        self._coordinates = Coordinates(manifest)
+        self._grounds: OrderedDict[tuple[int, int, int], Ground | None] = OrderedDict()
         for z, x, y in self._places:
             if z > self.grid.max_level:
                 raise ContainerError(f"tile {z}/{x}/{y} lies below the finest level")
@@ -77,11 +98,8 @@ class Package:
 
     def tile(self, z: int, x: int, y: int) -> Tile:
         """Decodes a tile."""
-        place = self._places.get((z, x, y))
-        if place is None:
-            raise UnknownTile(f"the package has no tile {z}/{x}/{y}")
-        found = sections(read_at(self._file, place.offset, place.length, f"tile {z}/{x}/{y}"), (z, x, y))
-        terrain = read_terrain(found[1], self.grid, (z, x, y)) if 1 in found else None
+        found = self._sections((z, x, y))
+        terrain = self._terrain((z, x, y), found)
         roads: list[Road] = []
         kind = 10 if 10 in found else 2
         if kind in found:
@@ -89,4 +107,41 @@ class Package:
                 raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground, or twice")
             roads = read_roads(found[kind], kind == 10, terrain, self.grid, (z, x, y))
         attributes = read_attributes(found[4], f"attributes of tile {z}/{x}/{y}") if 4 in found else []
+        if 5 in found:
+            attributes = with_tags(attributes, found[5], f"tags of tile {z}/{x}/{y}")
         return Tile(z, x, y, terrain, roads, attributes, found)
+
+    def _sections(self, name: tuple[int, int, int]) -> dict[int, bytes]:
+        place, what = self._places.get(name), "tile {}/{}/{}".format(*name)
+        if place is None:
+            raise UnknownTile(f"the package has no {what}")
+        return sections(read_at(self._file, place.offset, place.length, what), name)
+
+    def _terrain(self, name: tuple[int, int, int], found: dict[int, bytes]) -> Terrain | None:
+        return read_terrain(found[1], self.grid, name) if 1 in found else None
+
+    def degrees(self, positions: ArrayLike) -> NDArray[np.float64]:
+        """[longitude, latitude] in WGS84 of each [x, y, …], such as the vertices of a road or the positions of the ground; to the centimetre."""
+        return self._coordinates.degrees(positions)
+
+    def height_at(self, lon: float, lat: float, level: int | None = None) -> float | None:
+        """The height of the ground at a place in degrees of WGS84, in metres, on the finest level or another one; None where there is no ground."""
+        level = self.grid.max_level if level is None else level
+        if not 0 <= level <= self.grid.max_level:
+            raise UnknownTile(f"the package has no level {level}; its finest is {self.grid.max_level}")
+        place = self._coordinates.working(lon, lat)
+        if place is None:
+            return None
+        point = self.grid.snap(*place)
+        heights = (self._height_in(name, point) for name in tiles_at(self.grid, level, point))
+        return next((height for height in heights if height is not None), None)
+
+    def _height_in(self, name: tuple[int, int, int], point: tuple[int, int]) -> float | None:
+        if name not in self._grounds:
+            terrain = self._terrain(name, self._sections(name)) if name in self._places else None
+            self._grounds[name] = None if terrain is None else Ground.of(terrain, self.grid, name)
+            if len(self._grounds) > KEPT_TILES:
+                self._grounds.popitem(last=False)
+        self._grounds.move_to_end(name)
+        ground = self._grounds[name]
+        return None if ground is None else ground.height_m(point)

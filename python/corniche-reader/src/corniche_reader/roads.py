@@ -14,7 +14,8 @@ from .codes import Cursor, unzigzag
 from .coded_lines import Line, coded_lines
 from .errors import PayloadError
 from .grid import Grid
-from .mesh import Mesh, Point, orient
+from .height import Ground
+from .mesh import Point, orient
 from .terrain import Terrain
 
 #: What a vertex of a line is.
@@ -43,9 +44,7 @@ def read_roads(data: bytes, is_coded: bool, terrain: Terrain, grid: Grid, tile: 
     if is_coded and not all(0 < step < math.inf for step in step_m):
         raise PayloadError(f"{what}: the steps of the grid are beyond their limits")
     counts = [(int.from_bytes(whole.take(4), "little"), int.from_bytes(whole.take(4), "little")) for _ in range(9)]
-    lattice = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in terrain.vertices.tolist()]
-    mesh = Mesh(lattice, terrain.triangles.tolist())
-    follower = _Follower(mesh, (terrain.heights_q.astype(np.float64) * grid.quantum_m).tolist(), what)
+    follower = _Follower(Ground.of(terrain, grid, tile), what)
     roads = []
     for number, (lines, size) in enumerate(counts):
         content = whole.take(size)
@@ -111,8 +110,8 @@ def _surprises(cursor: Cursor) -> list[tuple[int, tuple[int, ...]]]:
 class _Follower:
     """Follows lines over the TIN, and computes the places of their vertices in f64 as the format says."""
 
-    def __init__(self, mesh: Mesh, heights_m: list[float], what: str) -> None:
-        self.mesh, self.heights, self.what = mesh, heights_m, what
+    def __init__(self, ground: Ground, what: str) -> None:
+        self.ground, self.mesh, self.heights, self.what = ground, ground.mesh, ground.heights_m, what
 
     def follow(self, line: Line, surprises: list[tuple[int, tuple[int, ...]]]) -> list[tuple[int, tuple[float, float, float]]]:
         """Kind and place [u, v, z] of each vertex."""
@@ -136,7 +135,8 @@ class _Follower:
             if vertex[0] == SOURCE:
                 if used >= last:
                     raise PayloadError(f"{self.what}: way {line.way_id} has more vertices than points")
-                found.append((SOURCE, self._source(points[used], vertex[1])))
+                u, v = points[used]
+                found.append((SOURCE, (float(u), float(v), self.ground.height_in(vertex[1], (u, v)))))
                 used += 1
             elif vertex[0] == CROSSING:
                 if not 0 < used < len(points):
@@ -217,16 +217,6 @@ class _Follower:
             if side == 0 and v != at and (q[0] - p[0]) * (cx - x) + (q[1] - p[1]) * (cy - y) > 0:
                 return (TIN_VERTEX, v)
         return END
-
-    def _source(self, point: Point, triangle: int) -> tuple[float, float, float]:
-        a, b, c = self.mesh.triangles[triangle]
-        (ua, va), (ub, vb), (uc, vc) = (self.mesh.points[k] for k in (a, b, c))
-        bu, bv, cu, cv = float(ub - ua), float(vb - va), float(uc - ua), float(vc - va)
-        du, dv = float(point[0] - ua), float(point[1] - va)
-        total = (bu * cv) - (bv * cu)
-        ha, hb, hc = (self.heights[k] for k in (a, b, c))
-        z = ha + (((((du * cv) - (dv * cu)) / total) * (hb - ha)) + ((((bu * dv) - (bv * du)) / total) * (hc - ha)))
-        return float(point[0]), float(point[1]), z
 
     def _crossing(self, a: int, b: int, p: Point, q: Point) -> tuple[float, float, float]:
         sa, sb = orient(p, q, self.mesh.points[a]), orient(p, q, self.mesh.points[b])

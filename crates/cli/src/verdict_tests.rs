@@ -1,0 +1,97 @@
+//! A build ends with its verdict: a few lines, with all that was left out, and how to have it.
+
+use corniche_testing::package::manifest;
+use corniche_tileset::{AreaCounts, AreasRecord, LeftOutRecord, Manifest, RoadLoss};
+
+use super::*;
+
+fn told(manifest: &Manifest) -> String {
+    to_text(manifest, 1_444_800, Path::new("maps/li.pmtiles"), Digits::Plain)
+}
+
+fn left_out(reason: &str, highway: &str, ways: u64, length_um: u64) -> LeftOutRecord {
+    LeftOutRecord { reason: reason.to_owned(), highway: highway.to_owned(), ways, length_um }
+}
+
+fn lost(reason: &str, roads: u64, length_um: u64) -> RoadLoss {
+    RoadLoss { reason: reason.to_owned(), roads, length_um }
+}
+
+/// A kilometre.
+const KM: u64 = 1_000_000_000;
+
+/// A manifest with something for every line.
+fn full() -> Manifest {
+    let mut manifest = manifest();
+    let counts = &mut manifest.counts;
+    (counts.roads_in, counts.roads_in_um) = (4956, 876 * KM);
+    (counts.roads_kept, counts.roads_kept_um) = (4900, 850 * KM);
+    counts.roads_lost = vec![
+        lost("outside the elevation data", 50, 25 * KM),
+        lost("where the data have no ground (void or edge)", 6, KM),
+        lost("outside the bounds that were asked for", 0, 0),
+    ];
+    let reasons = [("class is off", 2002), ("listed as no road", 13), ("an area", 16)];
+    counts.highways_left_out = reasons.map(|(reason, number)| (reason.to_owned(), number)).to_vec();
+    counts.left_out = vec![
+        left_out("class is off", "path", 950, 337 * KM),
+        left_out("class is off", "footway", 646, 52 * KM),
+        left_out("class is off", "cycleway", 238, 46 * KM),
+        left_out("class is off", "steps", 168, 6 * KM),
+        left_out("an area", "pedestrian", 16, 2 * KM),
+    ];
+    counts.defects = [("area", 16), ("missing nodes", 3), ("split by gaps", 1)]
+        .map(|(name, number)| (name.to_owned(), number))
+        .to_vec();
+    let kept = Vec::new();
+    let counts = AreaCounts { objects: 30, kept, lost: Vec::new() };
+    manifest.areas = Some(AreasRecord { counts, levels: Vec::new() });
+    manifest
+}
+
+#[test]
+fn the_verdict_has_at_most_eight_lines_and_names_what_is_left_out() {
+    let full = full();
+    let text = told(&full);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines.len(), MOST_LINES, "{text}");
+    assert!(lines.iter().all(|line| line.chars().count() <= 100), "{text}");
+    assert_eq!(lines[0], "roads        4900 of 4956 kept, 850.0 km of 876.0 km");
+    // There is room for one line: the whole is told in it, and nothing is said to be all.
+    assert_eq!(lines[1], "left out     2087 for several reasons, 469.0 km");
+    assert!(lines[4].starts_with("datum        unknown: "), "{text}");
+    assert_eq!(
+        lines[7],
+        "wrote        maps/li.pmtiles; corniche info tells all of it, view and serve show it"
+    );
+}
+
+#[test]
+fn what_can_be_had_comes_first_with_its_option() {
+    let mut manifest = full();
+    manifest.areas = None;
+    manifest.counts.defects.truncate(1);
+    let text = told(&manifest);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines[1..4],
+        [
+            "left out     2002 ways, class is off (path, footway, cycleway, …), 441.0 km: --classes 0-8 has them",
+            "             50 whole roads outside the elevation data, 25.0 km: give --dem files that cover them",
+            "             35 more for other reasons, 3.0 km",
+        ]
+    );
+    assert!(!text.contains("defects"), "an outline of a surface is no defect: {text}");
+}
+
+/// Without an extract, with a datum, and with nothing lost there is little to say.
+#[test]
+fn a_whole_build_has_four_lines() {
+    let mut manifest = manifest();
+    manifest.vertical.datum = "EGM96 height".to_owned();
+    manifest.counts.roads_in = 0;
+    let text = told(&manifest);
+    let names: Vec<&str> = text.lines().map(|line| line.split(' ').next().unwrap()).collect();
+    assert_eq!(names, ["roads", "error", "size", "wrote"], "{text}");
+    assert!(text.starts_with("roads        none: built without an extract\n"), "{text}");
+}

@@ -1,0 +1,54 @@
+"""The height of the ground at a place: the triangle there, as the source points of roads have their heights (section 7 of the format)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .grid import Grid
+from .mesh import Mesh, Point
+from .terrain import Terrain
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The triangles of a tile."""
+
+    mesh: Mesh
+    heights_m: list[float]
+
+    @classmethod
+    def of(cls, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> Ground:
+        """Places them on the lattice."""
+        lattice = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in terrain.vertices.tolist()]
+        return cls(Mesh(lattice, terrain.triangles.tolist()), (terrain.heights_q.astype(np.float64) * grid.quantum_m).tolist())
+
+    def height_m(self, point: Point) -> float | None:
+        """The height at a lattice point; None where the tile has no ground."""
+        triangle = self.mesh.locate(point)
+        return None if triangle is None else self.height_in(triangle, point)
+
+    def height_in(self, triangle: int, point: Point) -> float:
+        """The height at a lattice point in a triangle."""
+        a, b, c = self.mesh.triangles[triangle]
+        at, h = self.mesh.points, self.heights_m
+        bu, bv = float(at[b][0] - at[a][0]), float(at[b][1] - at[a][1])
+        cu, cv = float(at[c][0] - at[a][0]), float(at[c][1] - at[a][1])
+        du, dv = float(point[0] - at[a][0]), float(point[1] - at[a][1])
+        total = (bu * cv) - (bv * cu)
+        return h[a] + (((((du * cv) - (dv * cu)) / total) * (h[b] - h[a])) + ((((bu * dv) - (bv * du)) / total) * (h[c] - h[a])))
+
+
+def tiles_at(grid: Grid, level: int, point: Point) -> list[tuple[int, int, int]]:
+    """The tiles of a level that hold a lattice point: several on their borders."""
+    (left, top), side = grid.lattice_of_node((0, 0, 0), 0, 0), 256 << grid.max_level - level
+    columns = _tiles_along(point[0] - left, side * grid.steps[0], 1 << level)
+    rows = _tiles_along(top - point[1], side * grid.steps[1], 1 << level)
+    return [(level, x, y) for y in rows for x in columns]
+
+
+def _tiles_along(steps: int, side: int, count: int) -> list[int]:
+    """Along one axis: the tile from which so many steps lead into, and the one before it if they lead to its border."""
+    tile, rest = divmod(steps, side)
+    return [at for at in ([tile] if rest else [tile, tile - 1]) if 0 <= at < count]
