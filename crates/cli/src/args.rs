@@ -213,6 +213,8 @@ impl Command {
             Self::Part(args) => Some(args.planned.report),
             Self::Merge(args) => Some(args.planned.report),
             Self::Verify(args) => Some(args.report),
+            Self::Export(args) => Some(args.what.report()),
+            Self::Match(args) => Some(args.report),
             _ => None,
         }
     }

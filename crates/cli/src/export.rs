@@ -19,12 +19,12 @@ use self::unknown_ending::unknown_ending;
 use crate::{
     args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
     exit::ExitCode,
-    export_bars::{Bars, named},
     failure::Failure,
     messages,
-    named_output::NamedOutput,
+    named_output::{NamedOutput, named},
     output::existing_of,
     packages,
+    progress::Progress,
     table::{Digits, bytes, length},
 };
 
@@ -68,9 +68,9 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     let existing = existing_of(args.file.overwrite);
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
-    let bars = Bars::default();
-    let exported = export_roads(&package, &request, &output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_roads(&package, &request, &output.path(), &progress);
+    progress.finish();
     let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
@@ -98,9 +98,9 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     let existing = existing_of(args.file.overwrite);
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
-    let bars = Bars::default();
-    let exported = export_areas(&package, &request, &output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_areas(&package, &request, &output.path(), &progress);
+    progress.finish();
     let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
     if summary.unjoined > 0 {

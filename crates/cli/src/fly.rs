@@ -73,8 +73,9 @@ fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Failu
         return Err(unusable(&"too large for a flight"));
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let manifest = package.manifest();
-    Flight::parse(&text, WorkingCrs::of(manifest), &manifest.coordinates)
+    Flight::parse(text, WorkingCrs::of(manifest), &manifest.coordinates)
         .map_err(|error| unusable(&error))
 }
 

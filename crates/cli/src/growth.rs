@@ -31,7 +31,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
         let package = packages::open(place)?;
         if package.manifest().growth.is_empty() {
             return Err(Failure::unusable(format!(
-                "{place} has no roads: it was built without --osm"
+                "{place} has no roads: it was built without --osm, or of an extract without them"
             )));
         }
         packages.push(package);

@@ -368,8 +368,8 @@ pub(crate) fn defects(counts: &Counts) -> impl Iterator<Item = &(String, u64)> {
 
 fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
-    if counts.roads_in == 0 {
-        return "no roads: built without an extract\n".to_owned();
+    if counts.roads_in == 0 && counts.highways_in == 0 {
+        return "no roads: built without an extract, or from one without them\n".to_owned();
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);

@@ -11,7 +11,6 @@ mod documents;
 mod drawing;
 mod exit;
 mod export;
-mod export_bars;
 mod failure;
 mod fly;
 mod folder_output;

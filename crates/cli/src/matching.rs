@@ -6,18 +6,16 @@ mod sure;
 mod text;
 
 use std::{
-    cell::RefCell,
     io::{self, Write as _},
     path::Path,
 };
 
-use corniche_matching::{MatchError, MatchObserver, MatchRequest, Target, match_roads};
+use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
-use indicatif::ProgressBar;
 
 use crate::{
-    args::MatchArgs, exit::ExitCode, failure::Failure, interrupt, output::existing_of, packages,
-    progress, report_files::ReportFiles, table::Digits,
+    args::MatchArgs, exit::ExitCode, failure::Failure, output::existing_of, packages,
+    progress::Progress, report_files::ReportFiles, table::Digits,
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
@@ -35,16 +33,16 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         radius_m: args.radius,
         region_m: args.region,
     };
-    let bar = Bar::default();
+    let progress = Progress::new();
     let report = if args.slope {
-        match_roads(&package, &Target::Slope, &request, &bar)
+        match_roads(&package, &Target::Slope, &request, &progress)
     } else {
         let opened = Photos::open(&photos).map_err(MatchError::from)?;
         let grid = corniche_pipeline::grid_of(manifest)
             .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
-        match_roads(&package, &Target::Photos(&opened, &grid), &request, &bar)
+        match_roads(&package, &Target::Photos(&opened, &grid), &request, &progress)
     };
-    bar.end();
+    progress.finish();
     let report = report?;
     if let Some(output) = files.list {
         output.write_whole(csv::to_csv(&report).as_bytes())?;
@@ -55,30 +53,4 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let text = text::to_text(&report, manifest, Digits::on(&io::stdout()));
     io::stdout().lock().write_all(text.as_bytes())?;
     Ok(ExitCode::Done)
-}
-
-/// A progress bar for the tiles.
-#[derive(Default)]
-struct Bar {
-    running: RefCell<Option<ProgressBar>>,
-}
-
-impl Bar {
-    fn end(&self) {
-        if let Some(bar) = self.running.take() {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-impl MatchObserver for Bar {
-    fn done(&self, tiles: u64, total: u64) {
-        let mut running = self.running.borrow_mut();
-        let bar = running.get_or_insert_with(|| progress::bar("comparing tiles", Some(total)));
-        bar.set_position(tiles);
-    }
-
-    fn should_stop(&self) -> bool {
-        interrupt::is_noted()
-    }
 }

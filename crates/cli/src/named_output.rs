@@ -11,9 +11,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use corniche_export::ExportError;
 use tempfile::{NamedTempFile, TempPath};
 
 use crate::{
+    exit::ExitCode,
     failure::Failure,
     interrupt,
     output::{Existing, claim, failed, place},
@@ -72,4 +74,11 @@ impl Drop for NamedOutput {
         // What cannot be removed now is removed by the next export to this target.
         let _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// What could not be written is known to people by the name of the target, not of the file that becomes it.
+pub(crate) fn named(error: ExportError, target: &Path) -> Failure {
+    let is_unwritten = !error.is_unusable_input();
+    let failure = Failure::from(error);
+    if is_unwritten && failure.code() == ExitCode::Failed { failure.about(target) } else { failure }
 }

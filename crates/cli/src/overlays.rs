@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use corniche_overlay::{OverlayError, place, read};
+use corniche_overlay::{OverlayError, VectorLines, place, read};
 use corniche_styles::LineStyle;
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{LayerLine, Overlays};
@@ -19,9 +19,7 @@ pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Over
     for (style, file) in (0..).zip(files) {
         let found = read(file.path())?;
         let placed = place(&found.lines, manifest)?;
-        if found.others > 0 {
-            note(file.path(), &format!("{} features are neither lines nor outlines", found.others));
-        }
+        tell(file.path(), &found);
         let is_near = placed.iter().any(|line| {
             let tile = manifest.frame.tile_lattice_bounds(corniche_geom::TileId::ROOT);
             line.points.iter().any(|point| tile.contains(*point))
@@ -37,6 +35,13 @@ pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Over
         first += found.lines.len();
     }
     Ok(Arc::new(Overlays::new(&lines, &manifest.frame)))
+}
+
+/// Tells what of a file may not be meant.
+pub(crate) fn tell(path: &Path, found: &VectorLines) {
+    for notice in found.notices() {
+        note(path, &notice);
+    }
 }
 
 fn note(path: &Path, what: &str) {

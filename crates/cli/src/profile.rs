@@ -15,10 +15,10 @@ use crate::{
     args::ProfileArgs,
     chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other},
     exit::ExitCode,
-    export_bars::Bars,
     failure::Failure,
     output::existing_of,
-    packages,
+    overlays, packages,
+    progress::Progress,
     report_files::ReportFiles,
 };
 
@@ -34,12 +34,12 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         [args.from.package.name()].into_iter().chain(args.line.as_deref()).collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
     let lines = args.line.as_deref().map(|path| placed_lines(path, &package)).transpose()?;
-    let bars = Bars::default();
+    let progress = Progress::new();
     let found = match &lines {
-        Some(lines) => profile_of_lines(&package, lines, args.at.level, &bars),
-        None => profile(&package, &args.way, args.at.level, &bars),
+        Some(lines) => profile_of_lines(&package, lines, args.at.level, &progress),
+        None => profile(&package, &args.way, args.at.level, &progress),
     };
-    bars.end();
+    progress.finish();
     let found = found?;
     if let Some(output) = files.list {
         output.write_whole(to_csv(&found).as_bytes())?;
@@ -63,6 +63,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
 /// The lines of a file on the package's lattice.
 fn placed_lines(path: &Path, package: &FilePackage) -> Result<Vec<Vec<LatticePoint>>, Failure> {
     let found = corniche_overlay::read(path)?;
+    overlays::tell(path, &found);
     let placed = corniche_overlay::place(&found.lines, package.manifest())?;
     Ok(placed.into_iter().map(|line| line.points).collect())
 }

@@ -1,4 +1,4 @@
-//! Progress: bars on a terminal, plain lines elsewhere, records on request, or nothing; and what the stages took, at
+//! Progress of every command that takes its time: bars on a terminal, plain lines elsewhere, records on request, or nothing; and what the stages took, at
 //! the end.
 //!
 //! A thread of its own looks twice a second whether something is to be told, so a stage that counts nothing for minutes is
@@ -6,6 +6,7 @@
 
 mod costs;
 mod pace;
+mod task;
 mod texts;
 mod usage;
 
@@ -25,6 +26,7 @@ use tracing::Span;
 use self::{
     costs::{Cost, Costs},
     pace::Pace,
+    task::Task,
     texts::Reading,
     usage::Usage,
 };
@@ -93,7 +95,7 @@ struct State {
 }
 
 struct Running {
-    stage: Stage,
+    task: Task,
     span: Span,
     total: Option<u64>,
     done: u64,
@@ -133,6 +135,21 @@ impl Progress {
             .then(|| thread::Builder::new().name("progress".into()).spawn(move || ticking.tick()))
             .and_then(Result::ok);
         Self { shared, ticker }
+    }
+
+    /// The stage that runs has done `done` of `total`. It begins with its first step that is told.
+    fn count(&self, task: Task, done: u64, total: u64) {
+        let mut state = self.shared.state();
+        if state.running.as_ref().is_none_or(|running| running.task != task) {
+            state.begin(task, Some(total), self.shared.manner);
+        }
+        drop(state);
+        self.shared.with(task, |running| running.reach_of(done, total));
+    }
+
+    /// The stage that runs is over.
+    pub(crate) fn finish(&self) {
+        self.shared.state().end_running(self.shared.manner);
     }
 
     /// Tells what the stages took: as one JSON object, or as a table for people who want the details.
@@ -212,9 +229,9 @@ impl Shared {
     }
 
     /// Does something to a stage that is running.
-    fn with(&self, stage: Stage, act: impl FnOnce(&mut Running)) {
+    fn with(&self, task: Task, act: impl FnOnce(&mut Running)) {
         let mut state = self.state();
-        if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
+        if let Some(running) = state.running.as_mut().filter(|running| running.task == task) {
             act(running);
             running.tell_if_due(self.manner);
         }
@@ -222,6 +239,16 @@ impl Shared {
 }
 
 impl State {
+    /// A stage begins, and the one that ran is over.
+    fn begin(&mut self, task: Task, total: Option<u64>, manner: Manner) {
+        self.end_running(manner);
+        let running = Running::new(task, total, manner);
+        if manner == Manner::Json {
+            write_line(&to_line(&running.read().record("begin")));
+        }
+        self.running = Some(running);
+    }
+
     fn end_running(&mut self, manner: Manner) {
         let Some(running) = self.running.take() else { return };
         let reading = running.read();
@@ -232,7 +259,7 @@ impl State {
             Manner::Quiet => {}
             Manner::Json => write_line(&to_line(&reading.record("end"))),
             Manner::Bars | Manner::Lines => {
-                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended(digits())));
+                write_line(&format!("{:22} {}", reading.task.title, reading.ended(digits())));
             }
             Manner::Events => tracing::info!(
                 parent: &running.span,
@@ -240,14 +267,14 @@ impl State {
                 already = reading.already,
                 seconds = reading.elapsed.as_secs_f64(),
                 cpu_seconds = reading.used.cpu.map(|cpu| cpu.as_secs_f64()),
-                "{}: {}", reading.stage.title(), reading.ended(Digits::Plain)
+                "{}: {}", reading.task.title, reading.ended(Digits::Plain)
             ),
         }
         tracing::debug!(
             parent: &running.span, done = reading.done, seconds = reading.elapsed.as_secs_f64(), "ended"
         );
         self.costs.add(Cost {
-            stage: reading.stage,
+            task: reading.task,
             done: reading.done,
             already: reading.already,
             wall: reading.elapsed,
@@ -257,12 +284,12 @@ impl State {
 }
 
 impl Running {
-    fn new(stage: Stage, total: Option<u64>, manner: Manner) -> Self {
+    fn new(task: Task, total: Option<u64>, manner: Manner) -> Self {
         let now = Instant::now();
-        let span = tracing::info_span!("stage", id = stage.id());
-        tracing::debug!(parent: &span, total, unit = ?stage.unit(), "begins");
+        let span = tracing::info_span!("stage", id = task.id);
+        tracing::debug!(parent: &span, total, unit = task.counts.plural(), "begins");
         Self {
-            stage,
+            task,
             span,
             total,
             done: 0,
@@ -272,7 +299,7 @@ impl Running {
             used_before: Usage::now(),
             told: now,
             told_done: 0,
-            bar: (manner == Manner::Bars).then(|| styled_bar(stage.title(), total, "{wide_msg}")),
+            bar: (manner == Manner::Bars).then(|| styled_bar(task.title, total, "{wide_msg}")),
         }
     }
 
@@ -283,11 +310,17 @@ impl Running {
         self.pace.record(self.begun.elapsed(), done - self.already);
     }
 
+    /// The same, of a total that is known only now or that changed.
+    fn reach_of(&mut self, done: u64, total: u64) {
+        self.total = Some(total);
+        self.reach(done.max(self.done));
+    }
+
     fn read(&self) -> Reading {
         let elapsed = self.begun.elapsed();
         let remaining = self.total.map(|total| total.saturating_sub(self.done));
         Reading {
-            stage: self.stage,
+            task: self.task,
             done: self.done,
             already: self.already,
             total: self.total,
@@ -318,10 +351,10 @@ impl Running {
                 done = reading.done,
                 total = reading.total,
                 seconds = reading.elapsed.as_secs_f64(),
-                "{}: {}", self.stage.title(), reading.running(Digits::Plain)
+                "{}: {}", self.task.title, reading.running(Digits::Plain)
             ),
             (_, None) => {
-                write_line(&format!("{:22} {}", self.stage.title(), reading.running(digits())));
+                write_line(&format!("{:22} {}", self.task.title, reading.running(digits())));
             }
         }
     }
@@ -329,36 +362,26 @@ impl Running {
 
 impl Observer for Progress {
     fn begin(&self, stage: Stage, total: Option<u64>) {
-        let manner = self.shared.manner;
-        let mut state = self.shared.state();
-        state.end_running(manner);
-        let running = Running::new(stage, total, manner);
-        if manner == Manner::Json {
-            write_line(&to_line(&running.read().record("begin")));
-        }
-        state.running = Some(running);
+        self.shared.state().begin(stage.into(), total, self.shared.manner);
     }
 
     fn already(&self, stage: Stage, steps: u64) {
-        self.shared.with(stage, |running| {
+        self.shared.with(stage.into(), |running| {
             running.already += steps;
             running.done += steps;
         });
     }
 
     fn advance(&self, stage: Stage, steps: u64) {
-        self.shared.with(stage, |running| running.reach(running.done + steps));
+        self.shared.with(stage.into(), |running| running.reach(running.done + steps));
     }
 
     fn reached(&self, stage: Stage, done: u64, total: u64) {
-        self.shared.with(stage, |running| {
-            running.total = Some(total);
-            running.reach(done.max(running.done));
-        });
+        self.shared.with(stage.into(), |running| running.reach_of(done, total));
     }
 
     fn end(&self, _: Stage) {
-        self.shared.state().end_running(self.shared.manner);
+        self.finish();
     }
 
     fn temporary(&self, folder: &Path) {
@@ -380,6 +403,26 @@ impl Observer for Progress {
     }
 
     fn is_cancelled(&self) -> bool {
+        interrupt::is_noted()
+    }
+}
+
+impl corniche_export::Observer for Progress {
+    fn done(&self, stage: corniche_export::Stage, done: u64, total: u64) {
+        self.count(stage.into(), done, total);
+    }
+
+    fn should_stop(&self) -> bool {
+        interrupt::is_noted()
+    }
+}
+
+impl corniche_matching::MatchObserver for Progress {
+    fn done(&self, tiles: u64, total: u64) {
+        self.count(Task::MATCH, tiles, total);
+    }
+
+    fn should_stop(&self) -> bool {
         interrupt::is_noted()
     }
 }

@@ -53,6 +53,8 @@ pub enum DemError {
         "{path:?} is not a raster that GDAL can read; it is damaged, cut off, or of an unknown format"
     )]
     Open { path: PathBuf, source: Box<LibraryError> },
+    #[error("{path:?} is {found}; {advice}")]
+    StandIn { path: PathBuf, found: &'static str, advice: &'static str },
     #[error("{path:?} has no raster band; give a raster of heights")]
     NoBand { path: PathBuf },
     #[error("{path:?} holds several rasters; give the one with the heights by its name: {names}")]

@@ -3,6 +3,7 @@
 pub(crate) mod named_files;
 pub(crate) mod open_options;
 pub(crate) mod source;
+pub(crate) mod stand_in;
 
 pub(crate) mod georeference;
 pub(crate) mod open;

@@ -36,6 +36,11 @@ impl LibraryError {
         Self::shortened(words.as_deref().unwrap_or("GDAL gives no reason"))
     }
 
+    /// Says what was found out about a failure without the library.
+    pub(crate) fn of(words: String) -> Self {
+        Self { words }
+    }
+
     fn shortened(words: &str) -> Self {
         let words = words.trim();
         let words = match words.char_indices().nth(MOST_LETTERS) {

@@ -42,6 +42,11 @@ pub enum PolygonError {
     )]
     Invalid { path: PathBuf, feature: u64, reason: String },
     #[error(
+        "a ring of feature {feature} of the polygon {path:?} begins at {first:?} and ends at {last:?}; repeat its first position as \
+         its last one, which closes it (RFC 7946, section 3.1.6)"
+    )]
+    OpenRing { path: PathBuf, feature: u64, first: [f64; 2], last: [f64; 2] },
+    #[error(
         "feature {feature} of the polygon {path:?} has an edge over more than half of the earth: if it crosses 180°, cut it there (ogr2ogr -wrapdateline NEW.geojson {path:?})"
     )]
     HalfTheEarth { path: PathBuf, feature: u64 },

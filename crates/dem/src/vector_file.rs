@@ -4,7 +4,7 @@ use std::{fs, io, path::Path};
 
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 
-use crate::{LibraryError, library_error};
+use crate::{LibraryError, files::stand_in::stand_in, library_error};
 
 /// Why a vector file cannot be opened.
 #[derive(Debug)]
@@ -33,5 +33,9 @@ pub fn open_vectors(path: &Path) -> Result<Dataset, NotOpened> {
     library_error::forget();
     let open_flags = GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_READONLY;
     let options = DatasetOptions { open_flags, ..DatasetOptions::default() };
-    Dataset::open_ex(path, options).map_err(|source| NotOpened::Unreadable(source.into()))
+    Dataset::open_ex(path, options).map_err(|source| {
+        let words = stand_in(path).map(|(found, advice)| format!("it is {found}; {advice}"));
+        let source = words.map_or_else(|| source.into(), |words| Box::new(LibraryError::of(words)));
+        NotOpened::Unreadable(source)
+    })
 }

@@ -101,6 +101,7 @@ pub fn export_areas(
             sorter.push(piece).map_err(sort)?;
         }
     }
+    observer.done(Stage::Tiles, ids.len() as u64, ids.len() as u64);
     let mut sorted = Groups::of(sorter.finish().map_err(sort)?);
     let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
     let mut summary =

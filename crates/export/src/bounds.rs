@@ -1,5 +1,7 @@
 //! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to it.
 
+use corniche_geom::Bounds;
+
 /// A rectangle of longitudes and latitudes, degrees (WGS84); it may cross the antimeridian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DegreeBounds {
@@ -29,6 +31,31 @@ impl DegreeBounds {
     pub(crate) fn degrees(&self) -> [f64; 4] {
         let Self { center, half_width, south, north } = *self;
         [center - half_width, south, center + half_width, north]
+    }
+
+    /// Whether a rectangle of degrees, given by its south-western and north-eastern corner, shares more than a side with this one.
+    pub(crate) fn overlaps(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> bool {
+        let [half, room] = [(east - west) / 2.0, self.half_width];
+        let away = self.relative([west + half, south])[0].abs();
+        away < half + room && south < self.north && self.south < north
+    }
+
+    /// What of a rectangle of degrees lies in this one, with its longitudes; all of it where it goes around most of the earth.
+    pub(crate) fn within(&self, whole: Bounds) -> Bounds {
+        let middle = whole.center()[0];
+        let center = middle - self.relative([middle, 0.0])[0];
+        let around = whole.width() + 2.0 * self.half_width > 360.0;
+        let [west, east] = if around {
+            [whole.min_x, whole.max_x]
+        } else {
+            [center - self.half_width, center + self.half_width]
+        };
+        Bounds {
+            min_x: whole.min_x.max(west),
+            min_y: whole.min_y.max(self.south),
+            max_x: whole.max_x.min(east),
+            max_y: whole.max_y.min(self.north),
+        }
     }
 
     /// The longitude, within ±180, and the latitude of its middle.

@@ -2,6 +2,25 @@
 
 use super::*;
 
+#[test]
+fn rectangles_overlap_if_they_share_more_than_a_side() {
+    let bounds = DegreeBounds::new([179.0, 10.0, -179.0, 12.0]).unwrap();
+    for (rectangle, expected) in [
+        ([[178.0, 9.0], [179.5, 10.5]], true),
+        ([[-179.5, 11.0], [-178.0, 13.0]], true),
+        ([[180.5, 11.0], [181.5, 13.0]], true),
+        ([[170.0, 0.0], [190.0, 20.0]], true),
+        ([[178.0, 10.0], [179.0, 12.0]], false),
+        ([[-179.0, 10.0], [-178.0, 12.0]], false),
+        ([[179.0, 12.0], [180.0, 13.0]], false),
+        ([[0.0, 10.0], [10.0, 12.0]], false),
+    ] {
+        assert_eq!(bounds.overlaps(rectangle), expected, "{rectangle:?}");
+    }
+    let around = DegreeBounds::new([-180.0, -10.0, 180.0, 10.0]).unwrap();
+    assert!(around.overlaps([[179.0, 0.0], [180.0, 1.0]]));
+}
+
 fn bounds(numbers: [f64; 4]) -> DegreeBounds {
     DegreeBounds::new(numbers).unwrap()
 }

@@ -35,6 +35,7 @@ pub(crate) fn laid_lines(
         observer.done(Stage::Tiles, done, tiles.len() as u64);
         lay_on(package, id, &paths, &mut laid)?;
     }
+    observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
     laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
     // What runs along a border lies on both of its tiles.
     let end = |laid: &Laid| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));

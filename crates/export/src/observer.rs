@@ -5,8 +5,10 @@ use crate::error::ExportError;
 /// What an export is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Reads tiles and sorts what they hold by way.
+    /// Reads tiles: sorts what they hold by way, or makes what is written of them.
     Tiles,
+    /// Makes blocks of a raster.
+    Blocks,
     /// Joins the pieces of each way and writes features.
     Pieces,
 }

@@ -159,6 +159,7 @@ fn pieces(
         let own = read::pieces(package, id, &classes)?;
         pieces.extend(own.into_iter().filter(|piece| way_ids.contains(&piece.key.way_id)));
     }
+    observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
     Ok(pieces)
 }
 

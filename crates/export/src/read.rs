@@ -1,7 +1,7 @@
 //! Pieces of roads out of tiles.
 
 use corniche_drape::DrapedVertex;
-use corniche_geom::{GridFrame, LatticePoint, TileId};
+use corniche_geom::{Bounds, GridFrame, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, TilePayload, pmtiles_order};
 use corniche_tin::{Placement, Surface};
@@ -45,9 +45,9 @@ pub(crate) fn tiles(
     Ok(ids)
 }
 
-/// Whether the square of a tile and the bounds have a place in common: a side of the tile goes through the bounds, or they lie within the tile.
+/// Whether the part of a tile on which data can lie and the bounds have a place in common: a side of the tile goes through the bounds, or they lie within the tile.
 pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> bool {
-    let tile = manifest.frame.tile_bounds(id);
+    let tile = data_part(manifest, id);
     let last = SIDE - 1;
     let around = (0..=4 * last).map(|k| {
         let share = (k % last) as f64 / last as f64;
@@ -68,9 +68,21 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
             .is_some_and(|middle| tile.contains(middle))
 }
 
-/// Longitudes and latitudes over a tile.
+/// The part of a tile on which data can lie. The table of coordinates reaches little beyond the data: of small ones a tile is many times as wide, and
+/// places far outside would come out anywhere.
+pub(crate) fn data_part(manifest: &Manifest, id: TileId) -> Bounds {
+    let (tile, data) = (manifest.frame.tile_bounds(id), manifest.data_bounds);
+    Bounds {
+        min_x: tile.min_x.max(data.min_x),
+        min_y: tile.min_y.max(data.min_y),
+        max_x: tile.max_x.min(data.max_x),
+        max_y: tile.max_y.min(data.max_y),
+    }
+}
+
+/// Longitudes and latitudes over the part of a tile on which data can lie.
 pub(crate) fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
-    let tile = manifest.frame.tile_bounds(id);
+    let tile = data_part(manifest, id);
     let share = |k: usize| k as f64 / (SIDE - 1) as f64;
     (0..SIDE * SIDE)
         .map(|k| {

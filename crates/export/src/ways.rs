@@ -43,6 +43,7 @@ impl<'a> Ways<'a> {
                 sorter.push(SortedPiece(piece)).map_err(failed)?;
             }
         }
+        observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
         Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, folder })
     }
 

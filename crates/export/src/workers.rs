@@ -10,13 +10,14 @@ use crate::{
     observer::{Observer, Stage, stop_if_asked},
 };
 
-/// Who is told how far tiles are.
+/// Who is told how far items are.
 #[derive(Clone, Copy)]
 pub(crate) struct Progress<'a> {
     pub(crate) observer: &'a dyn Observer,
-    /// Tiles that were done before.
+    pub(crate) stage: Stage,
+    /// Items that were done before.
     pub(crate) done: u64,
-    /// All tiles, those included.
+    /// All items, those included.
     pub(crate) total: u64,
 }
 
@@ -25,7 +26,7 @@ pub(crate) struct Progress<'a> {
 pub(crate) fn on_all<I: Sync, S, T: Send>(
     items: &[I],
     threads: usize,
-    Progress { observer, done, total }: Progress<'_>,
+    Progress { observer, stage, done, total }: Progress<'_>,
     begin: impl Fn() -> Result<S, ExportError> + Sync,
     make: impl Fn(&mut S, &I) -> Result<T, ExportError> + Sync,
 ) -> Result<Vec<T>, ExportError> {
@@ -65,7 +66,7 @@ pub(crate) fn on_all<I: Sync, S, T: Send>(
                     first_failure.get_or_insert(failure);
                 }
             }
-            observer.done(Stage::Tiles, done + count as u64 + 1, total);
+            observer.done(stage, done + count as u64 + 1, total);
             if let Err(stopped) = stop_if_asked(observer) {
                 first_failure.get_or_insert(stopped);
             }

@@ -255,6 +255,13 @@ impl GridFrame {
         LatticePoint::new(node.i * self.steps[0], node.j * self.steps[1])
     }
 
+    /// The rectangle between a south-western and a north-eastern node.
+    #[must_use]
+    pub fn lattice_bounds(&self, nodes: [NodeIndex; 2]) -> LatticeBounds {
+        let [min, max] = nodes.map(|node| self.lattice_of_node(node));
+        LatticeBounds { min, max }
+    }
+
     /// Position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`], [`GridFrame::y_m`].
     #[must_use]
     pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {

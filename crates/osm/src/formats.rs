@@ -13,10 +13,12 @@ const CHANGE: &str = "apply it to the extract that it belongs to: \
 const HISTORY: &str =
     "take one point in time: osmium time-filter IN 2026-01-01T00:00:00Z -o OUT.osm.pbf";
 const FETCH: &str = "its download failed; fetch the extract again";
+const PULL: &str = "fetch the file that it stands for: git lfs pull";
 const OTHER: &str = "give an OpenStreetMap extract in the format .osm.pbf";
 
 /// First bytes that say what a file is.
-const MAGIC: [(&[u8], &str, &str); 18] = [
+const MAGIC: [(&[u8], &str, &str); 19] = [
+    (b"version https://git-lfs", "a Git LFS pointer", PULL),
     (b"\x1f\x8b", "packed with gzip", TO_PBF),
     (b"BZh", "packed with bzip2", TO_PBF),
     (b"PK\x03\x04", "a zip archive", UNPACK),

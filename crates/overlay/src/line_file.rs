@@ -61,6 +61,8 @@ impl LineFile {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
+        // RFC 8259, section 8.1: a reader may ignore a byte order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let whole: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let Value::Object(mut members) = whole else { return Err("it is no object".to_owned()) };
         if let Some(crs) = members.get("crs").filter(|crs| !crs.is_null()) {

@@ -1,6 +1,6 @@
 //! Lines are read from all layers of a vector file and carried to WGS84.
 
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 use corniche_dem::{NotOpened, failure, forget, open_vectors};
 use gdal::{
@@ -29,6 +29,64 @@ pub struct VectorLines {
     pub lines: Vec<VectorLine>,
     /// Features that are neither, such as points.
     pub others: u64,
+    /// Lines of routes, and lines of tracks, in a GPX file that has both.
+    pub routes_and_tracks: Option<[usize; 2]>,
+}
+
+impl VectorLines {
+    /// What a user may not have meant, in whole sentences without a point.
+    #[must_use]
+    pub fn notices(&self) -> Vec<String> {
+        let mut notices = Vec::new();
+        if self.others > 0 {
+            notices.push(format!("{} features are neither lines nor outlines", self.others));
+        }
+        if let Some([routes, tracks]) = self.routes_and_tracks {
+            notices.push(format!(
+                "it has routes ({routes}) and tracks ({tracks}), and both are taken; programs often save one line as both, which then counts \
+                 twice; keep one of them: ogr2ogr NEW.gpx OLD.gpx tracks"
+            ));
+        }
+        let repeated = self.repeated();
+        if repeated > 0 {
+            notices.push(format!(
+                "{repeated} of its lines are the same as one before, and count again"
+            ));
+        }
+        notices
+    }
+
+    /// How many lines have the positions of one before them, in the same order or from end to begin.
+    fn repeated(&self) -> usize {
+        let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
+        let mut repeated = 0;
+        for (number, line) in self.lines.iter().enumerate() {
+            let with_same_key = known.entry(line.key()).or_default();
+            if with_same_key.iter().any(|&before| self.lines[before].is_same_as(line)) {
+                repeated += 1;
+            } else {
+                with_same_key.push(number);
+            }
+        }
+        repeated
+    }
+}
+
+impl VectorLine {
+    fn bits(&self) -> impl DoubleEndedIterator<Item = [u64; 2]> {
+        self.positions_deg.iter().map(|position| position.map(f64::to_bits))
+    }
+
+    /// A number that lines with the same positions have in common, whichever way they go.
+    fn key(&self) -> u64 {
+        let mix =
+            |[lon, lat]: [u64; 2]| lon.rotate_left(32).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ lat;
+        self.bits().map(mix).fold(0, u64::wrapping_add)
+    }
+
+    fn is_same_as(&self, other: &Self) -> bool {
+        self.bits().eq(other.bits()) || self.bits().eq(other.bits().rev())
+    }
 }
 
 /// Reads the lines of all layers of a vector file, each in its own coordinate system.
@@ -44,13 +102,25 @@ pub fn read(path: &Path) -> Result<VectorLines, OverlayError> {
     })?;
     let is_gpx = dataset.driver().short_name() == "GPX";
     let mut reading = Reading { path, found: VectorLines::default(), points: 0 };
+    let [mut routes, mut tracks] = [0; 2];
     for mut layer in dataset.layers() {
+        let name = layer.name();
         // GDAL tells the points of tracks and routes of GPX once more, in layers of their own.
-        if !(is_gpx && ["track_points", "route_points"].contains(&layer.name().as_str())) {
-            reading.layer(&mut layer)?;
+        if is_gpx && ["track_points", "route_points"].contains(&name.as_str()) {
+            continue;
+        }
+        let before = reading.found.lines.len();
+        reading.layer(&mut layer)?;
+        match name.as_str() {
+            "routes" => routes += reading.found.lines.len() - before,
+            "tracks" => tracks += reading.found.lines.len() - before,
+            _ => {}
         }
     }
-    let found = reading.found;
+    let mut found = reading.found;
+    if is_gpx && routes > 0 && tracks > 0 {
+        found.routes_and_tracks = Some([routes, tracks]);
+    }
     if found.lines.is_empty() {
         return Err(OverlayError::NoLines { path: own(), others: found.others });
     }

@@ -43,6 +43,45 @@ fn a_track_of_gpx_is_one_line() {
     assert_eq!(found.lines[0].name.as_deref(), Some("up"));
 }
 
+/// One line as a route and as a track, as planners save it: the first time exactly the same, the second time with fewer points.
+#[test]
+fn a_line_that_counts_twice_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let gpx = |route: &str| {
+        let track = r#"<trkpt lat="47.0" lon="9.0"/><trkpt lat="47.05" lon="9.02"/><trkpt lat="47.1" lon="9.1"/>"#;
+        format!(
+            r#"<?xml version="1.0"?><gpx version="1.1" creator="t" xmlns="http://www.topografix.com/GPX/1/1">
+            {route}<trk><trkseg>{track}</trkseg></trk></gpx>"#
+        )
+    };
+    let notices = |name: &str, text: &str| {
+        let found = read(&written(folder.path(), name, text)).unwrap();
+        (found.lines.len(), found.notices())
+    };
+    let same = r#"<rte><rtept lat="47.0" lon="9.0"/><rtept lat="47.05" lon="9.02"/><rtept lat="47.1" lon="9.1"/></rte>"#;
+    let (lines, told) = notices("same.gpx", &gpx(same));
+    assert_eq!((lines, told.len()), (2, 2), "{told:?}");
+    assert!(
+        told[0].contains("routes (1) and tracks (1)") && told[0].contains("ogr2ogr"),
+        "{told:?}"
+    );
+    assert!(told[1].starts_with("1 of its lines"), "{told:?}");
+    let coarse = r#"<rte><rtept lat="47.0" lon="9.0"/><rtept lat="47.1" lon="9.1"/></rte>"#;
+    assert_eq!(notices("coarse.gpx", &gpx(coarse)).1.len(), 1);
+    assert_eq!(notices("track.gpx", &gpx("")), (1, Vec::new()));
+    // There and back on the same points, in any format.
+    let line = |points: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":{points}}}}}"#
+        )
+    };
+    let both = [line("[[9,47],[9.1,47.2]]"), line("[[9.1,47.2],[9,47]]")].join(",");
+    let both = format!(r#"{{"type":"FeatureCollection","features":[{both}]}}"#);
+    let told = notices("both.geojson", &both).1;
+    assert!(told.len() == 1 && told[0].starts_with("1 of its lines"), "{told:?}");
+    assert_eq!(notices("a.geojson", GEOJSON).1, ["1 features are neither lines nor outlines"]);
+}
+
 #[test]
 fn what_gives_no_lines_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -71,10 +71,14 @@ impl<'a> Context<'a> {
         DataTiles::of(self.grid)
     }
 
+    /// The rectangle of all nodes at which data can lie.
+    pub(crate) fn node_bounds(&self) -> LatticeBounds {
+        self.frame().lattice_bounds([self.grid.south_west, self.grid.north_east])
+    }
+
     /// The bounds that were asked for.
     pub(crate) fn clip(&self) -> Option<LatticeBounds> {
-        let [min, max] = self.grid.clip?.nodes.map(|node| self.frame().lattice_of_node(node));
-        Some(LatticeBounds { min, max })
+        Some(self.frame().lattice_bounds(self.grid.clip?.nodes))
     }
 
     /// The polygon that was asked for.

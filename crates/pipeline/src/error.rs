@@ -47,19 +47,17 @@ pub enum BuildError {
          ground; give rasters with heights side by side"
     )]
     NoCell { dem: Vec<PathBuf>, nodes: u64 },
-    #[error(
-        "{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?"
-    )]
-    NoRoads { osm: Vec<PathBuf> },
+    #[error("{osm:?} has no road: {why}")]
+    NoRoads { osm: Vec<PathBuf>, why: String },
     #[error(
         "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:.4?}, heights within \
          {heights_deg:.4?} (west, south, east, north in degrees)"
     )]
     NoOverlap { osm: Vec<PathBuf>, roads_deg: [f64; 4], heights_deg: [f64; 4] },
     #[error(
-        "no road of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone"
+        "no {what} of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone"
     )]
-    NoGround { osm: Vec<PathBuf> },
+    NoGround { osm: Vec<PathBuf>, what: &'static str },
     #[error("the roads could not be projected into the working CRS")]
     Project(#[source] corniche_geom::ProjectError),
     #[error("{why}")]

@@ -6,6 +6,7 @@ pub(crate) mod extract;
 pub(crate) mod lay;
 
 pub(crate) mod losses;
+mod no_road;
 pub(crate) mod overlap;
 pub(crate) mod partition;
 pub(crate) mod pieces;

@@ -18,12 +18,14 @@ use crate::{
 /// - **Lanes**: a whole number from 1 to 255.
 /// - **Width**: metres without a unit, else its unit; above 0 and at most 1 km.
 /// - **Speed limit**: whole numbers of km/h or miles an hour in one spelling; all else stays as tagged.
+/// - **Texts**, such as names, stay as tagged, spaces around them included. Around all other values spaces do not count.
 ///
 /// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*, *Key:lanes*, *Key:width*,
 /// *Key:maxspeed*.
 #[must_use]
 pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
-    let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
+    let text = |key| tag(tags, key).unwrap_or_default();
+    let value = |key| text(key).trim();
     let highway = value("highway");
     let layer = layer(value("layer"));
     let is_roundabout = matches!(value("junction"), "roundabout" | "circular");
@@ -43,25 +45,25 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
         structure: structure(value("bridge"), value("tunnel"), layer),
         layer,
         oneway,
-        name: value("name").to_owned(),
-        reference: value("ref").to_owned(),
-        surface: value("surface").to_owned(),
+        name: text("name").to_owned(),
+        reference: text("ref").to_owned(),
+        surface: text("surface").to_owned(),
         highway: highway.to_owned(),
         lanes: lanes(value("lanes")),
         width_mm: width_mm(value("width")),
-        max_speed: max_speed(value("maxspeed")),
-        sac_scale: value("sac_scale").to_owned(),
-        tracktype: value("tracktype").to_owned(),
+        max_speed: max_speed(text("maxspeed")),
+        sac_scale: text("sac_scale").to_owned(),
+        tracktype: text("tracktype").to_owned(),
     }
 }
 
-/// The tags that [`attributes`] reads as another value, as `(key, value)`: a `layer` that is no whole number or too
+/// The tags that [`attributes`] reads as another value, as `(key, value)` with the value as tagged: a `layer` that is no whole number or too
 /// large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, `lanes` that are no count and a
 /// `width` that is none (0, for example), which are taken for none.
 pub fn tags_taken_otherwise<'t>(
     tags: &[(&'t str, &'t str)],
 ) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {
-    let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
+    let text = |key| tag(tags, key).unwrap_or_default();
     let known: [(&'static str, IsRead); 4] = [
         ("layer", |layer| layer.parse::<i8>().is_ok()),
         ("tunnel", |tunnel| !BESIDE_TUNNELS.contains(&tunnel)),
@@ -69,10 +71,10 @@ pub fn tags_taken_otherwise<'t>(
         ("width", |text| width_mm(text).is_some()),
     ];
     known
-        .map(|(key, is_read)| (key, value(key), is_read))
+        .map(|(key, is_read)| (key, text(key), is_read))
         .into_iter()
-        .filter(|(_, value, is_read)| !value.is_empty() && !is_read(value))
-        .map(|(key, value, _)| (key, value))
+        .filter(|(_, text, is_read)| !text.trim().is_empty() && !is_read(text.trim()))
+        .map(|(key, text, _)| (key, text))
 }
 
 /// Whether the value of a tag is read as it stands.

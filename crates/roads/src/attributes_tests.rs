@@ -118,6 +118,30 @@ fn what_a_road_is_like_is_kept() {
     assert_eq!(road.text_bytes(), 5 + 2 + 15 + 6);
 }
 
+/// Around numbers and keywords spaces do not count; texts are what the tag has.
+#[test]
+fn texts_stay_as_tagged_with_the_spaces_around_them() {
+    let road = attributes(&[
+        ("name", " Pass Road  "),
+        ("ref", "16 "),
+        ("surface", "\tgravel"),
+        ("sac_scale", " hiking"),
+        ("tracktype", "grade3 "),
+        ("maxspeed", " none "),
+        ("oneway", " yes "),
+        ("layer", " 1 "),
+        ("lanes", " 2 "),
+    ]);
+    let RoadAttributes { name, reference, surface, sac_scale, tracktype, max_speed, .. } = &road;
+    let texts = [name, reference, surface, sac_scale, tracktype, max_speed];
+    assert_eq!(texts, [" Pass Road  ", "16 ", "\tgravel", " hiking", "grade3 ", " none "]);
+    let lanes = road.lanes.map(NonZeroU8::get);
+    assert_eq!((road.oneway, road.layer, lanes), (Oneway::Forward, 1, Some(2)));
+    assert_eq!(attributes(&[("maxspeed", " 50 km/h ")]).max_speed, "50");
+    let odd: Vec<_> = tags_taken_otherwise(&[("layer", " x ")]).collect();
+    assert_eq!(odd, [("layer", " x ")]);
+}
+
 #[test]
 fn the_names_of_a_road_are_kept() {
     let road = attributes(&[

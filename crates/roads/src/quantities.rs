@@ -48,7 +48,8 @@ pub(crate) fn width_mm(tagged: &str) -> Option<NonZeroU32> {
 ///
 /// Source: OSM wiki, *Key:maxspeed*.
 pub(crate) fn max_speed(tagged: &str) -> String {
-    let whole = number_and_unit(tagged).filter(|(value, _)| value.fract() == 0.0 && *value < 1e4);
+    let whole =
+        number_and_unit(tagged.trim()).filter(|(value, _)| value.fract() == 0.0 && *value < 1e4);
     match whole {
         Some((value, "" | "km/h" | "kmh" | "kph")) => format!("{value}"),
         Some((value, "mph")) => format!("{value} mph"),

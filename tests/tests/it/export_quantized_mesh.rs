@@ -184,6 +184,94 @@ fn flat_ground_has_few_levels() {
     assert!(!output.exists());
 }
 
+/// Where ground bends on a border of tiles, the border bends with it: on every level a tile is within four fifths of its error at all places that are looked at.
+#[test]
+fn steep_ground_is_followed_on_borders() {
+    let folder = TempDir::new().unwrap();
+    let raster = Raster::new(32632, [34, 30], [600_000.0, 68.0, 0.0, 5_230_000.0, 0.0, -68.0]);
+    // Ridges and valleys that lie athwart the borders of tiles.
+    let ridges = |[x, y]: [f64; 2]| {
+        let folded = |at: f64, wide: f64| ((at / wide).rem_euclid(2.0) - 1.0).abs() * wide;
+        (900.0 + 0.5 * (folded(x + 0.31 * y, 310.0) + folded(y - 0.2 * x, 230.0))) as f32
+    };
+    let dem = raster.write(folder.path(), "ridges.tif", ridges);
+    let package = folder.path().join("ridges.pmtiles");
+    let options = ["--relief", "off", "--max-error", "1", "-o", text(&package)];
+    let ran = corniche(["build", "-q", "--dem", text(&dem)].iter().chain(&options));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let options = ["--heights", "as-is", "--max-level", "15"];
+    let terrain = Terrain::read(&export(&package, "terrain", &options));
+    check_tree(&terrain).unwrap();
+    check_borders(&terrain).unwrap();
+    let region = Region { crs: "EPSG:32632".to_owned(), metres_per_unit: [1.0; 2], dem };
+    let levels = check_heights(&terrain, &package, &region);
+    for (level, found) in levels.iter().enumerate().skip(12) {
+        let told = &terrain.layer["corniche"]["levels"][level];
+        found.check(told).unwrap_or_else(|error| panic!("level {level}: {error}"));
+        let [deviation_m, assumed_m] =
+            ["deviation_m", "assumed_error_m"].map(|name| told[name].as_f64().unwrap());
+        // Heights are rounded as they are written.
+        assert!(deviation_m <= 0.8 * assumed_m + 0.02, "level {level}: {told}");
+    }
+}
+
+/// A tile of the package is many times as wide as these data, and the table of coordinates ends near them.
+#[test]
+fn data_of_few_nodes_have_terrain() {
+    for (side, cell_m) in [(2, 1.0), (3, 0.25), (4, 10.0)] {
+        let folder = TempDir::new().unwrap();
+        let place = [600_000.0, cell_m, 0.0, 5_230_000.0, 0.0, -cell_m];
+        let raster = Raster::new(32632, [side, side], place);
+        let slope =
+            |[x, y]: [f64; 2]| (400.0 + (x - 600_000.0) * (y - 5_230_000.0) / cell_m) as f32;
+        let package = built_of(&folder, &raster.write(folder.path(), "few.tif", slope));
+        let terrain = Terrain::read(&export(&package, "terrain", &["--heights", "as-is"]));
+        check_tree(&terrain).unwrap();
+        let finest = terrain.levels() - 1;
+        let there = terrain.tiles.keys().filter(|name| name[0] == finest).count();
+        assert!((1..=9).contains(&there), "{side}: {there} tiles of level {finest}");
+        let told = &terrain.layer["corniche"]["levels"][finest as usize];
+        assert!(told["deviation_m"].as_f64().unwrap() <= told["assumed_error_m"].as_f64().unwrap());
+    }
+}
+
+/// `--bounds` takes whole tiles of the finest level, with the bytes of the whole export, and those above them.
+#[test]
+fn bounds_take_the_tiles_that_meet_them() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let whole = export(&package, "whole", &["--max-level", "12"]);
+    let bounds = [9.50, 46.89, 9.52, 46.91];
+    let text = bounds.map(|degrees| degrees.to_string()).join(",");
+    let part = export(&package, "part", &["--max-level", "12", "--bounds", &text]);
+    let [all, some] = [&whole, &part].map(|folder| Terrain::read(folder));
+    check_tree(&some).unwrap();
+    let side = 180.0 / f64::from(1 << 12);
+    let meets = |&&[level, x, y]: &&Name| {
+        let (west, south) = (f64::from(x) * side - 180.0, f64::from(y) * side - 90.0);
+        let is_across = west < bounds[2] && west + side > bounds[0];
+        level == 12 && is_across && south < bounds[3] && south + side > bounds[1]
+    };
+    let finest = |terrain: &Terrain| -> Vec<Name> {
+        terrain.tiles.keys().filter(|name| name[0] == 12).copied().collect()
+    };
+    let wanted: Vec<Name> = all.tiles.keys().filter(meets).copied().collect();
+    assert!(wanted.len() < finest(&all).len() && !wanted.is_empty());
+    assert_eq!(finest(&some), wanted);
+    for [level, x, y] in wanted {
+        let [one, other] = [&whole, &part]
+            .map(|folder| fs::read(folder.join(format!("{level}/{x}/{y}.terrain"))).unwrap());
+        assert!(one == other, "{level}/{x}/{y}");
+    }
+    let told: Vec<f64> =
+        some.layer["bounds"].as_array().unwrap().iter().map(|at| at.as_f64().unwrap()).collect();
+    assert!(told.iter().zip(bounds).all(|(told, asked)| (told - asked).abs() < 1e-12), "{told:?}");
+    let output = folder.path().join("beside");
+    let words = ["export", "quantized-mesh", e2e::text(&package), "-o", e2e::text(&output)];
+    let ran = corniche(words.iter().chain(&["--bounds", "20,46,21,47"]));
+    assert!(ran.code == 2 && ran.err.contains("no ground there"), "{}", ran.err);
+}
+
 /// Ground that is smaller than the places of a coarse level are apart is not lost.
 #[test]
 fn small_ground_is_on_coarse_levels() {

@@ -16,6 +16,7 @@ mod export_quantized_mesh;
 mod export_roads;
 mod export_targets;
 mod export_tiles3d;
+mod extracts_without_roads;
 mod fly;
 mod fly_window;
 mod growth;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use e2e::{Ran, corniche, sample, text};
+use e2e::{Ran, copy_pass, corniche, sample, text};
 use serde_json::Value;
 
 /// Builds the sample `pass` and gives what was said.
@@ -115,4 +115,61 @@ fn plain_lines_end_with_the_table() {
 #[test]
 fn nothing_is_told_to_whoever_asks_for_silence() {
     assert_eq!(build(&["--quiet"]).err, "");
+}
+
+/// Every export, `match` and `verify`: records in which each stage begins, counts up to its total and ends, and plain lines without
+/// a terminal.
+#[test]
+fn exports_and_comparisons_tell_how_far_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    copy_pass(&package, &["--quiet"]);
+    let package = text(&package);
+    let export = |what: &'static str, name: &str, more: &[&'static str]| {
+        let words = ["export", what, package, "-O", "-o"].map(str::to_owned);
+        let target = text(&folder.path().join(name)).to_owned();
+        let words: Vec<String> = words.into_iter().chain([target]).collect();
+        words.into_iter().chain(more.iter().map(|&word| word.to_owned())).collect::<Vec<_>>()
+    };
+    let as_is = ["--heights", "as-is"];
+    for (line, stages) in [
+        (export("roads", "a.csv", &[]), &["export-tiles", "export-features"][..]),
+        (export("mesh", "a.glb", &["--level", "1"]), &["export-tiles"]),
+        (export("geotiff", "a.tif", &["--level", "0"]), &["export-blocks"]),
+        (
+            export("3dtiles", "tiles", &[&as_is[..], &["--finest-level", "0"]].concat()),
+            &["export-tiles"],
+        ),
+        (
+            export("quantized-mesh", "mesh", &[&as_is[..], &["--max-level", "8"]].concat()),
+            &["export-tiles"],
+        ),
+        (["match", package, "--slope"].map(str::to_owned).to_vec(), &["match"]),
+        (["verify", package].map(str::to_owned).to_vec(), &["verify"]),
+    ] {
+        let ran = corniche(line.iter().map(String::as_str).chain(["--json-progress"]));
+        assert_eq!(ran.code, 0, "{line:?}: {}", ran.err);
+        let records: Vec<Value> =
+            ran.err.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        for stage in stages {
+            let own: Vec<&Value> =
+                records.iter().filter(|record| record["stage"] == *stage).collect();
+            let states: Vec<&str> =
+                own.iter().map(|record| record["state"].as_str().unwrap()).collect();
+            assert!(states.len() >= 2 && states[0] == "begin", "{line:?}: {states:?}");
+            let last = own.last().unwrap();
+            assert_eq!((&last["state"], &last["done"]), (&"end".into(), &last["total"]), "{last}");
+            assert!(last["total"].as_u64() > Some(0), "{last}");
+            assert!(own.iter().all(|record| record.get("seconds_left").is_some()), "{last}");
+        }
+        assert_eq!(records.last().unwrap()["end"]["result"], "done");
+        let ran = corniche(&line);
+        assert!(
+            ran.err.lines().any(|line| line.contains(" in ") && line.contains(" s")),
+            "{}",
+            ran.err
+        );
+        let silent = corniche(line.iter().map(String::as_str).chain(["--quiet"]));
+        assert_eq!(silent.err, "", "{line:?}");
+    }
 }

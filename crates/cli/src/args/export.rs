@@ -10,6 +10,7 @@ use corniche_export::{
 use corniche_remote::PackagePlace;
 
 use super::{
+    ReportArgs,
     shared::{
         BoundsArg, ClassesArg, DatumArg, FileArgs, FolderArgs, LevelArg, PackageArg, ThreadsArg,
     },
@@ -70,6 +71,8 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) heights: Option<Heights>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -90,6 +93,8 @@ pub(crate) struct ExportAreasArgs {
     /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
     pub(crate) crs: ExportCrs,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -130,6 +135,8 @@ pub(crate) struct ExportMeshArgs {
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(long, value_enum, value_name = "AXIS")]
     pub(crate) up: Option<Up>,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -159,6 +166,8 @@ pub(crate) struct ExportGeoTiffArgs {
     pub(crate) polygon: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 impl ExportGeoTiffArgs {
@@ -237,10 +246,15 @@ pub(crate) struct ExportTiles3dArgs {
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
-#[command(mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")))]
+#[command(
+    mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")),
+    mut_arg("bounds", |arg| arg.help("Take the tiles of the finest level that meet a rectangle of WGS84 degrees, whole, and those above them; a west beyond the east crosses 180°")),
+)]
 pub(crate) struct ExportQuantizedMeshArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
@@ -258,6 +272,8 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// The finest level [default: the first one whose error, as CesiumJS assumes it, is at most the package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
     pub(crate) max_level: Option<u8>,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with many tiles)
     #[arg(
         long,
@@ -283,6 +299,22 @@ pub(crate) struct ExportQuantizedMeshArgs {
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+impl Export {
+    /// How progress is told.
+    pub(crate) fn report(&self) -> ReportArgs {
+        match self {
+            Self::Roads(args) => args.report,
+            Self::Areas(args) => args.report,
+            Self::Mesh(args) => args.report,
+            Self::GeoTiff(args) => args.report,
+            Self::Tiles3d(args) => args.report,
+            Self::QuantizedMesh(args) => args.report,
+        }
+    }
 }
 
 /// Grids of terrain tiles.

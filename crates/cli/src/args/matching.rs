@@ -6,6 +6,7 @@ use clap::{ArgGroup, Args, ValueHint};
 use corniche_remote::PackagePlace;
 
 use super::{
+    ReportArgs,
     shared::ClassesArg,
     values::{package_among, package_place},
 };
@@ -45,6 +46,8 @@ pub(crate) struct MatchArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
     pub(crate) overwrite: bool,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 impl MatchArgs {

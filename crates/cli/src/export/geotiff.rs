@@ -12,10 +12,9 @@ use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
 use crate::{
     args::ExportGeoTiffArgs,
     exit::ExitCode,
-    export_bars::{Bars, named},
     failure::Failure,
     messages,
-    named_output::NamedOutput,
+    named_output::{NamedOutput, named},
     output::existing_of,
     packages,
     progress::Progress,
@@ -50,9 +49,9 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             .map(|RecordedElevation { dem, plan, .. }| Elevation { dem, plan }),
         threads: threads(args.cpu.threads),
     };
-    let bars = Bars::default();
-    let exported = export_geotiff(&package, &request, &output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_geotiff(&package, &request, &output.path(), &progress);
+    progress.finish();
     if let Some(elevation) = &elevation {
         // A file that changed may be the cause of any other error.
         elevation.check_unchanged()?;

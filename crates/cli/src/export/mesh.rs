@@ -13,12 +13,13 @@ use super::unknown_ending::unknown_ending;
 use crate::{
     args::{ExportMeshArgs, OnOrNone},
     exit::ExitCode,
-    export_bars::{Bars, named},
     failure::Failure,
     messages,
-    named_output::NamedOutput,
+    named_output::{NamedOutput, named},
     output::{Existing, Output, existing_of},
-    packages, styles,
+    packages,
+    progress::Progress,
+    styles,
     table::{Digits, bytes},
 };
 
@@ -56,9 +57,9 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
-    let bars = Bars::default();
-    let exported = export_mesh(&package, &request, &output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_mesh(&package, &request, &output.path(), &progress);
+    progress.finish();
     let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let placed = materials.map(|materials| materials.place(&request)).transpose()?;
     let size = output.place().inspect_err(|_| {

@@ -11,12 +11,14 @@ use corniche_tileset::Manifest;
 use crate::{
     args::{ExportQuantizedMeshArgs, TerrainCompress},
     exit::ExitCode,
-    export_bars::{Bars, named},
     failure::Failure,
     folder_output::FolderOutput,
     messages,
+    named_output::named,
     output::existing_of,
-    packages, settings,
+    packages,
+    progress::Progress,
+    settings,
     table::{Digits, bytes},
 };
 
@@ -25,6 +27,7 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     let request = QuantizedMeshRequest {
         tiling: Tiling::from(args.tiling),
         max_level: args.max_level,
+        bounds: args.within.bounds,
         coordinates: match args.heights {
             None => Coordinates::Wgs84,
             Some(_) => Coordinates::Wgs84WithPackageHeights,
@@ -35,9 +38,9 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     };
     let existing = existing_of(args.folder.overwrite);
     let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let bars = Bars::default();
-    let exported = export_quantized_mesh(&package, &request, output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_quantized_mesh(&package, &request, output.path(), &progress);
+    progress.finish();
     let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("quantized-mesh")?;
     messages::note(&to_text(args, &summary, package.manifest(), size));

@@ -10,12 +10,14 @@ use corniche_tileset::Manifest;
 use crate::{
     args::{Compress, ExportTiles3dArgs, OnOrNone},
     exit::ExitCode,
-    export_bars::{Bars, named},
     failure::Failure,
     folder_output::FolderOutput,
     messages,
+    named_output::named,
     output::existing_of,
-    packages, settings, styles,
+    packages,
+    progress::Progress,
+    settings, styles,
     table::{Digits, bytes},
 };
 
@@ -39,9 +41,9 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     };
     let existing = existing_of(args.folder.overwrite);
     let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let bars = Bars::default();
-    let exported = export_tiles3d(&package, &request, output.path(), &bars);
-    bars.end();
+    let progress = Progress::new();
+    let exported = export_tiles3d(&package, &request, output.path(), &progress);
+    progress.finish();
     let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("3D Tiles")?;
     messages::note(&to_text(args, &summary, package.manifest(), size));

@@ -10,10 +10,10 @@ use corniche_tileset::{FilePackage, Manifest};
 use crate::{
     exit::ExitCode,
     export::MEMORY_BYTES,
-    export_bars::Bars,
     failure::Failure,
     messages,
     output::{Output, failed},
+    progress::Progress,
     table::Digits,
 };
 
@@ -25,13 +25,13 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
-    let bars = Bars::default();
-    let told = growth_by_way(package, folder_of(path), MEMORY_BYTES, &bars, |way| {
+    let progress = Progress::new();
+    let told = growth_by_way(package, folder_of(path), MEMORY_BYTES, &progress, |way| {
         ways += 1;
         sums.add(way);
         output.write_all(line(way).as_bytes()).map_err(cannot)
     });
-    bars.end();
+    progress.finish();
     told?;
     sums.fit(manifest, package.path())?;
     let mut off_ground = 0;

@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use corniche_pipeline::Stage;
-
 use super::{
+    task::Task,
     texts::{amount, rate},
     usage::Usage,
 };
@@ -16,7 +15,7 @@ use crate::{
 /// What one stage took.
 #[derive(Debug, Clone)]
 pub(crate) struct Cost {
-    pub(crate) stage: Stage,
+    pub(crate) task: Task,
     /// How much is done in all, by an earlier run too.
     pub(crate) done: u64,
     /// How much of it an earlier run did.
@@ -49,7 +48,7 @@ pub(crate) struct Costs(Vec<Cost>);
 impl Costs {
     /// A stage that came before gets what it took now on top.
     pub(crate) fn add(&mut self, cost: Cost) {
-        match self.0.iter_mut().find(|before| before.stage == cost.stage) {
+        match self.0.iter_mut().find(|before| before.task == cost.task) {
             Some(before) => {
                 before.done += cost.done;
                 before.already += cost.already;
@@ -82,16 +81,10 @@ impl Costs {
             ]
         };
         for cost in &self.0 {
-            let unit = cost.stage.unit();
+            let unit = cost.task.counts;
             let rate = cost.per_second().map(|per_second| rate(per_second, unit, digits));
             let done = amount(cost.done, unit, digits);
-            table.row(row(
-                cost.stage.title(),
-                done,
-                cost.wall,
-                rate.unwrap_or_default(),
-                &cost.used,
-            ));
+            table.row(row(cost.task.title, done, cost.wall, rate.unwrap_or_default(), &cost.used));
         }
         table.row(row("all", String::new(), wall, String::new(), used));
         table.without_empty_columns().to_text()
@@ -100,8 +93,8 @@ impl Costs {
     /// The same for programs.
     pub(crate) fn record(&self, wall: Duration, used: &Usage) -> ProgressRecord<'static> {
         let stage = |cost: &Cost| StageCostRecord {
-            stage: cost.stage.id(),
-            title: cost.stage.title(),
+            stage: cost.task.id,
+            title: cost.task.title,
             done: cost.done,
             already: cost.already,
             per_second: cost.per_second(),

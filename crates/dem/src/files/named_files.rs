@@ -80,6 +80,8 @@ fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
 fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     let unreadable = |source| DemError::List { path: list.to_path_buf(), source };
     let text = fs::read_to_string(list).map_err(unreadable)?;
+    // Editors of Windows begin text with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let folder = list.parent().unwrap_or(Path::new(""));
     let lines =
         text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));

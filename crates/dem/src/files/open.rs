@@ -4,6 +4,7 @@ use std::path::Path;
 
 use gdal::Dataset;
 
+use super::stand_in::stand_in;
 use crate::{DemError, library_error};
 
 /// Opens a file, with an error that says which of the usual things went wrong.
@@ -33,6 +34,8 @@ pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
     Dataset::open(path).map_err(|source| {
         if path.is_dir() {
             DemError::NotAFile { path: own() }
+        } else if let Some((found, advice)) = stand_in(path) {
+            DemError::StandIn { path: own(), found, advice }
         } else {
             DemError::Open { path: own(), source: source.into() }
         }

@@ -136,6 +136,8 @@ impl Reading<'_> {
         match geometry_type_flatten(geometry.geometry_type()) {
             OGRwkbGeometryType::wkbPolygon => self.take_polygon(geometry, crs),
             OGRwkbGeometryType::wkbMultiPolygon => {
+                let mut polygons = 0..geometry.geometry_count();
+                polygons.try_for_each(|index| self.check_closed(&geometry.get_geometry(index)))?;
                 self.check_valid(geometry)?;
                 let mut polygons = 0..geometry.geometry_count();
                 polygons.try_for_each(|index| self.take_rings(&geometry.get_geometry(index), crs))
@@ -153,6 +155,7 @@ impl Reading<'_> {
     }
 
     fn take_polygon(&mut self, polygon: &Geometry, crs: &Crs) -> Result<(), PolygonError> {
+        self.check_closed(polygon)?;
         self.check_valid(polygon)?;
         self.take_rings(polygon, crs)
     }
@@ -166,6 +169,22 @@ impl Reading<'_> {
         let reason = library_error::last_words().unwrap_or_else(|| "it crosses itself".to_owned());
         let (path, feature) = (self.path.to_path_buf(), self.features);
         Err(PolygonError::Invalid { path, feature, reason })
+    }
+
+    /// Fails if a ring of a polygon does not end where it begins: then GEOS says nothing of use.
+    fn check_closed(&self, polygon: &Geometry) -> Result<(), PolygonError> {
+        for index in 0..polygon.geometry_count() {
+            let mut points = Vec::new();
+            polygon.get_geometry(index).get_points(&mut points);
+            if let (Some(&(x, y, _)), Some(&(end_x, end_y, _))) = (points.first(), points.last())
+                && (x, y) != (end_x, end_y)
+            {
+                let (first, last) = ([x, y], [end_x, end_y]);
+                let (path, feature) = (self.path.to_path_buf(), self.features);
+                return Err(PolygonError::OpenRing { path, feature, first, last });
+            }
+        }
+        Ok(())
     }
 
     fn take_rings(&mut self, polygon: &Geometry, crs: &Crs) -> Result<(), PolygonError> {

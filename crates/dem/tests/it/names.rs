@@ -47,6 +47,13 @@ fn folders_patterns_and_lists_stand_for_their_files() {
         .unwrap();
     let listed = expand_name(Path::new(&format!("@{}", list.display()))).unwrap();
     assert_eq!(listed, [second.clone(), first.clone(), first.clone(), second]);
+    // Editors of Windows begin text with a byte order mark, and end lines in their own way.
+    fs::write(&list, "\u{feff}square-1.tif\r\nsquare-0.tif\r\n").unwrap();
+    let listed = expand_name(Path::new(&format!("@{}", list.display()))).unwrap();
+    assert_eq!(names(&listed), ["square-1.tif", "square-0.tif"]);
+    fs::write(&list, "\u{feff}# squares\r\nsquare-1.tif").unwrap();
+    let listed = expand_name(Path::new(&format!("@{}", list.display()))).unwrap();
+    assert_eq!(names(&listed), ["square-1.tif"]);
     // A file whose name is a pattern is that file.
     let odd = at.join("a[1]*.tif");
     fs::copy(&first, &odd).unwrap();

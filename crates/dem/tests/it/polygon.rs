@@ -290,6 +290,13 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
         &["a.geojson", "LINESTRING", "polygons alone"],
     );
     refuse(&json("Point", "[9,47]"), &["POINT", "encloses nothing"]);
+    // Rings that are not closed, an inner one of a second polygon, too.
+    let closed = "[[9,47],[9.1,47],[9.1,47.1],[9,47]]";
+    let open = "[[9,47],[9.1,47],[9.1,47.1]]";
+    let advice =
+        ["a.geojson", "feature 1", "[9.0, 47.0]", "[9.1, 47.1]", "repeat its first position"];
+    refuse(&json("Polygon", &format!("[{open}]")), &advice);
+    refuse(&json("MultiPolygon", &format!("[[{closed}],[{closed},{open}]]")), &advice);
     // A bow tie.
     refuse(
         &json("Polygon", "[[[9,47],[9.1,47.1],[9.1,47],[9,47.1],[9,47]]]"),
@@ -314,6 +321,10 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let text = folder.path().join("text.gpkg");
     fs::write(&text, "no polygons here").unwrap();
     refuse(&text, &["not a vector file"]);
+    fs::write(&text, "<!DOCTYPE html><html>404 Not Found</html>").unwrap();
+    let page = Polygon::read(&text).unwrap_err();
+    let why = std::error::Error::source(&page).unwrap().to_string();
+    assert!(why.contains("an HTML page"), "{page}: {why}");
     // A Shapefile without its .prj; one with half of its corners.
     let wkts = ["POLYGON ((9 47,9.1 47,9.1 47.1,9 47))", "POLYGON ((9 47,9.2 47,9.2 47.2,9 47))"];
     let shape = folder.path().join("b.shp");

@@ -14,12 +14,21 @@ fn errors_name_the_file_and_what_to_do() {
     let path = |name: &str| folder.path().join(name);
     fs::write(path("empty.tif"), b"").unwrap();
     fs::write(path("noise.tif"), b"no raster at all").unwrap();
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 25934402\n";
+    fs::write(path("pointer.hgt"), pointer).unwrap();
+    fs::write(path("page.tif"), "\n<!DOCTYPE html>\n<html>404 Not Found</html>").unwrap();
+    let report = "<?xml version=\"1.0\"?><ows:ExceptionReport version=\"2.0.0\"/>";
+    fs::write(path("report.tif"), report).unwrap();
     Raster::new(0, [6, 5], UTM).write(folder.path(), "bare.tif", |_| 1.0_f32);
     Raster::new(32632, [6, 5], [0.0; 6]).write(folder.path(), "nowhere.tif", |_| 1.0_f32);
     for (name, words) in [
         ("missing.tif", "cannot open"),
         ("empty.tif", "0 bytes"),
         ("noise.tif", "not a raster"),
+        ("pointer.hgt", "a Git LFS pointer"),
+        ("pointer.hgt", "git lfs pull"),
+        ("page.tif", "an HTML page; its download failed"),
+        ("report.tif", "an error report of a server"),
         ("bare.tif", "--dem-crs"),
         ("nowhere.tif", "georeference"),
     ] {

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     error::ExportError,
     feature_request::Coordinates,
-    observer::Observer,
+    observer::{Observer, Stage},
     places::Places,
     read,
     workers::{Progress, on_all},
@@ -169,7 +169,12 @@ impl Writing<'_> {
             let made: Vec<Block<T>> = on_all(
                 &places,
                 request.threads,
-                Progress { observer: *observer, done: (first * columns) as u64, total },
+                Progress {
+                    observer: *observer,
+                    stage: Stage::Blocks,
+                    done: (first * columns) as u64,
+                    total,
+                },
                 || Ok(request.elevation.map(|Elevation { dem, plan }| dem.reader(plan))),
                 |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut()),
             )?;

@@ -93,6 +93,7 @@ pub fn export_mesh(
             writer.tile(&tile).map_err(failed)?;
         }
     }
+    observer.done(Stage::Tiles, ids.len() as u64, ids.len() as u64);
     if summary.tiles == 0 {
         return Err(nothing());
     }
@@ -111,20 +112,12 @@ pub fn export_mesh(
 
 /// The rectangle of the data on some tiles; `None` without tiles.
 fn ground_of(manifest: &Manifest, ids: &[TileId]) -> Option<Bounds> {
-    let data = manifest.data_bounds;
-    let tiles = ids.iter().map(|&id| manifest.frame.tile_bounds(id));
-    tiles
-        // Tiles on the edge reach beyond the data.
-        .map(|tile| Bounds {
-            min_x: tile.min_x.max(data.min_x),
-            min_y: tile.min_y.max(data.min_y),
-            max_x: tile.max_x.min(data.max_x),
-            max_y: tile.max_y.min(data.max_y),
-        })
-        .reduce(|one, other| Bounds {
-            min_x: one.min_x.min(other.min_x),
-            min_y: one.min_y.min(other.min_y),
-            max_x: one.max_x.max(other.max_x),
-            max_y: one.max_y.max(other.max_y),
-        })
+    // Tiles on the edge reach beyond the data.
+    let tiles = ids.iter().map(|&id| read::data_part(manifest, id));
+    tiles.reduce(|one, other| Bounds {
+        min_x: one.min_x.min(other.min_x),
+        min_y: one.min_y.min(other.min_y),
+        max_x: one.max_x.max(other.max_x),
+        max_y: one.max_y.max(other.max_y),
+    })
 }

@@ -11,6 +11,9 @@ use crate::{error::ExportError, places::Places};
 /// Surfaces that stay in memory, some hundred kilobytes each: tiles of the globe lie on few of the package's, and neighbours come one after the other.
 const KEPT: usize = 64;
 
+/// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
+const ROOM_BESIDE_LINES: f64 = 0.01;
+
 /// The ground, read tile by tile. It belongs to one thread.
 pub(crate) struct Ground<'a> {
     package: &'a FilePackage,
@@ -92,7 +95,63 @@ impl<'a> Ground<'a> {
     ) -> Result<(), ExportError> {
         let manifest = self.package.manifest();
         let frame = &manifest.frame;
-        let step_m = frame.lattice_step_m();
+        let spacing = spacing_m / frame.lattice_step_m();
+        for Edges { points, edges } in self.edges(area_deg, level)? {
+            let on_edges = edges.into_iter().flat_map(|[from, to]| between(from, to, spacing));
+            let places = points.into_iter().chain(on_edges).map(|steps| {
+                manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
+            });
+            found.extend(places.filter(|place| area_deg.contains(*place)));
+        }
+        Ok(())
+    }
+
+    /// Where edges of one of the package's levels cross a meridian or a parallel, given by its ends, as shares of the way from its first end. What comes
+    /// out depends on the line alone, so that tiles on both of its sides find the same.
+    pub(crate) fn crossings(
+        &mut self,
+        [from_deg, to_deg]: [[f64; 2]; 2],
+        level: u8,
+    ) -> Result<Vec<f64>, ExportError> {
+        let manifest = self.package.manifest();
+        let frame = &manifest.frame;
+        // The axis along which the line goes, and the one along which it stays.
+        let along = usize::from(from_deg[0] == to_deg[0]);
+        let across = 1 - along;
+        let length_deg = to_deg[along] - from_deg[along];
+        let room_deg = length_deg * ROOM_BESIDE_LINES;
+        let corners_deg = [from_deg.map(|at| at - room_deg), to_deg.map(|at| at + room_deg)];
+        let mut shares = Vec::new();
+        for part in self.near_parts(corners_deg) {
+            // Where the data cross 180°, the line has their longitudes.
+            let turns = ((part.center()[0] - from_deg[0]) / 360.0).round();
+            let line = from_deg[across] + if across == 0 { 360.0 * turns } else { 0.0 };
+            let begin = from_deg[along] + if along == 0 { 360.0 * turns } else { 0.0 };
+            for [from, to] in self.edges(part, level)?.into_iter().flat_map(|tile| tile.edges) {
+                let place = |share: f64| {
+                    let steps = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
+                    manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
+                };
+                let beside = |share: f64| place(share)[across] - line;
+                let [first, last] = [beside(0.0), beside(1.0)];
+                if first == last || first * last > 0.0 {
+                    continue;
+                }
+                // Edges bend a little in degrees.
+                let guess = first / (first - last);
+                let off = beside(guess);
+                let better = guess - off / (last - first);
+                let share = (place(better.clamp(0.0, 1.0))[along] - begin) / length_deg;
+                shares.extend(Some(share).filter(|share| (0.0..=1.0).contains(share)));
+            }
+        }
+        Ok(shares)
+    }
+
+    /// The vertices and edges of one of the package's levels that come near a rectangle with the longitudes of the data, tile by tile.
+    fn edges(&mut self, area_deg: Bounds, level: u8) -> Result<Vec<Edges>, ExportError> {
+        let manifest = self.package.manifest();
+        let frame = &manifest.frame;
         let mut around = perimeter(area_deg);
         self.places.working_from_wgs84(&mut around)?;
         let mut bounds_m = Bounds::EMPTY;
@@ -106,28 +165,41 @@ impl<'a> Ground<'a> {
             [bounds_m.max_x + margin_m, bounds_m.min_y - margin_m],
         ];
         let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
-            return Ok(());
+            return Ok(Vec::new());
+        };
+        let [[west, north], [east, south]] = [first, last].map(LatticePoint::in_steps);
+        let is_near = |ends: [[f64; 2]; 2]| {
+            let [[low_u, high_u], [low_v, high_v]] = [0, 1]
+                .map(|axis| [ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis])]);
+            low_u <= east && high_u >= west && low_v <= north && high_v >= south
         };
         let inside = 0..=(1_i64 << level) - 1;
-        let [[west, north], [east, south]] = [first, last].map(|corner| {
+        let [from, to] = [first, last].map(|corner| {
             frame.tile_column_row(level, corner).map(|k| k.clamp(*inside.start(), *inside.end()))
         });
-        for (column, row) in (north..=south).flat_map(|row| (west..=east).map(move |c| (c, row))) {
+        let mut found = Vec::new();
+        for (column, row) in
+            (from[1]..=to[1]).flat_map(|row| (from[0]..=to[0]).map(move |c| (c, row)))
+        {
             let Ok(id) = TileId::new(level, column as u32, row as u32) else { continue };
             let Some(surface) = self.surface(id)? else { continue };
             let points = surface.points();
             let at = |vertex: u32| points[vertex as usize].in_steps();
-            // Each edge once: it runs up in one of its triangles, and down in the other.
-            let edges = surface.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-            let on_edges = edges
-                .filter(|[from, to]| from < to)
-                .flat_map(|[from, to]| between(at(from), at(to), spacing_m / step_m));
-            let places = points.iter().map(|point| point.in_steps()).chain(on_edges).map(|steps| {
-                manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
+            let sides = surface.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            let mut sides: Vec<[u32; 2]> = sides
+                .filter(|side| is_near(side.map(at)))
+                .map(|[a, b]| [a.min(b), a.max(b)])
+                .collect();
+            // Two triangles share a side, but at the tile's border.
+            sides.sort_unstable();
+            sides.dedup();
+            let points = points.iter().map(|point| point.in_steps());
+            found.push(Edges {
+                points: points.filter(|&point| is_near([point, point])).collect(),
+                edges: sides.into_iter().map(|side| side.map(at)).collect(),
             });
-            found.extend(places.filter(|place| area_deg.contains(*place)));
         }
-        Ok(())
+        Ok(found)
     }
 
     /// The parts of a rectangle of degrees that may have ground, with the longitudes of the data: more than one where the data cross 180° and the
@@ -208,6 +280,12 @@ impl<'a> Ground<'a> {
         }
         Ok(self.surfaces.last().and_then(|(_, surface)| surface.clone()))
     }
+}
+
+/// What a tile of the package has near a place, on its lattice.
+struct Edges {
+    points: Vec<[f64; 2]>,
+    edges: Vec<[[f64; 2]; 2]>,
 }
 
 /// Places along the sides of a rectangle.

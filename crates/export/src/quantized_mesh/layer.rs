@@ -27,6 +27,7 @@ pub(crate) fn layer(
     summary: &QuantizedMeshSummary,
 ) -> Value {
     let data = manifest.wgs84_bounds;
+    let bounds = request.bounds.map_or(data, |bounds| bounds.within(data));
     let levels: Vec<Value> = summary
         .levels
         .iter()
@@ -49,7 +50,7 @@ pub(crate) fn layer(
         "tiles": ["{z}/{x}/{y}.terrain"],
         "minzoom": 0,
         "maxzoom": available.len() - 1,
-        "bounds": [data.min_x, data.min_y, data.max_x, data.max_y],
+        "bounds": bounds.to_array(),
         "extensions": [NORMALS_NAME],
         "attribution": manifest.attribution.join("; "),
         "description": format!("heights: {}", summary.heights),

@@ -1,7 +1,7 @@
 //! What a user asks for when a package becomes quantized-mesh terrain tiles.
 
 use super::tiling::Tiling;
-use crate::feature_request::Coordinates;
+use crate::{bounds::DegreeBounds, feature_request::Coordinates};
 
 /// What of a package becomes terrain tiles, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +10,8 @@ pub struct QuantizedMeshRequest {
     pub tiling: Tiling,
     /// The finest level; `None` is the first one whose error is not above the package's.
     pub max_level: Option<u8>,
+    /// Only tiles that meet these degrees, and those above them; `None` takes all.
+    pub bounds: Option<DegreeBounds>,
     /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.
     pub coordinates: Coordinates,
     /// Where it is told which tiles there are.

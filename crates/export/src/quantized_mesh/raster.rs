@@ -241,9 +241,11 @@ impl TileRaster {
             .map(|steps| (steps, Around::Cell(self.cell_at(steps))))
             .collect();
         let of_inside = wanted.len();
-        let along = self.nodes.border_steps();
+        let mut on_sides = Vec::new();
         for side in Side::ALL {
-            wanted.extend(along.iter().map(|&step| self.on_side(side, step)));
+            let along = self.border_steps(side, level, ground)?;
+            on_sides.push(along.len());
+            wanted.extend(along.into_iter().map(|step| self.on_side(side, step)));
         }
         // All at once: tiles of the package are read once.
         let places: Vec<[f64; 2]> =
@@ -258,13 +260,38 @@ impl TileRaster {
                 has_ground.then(|| Sample::new(steps, [lon, lat, height_m], around))
             })
             .collect();
-        let (more_inside, on_borders) = found.split_at(of_inside);
+        let (more_inside, mut rest) = found.split_at(of_inside);
         inside.extend(more_inside.iter().copied().flatten());
-        let borders = on_borders
-            .chunks(along.len())
-            .map(|border| border.iter().copied().flatten().collect())
-            .collect();
+        let mut borders = Vec::new();
+        for count in on_sides {
+            let (border, others) = rest.split_at(count);
+            borders.push(border.iter().copied().flatten().collect());
+            rest = others;
+        }
         Ok(Samples { inside, borders })
+    }
+
+    /// Where the ground is looked at along a border, from the south or the west: at parts of cells, and where an edge of the package's level crosses the
+    /// border, because there it bends.
+    fn border_steps(
+        &self,
+        side: Side,
+        level: u8,
+        ground: &mut Ground<'_>,
+    ) -> Result<Vec<u16>, ExportError> {
+        let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
+        let ends = match side {
+            Side::West => [[west, south], [west, north]],
+            Side::South => [[west, south], [east, south]],
+            Side::East => [[east, south], [east, north]],
+            Side::North => [[west, north], [east, north]],
+        };
+        let to_step = |share: f64| (share * f64::from(LAST_STEP)).round() as u16;
+        let mut steps = self.nodes.border_steps();
+        steps.extend(ground.crossings(ends, level)?.into_iter().map(to_step));
+        steps.sort_unstable();
+        steps.dedup();
+        Ok(steps)
     }
 
     /// Whether the ground ends in the cell with this north-western node.

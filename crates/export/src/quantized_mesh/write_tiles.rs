@@ -26,7 +26,7 @@ use super::{
 use crate::{
     error::ExportError,
     feature_request::Coordinates,
-    observer::Observer,
+    observer::{Observer, Stage},
     places::Places,
     read,
     workers::{Progress, on_all},
@@ -55,13 +55,13 @@ pub fn export_quantized_mesh(
     within_grid(manifest, request.tiling)?;
     let finest = finest_level(manifest, request);
     let heights = heights_in_words(manifest, request.coordinates)?;
-    let candidates = candidates(package, request.tiling, finest)?;
+    let candidates = candidates(package, request, finest)?;
     let job = Job { package, request, folder };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     // Which tiles have ground is told by those of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
-        let progress = Progress { observer, done: 0, total };
+        let progress = Progress { observer, stage: Stage::Tiles, done: 0, total };
         let made = job.make(&candidates, Emptiness::IsLeftOut, &[], progress)?;
         let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
         (made, tiles)
@@ -72,8 +72,11 @@ pub fn export_quantized_mesh(
     let tiles = with_ancestors(request.tiling, &finest_tiles);
     let above = tiles.difference(&finest_tiles).copied().collect();
     let available = blocks(&tiles);
-    let progress = Progress { observer, done: candidates.len() as u64, total };
-    let coarser = job.make(&in_curve_order(&above), Emptiness::IsWritten, &available, progress)?;
+    let above = in_curve_order(&above);
+    let done = candidates.len() as u64;
+    let total = done + above.len() as u64;
+    let progress = Progress { observer, stage: Stage::Tiles, done, total };
+    let coarser = job.make(&above, Emptiness::IsWritten, &available, progress)?;
     let mut levels: Vec<QuantizedMeshLevel> =
         (0..=finest).map(|level| job.empty_level(level)).collect();
     let mut deviations = vec![Deviation::default(); levels.len()];
@@ -131,14 +134,21 @@ fn heights_in_words(manifest: &Manifest, coordinates: Coordinates) -> Result<Str
 /// Tiles that may have ground: those around the package's finest ones.
 fn candidates(
     package: &FilePackage,
-    tiling: Tiling,
+    request: &QuantizedMeshRequest,
     level: u8,
 ) -> Result<BTreeSet<TerrainTile>, ExportError> {
     let manifest = package.manifest();
+    let tiling = request.tiling;
+    let is_wanted = |x: i64, y: i64| {
+        let corner =
+            |beside| [tiling.lon_deg(level, x + beside), tiling.lat_deg(level, y + beside)];
+        request.bounds.is_none_or(|bounds| bounds.overlaps([0, 1].map(corner)))
+    };
     let mut found = BTreeSet::new();
     let mut count = 0;
     let package_level = manifest.frame.max_level();
-    for id in package.tile_ids()?.into_iter().filter(|id| id.z() == package_level) {
+    let ids = read::tiles(package, package_level, request.bounds.as_ref())?;
+    for id in ids {
         let mut around = Bounds::EMPTY;
         for place in read::places_deg(manifest, id) {
             around.include(place);
@@ -154,9 +164,9 @@ fn candidates(
         if count > MOST_TILES {
             return Err(ExportError::TooManyTiles { level, most: MOST_TILES });
         }
-        for x in columns[0]..=last {
-            let x = x.rem_euclid(tiling.columns(level)) as u32;
-            found.extend((rows[0]..=rows[1]).map(|y| TerrainTile { z: level, x, y: y as u32 }));
+        for x in (columns[0]..=last).map(|x| x.rem_euclid(tiling.columns(level))) {
+            let wanted = (rows[0]..=rows[1]).filter(|&y| is_wanted(x, y));
+            found.extend(wanted.map(|y| TerrainTile { z: level, x: x as u32, y: y as u32 }));
         }
     }
     Ok(found)

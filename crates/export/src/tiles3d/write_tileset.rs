@@ -22,7 +22,7 @@ use super::{
 use crate::{
     error::ExportError,
     globe::{RootFrame, dot, geocentric_m},
-    observer::Observer,
+    observer::{Observer, Stage},
     places::Places,
     surfaces::{RoadLook, TileLines},
     workers::{Progress, on_all},
@@ -160,8 +160,12 @@ fn reach_m(manifest: &Manifest, root: &RootFrame, level: u8, ids: &[TileId]) -> 
     let data = manifest.data_bounds;
     let of_tile = |id: &TileId| {
         let tile = manifest.frame.tile_bounds(*id);
-        let xs = [tile.min_x.max(data.min_x), tile.center()[0], tile.max_x.min(data.max_x)];
-        let ys = [tile.min_y.max(data.min_y), tile.center()[1], tile.max_y.min(data.max_y)];
+        let on = crate::read::data_part(manifest, *id);
+        // The middle of a tile may lie far beyond few data.
+        let middle = |at: f64, [low, high]: [f64; 2]| at.clamp(low, high);
+        let [x, y] = tile.center();
+        let xs = [on.min_x, middle(x, [data.min_x, data.max_x]), on.max_x];
+        let ys = [on.min_y, middle(y, [data.min_y, data.max_y]), on.max_y];
         let mut around = TileBox::along([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         for [x, y] in xs.into_iter().flat_map(|x| ys.map(|y| [x, y])) {
             let [lon, lat] = manifest.coordinates.wgs84_from_working([x, y]);
@@ -258,7 +262,7 @@ impl Job<'_> {
         ids: &[TileId],
         observer: &dyn Observer,
     ) -> Result<BTreeMap<TileId, Written>, ExportError> {
-        let progress = Progress { observer, done: 0, total: ids.len() as u64 };
+        let progress = Progress { observer, stage: Stage::Tiles, done: 0, total: ids.len() as u64 };
         let made = on_all(
             ids,
             self.request.threads,

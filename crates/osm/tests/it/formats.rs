@@ -59,6 +59,12 @@ fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
         ("a.gpx", b"<?xml version='1.0'?><gpx/>", "not of OpenStreetMap", OTHER),
         ("a.osm.pbf", b"<!DOCTYPE html><html>404 Not Found</html>", "an HTML page", "fetch"),
         ("a.osm.pbf", b"\n<HTML><body>busy</body></HTML>", "an HTML page", "fetch"),
+        (
+            "a.osm.pbf",
+            b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 9\n",
+            "a Git LFS pointer",
+            "git lfs pull",
+        ),
         ("a.osm.gz", b"\x1f\x8b\x08\0\0\0\0\0", "packed with gzip", CONVERT),
         ("a.osc.gz", b"\x1f\x8b\x08\0\0\0\0\0", "packed with gzip", CHANGES),
         ("a.osm.bz2", b"BZh91AY&SY", "packed with bzip2", CONVERT),

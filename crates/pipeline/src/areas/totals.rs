@@ -43,6 +43,11 @@ impl AreaTotals {
         artifacts::get(store, Kind::AreaTotals.item(0))
     }
 
+    /// Whether the extract has an area that was taken.
+    pub(crate) fn has_any(&self) -> bool {
+        self.kept.values().any(|&(areas, _)| areas > 0)
+    }
+
     /// What the manifest says of them.
     pub(crate) fn counts(&self) -> AreaCounts {
         let class = |(&class, &(areas, area_m2)): (&u8, &(u64, f64))| AreaClassRecord {

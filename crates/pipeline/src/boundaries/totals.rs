@@ -47,6 +47,11 @@ impl BoundaryTotals {
         artifacts::get(store, Kind::BoundaryTotals.item(0))
     }
 
+    /// Whether the extract has a boundary that was taken.
+    pub(crate) fn has_any(&self) -> bool {
+        self.kept.values().any(|&(ways, _)| ways > 0)
+    }
+
     /// What the manifest says of them.
     pub(crate) fn counts(&self) -> BoundaryCounts {
         let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| BoundaryClassRecord {

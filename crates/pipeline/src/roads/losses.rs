@@ -54,6 +54,8 @@ pub(crate) struct Sums {
     pub(crate) roads_kept: u64,
     pub(crate) roads_kept_um: u64,
     pub(crate) lost: Vec<RoadLoss>,
+    /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
+    pub(crate) lost_by_tiles: Vec<RoadLoss>,
 }
 
 /// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.
@@ -86,13 +88,17 @@ impl<'a> LossFold<'a> {
         let mut fates =
             Fates { sorted: self.fates.finish().map_err(BuildError::Storage)?, next: None };
         fates.advance()?;
-        let mut folded = Folded::default();
+        let (mut folded, mut by_tiles) = (Folded::default(), Folded::default());
         for block in 0..totals.roads.div_ceil(BLOCK_ROADS) {
             let first = block * BLOCK_ROADS;
             let roads = BLOCK_ROADS.min(totals.roads - first);
             for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
                 let RoadFate { kept_um, void_um } = fates.of(ordinal)?;
-                let RoadLength { outside_um, beyond_um, .. } = length;
+                let RoadLength { outside_um, padding_um, beyond_um, .. } = length;
+                by_tiles.add(&Lengths { kept_um, outside_um, void_um, beyond_um });
+                // No ground reaches into the padding of tiles. The two lengths are measured along different cuts.
+                let beside_um = padding_um.min(void_um);
+                let (outside_um, void_um) = (outside_um + beside_um, void_um - beside_um);
                 let road = Lengths { kept_um, outside_um, void_um, beyond_um };
                 folded.add(&road);
                 road.report(length.way_id, observer);
@@ -102,7 +108,7 @@ impl<'a> LossFold<'a> {
             let what = format!("a tile has road {ordinal} of {}", totals.roads);
             return Err(BuildError::Damaged { what });
         }
-        Ok(folded.into_sums())
+        Ok(Sums { lost_by_tiles: by_tiles.into_sums().lost, ..folded.into_sums() })
     }
 }
 
@@ -191,6 +197,7 @@ impl Folded {
                 .filter(|&(loss, lost)| loss != Loss::OutsideBounds || lost != (0, 0))
                 .map(loss)
                 .collect(),
+            lost_by_tiles: Vec::new(),
         }
     }
 }

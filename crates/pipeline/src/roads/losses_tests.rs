@@ -33,7 +33,7 @@ fn stored(lengths: &[RoadLength]) -> (MemoryStore, RoadTotals) {
 }
 
 fn road(way_id: i64, outside_um: u64) -> RoadLength {
-    RoadLength { way_id, length_um: 1_000_000, outside_um, beyond_um: 0 }
+    RoadLength { way_id, length_um: 1_000_000, outside_um, padding_um: 0, beyond_um: 0 }
 }
 
 fn fate(kept_um: u64, void_um: u64) -> RoadFate {
@@ -71,6 +71,32 @@ fn roads_are_kept_or_lost_by_what_became_of_all_their_parts() {
         lost(13, Loss::NoGround, 0.997, false),
     ];
     assert_eq!(defects, expected);
+}
+
+/// Of what has no ground on the data's tiles, what lies in their padding is outside the data.
+#[test]
+fn padding_is_outside_the_data() {
+    let in_padding = |way_id, padding_um| RoadLength { padding_um, ..road(way_id, 0) };
+    // Wholly in the padding; half of it, the rest over a void; partly kept. The second is measured a micrometre too long.
+    let lengths = [in_padding(1, 1_000_000), in_padding(2, 400_000), in_padding(3, 300_001)];
+    let tiles =
+        [vec![(0, fate(0, 1_000_000)), (1, fate(0, 1_000_000)), (2, fate(700_000, 300_000))]];
+    let (sums, defects) = folded(&lengths, &tiles);
+    let of = |lost: &[RoadLoss]| -> Vec<(u64, u64)> {
+        lost.iter().map(|loss| (loss.roads, loss.length_um)).collect()
+    };
+    assert_eq!(of(&sums.lost), [(1, 1_000_000 + 400_000 + 300_000), (1, 600_000)]);
+    assert_eq!(of(&sums.lost_by_tiles), [(0, 0), (2, 2_300_000)]);
+    assert_eq!((sums.roads_kept, sums.roads_kept_um), (1, 700_000));
+    let told: Vec<_> = defects
+        .iter()
+        .map(|defect| match defect {
+            Defect::LostRoad { way_id, loss, .. } => (*way_id, *loss),
+            Defect::Osm(_) => panic!("{defect:?}"),
+        })
+        .collect();
+    let (beside, void) = (Loss::OutsideData, Loss::NoGround);
+    assert_eq!(told, [(1, beside), (2, beside), (2, void), (3, beside)]);
 }
 
 #[test]

@@ -27,15 +27,16 @@ pub(crate) use super::defects::replay_defects;
 use super::{
     defects::DefectsWriter,
     extract::{kept_in, not_read},
+    no_road,
     pieces::{RoadPiece, TilePiecesWriter},
     split::{RoadSplitting, SplitRoad},
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
 use crate::{
     BuildError, Defect, Observer, RoadSettings, Stage,
-    areas::{self, sea::SeaPlace},
+    areas::{self, sea::SeaPlace, totals::AreaTotals},
     artifacts::{self, Kind},
-    boundaries,
+    boundaries::{self, totals::BoundaryTotals},
     heights::data_tiles::DataTiles,
     levels::Levels,
     true_lengths::TrueLengths,
@@ -62,6 +63,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together.
     pub(crate) data_bounds: LatticeBounds,
+    /// The data's rectangle: that of all nodes at which data can lie.
+    pub(crate) node_bounds: LatticeBounds,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for.
@@ -102,7 +105,14 @@ pub(crate) fn partition(
         return Err(error);
     }
     if gathered.totals.roads == 0 {
-        return Err(BuildError::NoRoads { osm: input.osm.to_vec() });
+        let why = no_road::why(&extract, &input.settings.table);
+        if !has_other_layer(store)? {
+            return Err(BuildError::NoRoads { osm: input.osm.to_vec(), why: why.to_string() });
+        }
+        let (osm, reason) = (input.osm, why.reason);
+        observer.warning(&format!(
+            "{osm:?} has no road: {reason}; only its areas and boundaries are taken"
+        ));
     }
     gathered.lengths.finish()?;
     put_pieces(gathered.pieces, store, observer)?;
@@ -111,6 +121,12 @@ pub(crate) fn partition(
     artifacts::put(store, Kind::RoadTotals.item(0), &totals)?;
     observer.end(Stage::Roads);
     Ok(totals)
+}
+
+/// Whether areas or boundaries were asked for, and the extract has some: then it need not have roads.
+fn has_other_layer(store: &dyn Artifacts) -> Result<bool, BuildError> {
+    let areas = AreaTotals::get(store)?.is_some_and(|totals| totals.has_any());
+    Ok(areas || BoundaryTotals::get(store)?.is_some_and(|totals| totals.has_any()))
 }
 
 /// Makes the areas of the extract, if they are wanted. What is wrong with them comes before what is wrong with roads.
@@ -253,6 +269,7 @@ impl<'a> Gathered<'a> {
                 levels: input.levels,
                 lengths: input.lengths,
                 data_bounds: input.data_bounds,
+                node_bounds: input.node_bounds,
                 clip: input.clip,
                 polygon: input.polygon,
             },

@@ -20,6 +20,8 @@ pub(crate) struct RoadSplitting<'a> {
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
     pub(crate) data_bounds: LatticeBounds,
+    /// The data's rectangle: that of all nodes at which data can lie.
+    pub(crate) node_bounds: LatticeBounds,
     /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for: roads end at its outline.
@@ -51,6 +53,14 @@ impl RoadSplitting<'_> {
             length_in(&clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds)));
         // Cuts are rounded to whole micrometres.
         let outside_um = asked_um.saturating_sub(inside_um);
+        let nodes = &self.node_bounds;
+        let bounds = LatticeBounds::of(road.line.points());
+        let padding_um = if bounds.is_some_and(|own| own.intersection(nodes) == own) {
+            0
+        } else {
+            let on_nodes_um = length_in(&clip.map_or(*nodes, |clip| clip.intersection(nodes)));
+            inside_um.saturating_sub(on_nodes_um)
+        };
         let attributes = Arc::new(road.attributes.clone());
         let mut pieces = Vec::new();
         for level in self.levels.numbers() {
@@ -63,10 +73,11 @@ impl RoadSplitting<'_> {
                 way_id: road.way_id,
                 length_um,
                 outside_um,
+                padding_um,
                 beyond_um: length_um - inside_um - outside_um,
             },
             class: road.class,
-            bounds: LatticeBounds::of(road.line.points()),
+            bounds,
             pieces,
         }
     }

@@ -235,7 +235,7 @@ proptest! {
             (0..).zip(&roads).map(|(ordinal, points)| world.road(ordinal, points)).collect();
         let lengths = world.lengths();
         let splitting =
-            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None, polygon: None };
+            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, node_bounds: world.data_bounds, clip: None, polygon: None };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
             for (id, piece) in splitting.split(road).pieces {
@@ -307,6 +307,16 @@ impl Large {
 
     /// A road through these points, split for the data's rectangle.
     fn split(&self, points: Vec<LatticePoint>, data_bounds: LatticeBounds) -> SplitRoad {
+        self.split_around(points, data_bounds, data_bounds)
+    }
+
+    /// The same where the data's rectangle is `node_bounds`, and its tiles are those of `data_bounds`.
+    fn split_around(
+        &self,
+        points: Vec<LatticePoint>,
+        data_bounds: LatticeBounds,
+        node_bounds: LatticeBounds,
+    ) -> SplitRoad {
         let last = points.len() as u32 - 1;
         let road = Road {
             way_id: 1,
@@ -320,11 +330,33 @@ impl Large {
             levels: &self.levels,
             lengths: &lengths,
             data_bounds,
+            node_bounds,
             clip: None,
             polygon: None,
         }
         .split(&road)
     }
+}
+
+/// A road from within the data through the padding of their tiles to beyond it, and one that lies in the padding alone.
+#[test]
+fn the_padding_of_tiles_is_measured_by_itself() {
+    let large = Large::new();
+    let frame = large.levels.frame();
+    let tile = frame.tile_lattice_bounds(TileId::new(5, 3, 3).unwrap());
+    let (min, size) = (tile.min, tile.max.u - tile.min.u);
+    let nodes = LatticeBounds { min, max: LatticePoint::new(min.u + size / 4, tile.max.v) };
+    let at = |eighths: i64| LatticePoint::new(min.u + size / 8 * eighths, min.v + size / 2);
+    let split = |from, to| large.split_around(vec![at(from), at(to)], tile, nodes).length;
+    let eighth_um = large.split(vec![at(0), at(1)], tile).length.length_um;
+    let close = |found: u64, eighths: u64| found.abs_diff(eighths * eighth_um) <= eighths;
+    let through = split(1, 10);
+    assert!(close(through.length_um, 9), "{through:?} of {eighth_um}");
+    assert!(close(through.padding_um, 6) && close(through.outside_um, 2), "{through:?}");
+    let beside = split(3, 7);
+    assert_eq!((beside.padding_um, beside.outside_um), (beside.length_um, 0));
+    let within = split(0, 2);
+    assert_eq!((within.padding_um, within.outside_um), (0, 0));
 }
 
 #[test]

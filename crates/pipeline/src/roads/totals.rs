@@ -23,7 +23,10 @@ pub(crate) struct RoadLength {
     pub(crate) length_um: u64,
     /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
     pub(crate) outside_um: u64,
-    /// How much of it lies outside the bounds that were asked for; what does is not counted under `outside_um`.
+    /// How much of it lies on those tiles, but outside the data's rectangle itself: in their padding. It is not counted under
+    /// `outside_um`.
+    pub(crate) padding_um: u64,
+    /// How much of it lies outside the bounds that were asked for; what does is counted under nothing else.
     pub(crate) beyond_um: u64,
 }
 

@@ -11,6 +11,7 @@ fn lengths_come_back_block_by_block() {
         way_id: -(k as i64),
         length_um: 3 * k,
         outside_um: k,
+        padding_um: k / 3,
         beyond_um: k / 2,
     };
     let mut writer = LengthsWriter::new(&store);

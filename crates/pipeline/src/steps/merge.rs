@@ -94,13 +94,24 @@ pub(crate) fn make(
         check_levels(context, terrain, &manifest.levels)?;
     }
     let osm = &context.settings.osm;
-    if !osm.is_empty() && manifest.counts.roads_kept == 0 {
-        return Err(BuildError::NoGround { osm: osm.clone() });
+    if let Some(what) = all_beside_ground(&manifest).filter(|_| !osm.is_empty()) {
+        return Err(BuildError::NoGround { osm: osm.clone(), what });
     }
     // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
     context.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
+}
+
+/// What the extract has, if nothing of it lies on ground.
+fn all_beside_ground(manifest: &Manifest) -> Option<&'static str> {
+    // An extract without a road is taken for the sake of its areas and boundaries.
+    if manifest.counts.roads_in > 0 {
+        return (manifest.counts.roads_kept == 0).then_some("road");
+    }
+    let has_areas = manifest.areas.as_ref().is_some_and(|areas| !areas.levels.is_empty());
+    let has_boundaries = manifest.boundaries.as_ref().is_some_and(|found| !found.levels.is_empty());
+    (!has_areas && !has_boundaries).then_some("area or boundary")
 }
 
 /// Fails if the levels of a package whose terrain was taken are others than what was found in its tiles.

@@ -63,6 +63,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         levels: context.levels,
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),
         data_bounds: context.data().bounds(&frame),
+        node_bounds: context.node_bounds(),
         clip: context.clip(),
         polygon: context.polygon(),
         pool: &pool,

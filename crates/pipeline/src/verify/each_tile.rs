@@ -9,7 +9,7 @@ use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
 };
-use crate::{Observer, workers};
+use crate::{Observer, Stage, workers};
 
 /// Fails if some bytes of a package could not be read. That says nothing about the package; but checks take a tile that cannot be read for
 /// one that is not there, or is damaged.
@@ -26,6 +26,7 @@ pub(crate) fn each_tile<T: Send>(
     mut take: impl FnMut(TileId, T),
 ) -> Result<(), VerifyError> {
     let ids = package.tile_ids()?;
+    observer.begin(Stage::Verify, Some(ids.len() as u64));
     workers::in_order_unless_cancelled(
         observer,
         threads,
@@ -38,9 +39,12 @@ pub(crate) fn each_tile<T: Send>(
         },
         |index, found| {
             take(ids[index], found);
+            observer.advance(Stage::Verify, 1);
             Ok(())
         },
-    )
+    )?;
+    observer.end(Stage::Verify);
+    Ok(())
 }
 
 /// Compares what a tile has with what the extract gives, one by one. `name` says what something is.

@@ -33,8 +33,7 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
 
 /// The bounds that were asked for.
 pub(crate) fn clip_of(manifest: &Manifest) -> Option<LatticeBounds> {
-    let [min, max] = manifest.clip.as_ref()?.nodes.map(|node| manifest.frame.lattice_of_node(node));
-    Some(LatticeBounds { min, max })
+    Some(manifest.frame.lattice_bounds(manifest.clip.as_ref()?.nodes))
 }
 
 /// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.

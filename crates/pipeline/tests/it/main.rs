@@ -11,6 +11,7 @@ mod polygon;
 mod promises;
 mod recorded_terrain;
 mod rectangles;
+mod roads_beside_data;
 mod seams;
 mod several_extracts;
 mod skirts;

@@ -291,9 +291,10 @@ fn wgs84_bounds(package: &Path) -> [f64; 4] {
         .map(|side| manifest["wgs84_bounds"][side].as_f64().unwrap())
 }
 
-/// Compares vertices, and random places inside triangles, with the ground.
+/// Compares vertices, and random places inside triangles and on borders, with the ground.
 pub(crate) fn check_heights(terrain: &Terrain, package: &Path, region: &Region) -> Vec<Deviation> {
     const INSIDE: usize = 1500;
+    const ON_BORDERS: usize = 400;
     let (finest, from_earth) = (Finest::read(package), FromEarth::to(region));
     let data_deg = wgs84_bounds(package);
     let mut random = Random::new(3);
@@ -319,7 +320,17 @@ pub(crate) fn check_heights(terrain: &Terrain, package: &Path, region: &Region) 
                 std::array::from_fn(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]))
             })
             .collect();
-        for [x, y, z] in from_earth.carry_within(&inside, data_deg) {
+        let on_borders: Vec<_> = (0..ON_BORDERS)
+            .map(|k| {
+                let mut border = tile.edges[k % 4].clone();
+                border.sort_unstable_by_key(|&vertex| tile.uv[vertex]);
+                let at = (random.share() * (border.len() - 1) as f64) as usize;
+                let ([a, b], s) =
+                    ([border[at], border[at + 1]].map(|k| tile.at_m(k)), random.share());
+                std::array::from_fn(|k| a[k] + s * (b[k] - a[k]))
+            })
+            .collect();
+        for [x, y, z] in from_earth.carry_within(&[inside, on_borders].concat(), data_deg) {
             if let Some(height) = finest.height([x, y]) {
                 found.places += 1;
                 if (height - z).abs() > found.place_m && finest.is_far_from_its_end([x, y]) {

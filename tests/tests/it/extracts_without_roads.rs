@@ -1,0 +1,106 @@
+//! An extract without roads is refused with the classes that are off, and taken for its areas and boundaries if they are asked for.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_testing::pbf::{Block, file};
+use e2e::{Ran, corniche, manifest, sample, text};
+
+/// Ways over the sample `pass`, each through places of a lattice 0.005 and 0.004 degrees apart.
+fn extract(folder: &Path, name: &str, ways: &[(&[(&str, &str)], &[[i64; 2]])]) -> PathBuf {
+    let mut block = Block::new();
+    let place =
+        |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
+    block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());
+    for (id, (tags, places)) in (1..).zip(ways) {
+        let nodes: Vec<i64> = places.iter().map(|&[x, y]| place(x, y).0).collect();
+        block.way(id, tags, &nodes);
+    }
+    let path = folder.join(name);
+    fs::write(&path, file(&block)).unwrap();
+    path
+}
+
+const PATH: &[(&str, &str)] = &[("highway", "path")];
+const FOOTWAY: &[(&str, &str)] = &[("highway", "footway")];
+const LAKE: &[(&str, &str)] = &[("natural", "water")];
+const BORDER: &[(&str, &str)] = &[("boundary", "administrative"), ("admin_level", "4")];
+const LINE: &[[i64; 2]] = &[[3, 6], [6, 8], [9, 9]];
+const RING: &[[i64; 2]] = &[[4, 5], [7, 5], [7, 9], [4, 9], [4, 5]];
+
+fn build(folder: &Path, osm: &Path, options: &[&str]) -> Ran {
+    let dem = sample("pass/pass-dem.tif");
+    let target = folder.join("a.pmtiles");
+    let line = ["build", "--dem", text(&dem), "--osm", text(osm), "-O", "-o", text(&target)];
+    corniche(line.iter().chain(options))
+}
+
+/// A build of these is refused, and says these words.
+#[track_caller]
+fn refused(folder: &Path, osm: &Path, options: &[&str], words: &[&str]) {
+    let ran = build(folder, osm, options);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    for word in words {
+        assert!(ran.err.contains(word), "{word:?} is not in {}", ran.err);
+    }
+    assert!(!folder.join("a.pmtiles").exists());
+}
+
+/// A build of these is made and whole; what it says and its manifest.
+#[track_caller]
+fn built(folder: &Path, osm: &Path, options: &[&str]) -> (Ran, serde_json::Value) {
+    let ran = build(folder, osm, options);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let (package, dem) = (folder.join("a.pmtiles"), sample("pass/pass-dem.tif"));
+    let verified = corniche(["verify", text(&package), "--dem", text(&dem), "--osm", text(osm)]);
+    assert_eq!(verified.code, 0, "{}{}", verified.out, verified.err);
+    let manifest = manifest(&package);
+    fs::remove_file(package).unwrap();
+    (ran, manifest)
+}
+
+#[test]
+fn an_extract_of_paths_alone_is_refused_with_the_classes_that_are_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let osm = extract(at, "paths.osm.pbf", &[(PATH, LINE), (PATH, &RING[..3]), (FOOTWAY, LINE)]);
+    let words = ["paths.osm.pbf", "classes that are off: 8 (path 2, footway 1)", "--classes 0-8"];
+    refused(at, &osm, &[], &words);
+    let (_, manifest) = built(at, &osm, &["--classes", "0-8"]);
+    assert_eq!(manifest["counts"]["roads_in"], 3);
+    // Classes that were chosen away are named as those that the table has off.
+    let roads = extract(at, "roads.osm.pbf", &[(&[("highway", "primary")], LINE)]);
+    refused(at, &roads, &["--classes", "3-8"], &["off: 2 (primary 1)", "--classes 0-8"]);
+    let moat = extract(at, "moat.osm.pbf", &[(&[("highway", "moat")], LINE)]);
+    refused(at, &moat, &[], &["does not know its highway values: moat 1", "--frc-table"]);
+    let planned = extract(at, "planned.osm.pbf", &[(&[("highway", "proposed")], LINE)]);
+    refused(at, &planned, &[], &["listed as no road (proposed 1)"]);
+}
+
+#[test]
+fn an_extract_of_areas_or_boundaries_alone_is_built_if_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let lake = extract(at, "lake.osm.pbf", &[(LAKE, RING)]);
+    refused(at, &lake, &[], &["none of its ways has a highway tag", "--areas default"]);
+    let (ran, manifest) = built(at, &lake, &["--areas", "default"]);
+    assert!(ran.err.contains("has no road: none of its ways has a highway tag"), "{}", ran.err);
+    assert_eq!(manifest["counts"]["roads_in"], 0);
+    assert_eq!(manifest["areas"]["kept"][0]["areas"], 1, "{}", manifest["areas"]);
+    let border = extract(at, "border.osm.pbf", &[(BORDER, LINE)]);
+    refused(at, &border, &["--areas", "default"], &["has no road"]);
+    let (_, manifest) = built(at, &border, &["--boundaries", "on"]);
+    assert_eq!(manifest["boundaries"]["ways"], 1, "{}", manifest["boundaries"]);
+    // Paths that are off, beside a lake.
+    let both = extract(at, "both.osm.pbf", &[(PATH, LINE), (LAKE, RING)]);
+    let (ran, manifest) = built(at, &both, &["--areas", "default"]);
+    assert!(ran.err.contains("off: 8 (path 1)"), "{}", ran.err);
+    assert_eq!(manifest["counts"]["highways_in"], 1);
+    // A lake beside the part that is asked for.
+    let part = ["--areas", "default", "--bounds", "9.45,46.865,9.48,46.88"];
+    refused(at, &lake, &part, &["no area or boundary of", "lake.osm.pbf", "lies on ground"]);
+}
