@@ -149,7 +149,7 @@ install_missing() {
     if ! command -v apt-get >/dev/null; then
         say "missing, by Debian's names: ${packages[*]}"
         say "install the packages of your system that have the same: macOS: brew install gdal pkg-config"
-        say "  Fedora: dnf install gcc gcc-c++ gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
+        say "  Fedora: dnf install gcc gcc-c++ gdal-devel proj-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
         exit 2
     fi
     if [ "$(id -u)" -ne 0 ]; then

@@ -8,7 +8,8 @@ use std::{
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
 use corniche_tileset::{
-    AreasRecord, BoundariesRecord, Counts, Manifest, SampleErrorRecord, ScaleRecord,
+    AreasRecord, BoundariesRecord, Counts, DatumOperationRecord, Manifest, SampleErrorRecord,
+    ScaleRecord,
 };
 
 use crate::{
@@ -71,6 +72,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         vertical.quantum_m
     ));
     say(format!("datum        {}; heights {}", plain(&vertical.datum), plain(&vertical.treatment)));
+    for found in &manifest.datum_operations {
+        say(format!("positions    {}", datum_operation(found)));
+    }
     for warning in warnings(manifest) {
         say(format!("warning: {warning}"));
     }
@@ -111,6 +115,15 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
     narrow(&text)
+}
+
+/// How positions come from one datum to another, in words.
+pub(crate) fn datum_operation(found: &DatumOperationRecord) -> String {
+    let DatumOperationRecord { from, to, operation, accuracy_m, ballpark } = found;
+    let accuracy = accuracy_m
+        .map_or_else(|| "of unknown accuracy".to_owned(), |m| format!("accurate to {m} m"));
+    let guess = if *ballpark { ", which takes one datum for the other" } else { "" };
+    format!("{} to {} by {}, {accuracy}{guess}", plain(from), plain(to), plain(operation))
 }
 
 /// What became of areas, and what they take on each level.

@@ -185,6 +185,7 @@ fn terrain_settings(
     let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
     Ok(TerrainSettings {
         open: OpenOptions {
+            band: options.dem_band.or(base.open.band),
             dem_crs: options.dem_crs.or(base.open.dem_crs),
             nodata: if options.nodata.is_empty() { base.open.nodata } else { options.nodata },
             dem_vertical_crs: options.dem_vertical_crs.or(base.open.dem_vertical_crs),
@@ -202,6 +203,7 @@ fn terrain_settings(
         },
         height_range_m: options.height_range.or(base.height_range_m),
         allow_fine_cell: force,
+        allow_ballpark: options.allow_ballpark,
         max_error_m: positive("--max-error", options.max_error)?.or(base.max_error_m),
         relief: options.relief.map_or(base.relief, relief_levels),
     })

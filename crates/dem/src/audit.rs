@@ -1,7 +1,7 @@
 //! Finds samples that cannot be heights, by looking at every sample once.
 //!
 //! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a value can be
-//! recognised: it occurs many times, and it lies far beyond all true heights.
+//! recognised: it is one of those that programs usually write, or it occurs many times; and it lies far beyond all true heights.
 //!
 //! ```text
 //!   how often │                                                ▄▄▄
@@ -11,10 +11,14 @@
 //!             −9999
 //! ```
 
+mod spikes;
+
 use gdal::Dataset;
 use serde::{Deserialize, Serialize};
 
+use crate::audit::spikes::{Spike, Spikes};
 use crate::file_names::first_names;
+use crate::files::source::Source;
 use crate::mosaics::open_files::OpenFiles;
 use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::clip::{needed_samples, parts_of_file};
@@ -25,7 +29,24 @@ pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
 
 /// A repeated value that lies this far beyond all others is not a height.
 const FAR_M: f64 = 1000.0;
-/// A value is repeated if more than one sample in this many has it.
+/// Values that programs write for "no data", as they are stored. One of them that lies so far beyond all others is refused even if a single
+/// sample has it.
+const USUAL_NO_DATA: [f64; 13] = [
+    -999.0,
+    -9999.0,
+    -99_999.0,
+    -999_999.0,
+    -9_999_999.0,
+    -32_767.0,
+    -32_768.0,
+    9999.0,
+    32_767.0,
+    32_768.0,
+    65_535.0,
+    99_999.0,
+    999_999.0,
+];
+/// Any other value is repeated if more than one sample in this many has it.
 const ONE_IN: u64 = 10_000;
 /// How many of the lowest values, and of the highest, are kept. Only these are examined.
 const KEPT: usize = 16;
@@ -84,6 +105,7 @@ struct FileAudit {
     lowest: End,
     highest: End,
     outside: u64,
+    spikes: Spikes,
 }
 
 /// Examines blocks of samples. It keeps files open, so each thread has its own.
@@ -96,7 +118,8 @@ pub struct Auditor<'a> {
 }
 
 impl Dem {
-    /// All samples of all files that the plan's nodes can depend on, each in one block, in a fixed order.
+    /// All samples of all files that the plan's nodes can depend on, and no others, each in one block, in a fixed order: what is found depends
+    /// on the part of the data that is asked for, and on neither how its files are stored nor how work is split.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -105,7 +128,7 @@ impl Dem {
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
             let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
-                needed[file.index] = parts_of_file(mosaic, file, &rect);
+                needed[file.index] = without_overlap(parts_of_file(mosaic, file, &rect));
             }
         }
         let mut blocks = Vec::new();
@@ -128,9 +151,12 @@ impl Dem {
                     let min = start.map(|at| at as i64);
                     let own =
                         SampleRect { min, max: [0, 1].map(|axis| min[axis] + size[axis] as i64) };
-                    if parts.iter().any(|part| !part.intersection(&own).is_empty()) {
-                        blocks.push(AuditBlock { file, start, size });
-                    }
+                    let wanted = parts.iter().map(|part| part.intersection(&own));
+                    blocks.extend(wanted.filter(|part| !part.is_empty()).map(|part| AuditBlock {
+                        file,
+                        start: part.min.map(|at| at as usize),
+                        size: [part.columns(), part.rows()],
+                    }));
                 }
             }
         }
@@ -190,7 +216,29 @@ impl Auditor<'_> {
         for (&stored, &height_m) in self.stored.iter().zip(&self.heights_m) {
             found.add(stored, height_m, self.range_m);
         }
+        let columns = block.size[0];
+        for [column, row] in spikes::candidates(&self.heights_m, columns) {
+            let index = row * columns + column;
+            let (height_m, stored) = (self.heights_m[index], self.stored[index]);
+            let [column, row] = [block.start[0] + column, block.start[1] + row];
+            if self.is_spike(block.file, [column, row])? {
+                found.spikes.add(Spike { row, column, height_m, stored });
+            }
+        }
         Ok(AuditPart { file: block.file, found })
+    }
+
+    /// Whether a sample is a spike among its neighbours in the file, also those of other blocks.
+    fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, DemError> {
+        let source = &self.dem.sources[file];
+        let start = [column.saturating_sub(1), row.saturating_sub(1)];
+        let end = [(column + 2).min(source.columns as usize), (row + 2).min(source.rows as usize)];
+        let size = [end[0] - start[0], end[1] - start[1]];
+        let dataset = self.files.dataset(file, source)?;
+        let mut around_m = Vec::new();
+        source.read_stored(dataset, start, size, &mut around_m)?;
+        source.convert(&mut around_m);
+        Ok(spikes::is_spike(&around_m, size[0], [column - start[0], row - start[1]]))
     }
 }
 
@@ -220,6 +268,7 @@ impl FileAudit {
     fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
         self.outside += other.outside;
+        self.spikes.merge(&other.spikes);
         other.lowest.entries.iter().for_each(|&entry| self.lowest.add(entry, 1.0));
         other.highest.entries.iter().for_each(|&entry| self.highest.add(entry, -1.0));
     }
@@ -281,7 +330,7 @@ impl End {
         self.entries.truncate(KEPT);
     }
 
-    /// The outermost value that is repeated and far from the next value. `may_be` can refuse a pair of neighbouring
+    /// The outermost value that is usual for "no data" or repeated, and far from the next value. `may_be` can refuse a pair of neighbouring
     /// values.
     fn sentinel(&self, samples: u64, may_be: impl Fn([Entry; 2]) -> bool) -> Option<(Entry, f64)> {
         let gap_m = |[outer, inner]: [Entry; 2]| (inner.height_m - outer.height_m).abs();
@@ -289,8 +338,10 @@ impl End {
             .windows(2)
             .map(|pair| [pair[0], pair[1]])
             .find(|&pair| {
-                let count = pair[0].count;
-                count > 1 && count > samples / ONE_IN && gap_m(pair) >= FAR_M && may_be(pair)
+                let Entry { count, stored, .. } = pair[0];
+                let is_repeated = count > 1 && count > samples / ONE_IN;
+                let is_usual = USUAL_NO_DATA.iter().any(|usual| stored - usual == 0.0);
+                (is_repeated || is_usual) && gap_m(pair) >= FAR_M && may_be(pair)
             })
             .map(|pair| (pair[0], gap_m(pair)))
     }
@@ -316,8 +367,8 @@ impl Audit {
 
     /// Refuses values that are no heights: of each file, then of all files together.
     ///
-    /// - One that is repeated in more than 0.01 % of the samples and lies 1000 m or more beyond all others means "no
-    ///   data"; where several such values are found, the outermost is named. With `is_range_given` this test is left
+    /// - One that programs usually write for "no data", or that is repeated in more than 0.01 % of the samples, and that lies 1000 m or
+    ///   more beyond all others means "no data"; where several such values are found, the outermost is named. With `is_range_given` this test is left
     ///   out: a user who gives the range knows the values.
     /// - A value that all samples share is refused below −500 m.
     /// - None may lie outside the range.
@@ -349,6 +400,41 @@ impl Audit {
             low_m,
             high_m,
         })
+    }
+
+    /// What a user should know of single samples that stand more than 2000 m above or below all of their neighbours: one text for each file that
+    /// has some.
+    #[must_use]
+    pub fn spikes(&self, dem: &Dem) -> Vec<String> {
+        let text = |(source, file): (&Source, &FileAudit)| {
+            let Spikes { count, first } = &file.spikes;
+            let place = |spike: &Spike| {
+                let pixel = [spike.column as f64 + 0.5, spike.row as f64 + 0.5];
+                let [x, y] = source.crs_from_pixel.crs_from_pixel(pixel);
+                format!(
+                    "{} m (stored as {}) at {x}, {y} in {}, column {}, row {}",
+                    spike.height_m,
+                    source.stored_text(spike.stored),
+                    source.crs.label,
+                    spike.column,
+                    spike.row
+                )
+            };
+            let places = first.iter().map(place).collect::<Vec<_>>().join("; ");
+            let more = match count - first.len() as u64 {
+                0 => String::new(),
+                more => format!("; and {more} more"),
+            };
+            let option = first.first().map(|spike| source.stored_text(spike.stored));
+            format!(
+                "{}: samples that stand alone, more than 2000 m above or below all around them: {places}{more}; if such a value means \"no data\", \
+                 give it with --nodata {}, and if all are heights, allow them with --height-range LOW,HIGH",
+                source.path.display(),
+                option.unwrap_or_default()
+            )
+        };
+        let with_spikes = |(_, file): &(&Source, &FileAudit)| file.spikes.count > 0;
+        dem.sources.iter().zip(&self.files).filter(with_spikes).map(text).collect()
     }
 
     /// The error when all samples of all files have the same value, and it is lower than any dry land.
@@ -403,6 +489,20 @@ impl Audit {
             high_m: high_m.ceil(),
         })
     }
+}
+
+/// Parts of one file, of the same rows, as parts that have no sample in common: where a grid goes all around the earth, its file can be there more than
+/// once.
+fn without_overlap(mut parts: Vec<SampleRect>) -> Vec<SampleRect> {
+    parts.sort_by_key(|part| part.min[0]);
+    let mut apart: Vec<SampleRect> = Vec::new();
+    for part in parts {
+        match apart.last_mut().filter(|last| part.min[0] <= last.max[0]) {
+            Some(last) => *last = last.union(&part),
+            None => apart.push(part),
+        }
+    }
+    apart
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ fn with(value: f64, times: usize) -> Vec<f64> {
 
 #[test]
 fn a_value_far_beyond_all_others_is_found_when_it_is_repeated_often_enough() {
-    for value in [-9999.0, -901.0, -900.0, 32_767.0, 65_535.0, 1799.0] {
+    for value in [-9998.0, -901.0, -900.0, 32_766.0, 65_534.0, 1799.0] {
         // 6 of 50 006 are more than 0.01 %, 5 of 50 005 are not.
         assert_eq!(sentinel(&with(value, 6)), Some((value, 6)), "{value}");
         assert_eq!(sentinel(&with(value, 5)), None, "{value}");
@@ -33,6 +33,17 @@ fn a_value_far_beyond_all_others_is_found_when_it_is_repeated_often_enough() {
     for value in [-899.0, 0.0, 100.0, 1798.0] {
         assert_eq!(sentinel(&with(value, 20_000)), None, "{value}: no farther than 1000 m");
     }
+}
+
+/// Values that programs write for "no data" are refused from the first on, where they lie as far from all heights; others are not.
+#[test]
+fn a_usual_value_for_no_data_is_found_in_a_single_sample() {
+    for value in USUAL_NO_DATA {
+        assert_eq!(sentinel(&with(value, 1)), Some((value, 1)), "{value}");
+    }
+    assert_eq!(sentinel(&with(-9998.0, 1)), None);
+    let deep: Vec<f64> = with(-9999.0, 1).into_iter().chain([-9001.0]).collect();
+    assert_eq!(sentinel(&deep), None, "998 m from a true depth");
 }
 
 #[test]

@@ -8,6 +8,9 @@ pub(crate) mod compound;
 pub(crate) mod working;
 
 pub(crate) mod operation;
+pub(crate) mod proj_operations;
+
+pub(crate) mod datum_operation;
 
 pub(crate) mod height_operation;
 pub(crate) mod projection;

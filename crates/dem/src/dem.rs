@@ -7,12 +7,18 @@ use corniche_geom::Bounds;
 use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::scale;
+use crate::file_names::first_names;
 use crate::files::file_blocks::{self, FileBlocks};
 use crate::files::source::Source;
 use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::{self, Mosaic};
 use crate::mosaics::vertical_target::{self, HeightReference};
 use crate::{DemError, OpenOptions, library_error};
+
+/// The international foot.
+const FOOT_M: f64 = 0.3048;
+/// The US survey foot, and that of Clarke, differ from it by less.
+const SAME_FOOT: f64 = 1e-3;
 
 /// Elevation files, described but not held open: may be shared between threads.
 #[derive(Debug, Clone)]
@@ -32,7 +38,7 @@ impl Dem {
     /// the first named wins, sample by sample, and a void in it falls through to the next. Files on other grids
     /// serve the nodes at which the grids named before have no data.
     ///
-    /// Heights are those of the first band; a mask, an alpha band or a nodata value says where there are none.
+    /// Heights are those of the only band, or of [`OpenOptions::band`]; a mask, an alpha band or a nodata value says where there are none.
     /// With [`OpenOptions::vertical_crs`] each sample's height is carried there at the sample's own position;
     /// without, all files must agree on what their heights are measured from.
     ///
@@ -57,6 +63,23 @@ impl Dem {
         let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
         let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)?;
         Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
+    }
+
+    /// What a user should know where coordinates are in feet and nothing says what heights are in.
+    #[must_use]
+    pub fn unit_warning(&self) -> Option<String> {
+        let is_foot = |unit_m: f64| (unit_m / FOOT_M - 1.0).abs() < SAME_FOOT;
+        let is_in_question =
+            |source: &&Source| !source.has_height_unit && is_foot(source.crs.unit_m);
+        let found: Vec<&Source> = self.sources.iter().filter(is_in_question).collect();
+        let names = found.iter().map(|source| source.path.display().to_string());
+        (!found.is_empty()).then(|| {
+            format!(
+                "{}: coordinates are in feet, and neither a band's unit nor a vertical CRS says what heights are in; they are taken as metres. If \
+                 they are feet, say so with --dem-vertical-crs, such as EPSG:6360 (NAVD88 in US survey feet) or EPSG:8228 (NAVD88 in feet)",
+                first_names(names)
+            )
+        })
     }
 
     /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers to.

@@ -64,9 +64,17 @@ pub enum DemError {
     )]
     Line { path: PathBuf, columns: usize, rows: usize },
     #[error(
-        "{path:?} is an image ({bands} bands, the first is {interpretation}), not a DEM; give heights in the first band"
+        "{path:?} is an image ({bands} bands, the first is {interpretation}), not a DEM; give heights in the first band, or choose a band with --dem-band"
     )]
     Imagery { path: PathBuf, bands: usize, interpretation: String },
+    #[error(
+        "{path:?} has several bands, and it is not known which of them has the heights: {bands}; choose one with --dem-band N"
+    )]
+    SeveralBands { path: PathBuf, bands: String },
+    #[error(
+        "{path:?} has {count} bands, and --dem-band is {asked}; give the number of one of them, from 1 on"
+    )]
+    NoSuchBand { path: PathBuf, asked: u32, count: usize },
     #[error(
         "the first band of {path:?} has complex numbers or another type of samples that are no heights; give integers or real numbers"
     )]
@@ -167,6 +175,12 @@ pub enum DemError {
         "PROJ knows no transformation from {from} to {to}; choose another --crs, or correct the files' CRS with gdal_translate -a_srs"
     )]
     Transform { from: String, to: String, source: Box<LibraryError> },
+    #[error(
+        "{whose}: PROJ knows nothing between the datums of {from} and {to}, and would take the one for the other ({operation:?}): roads could lie \
+         100 m and more beside the ground; name the true coordinate system (gdal_edit.py -a_srs EPSG:n), or give --allow-ballpark if you \
+         want this"
+    )]
+    Ballpark { whose: String, from: String, to: String, operation: String },
     #[error("the DEM's centre has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
     #[error(transparent)]

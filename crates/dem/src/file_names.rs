@@ -5,7 +5,12 @@ const MAX_NAMES: usize = 3;
 
 /// The first few names, and how many more there are.
 pub(crate) fn first_names(names: impl ExactSizeIterator<Item = String>) -> String {
-    let more = names.len().saturating_sub(MAX_NAMES);
-    let told = names.take(MAX_NAMES).collect::<Vec<_>>().join(", ");
+    names_up_to(MAX_NAMES, names)
+}
+
+/// Up to so many names, and how many more there are.
+pub(crate) fn names_up_to(most: usize, names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(most);
+    let told = names.take(most).collect::<Vec<_>>().join(", ");
     if more == 0 { told } else { format!("{told} and {more} more") }
 }

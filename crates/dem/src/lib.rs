@@ -30,6 +30,7 @@ mod polygon_error;
 mod vector_file;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
+pub use crs::datum_operation::{BetterOperation, DatumOperation};
 pub use crs::projection::DemProjection;
 pub use crs::recorded::RecordedCrs;
 pub use crs::recorded_heights::RecordedHeights;

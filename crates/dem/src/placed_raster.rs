@@ -68,6 +68,10 @@ impl PlacedRaster {
         &self.path
     }
 
+    pub(crate) fn crs(&self) -> &Crs {
+        &self.crs
+    }
+
     /// Columns and rows.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {

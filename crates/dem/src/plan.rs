@@ -15,5 +15,6 @@ pub(crate) mod node_positions;
 
 pub(crate) mod file_nodes;
 
+pub(crate) mod datum_operations;
 pub(crate) mod description;
 pub(crate) mod oversampling;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{FileBlocks, GridPlan};
+use corniche_dem::{FileBlocks, GridPlan, PlacedRaster};
 use corniche_geom::Bounds;
 
 use crate::photo_file::PhotoFile;
@@ -37,6 +37,11 @@ pub enum LevelChoice {
 }
 
 impl Photos {
+    /// Where each of them lies.
+    pub fn rasters(&self) -> impl Iterator<Item = &PlacedRaster> {
+        self.files.iter().map(|file| &file.raster)
+    }
+
     /// Looks into all files; reads no pixel yet. Where photos overlap, the first named lies on top.
     ///
     /// # Errors

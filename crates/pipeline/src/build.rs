@@ -15,7 +15,7 @@ pub(crate) mod work_store;
 
 use std::{sync::Arc, time::Duration};
 
-use corniche_dem::GridPlan;
+use corniche_dem::{DatumOperation, GridPlan};
 use corniche_geom::TileId;
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
@@ -107,6 +107,12 @@ pub fn build_on(
 /// Warns of what a user may not have meant, before any work.
 pub(crate) fn warn(context: &Context<'_>) {
     warn_of_other_grids(context.grid, context.observer);
+    if let GroundSource::Dem(dem) = context.source {
+        let of_datums = context.grid.datum_operations.iter().filter_map(DatumOperation::warning);
+        for text in of_datums.chain(dem.unit_warning()) {
+            context.observer.warning(&text);
+        }
+    }
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
     warn_of_other_network(context);
 }

@@ -1,7 +1,7 @@
 //! Texts and records that every manifest has: written by the build, compared by `verify`.
 
-use corniche_dem::{Clip, GridPlan};
-use corniche_tileset::{ClipRecord, VerticalRecord};
+use corniche_dem::{Clip, DatumOperation, GridPlan, libraries};
+use corniche_tileset::{ClipRecord, DatumOperationRecord, Manifest, VerticalRecord};
 
 /// How tiles are numbered.
 pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
@@ -17,6 +17,39 @@ pub(crate) fn clip(plan: &GridPlan) -> Option<ClipRecord> {
         whole_data_bounds,
         whole_wgs84_bounds,
     })
+}
+
+/// How positions come from one datum to another, as packages record it.
+pub(crate) fn datum_operations(found: &[DatumOperation]) -> Vec<DatumOperationRecord> {
+    let record = |found: &DatumOperation| DatumOperationRecord {
+        from: found.from.clone(),
+        to: found.to.clone(),
+        operation: found.name.clone(),
+        accuracy_m: found.accuracy_m,
+        ballpark: found.is_ballpark,
+    };
+    found.iter().map(record).collect()
+}
+
+/// Whether a package tells of operations between datums that this program can compare with its own: its PROJ has the same registry. Packages
+/// of before tell of none.
+pub(crate) fn has_comparable_operations(manifest: &Manifest) -> bool {
+    !manifest.datum_operations.is_empty() && manifest.generator.ends_with(&libraries())
+}
+
+/// The same from what a package records.
+pub(crate) fn recorded_datum_operations(manifest: &Manifest) -> Vec<DatumOperation> {
+    let operation = |found: &DatumOperationRecord| DatumOperation {
+        from: found.from.clone(),
+        to: found.to.clone(),
+        name: found.operation.clone(),
+        accuracy_m: found.accuracy_m,
+        is_ballpark: found.ballpark,
+        // The build was allowed to use it, and what would have been better is not recorded.
+        must_be_allowed: false,
+        better: None,
+    };
+    manifest.datum_operations.iter().map(operation).collect()
 }
 
 /// What heights are measured from.

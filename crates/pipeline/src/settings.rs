@@ -123,6 +123,9 @@ pub struct TerrainSettings {
     pub height_range_m: Option<[f64; 2]>,
     /// Whether a cell may be far smaller than the spacing of samples. It changes no byte of a package: it only lets a build begin.
     pub allow_fine_cell: bool,
+    /// Whether one datum may be taken for another where PROJ knows nothing between them. It changes no byte of a package: it only lets a
+    /// build begin.
+    pub allow_ballpark: bool,
     /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
     pub max_error_m: Option<f64>,
     /// Which levels store their rasters for shading.

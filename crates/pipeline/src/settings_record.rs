@@ -23,9 +23,17 @@ pub(crate) fn of(
     (areas, boundaries): (Option<&AreaTable>, bool),
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
-    let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _, relief } =
-        terrain;
-    let OpenOptions { dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } = open;
+    let TerrainSettings {
+        open,
+        plan,
+        height_range_m,
+        allow_fine_cell: _,
+        allow_ballpark: _,
+        max_error_m: _,
+        relief,
+    } = terrain;
+    let OpenOptions { band, dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } =
+        open;
     let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
         plan;
     let RoadSettings { table, filter, simplify_cells } = roads;
@@ -34,6 +42,7 @@ pub(crate) fn of(
         fill_voids: *fill_voids,
         nodata: nodata.clone(),
         height_range_m: *height_range_m,
+        dem_band: *band,
         dem_crs: dem_crs.clone(),
         dem_vertical_crs: dem_vertical_crs.clone(),
         vertical_crs: vertical_crs.clone(),
@@ -79,6 +88,7 @@ pub(crate) fn polygon_sha256(polygon: &Polygon) -> String {
 pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
     TerrainSettings {
         open: OpenOptions {
+            band: record.dem_band,
             dem_crs: record.dem_crs.clone(),
             nodata: record.nodata.clone(),
             dem_vertical_crs: record.dem_vertical_crs.clone(),
@@ -97,6 +107,7 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
         height_range_m: record.height_range_m,
         // The build has begun already.
         allow_fine_cell: true,
+        allow_ballpark: true,
         max_error_m: Some(record.max_error_m),
         relief: record.relief,
     }

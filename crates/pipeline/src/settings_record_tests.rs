@@ -14,6 +14,7 @@ fn settings() -> Settings {
     let terrain = TerrainSettings {
         plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
         allow_fine_cell: true,
+        allow_ballpark: true,
         max_error_m: Some(MAX_ERROR_M),
         ..TerrainSettings::default()
     };
@@ -33,9 +34,10 @@ fn record((terrain, roads): &Settings) -> SettingsRecord {
 }
 
 /// Every setting that determines bytes, and another value of it.
-const CHANGES: [Change; 16] = [
+const CHANGES: [Change; 17] = [
     ("dem_crs", |(terrain, _)| terrain.open.dem_crs = Some("EPSG:4326".to_owned())),
     ("nodata", |(terrain, _)| terrain.open.nodata = vec![-9999.0]),
+    ("dem_band", |(terrain, _)| terrain.open.band = Some(2)),
     ("dem_vertical_crs", |(terrain, _)| {
         terrain.open.dem_vertical_crs = Some("EPSG:5773".to_owned());
     }),
@@ -74,5 +76,6 @@ fn each_setting_changes_the_record_and_its_hash_and_comes_back_from_it() {
 fn what_only_lets_a_build_begin_is_not_recorded() {
     let mut careful = settings();
     careful.0.allow_fine_cell = false;
+    careful.0.allow_ballpark = false;
     assert_eq!(record(&careful), record(&settings()));
 }

@@ -53,6 +53,12 @@ pub struct TerrainOptions {
     /// [default: dem where lengths are then true within 3 %, else utm]
     #[arg(long, value_name = "dem|utm|EPSG:N|WKT")]
     pub crs: Option<String>,
+    /// Band with the heights, from 1 on, of rasters with several [default: the only one]
+    #[arg(long, value_name = "N")]
+    pub dem_band: Option<u32>,
+    /// Take one datum for another where PROJ knows nothing between them, which can put roads 100 m and more beside the ground
+    #[arg(long)]
+    pub allow_ballpark: bool,
     /// CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
     pub dem_crs: Option<String>,
@@ -70,7 +76,7 @@ pub struct TerrainOptions {
     #[serde(deserialize_with = "one_or_many")]
     pub nodata: Vec<f64>,
     /// Heights that samples may have, in metres, before --vertical-shift; every value in this range counts as a height
-    /// [default: -12000,9000, and no repeated value 1000 m beyond all others]
+    /// [default: -12000,9000, and neither a usual value for "no data" nor a repeated one 1000 m beyond all others]
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub height_range: Option<[f64; 2]>,
     /// Latitude, in degrees, at which lengths are true in a CRS that is not true to scale, such as degrees; packages of
@@ -206,6 +212,8 @@ impl TerrainOptions {
         };
         Self {
             crs: self.crs.or_from(other.crs),
+            dem_band: self.dem_band.or_from(other.dem_band),
+            allow_ballpark: self.allow_ballpark.or_from(other.allow_ballpark),
             dem_crs: self.dem_crs.or_from(other.dem_crs),
             dem_vertical_crs: self.dem_vertical_crs.or_from(other.dem_vertical_crs),
             vertical_crs: self.vertical_crs.or_from(other.vertical_crs),

@@ -81,6 +81,8 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
     let (text, number) = (|name: &str| format!("{name} {n}"), f64::from(n));
     let terrain = TerrainOptions {
         crs: Some(text("crs")),
+        dem_band: Some(n.into()),
+        allow_ballpark: true,
         dem_crs: Some(text("dem-crs")),
         dem_vertical_crs: Some(text("dem-vertical-crs")),
         vertical_crs: Some(text("vertical-crs")),

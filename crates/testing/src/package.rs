@@ -77,11 +77,13 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         },
         coordinates: CoordinateTable::sample(&projection, data_bounds, 1.0).unwrap(),
         levels: (0..=frame.max_level()).map(|z| level(&frame, z)).collect(),
+        datum_operations: Vec::new(),
         settings: SettingsRecord {
             max_error_m: 8.0,
             fill_voids: 32,
             nodata: Vec::new(),
             height_range_m: None,
+            dem_band: None,
             dem_crs: None,
             dem_vertical_crs: None,
             vertical_crs: None,

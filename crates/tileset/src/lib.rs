@@ -35,10 +35,10 @@ mod payload;
 
 pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
-    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, Counts, Distribution,
-    GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest, PhotoLevelRecord, PhotoRecord,
-    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, SampleSums,
-    ScaleRecord, SettingsRecord, VerticalRecord,
+    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, Counts,
+    DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord,
+    Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts,
+    SampleErrorRecord, SampleSums, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};

@@ -10,8 +10,9 @@ pub(crate) mod check;
 
 pub use contents::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
-    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, InputRecord, Manifest,
-    PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, DatumOperationRecord,
+    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

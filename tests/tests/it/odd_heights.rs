@@ -74,6 +74,79 @@ fn an_undeclared_value_is_refused_with_its_count_at_any_number_of_threads() {
     }
 }
 
+/// One sample of a million is enough, where its value is one that programs write for "no data": −9999 m would be ground.
+#[test]
+fn a_single_usual_value_for_no_data_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    for value in ["-9999", "-999", "-32767", "65535", "-99999"] {
+        let dem = with(folder.path(), value.parse().unwrap(), 1);
+        let ran = build(&dem, &package, &[]);
+        assert_eq!(ran.code, 2, "{value}: {}", ran.err);
+        for word in ["1 of 40000 samples", &format!("--nodata {value}"), "--height-range"] {
+            assert!(ran.err.contains(word), "{value}: {}", ran.err);
+        }
+        assert!(!package.exists(), "{value}");
+    }
+}
+
+/// A value that is no usual one may be a height: it is told with its place, and with the option that leaves it out.
+#[test]
+fn a_single_sample_far_beyond_its_neighbours_is_told_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    for (value, at) in [(5000.0, [50, 60]), (-1700.0, [0, 0]), (4000.0, [199, 7])] {
+        let dem = raster(folder.path(), "spike.asc", |column, row| {
+            if [column, row] == at { value } else { hill(column, row) }
+        });
+        let ran = build(&dem, &package, &["-O"]);
+        assert_eq!(ran.code, 0, "{value}: {}", ran.err);
+        // The grid's corner is at 500 000, 5 200 000, and its rows begin in the north.
+        let [x, y] = [500_005 + 10 * at[0], 5_201_995 - 10 * at[1]];
+        let place = format!("{value} m (stored as {value}) at {x}, {y} in EPSG:32632");
+        let cell = format!("column {}, row {}", at[0], at[1]);
+        for word in [&place, &cell, &format!("--nodata {value}"), "spike.asc"] {
+            assert!(ran.err.contains(word), "{value}: {}", ran.err);
+        }
+        assert_eq!(ran.err.lines().count(), 1, "nothing else is said: {}", ran.err);
+        let range = &manifest(&package)["vertical"]["range_m"];
+        assert!(range[0] == value || range[1] == value, "{range}");
+        let verified = corniche(["verify", text(&package), "--dem", text(&dem), "--quiet"]);
+        assert_eq!((verified.code, &*verified.err), (0, ""), "{}", verified.out);
+        let allowed = build(&dem, &package, &["-O", "--height-range", "-2000,9000"]);
+        assert_eq!((allowed.code, &*allowed.err), (0, ""));
+    }
+}
+
+/// What lies outside the bounds does not count, however the file is stored; what lies inside counts as if the file ended there.
+#[test]
+fn bounds_and_parts_are_judged_as_a_file_of_that_area() {
+    let folder = tempfile::tempdir().unwrap();
+    let [package, cut] = ["out.pmtiles", "cut.asc"].map(|name| folder.path().join(name));
+    // Four samples in ten thousand of the west, one in ten thousand of the whole.
+    let odd = |column: usize, row: usize| row == 100 && (20..24).contains(&column);
+    let height = |column: usize, row: usize| {
+        if odd(column, row) { -3000.0 } else { hill(column, row) }
+    };
+    let dem = raster(folder.path(), "whole.asc", height);
+    let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10";
+    write_ascii_grid(&cut, [100, SIDE], place, height);
+    // West of 9.0131° E are 100 columns, east of 9.0145° E is nothing odd.
+    let west = ["--bounds", "9.0,46.9,9.01309,47.0", "--fill-voids", "0"];
+    let east = ["--bounds", "9.0145,46.9,9.03,47.0", "--fill-voids", "0"];
+    let plain = ["--fill-voids", "0"];
+    let of_cut = build(&cut, &package, &plain);
+    assert!(of_cut.code == 2 && of_cut.err.contains("4 of 20000 samples"), "{}", of_cut.err);
+    let of_bounds = build(&dem, &package, &west);
+    assert!(of_bounds.code == 2 && of_bounds.err.contains("4 of 2"), "{}", of_bounds.err);
+    assert_eq!(build(&dem, &package, &east).code, 0);
+    // Of the whole, 4 of 40 000 are no more than one in ten thousand, also where the work is split.
+    let of_whole = build(&dem, &package, &["-O", "--fill-voids", "0"]);
+    assert_eq!(of_whole.code, 0, "{}", of_whole.err);
+    let inputs = [&["--dem", text(&dem), "--fill-voids", "0"][..], &UTM[..]].concat();
+    assert!(e2e::built_in_parts(folder.path(), &inputs) == fs::read(&package).unwrap());
+}
+
 /// Of several files, those that have the value are named; one that has nothing else too.
 #[test]
 fn the_files_that_hold_the_value_are_named() {

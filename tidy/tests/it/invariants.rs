@@ -32,7 +32,7 @@ const THREADS: [(&str, &str); 9] = [
 /// Crates with `unsafe` code.
 const UNSAFE: [(&str, &str); 2] = [
     ("cli", "a call of the C library, by which free memory goes back to the system"),
-    ("dem", "functions of GDAL that the `gdal` crate does not hand out"),
+    ("dem", "functions of GDAL and PROJ that the `gdal` crate does not hand out"),
 ];
 
 /// Crates that open files.

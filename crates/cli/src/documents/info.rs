@@ -6,8 +6,8 @@ mod levels;
 
 use corniche_geom::CoordinateTable;
 use corniche_tileset::{
-    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
-    SettingsRecord, VerticalRecord,
+    DatumOperationRecord, InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord,
+    ScaleRecord, SettingsRecord, VerticalRecord,
 };
 use serde::Serialize;
 
@@ -67,6 +67,9 @@ pub(crate) struct ManifestDocument {
     nodes_are_samples: bool,
     /// Heights.
     vertical: VerticalDocument,
+    /// How positions come from one datum to another; left out where all datums are that of WGS84, and in packages of before.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    datum_operations: Vec<DatumOperationDocument>,
     /// WGS84 ⇄ working CRS without PROJ.
     #[cfg_attr(test, schemars(with = "frame::CoordinatesSchema"))]
     coordinates: CoordinateTable,
@@ -123,6 +126,24 @@ struct VerticalDocument {
     range_m: [f64; 2],
 }
 
+/// How positions come from one datum to another.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct DatumOperationDocument {
+    /// The system that positions are in.
+    from: String,
+    /// The system that they come to. The operation is also used the other way around.
+    to: String,
+    /// PROJ's name for the operation.
+    operation: String,
+    /// How accurate it is, metres; left out where PROJ does not know it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy_m: Option<f64>,
+    /// Whether one datum was taken for another, as PROJ knows nothing between them; left out where not.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    ballpark: bool,
+}
+
 /// Settings that determine the bytes of a package.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -135,6 +156,9 @@ struct SettingsDocument {
     nodata: Vec<f64>,
     /// `--height-range`, if given.
     height_range_m: Option<[f64; 2]>,
+    /// `--dem-band`, if given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dem_band: Option<u32>,
     /// `--dem-crs`, if given.
     dem_crs: Option<String>,
     /// `--dem-vertical-crs`, if given.
@@ -253,6 +277,7 @@ impl From<&Manifest> for ManifestDocument {
             resampling: manifest.resampling,
             nodes_are_samples: manifest.nodes_are_samples,
             vertical: VerticalDocument { quantum_m, unit, datum, treatment, range_m },
+            datum_operations: manifest.datum_operations.into_iter().map(Into::into).collect(),
             coordinates: manifest.coordinates,
             levels: manifest.levels.iter().map(Into::into).collect(),
             settings: manifest.settings.into(),
@@ -274,6 +299,13 @@ impl From<PhotoLevelRecord> for PhotoLevelDocument {
     }
 }
 
+impl From<DatumOperationRecord> for DatumOperationDocument {
+    fn from(record: DatumOperationRecord) -> Self {
+        let DatumOperationRecord { from, to, operation, accuracy_m, ballpark } = record;
+        Self { from, to, operation, accuracy_m, ballpark }
+    }
+}
+
 impl From<PolygonRecord> for PolygonDocument {
     fn from(PolygonRecord { name, sha256 }: PolygonRecord) -> Self {
         Self { name, sha256 }
@@ -287,6 +319,7 @@ impl From<SettingsRecord> for SettingsDocument {
             fill_voids: settings.fill_voids,
             nodata: settings.nodata,
             height_range_m: settings.height_range_m,
+            dem_band: settings.dem_band,
             dem_crs: settings.dem_crs,
             dem_vertical_crs: settings.dem_vertical_crs,
             vertical_crs: settings.vertical_crs,

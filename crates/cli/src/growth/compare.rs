@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use corniche_tileset::{FilePackage, InputRecord, Manifest, PolygonRecord, SettingsRecord};
+use corniche_tileset::{
+    DatumOperationRecord, FilePackage, InputRecord, Manifest, PolygonRecord, SettingsRecord,
+};
 
 use super::{
     document::document,
@@ -13,7 +15,7 @@ use crate::{
     documents::growth::{
         ComparedDocument, ComparisonDocument, DifferenceDocument, DifferentValueDocument,
     },
-    info::{plain, rounded, sides},
+    info::{datum_operation, plain, rounded, sides},
     table::{Digits, Table, wrapped},
 };
 
@@ -78,7 +80,7 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
 }
 
 /// Everything that growth depends on, but for cell and error bound, which are what is studied.
-fn properties(manifest: &Manifest) -> [Property; 16] {
+fn properties(manifest: &Manifest) -> [Property; 18] {
     // All fields by name, so that a new setting cannot be forgotten here.
     let SettingsRecord {
         max_error_m: _,
@@ -89,6 +91,7 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         fill_voids,
         nodata,
         height_range_m,
+        dem_band,
         dem_crs,
         dem_vertical_crs,
         vertical_crs,
@@ -113,6 +116,11 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
     [
         ("extract", inputs(manifest, &["osm"])),
         ("elevation data", inputs(manifest, &["dem", "dem-part"])),
+        (
+            "band of the elevation data",
+            dem_band.map_or_else(|| "the only one".to_owned(), |n| n.to_string()),
+        ),
+        ("operations between datums", datum_operations(&manifest.datum_operations)),
         ("CRS of the elevation data", given(dem_crs.as_deref(), "as in its files")),
         ("its vertical CRS", given(dem_vertical_crs.as_deref(), "as in its files")),
         ("vertical CRS", given(vertical_crs.as_deref(), "that of the elevation data")),
@@ -133,6 +141,12 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
 /// What was given, else what holds without it.
 fn given(value: Option<&str>, without: &str) -> String {
     value.map_or_else(|| without.to_owned(), plain)
+}
+
+/// How positions came from one datum to another.
+fn datum_operations(found: &[DatumOperationRecord]) -> String {
+    let texts: Vec<String> = found.iter().map(datum_operation).collect();
+    if texts.is_empty() { "none".to_owned() } else { texts.join("; ") }
 }
 
 /// Values that mean "no data".

@@ -66,6 +66,18 @@ impl Crs {
         Ok(reference)
     }
 
+    /// Whether its ellipsoid is that of WGS84, or GRS80, which differs from it by a tenth of a millimetre. Datums with it were made to be
+    /// used with satellites.
+    pub(crate) fn is_on_wgs84_ellipsoid(&self) -> bool {
+        const AXES_M: [f64; 2] = [6_378_137.0, 6_356_752.314];
+        const SAME_M: f64 = 0.01;
+        let axes_m = || {
+            let reference = self.spatial_ref()?;
+            Ok::<_, GdalError>([reference.semi_major()?, reference.semi_minor()?])
+        };
+        axes_m().is_ok_and(|axes_m| (0..2).all(|k| (axes_m[k] - AXES_M[k]).abs() <= SAME_M))
+    }
+
     pub(crate) fn is_projected(&self) -> bool {
         self.turn.is_none()
     }

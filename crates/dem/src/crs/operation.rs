@@ -8,21 +8,25 @@ use corniche_geom::Bounds;
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
 
-use crate::DemError;
 use crate::crs::horizontal::Crs;
 use crate::crs::working::Working;
+use crate::{DemError, library_error};
 
 /// A coordinate operation between two systems, pinned to one area of interest.
 ///
 /// PROJ picks among the operations it knows by the area and by the position transformed, and by nothing else:
 /// what comes out for a position depends neither on its neighbours nor on what was asked before.
 /// The description may go to any thread; PROJ's own object is made once per thread.
+///
+/// Over an area, an operation that takes one datum for another ("ballpark") is used only where PROJ knows no other at all: else it would
+/// carry positions beyond the area of the true one, 100 m beside their neighbours.
 #[derive(Debug, Clone)]
 pub(crate) struct Operation {
-    from: Crs,
-    to: Crs,
-    area_deg: Option<[f64; 4]>,
-    /// Operations that ignore what PROJ lacks the data for ("ballpark") are not allowed.
+    pub(crate) from: Crs,
+    pub(crate) to: Crs,
+    /// West, south, east and north; the west is larger across ±180°.
+    pub(crate) area_deg: Option<[f64; 4]>,
+    /// Ballpark operations are not allowed, not even where PROJ knows no other.
     is_exact: bool,
     /// Working metres are divided by these factors before the operation.
     divide: [f64; 2],
@@ -147,23 +151,40 @@ impl Operation {
         Ok(())
     }
 
+    /// PROJ's object, made anew.
+    fn made(&self) -> Result<CoordTransform, GdalError> {
+        let made = |is_ballpark_allowed: bool| -> Result<CoordTransform, GdalError> {
+            let mut options = CoordTransformOptions::new()?;
+            if let Some([west, south, east, north]) = self.area_deg {
+                options.set_area_of_interest(west, south, east, north)?;
+            }
+            if !is_ballpark_allowed {
+                options.set_ballpark_allowed(false)?;
+            }
+            CoordTransform::new_with_options(
+                &self.from.spatial_ref()?,
+                &self.to.spatial_ref()?,
+                &options,
+            )
+        };
+        if self.area_deg.is_none() {
+            return made(true);
+        }
+        match made(false) {
+            Err(_) if !self.is_exact => {
+                library_error::forget();
+                made(true)
+            }
+            made => made,
+        }
+    }
+
     fn transform(&self) -> Result<Rc<CoordTransform>, GdalError> {
         TRANSFORMS.with_borrow_mut(|transforms| {
             if let Some(transform) = transforms.get(&self.key) {
                 return Ok(Rc::clone(transform));
             }
-            let mut options = CoordTransformOptions::new()?;
-            if let Some([west, south, east, north]) = self.area_deg {
-                options.set_area_of_interest(west, south, east, north)?;
-            }
-            if self.is_exact {
-                options.set_ballpark_allowed(false)?;
-            }
-            let transform = CoordTransform::new_with_options(
-                &self.from.spatial_ref()?,
-                &self.to.spatial_ref()?,
-                &options,
-            )?;
+            let transform = self.made()?;
             if transforms.len() >= KEPT {
                 transforms.clear();
             }

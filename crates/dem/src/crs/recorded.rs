@@ -2,10 +2,11 @@
 
 use corniche_geom::Bounds;
 
+use crate::crs::datum_operation::DatumOperation;
 use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
-use crate::crs::{compound, scale};
+use crate::crs::{compound, datum_operation, scale};
 use crate::{DemError, DemProjection};
 
 /// The working CRS of a package, from what the package records of it: without the elevation files.
@@ -51,6 +52,19 @@ impl RecordedCrs {
     /// When PROJ knows no operation.
     pub fn projection(&self, wgs84_bounds: Bounds) -> Result<DemProjection, DemError> {
         DemProjection::new(&self.working, wgs84_bounds)
+    }
+
+    /// The operations that carry positions between the package's datum and that of WGS84, over the rectangle of all elevation files in
+    /// working metres and in degrees; none where the datum is that of WGS84.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn datum_operations(
+        &self,
+        data: Bounds,
+        wgs84_bounds: Bounds,
+    ) -> Result<Vec<DatumOperation>, DemError> {
+        datum_operation::to_wgs84(&self.working, data, wgs84_bounds)
     }
 
     /// Working metres to a true metre along x and along y at each of `points_m`; `None` where the CRS ends.

@@ -3,6 +3,8 @@
 /// How an elevation file is to be understood where it does not say so itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OpenOptions {
+    /// Band with the heights, from 1 on, of the files that have several. `None` refuses those.
+    pub band: Option<u32>,
     /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
     pub dem_crs: Option<String>,
     /// Stored values that mean "no height", besides the one that the file declares.

@@ -10,10 +10,14 @@ use gdal::{Dataset, Metadata};
 use crate::crs::height_operation::HeightOperation;
 use crate::crs::horizontal::Crs;
 use crate::crs::vertical::VerticalCrs;
+use crate::file_names::names_up_to;
 use crate::files::georeference::{crs_of, geo_transform, refuse_off_globe};
 use crate::files::open::open_dataset;
 use crate::files::stored_values::StoredValues;
 use crate::{DemError, OpenOptions};
+
+/// Most bands that a message names.
+const MOST_BANDS_NAMED: usize = 12;
 
 /// An elevation file, described but not held open.
 #[derive(Debug, Clone)]
@@ -26,6 +30,10 @@ pub(crate) struct Source {
     pub(crate) crs: Crs,
     /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
     pub(crate) vertical: Option<VerticalCrs>,
+    /// Whether its band or its vertical CRS says what heights are in.
+    pub(crate) has_height_unit: bool,
+    /// Number of the band with the heights.
+    band: usize,
     values: StoredValues,
     /// Stored in whole rows rather than in tiles.
     pub(crate) is_striped: bool,
@@ -44,8 +52,8 @@ impl Source {
         if dataset.raster_count() == 0 {
             return Err(no_band(path, &dataset));
         }
-        let band = dataset.rasterband(1).map_err(broken)?;
-        refuse_imagery(path, &dataset, &band)?;
+        let number = band_number(path, &dataset, options.band)?;
+        let band = dataset.rasterband(number).map_err(broken)?;
         let (columns, rows) = dataset.raster_size();
         let (crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
         let reference =
@@ -71,6 +79,8 @@ impl Source {
             rows: rows as i64,
             crs_from_pixel,
             crs,
+            band: number,
+            has_height_unit: vertical.is_some() || !band.unit().trim().is_empty(),
             values: StoredValues::of(path, &band, vertical.as_ref(), options)?,
             vertical,
             is_striped: band.block_size().0 == columns,
@@ -122,7 +132,7 @@ impl Source {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
         let mut read = || -> Result<(), GdalError> {
             values.resize(columns * rows, 0.0);
-            let band = dataset.rasterband(1)?;
+            let band = dataset.rasterband(self.band)?;
             band.read_into_slice(start, size, size, values, None)?;
             if self.values.has_mask {
                 let mask = band.open_mask_band()?.read_as::<u8>(start, size, size, None)?;
@@ -179,11 +189,44 @@ fn no_band(path: &Path, dataset: &Dataset) -> DemError {
     }
 }
 
+/// The band with the heights: the one asked for, or the only one beside an alpha band. A raster with several is refused where none is asked
+/// for: which of them has heights is not to be guessed.
+fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, DemError> {
+    let count = dataset.raster_count();
+    if let Some(asked) = asked {
+        return match asked as usize {
+            number if (1..=count).contains(&number) => Ok(number),
+            _ => Err(DemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
+        };
+    }
+    refuse_imagery(path, dataset)?;
+    let is_alpha =
+        |band: &RasterBand<'_>| band.color_interpretation() == ColorInterpretation::AlphaBand;
+    let bands = (1..=count).filter_map(|number| Some((number, dataset.rasterband(number).ok()?)));
+    let of_values: Vec<_> = bands.filter(|(_, band)| !is_alpha(band)).collect();
+    match of_values.as_slice() {
+        [] => Ok(1),
+        [(number, _)] => Ok(*number),
+        [_, ..] => {
+            let names = of_values.iter().map(|(number, band)| match band.description() {
+                Ok(name) if !name.trim().is_empty() => format!("{number} {name:?}"),
+                _ => format!("{number} (no name, {})", band.band_type()),
+            });
+            Err(DemError::SeveralBands {
+                path: path.to_path_buf(),
+                bands: names_up_to(MOST_BANDS_NAMED, names),
+            })
+        }
+    }
+}
+
 /// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can have one for
 /// display.
-fn refuse_imagery(path: &Path, dataset: &Dataset, band: &RasterBand<'_>) -> Result<(), DemError> {
+fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), DemError> {
     use ColorInterpretation as C;
-    let interpretation = band.color_interpretation();
+    let broken =
+        |source: GdalError| DemError::Open { path: path.to_path_buf(), source: source.into() };
+    let interpretation = dataset.rasterband(1).map_err(broken)?.color_interpretation();
     let is_colour = matches!(
         interpretation,
         C::RedBand

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, GridFrame, LatticeRegion, NodeIndex};
 
+use crate::crs::datum_operation::DatumOperation;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::plan::alignment::Alignment;
@@ -106,6 +107,9 @@ pub struct GridPlan {
     pub vertical_datum: Option<String>,
     /// What was done to the files' heights, in words; with the offset at the DEM's centre where PROJ carried them.
     pub vertical: String,
+    /// How positions come from one datum to another: from that of the working CRS to WGS84, and from those of files with another CRS to the
+    /// working CRS. Empty where all are that of WGS84.
+    pub datum_operations: Vec<DatumOperation>,
     /// Releases of GDAL and PROJ, on which the heights' last bits depend.
     pub libraries: String,
     /// A void is filled from data within this many cells.

@@ -9,6 +9,7 @@ use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::{self, Asked};
+use crate::plan::datum_operations::datum_operations;
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{
     Clip, GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of,
@@ -97,6 +98,8 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         None => whole,
     };
     let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
+    let datum_operations =
+        datum_operations(dem, &layout.working, bounds_of(&frame, whole), &operations)?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()
@@ -137,6 +140,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         resampled_onto_first: resampled_onto_first(dem, &roles),
         vertical_datum: dem.heights.datum.clone(),
         vertical: dem.heights.conversion.clone(),
+        datum_operations,
         libraries: libraries(),
         fill_voids: options.fill_voids,
         roles,

@@ -5,7 +5,7 @@ use corniche_geom::{Bounds, GridFrame, NodeIndex};
 use crate::plan::clip;
 use crate::plan::grid_plan::{Clip, GridPlan, PlanScale, Resampling, bounds_of};
 use crate::plan::planning::libraries;
-use crate::{DemError, RecordedCrs};
+use crate::{DatumOperation, DemError, RecordedCrs};
 
 /// What a package records of its grid, beside its CRS.
 #[derive(Debug, Clone)]
@@ -36,6 +36,8 @@ pub struct RecordedGrid {
     pub vertical_datum: Option<String>,
     /// What was done to the files' heights, in words.
     pub vertical: String,
+    /// How positions come from one datum to another.
+    pub datum_operations: Vec<DatumOperation>,
     /// A void was filled from data within this many cells.
     pub fill_voids: u32,
 }
@@ -72,6 +74,7 @@ impl RecordedCrs {
             resampling_text,
             vertical_datum,
             vertical,
+            datum_operations,
             fill_voids,
         } = recorded;
         // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
@@ -96,6 +99,7 @@ impl RecordedCrs {
             resampled_onto_first: None,
             vertical_datum,
             vertical,
+            datum_operations,
             libraries: libraries(),
             fill_voids,
             roles: Vec::new(),

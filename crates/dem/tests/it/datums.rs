@@ -11,7 +11,7 @@ use crate::fixture::{Raster, UTM, check_refused};
 use crate::vertical::{given, vertical};
 
 /// A virtual file beside a file, in a coordinate system that GeoTIFF has no keys for.
-fn relabelled(path: &Path, wkt: &str) -> PathBuf {
+pub(crate) fn relabelled(path: &Path, wkt: &str) -> PathBuf {
     let own = path.with_extension("vrt");
     let driver = DriverManager::get_driver_by_name("VRT").unwrap();
     let source = Dataset::open(path).unwrap();

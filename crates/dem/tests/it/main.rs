@@ -10,6 +10,7 @@ mod all_real_data;
 mod blocks;
 mod bounds;
 mod closed_form;
+mod datum_operations;
 mod datums;
 mod fill_rule;
 mod fixture;

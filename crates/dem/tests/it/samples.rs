@@ -228,16 +228,21 @@ fn alpha<T: GdalType + Copy>(folder: &Path, name: &str, values: [T; 3], opacity:
 }
 
 #[test]
-fn the_first_band_counts_unless_bands_are_colours() {
+fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let given = OpenOptions::default();
-    let two = raster().bands(2);
-    check(
-        "two bands",
-        row(folder.path(), "two.tif", two, &[5_i16, 6]),
-        &given,
-        &[Some(5.0), Some(6.0)],
-    );
+    let named = raster().bands(2).tagged(|dataset| {
+        dataset.rasterband(1).unwrap().set_description("height").unwrap();
+    });
+    let two = row(folder.path(), "two.tif", named, &[5_i16, 6]);
+    let words = ["two.tif", "1 \"height\"", "2 (no name, Int16)", "--dem-band"];
+    check_refused(std::slice::from_ref(&two), &given, &words);
+    for (band, heights_m) in [(1, [Some(5.0), Some(6.0)]), (2, [Some(0.0), Some(0.0)])] {
+        let chosen = OpenOptions { band: Some(band), ..given.clone() };
+        check("two bands", two.clone(), &chosen, &heights_m);
+    }
+    let missing = OpenOptions { band: Some(3), ..given.clone() };
+    check_refused(&[two], &missing, &["two.tif", "2 bands", "--dem-band"]);
     let palette = raster().tagged(|dataset| {
         let mut table = ColorTable::new(PaletteInterpretation::Rgba);
         table.set_color_entry(5, &ColorEntry::rgba(255, 0, 0, 255));
@@ -253,7 +258,7 @@ fn the_first_band_counts_unless_bands_are_colours() {
     check_refused(
         &[row(folder.path(), "photo.tif", photo, &[5_u8, 6])],
         &given,
-        &["photo.tif", "image", "red"],
+        &["photo.tif", "image", "red", "--dem-band"],
     );
 }
 

@@ -127,9 +127,21 @@ impl HeightSums {
 impl Pyramid<'_> {
     /// Fails if samples of `patches` cannot be heights; see [`Audit::check`].
     pub(crate) fn check(&self, patches: &PatchRecord) -> Result<(), BuildError> {
+        Ok(self.audit(patches).check(self.dem, self.range_m.is_some())?)
+    }
+
+    /// Warns of samples of `patches` that stand alone, unless the user said which heights there are.
+    pub(crate) fn warn_of_spikes(&self, patches: &PatchRecord) {
+        if self.range_m.is_none() {
+            let texts = self.audit(patches).spikes(self.dem);
+            texts.iter().for_each(|text| self.observer.warning(text));
+        }
+    }
+
+    fn audit(&self, patches: &PatchRecord) -> Audit {
         let mut audit = Audit::none_of(self.dem, self.allowed_m());
         patches.audit.iter().for_each(|part| audit.merge(part));
-        Ok(audit.check(self.dem, self.range_m.is_some())?)
+        audit
     }
 
     /// Counts over `all` patches.

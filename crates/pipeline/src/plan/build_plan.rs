@@ -6,7 +6,7 @@ use corniche_areas::{AreaTable, AreaTableError};
 use corniche_dem::Polygon;
 use corniche_geom::{Bounds, Cell, GridFrame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
-use corniche_tileset::{PhotoRecord, SettingsRecord};
+use corniche_tileset::{DatumOperationRecord, PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -105,6 +105,9 @@ pub struct PlannedGrid {
     pub vertical_datum: String,
     /// What is done to the files' heights, in words.
     pub vertical_treatment: String,
+    /// How positions come from one datum to another.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub datum_operations: Vec<DatumOperationRecord>,
     /// One step of heights, metres.
     pub quantum_m: f64,
 }
@@ -170,6 +173,7 @@ impl BuildPlan {
                 resampling: grid.resampling_text.clone(),
                 vertical_datum: manifest_texts::datum(grid).to_owned(),
                 vertical_treatment: grid.vertical.clone(),
+                datum_operations: manifest_texts::datum_operations(&grid.datum_operations),
                 quantum_m: opened.levels.quantum_m(),
             },
             levels: planned_levels(&opened.levels),

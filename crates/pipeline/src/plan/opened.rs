@@ -52,12 +52,21 @@ impl Opened {
             Some(package) => Self::recorded(settings, package),
             None => Self::plan(settings),
         };
-        match planned {
+        let checked = planned.and_then(|planned| {
+            if let Some(polygon) = &settings.terrain.plan.polygon
+                && !settings.terrain.allow_ballpark
+            {
+                planned.grid.refuse_ballpark_of_polygon(polygon)?;
+            }
+            Ok(planned)
+        });
+        match checked {
             Ok(Planned { source, grid, levels, max_error_m, coordinates }) => {
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
-                let photo = PhotoSource::open(&settings.photo, &source, &grid);
+                let allow_ballpark = settings.terrain.allow_ballpark;
+                let photo = PhotoSource::open(&settings.photo, allow_ballpark, &source, &grid);
                 let photo = photo.map_err(|error| inputs.changed_instead_of(error))?;
                 let relief = settings.terrain.relief;
                 Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo, relief })
@@ -79,6 +88,9 @@ impl Opened {
         let terrain = &settings.terrain;
         let dem = Dem::open(&settings.dem, &terrain.open)?;
         let grid = dem.plan(&terrain.plan)?;
+        if !terrain.allow_ballpark {
+            dem.refuse_ballpark(&grid)?;
+        }
         if !terrain.allow_fine_cell {
             dem.refuse_oversampling(&grid)?;
         }

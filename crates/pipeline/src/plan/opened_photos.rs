@@ -18,6 +18,7 @@ pub(crate) enum PhotoSource {
 impl PhotoSource {
     pub(crate) fn open(
         choice: &PhotoChoice,
+        allow_ballpark: bool,
         source: &GroundSource,
         grid: &GridPlan,
     ) -> Result<Self, BuildError> {
@@ -29,7 +30,7 @@ impl PhotoSource {
                 Ok(recorded.map_or(Self::Nothing, Self::Package))
             }
             PhotoChoice::Files(settings) => {
-                Ok(Self::Files(Box::new(OpenedPhotos::open(settings, grid)?)))
+                Ok(Self::Files(Box::new(OpenedPhotos::open(settings, allow_ballpark, grid)?)))
             }
         }
     }
@@ -63,8 +64,15 @@ pub(crate) struct OpenedPhotos {
 }
 
 impl OpenedPhotos {
-    fn open(settings: &PhotoSettings, grid: &GridPlan) -> Result<Self, BuildError> {
+    fn open(
+        settings: &PhotoSettings,
+        allow_ballpark: bool,
+        grid: &GridPlan,
+    ) -> Result<Self, BuildError> {
         let photos = Photos::open(&settings.files)?;
+        if !allow_ballpark {
+            grid.refuse_ballpark_of_rasters(photos.rasters())?;
+        }
         let levels = settings.levels.map_or(LevelChoice::OfPhotos, LevelChoice::Given);
         Ok(Self {
             grid: photos.on(grid, levels)?,

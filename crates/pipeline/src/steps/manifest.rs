@@ -74,6 +74,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
             treatment: plan.vertical.clone(),
             range_m: outcome.heights.range_m.map(f64::from),
         },
+        datum_operations: manifest_texts::datum_operations(&plan.datum_operations),
         coordinates: outcome.context.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_record::sha256(&record),

@@ -14,6 +14,7 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
         // Before any tile is made, because no tile has ground where no node has a height.
         let patches = pyramid.all_patches()?;
         pyramid.check(&patches)?;
+        pyramid.warn_of_spikes(&patches);
         if pyramid.sums(&patches).samples.with_data == 0 {
             return Err(BuildError::NoHeights { dem: context.settings.terrain_files() });
         }

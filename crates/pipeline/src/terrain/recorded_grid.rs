@@ -4,6 +4,8 @@ use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGri
 use corniche_geom::{GridFrame, TILE_CELLS};
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
+use crate::manifest_texts;
+
 /// The grid; no height can be read with it.
 pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
     let [south_west, north_east] = manifest.data_nodes();
@@ -26,6 +28,7 @@ pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
         resampling_text: manifest.resampling.clone(),
         vertical_datum: Some(manifest.vertical.datum.clone()),
         vertical: manifest.vertical.treatment.clone(),
+        datum_operations: manifest_texts::recorded_datum_operations(manifest),
         fill_voids: manifest.settings.fill_voids,
     })
 }

@@ -94,7 +94,7 @@ checks! {
     BoundarySums "boundaries.sums" Package "parts, points and bytes of boundaries on each level are those of the tiles, and ways are kept or lost"
     SettingsHash "settings.hash" Package "the recorded hash is that of the recorded settings"
     Grid "manifest.grid" Package "the grid is the smallest that covers the rectangle of the data, and the corners of this rectangle are nodes"
-    Crs "manifest.crs" Package "the CRS's code or name is that of its WKT"
+    Crs "manifest.crs" Package "the CRS's code or name is that of its WKT, and its way to WGS84 is the one that is recorded"
     Scale "manifest.scale" Package "the scale is one that the CRS has over the data"
     Bounds "manifest.bounds" Package "the rectangle in the working CRS and the rectangle in degrees are around the same place"
     Coordinates "manifest.coordinates" Package "the table of longitudes and latitudes is what the CRS says, to a centimetre"

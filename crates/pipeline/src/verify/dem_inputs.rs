@@ -100,5 +100,9 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     same("resampling", &manifest.resampling, &plan.resampling_text);
     same("vertical.datum", &vertical.datum.as_str(), &manifest_texts::datum(plan));
     same("vertical.treatment", &vertical.treatment, &plan.vertical);
+    if manifest_texts::has_comparable_operations(manifest) {
+        let found = manifest_texts::datum_operations(&plan.datum_operations);
+        same("datum_operations", &manifest.datum_operations, &found);
+    }
     check
 }

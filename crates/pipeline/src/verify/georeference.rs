@@ -5,6 +5,7 @@ use corniche_geom::{Bounds, Projection};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
+use crate::manifest_texts;
 
 /// Accuracy of the coordinate table, at its samples and between them.
 const TABLE_M: f64 = 0.01;
@@ -30,9 +31,30 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::Crs, crs.label() == manifest.crs, || {
         format!("the CRS is {:?}, its WKT is that of {:?}", manifest.crs, crs.label())
     });
-    if let Err(error) = positions(manifest, &crs, findings) {
+    let looked_at = datum_operations(manifest, &crs, findings);
+    if let Err(error) = looked_at.and_then(|()| positions(manifest, &crs, findings)) {
         findings.look(CheckId::Crs, false, || format!("positions cannot be carried: {error}"));
     }
+}
+
+/// The operations between the package's datum and WGS84 are recorded first, those of elevation files after them.
+fn datum_operations(
+    manifest: &Manifest,
+    crs: &RecordedCrs,
+    findings: &mut Findings,
+) -> Result<(), DemError> {
+    if !manifest_texts::has_comparable_operations(manifest) {
+        return Ok(());
+    }
+    let found = crs.datum_operations(manifest.whole_data_bounds(), manifest.area_deg())?;
+    let found = manifest_texts::datum_operations(&found);
+    let said = &manifest.datum_operations;
+    let of_files = said.get(found.len()..).unwrap_or_default();
+    let holds = said.starts_with(&found) && of_files.iter().all(|of| of.to == manifest.crs);
+    findings.look(CheckId::Crs, holds, || {
+        format!("operations between datums are recorded as {said:?}, to WGS84 PROJ takes {found:?}")
+    });
+    Ok(())
 }
 
 /// The CRS with the factors of the package.

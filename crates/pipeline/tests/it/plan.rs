@@ -185,7 +185,7 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 4", "\"plan_version\": 5");
+    let later = text.replace("\"plan_version\": 5", "\"plan_version\": 6");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
     assert!(error.contains("version 5") && error.contains("version 4"), "{error}");
     for bad in ["", "{}", "[4]", &text[..text.len() / 2], "\"plan\""] {

@@ -53,6 +53,7 @@ fn text(_: &Value) -> Value {
 const FREE_TEXT: &str = "a text for people; nothing else tells it";
 const RENAMED: &str = "files may be renamed, and are known by their content";
 const NO_DEM_CRS: &str = "no effect on files that name a CRS; the settings' hash alone tells it";
+const NO_OTHER_BAND: &str = "no effect on files with one band; the settings' hash alone tells it";
 const NO_LATITUDE: &str =
     "no effect on a CRS that is true to scale; the settings' hash alone tells it";
 
@@ -217,6 +218,18 @@ const MANIFEST: &[Change] = &[
     change("/growth/1/sv_stored_bytes", one_more, By(C::Growth)),
 ];
 
+/// Values of fields that the sample's manifest leaves out.
+const LEFT_OUT: &[Change] = &[
+    change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:4326"), By(C::Crs)),
+    change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:32632"), By(C::DemPlan)),
+    change("/settings/dem_band", |_| json!(2), OtherInput(Against::Dem)),
+    change("/settings/dem_band", |_| json!(1), Unseen(NO_OTHER_BAND)),
+];
+
+fn operation_of(from: &str, to: &str) -> Value {
+    json!([{ "from": from, "to": to, "operation": "NAD27 to WGS 84 (6)", "accuracy_m": 7.0 }])
+}
+
 /// Whether the places in a list mean different things: pairs and triples, not lists of one kind of thing.
 fn is_tuple(list: &[Value]) -> bool {
     list.len() <= 4 && list.iter().any(Value::is_number)
@@ -297,6 +310,20 @@ fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
         }
     }
     assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Fields that are left out where they say nothing new are seen where they are there.
+#[test]
+fn fields_that_the_manifest_leaves_out_are_seen_once_they_are_there() {
+    let sound = serde_json::to_value(&SOUND.parts.manifest).unwrap();
+    for change in LEFT_OUT {
+        let mut with_none = sound.clone();
+        let (parent, field) = change.at.rsplit_once('/').unwrap();
+        let object = with_none.pointer_mut(parent).unwrap().as_object_mut().unwrap();
+        assert!(object.insert(field.to_owned(), Value::Null).is_none(), "{}", change.at);
+        println!("{}", row(&change.at[1..].replace('/', "."), change.seen));
+        look_at(&with_none, change).unwrap_or_else(|found| panic!("{}: {found}", change.at));
+    }
 }
 
 fn look_at(sound: &Value, change: &Change) -> Result<(), String> {

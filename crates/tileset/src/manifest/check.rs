@@ -98,6 +98,8 @@ impl Manifest {
         self.check_photos()?;
         self.check_areas()?;
         self.check_boundaries()?;
+        let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
+        all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
     }
 

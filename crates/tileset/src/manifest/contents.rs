@@ -45,6 +45,9 @@ pub struct Manifest {
     pub nodes_are_samples: bool,
     /// What heights are: their step, unit and datum.
     pub vertical: VerticalRecord,
+    /// How positions come from one datum to another; left out where all datums are that of WGS84, and in packages of before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub datum_operations: Vec<DatumOperationRecord>,
     /// WGS84 ⇄ working CRS without PROJ.
     pub coordinates: CoordinateTable,
     /// One record per level, root first.
@@ -137,6 +140,23 @@ pub struct VerticalRecord {
     pub range_m: [f64; 2],
 }
 
+/// How positions come from one datum to another: roads from WGS84 to the package, or elevation files to it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DatumOperationRecord {
+    /// The system that positions are in: "EPSG:…" where it has a code, else its name.
+    pub from: String,
+    /// The system that they come to. The operation is also used the other way around.
+    pub to: String,
+    /// PROJ's name for the operation.
+    pub operation: String,
+    /// How accurate it is, metres; left out where PROJ does not know it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy_m: Option<f64>,
+    /// Whether one datum was taken for another, as PROJ knows nothing between them (`--allow-ballpark`); left out where not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub ballpark: bool,
+}
+
 impl VerticalRecord {
     /// The datum of inputs that name none.
     pub const UNKNOWN_DATUM: &str = "unknown";
@@ -163,6 +183,9 @@ pub struct SettingsRecord {
     pub nodata: Vec<f64>,
     /// `--height-range`, if given.
     pub height_range_m: Option<[f64; 2]>,
+    /// `--dem-band`, if given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dem_band: Option<u32>,
     /// `--dem-crs`, if given.
     pub dem_crs: Option<String>,
     /// `--dem-vertical-crs`, if given.

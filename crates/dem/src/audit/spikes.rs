@@ -1,0 +1,97 @@
+//! Single samples that stand far above or below all samples around them.
+
+use serde::{Deserialize, Serialize};
+
+/// A sample this far beyond each of its neighbours stands alone: no slope of the earth is so long and so steep on all sides.
+const SPIKE_M: f64 = 2000.0;
+/// With fewer neighbours nothing is known of a sample.
+const FEWEST_NEIGHBOURS: usize = 3;
+/// Spikes that are kept with their places.
+const KEPT_SPIKES: usize = 3;
+
+/// A sample that stands alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Spike {
+    pub(super) row: usize,
+    pub(super) column: usize,
+    pub(super) height_m: f64,
+    /// The value as the file stores it.
+    pub(super) stored: f64,
+}
+
+/// How many spikes there are in some samples of a file, and the first of them, row by row. Parts merge in any order.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Spikes {
+    pub(super) count: u64,
+    pub(super) first: Vec<Spike>,
+}
+
+impl Spikes {
+    pub(super) fn add(&mut self, spike: Spike) {
+        self.count += 1;
+        self.keep(spike);
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        other.first.iter().for_each(|&spike| self.keep(spike));
+    }
+
+    fn keep(&mut self, spike: Spike) {
+        let place = |spike: &Spike| (spike.row, spike.column);
+        let at = self.first.partition_point(|known| place(known) < place(&spike));
+        self.first.insert(at, spike);
+        self.first.truncate(KEPT_SPIKES);
+    }
+}
+
+/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it.
+pub(super) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
+    let mut found = Vec::new();
+    for (row, line) in heights_m.chunks_exact(columns).enumerate() {
+        let mut before = f64::NAN;
+        for (column, &height_m) in line.iter().enumerate() {
+            // Nearly all samples are near the one before, and are not looked at any further.
+            let is_near = (height_m - before).abs() <= SPIKE_M;
+            before = height_m;
+            if !is_near && !height_m.is_nan() && stands_alone(heights_m, columns, [column, row], 1)
+            {
+                found.push([column, row]);
+            }
+        }
+    }
+    found
+}
+
+/// Whether a sample of a rectangle is a spike, by the neighbours inside it.
+pub(super) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2]) -> bool {
+    stands_alone(heights_m, columns, at, FEWEST_NEIGHBOURS)
+}
+
+/// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at least `fewest`.
+fn stands_alone(
+    heights_m: &[f64],
+    columns: usize,
+    [column, row]: [usize; 2],
+    fewest: usize,
+) -> bool {
+    let rows = heights_m.len() / columns;
+    let own_m = heights_m[row * columns + column];
+    let (mut low_m, mut high_m, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0);
+    for r in row.saturating_sub(1)..(row + 2).min(rows) {
+        for c in column.saturating_sub(1)..(column + 2).min(columns) {
+            let height_m = heights_m[r * columns + c];
+            if [c, r] != [column, row] && !height_m.is_nan() {
+                (low_m, high_m) = (low_m.min(height_m), high_m.max(height_m));
+                count += 1;
+            }
+        }
+    }
+    // A candidate without any neighbour in its block may have some outside.
+    count == 0 && fewest <= 1
+        || count >= fewest && (own_m < low_m - SPIKE_M || own_m > high_m + SPIKE_M)
+}
+
+#[cfg(test)]
+#[path = "spikes_tests.rs"]
+mod tests;

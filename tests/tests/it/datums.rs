@@ -1,0 +1,177 @@
+//! Datums, bands and feet: what is not known of an elevation file is told, asked for or refused, never guessed in silence.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_testing::Raster;
+use e2e::{Ran, built_in_parts, corniche, manifest, text, write_ascii_grid};
+use gdal::Metadata as _;
+use serde_json::json;
+
+fn height([x, y]: [f64; 2]) -> f32 {
+    (300.0 + (x / 100.0).sin() * 40.0 + (y / 130.0).cos() * 30.0) as f32
+}
+
+/// A raster of 40 × 40 samples in a CRS.
+fn raster(folder: &Path, epsg: u32, [x, y]: [f64; 2], cell: f64) -> PathBuf {
+    let frame = [x, cell, 0.0, y, 0.0, -cell];
+    Raster::new(epsg, [40, 40], frame).write(folder, &format!("{epsg}.tif"), height)
+}
+
+fn build(dem: &Path, package: &Path, options: &[&str]) -> Ran {
+    let line = ["build", "--dem", text(dem), "-O", "-o", text(package), "--quiet"];
+    corniche([&line[..], options].concat())
+}
+
+fn verified(package: &Path, dem: &Path) {
+    let ran = corniche(["verify", text(package), "--dem", text(dem), "--quiet"]);
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+}
+
+/// Accuracies are those of the EPSG registry: ETRS89 to WGS 84 (1), CH1903+ to WGS 84 (1).
+#[test]
+fn the_way_to_wgs84_and_its_accuracy_are_recorded_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    for (epsg, corner, name) in [
+        (25832, [500_000.0, 5_200_000.0], "ETRS89 to WGS 84 (1)"),
+        (2056, [2_600_000.0, 1_200_000.0], "CH1903+ to WGS 84 (1)"),
+    ] {
+        let dem = raster(folder.path(), epsg, corner, 30.0);
+        let ran = build(&dem, &package, &[]);
+        assert_eq!((ran.code, &*ran.err), (0, ""), "{epsg}");
+        let from = format!("EPSG:{epsg}");
+        let record =
+            json!([{ "from": from, "to": "EPSG:4326", "operation": name, "accuracy_m": 1.0 }]);
+        assert_eq!(manifest(&package)["datum_operations"], record);
+        let told = corniche(["info", text(&package)]).out;
+        let line = format!("positions    {from} to EPSG:4326 by {name}, accurate to 1 m");
+        assert!(told.contains(&line), "{told}");
+        verified(&package, &dem);
+    }
+    // Of a file in another CRS than the package's both ways are recorded: that of roads, and that of the file.
+    let dem = raster(folder.path(), 2056, [2_600_000.0, 1_200_000.0], 30.0);
+    assert_eq!(build(&dem, &package, &["--crs", "EPSG:25832"]).code, 0);
+    let made = manifest(&package);
+    let ways: Vec<_> =
+        (0..2).map(|k| made["datum_operations"][k]["from"].as_str().unwrap()).collect();
+    assert_eq!(ways, ["EPSG:25832", "EPSG:2056"]);
+    verified(&package, &dem);
+    // On the datum of WGS84 there is nothing to record.
+    let dem = raster(folder.path(), 32632, [500_000.0, 5_200_000.0], 30.0);
+    assert_eq!(build(&dem, &package, &[]).code, 0);
+    assert!(manifest(&package).get("datum_operations").is_none());
+    assert!(!corniche(["info", text(&package)]).out.contains("positions "));
+}
+
+/// NAD27 in Utah. Where the grids of NADCON are installed, PROJ uses them, and there is nothing to warn of.
+#[test]
+fn a_missing_grid_is_told_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let dem = raster(folder.path(), 26712, [420_000.0, 4_500_000.0], 30.0);
+    let ran = build(&dem, &package, &[]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let record = &manifest(&package)["datum_operations"][0];
+    assert!(record["operation"].as_str().unwrap().starts_with("NAD27 to WGS 84"), "{record}");
+    if record["accuracy_m"].as_f64().unwrap() > 2.5 {
+        for word in ["us_noaa_", "accurate to 7 m", "projsync", "EPSG:26712"] {
+            assert!(ran.err.contains(word), "{}", ran.err);
+        }
+        assert_eq!(ran.err.lines().filter(|line| line.contains("NAD27")).count(), 1, "{}", ran.err);
+    }
+    verified(&package, &dem);
+}
+
+/// An ASCII grid with a `.prj` of a local datum on the ellipsoid of Bessel: WGS84 is 100 m and more beside it.
+#[test]
+fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let dem = folder.path().join("local.asc");
+    let place = "xllcorner 4500000\nyllcorner 5400000\ncellsize 30";
+    write_ascii_grid(&dem, [40, 40], place, |column, row| {
+        f64::from(height([column as f64, row as f64]))
+    });
+    let projection = "PROJCS[\"Local\",GEOGCS[\"GCS_Local\",DATUM[\"D_Local_Survey\",SPHEROID[\"Bessel_1841\",6377397.155,\
+         299.1528128]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Gauss_Kruger\"],\
+         PARAMETER[\"False_Easting\",4500000.0],PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",12.0],\
+         PARAMETER[\"Scale_Factor\",1.0],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
+    fs::write(dem.with_extension("prj"), projection).unwrap();
+    for command in ["build", "plan"] {
+        let output = folder.path().join(command);
+        let ran = corniche([command, "--dem", text(&dem), "-o", text(&output)]);
+        assert_eq!(ran.code, 2, "{command}: {}", ran.err);
+        for word in ["local.asc", "datum", "100 m", "-a_srs", "--allow-ballpark"] {
+            assert!(ran.err.contains(word), "{command}: {}", ran.err);
+        }
+        assert!(!output.exists(), "{command}");
+    }
+    let ran = build(&dem, &package, &["--allow-ballpark"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(ran.err.contains("unknown accuracy"), "{}", ran.err);
+    assert_eq!(manifest(&package)["datum_operations"][0]["ballpark"], json!(true));
+    let told = corniche(["info", text(&package)]).out;
+    assert!(told.contains("takes one datum for the other"), "{told}");
+    verified(&package, &dem);
+    // Parts of a build that was allowed to need not be allowed again.
+    let parts = built_in_parts(folder.path(), &["--dem", text(&dem), "--allow-ballpark"]);
+    assert!(parts == fs::read(&package).unwrap(), "parts make another package");
+}
+
+/// State Plane, US survey feet: heights without a unit may be feet as well.
+#[test]
+fn heights_without_a_unit_beside_coordinates_in_feet_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    for (epsg, corner) in [(2229, [6_400_000.0, 1_850_000.0]), (2269, [7_600_000.0, 680_000.0])] {
+        let dem = raster(folder.path(), epsg, corner, 100.0);
+        let ran = build(&dem, &package, &[]);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let name = format!("{epsg}.tif");
+        for word in [name.as_str(), "taken as metres", "--dem-vertical-crs", "EPSG:6360"] {
+            assert!(ran.err.contains(word), "{epsg}: {}", ran.err);
+        }
+        let ran = build(&dem, &package, &["--dem-vertical-crs", "EPSG:6360"]);
+        assert!(ran.code == 0 && !ran.err.contains("taken as metres"), "{}", ran.err);
+        // 300 ± 70 feet.
+        let range = &manifest(&package)["vertical"]["range_m"];
+        assert!(range[1].as_f64().unwrap() < 370.0 * 0.305, "{range}");
+    }
+}
+
+/// Bands that are no colours: which of them has the heights is asked for.
+#[test]
+fn of_several_bands_one_is_to_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let frame = [500_000.0, 30.0, 0.0, 5_200_000.0, 0.0, -30.0];
+    let both = Raster::new(32632, [40, 40], frame)
+        .bands(2)
+        .tagged(|dataset| {
+            dataset.rasterband(2).unwrap().set_description("standard deviation").unwrap();
+        })
+        .write(folder.path(), "two.tif", height);
+    let ran = build(&both, &package, &[]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    for word in ["two.tif", "1 (no name, Float32)", "2 \"standard deviation\"", "--dem-band"] {
+        assert!(ran.err.contains(word), "{}", ran.err);
+    }
+    let ran = build(&both, &package, &["--dem-band", "3"]);
+    assert!(ran.code == 2 && ran.err.contains("2 bands"), "{}", ran.err);
+    assert_eq!(build(&both, &package, &["--dem-band", "1"]).code, 0);
+    let chosen = manifest(&package);
+    assert_eq!(chosen["settings"]["dem_band"], json!(1));
+    verified(&package, &both);
+    // Those of the file with that band alone, and zeros in the other band.
+    let dem = raster(folder.path(), 32632, [500_000.0, 5_200_000.0], 30.0);
+    assert_eq!(build(&dem, &package, &[]).code, 0);
+    assert_eq!(chosen["vertical"], manifest(&package)["vertical"]);
+    assert!(manifest(&package)["settings"].get("dem_band").is_none());
+    assert_eq!(build(&both, &package, &["--dem-band", "2"]).code, 0);
+    assert_eq!(manifest(&package)["vertical"]["range_m"], json!([0.0, 0.0]));
+}
