@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use corniche_areas::{AreaClass, OutlineWay, Polygon, assemble};
+use corniche_areas::{AreaClass, Polygon};
 use corniche_geom::{LatticePoint, TileId, wgs84};
 use corniche_store::{Groups, Sorter};
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 
 use crate::{
     area_piece::AreaPiece,
+    cut::polygons_of,
     error::ExportError,
     feature_request::{AreasRequest, Coordinates},
     observer::{Observer, Stage, stop_if_asked},
@@ -158,7 +159,7 @@ fn feature(
             area_m2 += area_of(ring.points(), places);
             rings.push(places.carry_ring(object, ring.points())?);
         }
-        shape.push(rings);
+        shape.extend(places.cut_polygon(object, rings)?);
     }
     summary.areas += 1;
     summary.polygons += polygons.len() as u64;
@@ -192,13 +193,6 @@ fn joined(pieces: &[AreaPiece]) -> (Vec<Polygon>, bool) {
         polygons_of(&rings)
     });
     (parts.flatten().collect(), false)
-}
-
-fn polygons_of(rings: &[&[LatticePoint]]) -> Option<Vec<Polygon>> {
-    let closed: Vec<Vec<LatticePoint>> =
-        rings.iter().map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
-    let ways: Vec<OutlineWay<'_>> = closed.iter().map(|points| OutlineWay { points }).collect();
-    assemble(&ways).ok().map(|assembled| assembled.polygons)
 }
 
 /// True area inside a ring, square metres; negative for a clockwise one.
