@@ -101,10 +101,11 @@ fn is_long(line: &[[f64; 3]]) -> bool {
 /// Steps of a degree in which polygons are cut: a tenth of a millimetre.
 const STEPS: f64 = 1e9;
 
-/// Rings of a polygon in degrees, the outer one first, as polygons that do not cross the antimeridian, with longitudes within ±180. `None`
-/// where that is no polygon.
+/// Rings of a polygon in degrees, the outer one first, as polygons that do not cross the antimeridian, with longitudes within ±180. Corners
+/// that lie as near to it as `rounding_deg` lie on it, and what is no wider is left out. `None` where that is no polygon.
 pub(crate) fn cut_polygon_at_antimeridian(
     rings: Vec<Vec<[f64; 2]>>,
+    rounding_deg: f64,
 ) -> Option<Vec<Vec<Vec<[f64; 2]>>>> {
     let degrees = Seam::of_degrees();
     let is_beyond = |ring: &Vec<[f64; 2]>| {
@@ -115,7 +116,7 @@ pub(crate) fn cut_polygon_at_antimeridian(
         return Some(vec![rings]);
     }
     let on_lattice = |&[lon, lat]: &[f64; 2]| {
-        let is_near = |end: f64| (lon - end).abs() <= ON_ANTIMERIDIAN_DEG;
+        let is_near = |end: f64| (lon - end).abs() * lat.to_radians().cos() <= rounding_deg;
         let lon = [-180.0, 180.0].into_iter().find(|&end| is_near(end)).unwrap_or(lon);
         LatticePoint::new((lon * STEPS).round() as i64, (lat * STEPS).round() as i64)
     };
@@ -123,6 +124,9 @@ pub(crate) fn cut_polygon_at_antimeridian(
         rings.iter().map(|ring| ring.iter().map(on_lattice).collect()).collect();
     let seam = Seam::new(0.0, 360.0 * STEPS);
     unroll_rings(&mut rings, seam);
+    if rings[0].iter().all(|point| point.u == rings[0][0].u) {
+        return Some(Vec::new());
+    }
     let mut polygons = Vec::new();
     for polygon in polygons_of(&rings)? {
         polygons.extend(split_polygon(polygon, seam).ok()?);

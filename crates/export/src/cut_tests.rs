@@ -129,10 +129,12 @@ fn polygons_are_cut_at_the_antimeridian() {
         vec![[west, -half], [east, -half], [east, half], [west, half]]
     };
     let whole = vec![square(9.1, 9.3, 0.1), square(9.15, 9.2, 0.01)];
-    assert_eq!(cut_polygon_at_antimeridian(whole.clone()), Some(vec![whole]));
+    assert_eq!(cut_polygon_at_antimeridian(whole.clone(), 1e-6), Some(vec![whole]));
     for east in [181.0, -179.0] {
-        let found =
-            cut_polygon_at_antimeridian(vec![square(179.0, east, 1.0), square(179.5, 180.0, 0.5)]);
+        let found = cut_polygon_at_antimeridian(
+            vec![square(179.0, east, 1.0), square(179.5, 180.0, 0.5)],
+            1e-6,
+        );
         let found = found.unwrap();
         let ends: Vec<[f64; 2]> = found
             .iter()
@@ -146,8 +148,13 @@ fn polygons_are_cut_at_the_antimeridian() {
         assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
         assert_eq!(found.iter().map(|rings| rings[0].len()).collect::<Vec<_>>(), [8, 4]);
     }
-    let beyond = cut_polygon_at_antimeridian(vec![square(270.0, 271.0, 1.0)]).unwrap();
+    let beyond = cut_polygon_at_antimeridian(vec![square(270.0, 271.0, 1.0)], 1e-6).unwrap();
     assert_eq!(beyond, [vec![square(-90.0, -89.0, 1.0)]]);
+    // Rounded beyond the antimeridian, and nothing but that.
+    let rounded = cut_polygon_at_antimeridian(vec![square(179.0, 180.000_000_5, 1.0)], 1e-6);
+    assert_eq!(rounded, Some(vec![vec![square(179.0, 180.0, 1.0)]]));
+    let sliver = cut_polygon_at_antimeridian(vec![square(180.0, 180.000_000_5, 1.0)], 1e-6);
+    assert_eq!(sliver, Some(Vec::new()));
 }
 
 /// A line that runs on across 180° and goes around the earth stays whole in a rectangle all around it.

@@ -193,16 +193,21 @@ impl<'a> Places<'a> {
         Ok(plan)
     }
 
-    /// Carried rings of a polygon, the outer one first: one polygon, or several where it crosses the antimeridian in degrees.
+    /// Carried rings of a polygon, the outer one first: one polygon, or several where it crosses the antimeridian in degrees. Its corners were
+    /// rounded by up to `rounding_m`.
     pub(crate) fn cut_polygon(
         &self,
         object: AreaObject,
         rings: Vec<Vec<[f64; 2]>>,
+        rounding_m: f64,
     ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, ExportError> {
         match self.target {
             Target::Package => Ok(vec![rings]),
             Target::Wgs84 { .. } => {
-                cut_polygon_at_antimeridian(rings).ok_or(ExportError::AcrossAntimeridian { object })
+                // The smallest number of metres to a degree of longitude or latitude at the equator.
+                let rounding_deg = rounding_m / 110_000.0;
+                cut_polygon_at_antimeridian(rings, rounding_deg)
+                    .ok_or(ExportError::AcrossAntimeridian { object })
             }
         }
     }

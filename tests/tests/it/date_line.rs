@@ -332,7 +332,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
 fn what_goes_over_the_end_of_the_map_is_as_long_as_on_the_earth() {
     let folder = tempfile::tempdir().unwrap();
     let extracts = [false, true].map(|with_opposite| extract(folder.path(), with_opposite));
-    for model in e2e::some_of(models(), [3, 2, 1]) {
+    for model in e2e::some_of(models(), [6, 3, 1]) {
         check(&model, folder.path(), &extracts);
     }
 }

@@ -39,7 +39,7 @@ fn is_named(wkt: &str) -> bool {
         |rest| {
             let name = rest.split('"').next().unwrap_or_default().to_lowercase();
             let has = |part: &&str| name.contains(part);
-            NAMED.iter().any(|part| has(&part)) && !TURNED.iter().any(|part| has(&part))
+            NAMED.iter().any(&has) && !TURNED.iter().any(has)
         },
     )
 }
