@@ -71,6 +71,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                 others: &[],
                 table,
                 place: &place,
+                seam: None,
                 pool,
                 memory_bytes,
                 scratch: &scratch,

@@ -23,6 +23,7 @@ mod coarsen;
 mod cut_out;
 mod divide;
 mod outline;
+mod over_seam;
 mod polygon;
 mod sea;
 
@@ -46,5 +47,6 @@ pub use coastlines::Coastline;
 pub use cut_out::{cut_out, divide_all};
 pub use divide::{Axis, divide};
 pub use outline::{OutlineError, OutlineWay};
+pub use over_seam::{split_polygon, unroll_rings};
 pub use polygon::{Polygon, Ring};
 pub use sea::{Sea, close_sea};

@@ -1,5 +1,6 @@
 //! Coordinate systems, horizontal and vertical, and PROJ's operations between them. Knows no file.
 
+mod cylindrical;
 pub(crate) mod horizontal;
 pub(crate) mod vertical;
 pub(crate) mod wkt;
@@ -17,5 +18,3 @@ pub(crate) mod projection;
 pub(crate) mod recorded;
 pub(crate) mod recorded_heights;
 pub(crate) mod scale;
-
-pub(crate) mod full_turns;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_geom::GeoTransform;
+use corniche_geom::{GeoTransform, Seam};
 use gdal::Dataset;
 
 use crate::crs::horizontal::Crs;
@@ -86,7 +86,7 @@ impl PlacedRaster {
         let [middle, _] = self.crs_from_pixel.crs_from_pixel([columns / 2.0, rows / 2.0]);
         RasterOnGrid {
             crs_from_working: Operation::out_of_working(&grid.working, &self.crs, area_deg)
-                .around(self.crs.turn.map(|turn| [turn, middle])),
+                .around(self.crs.turn.map(|turn| Seam::new(middle, turn))),
             working_from_crs: Operation::into_working(&self.crs, &grid.working, area_deg),
             crs_from_pixel: self.crs_from_pixel,
         }

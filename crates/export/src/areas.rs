@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use corniche_areas::{AreaClass, OutlineWay, Polygon, assemble};
+use corniche_areas::{AreaClass, Polygon};
 use corniche_geom::{LatticePoint, TileId, wgs84};
 use corniche_store::{Groups, Sorter};
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 
 use crate::{
     area_piece::AreaPiece,
+    cut::polygons_of,
     error::ExportError,
     feature_request::{AreasRequest, Coordinates},
     observer::{Observer, Stage, stop_if_asked},
@@ -106,16 +107,26 @@ pub fn export_areas(
     let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
     let mut summary =
         AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
+    let rounding_m = rounding_m(package, level);
     let mut done = 0;
     while let Some(pieces) = sorted.next_by(|piece| piece.object).map_err(sort)? {
         stop_if_asked(observer)?;
         observer.done(Stage::Pieces, done, count);
         done += pieces.len() as u64;
-        file.push(feature(&pieces, &places, &mut summary)?)?;
+        file.push(feature(&pieces, (&places, rounding_m), &mut summary)?)?;
     }
     file.finish()?;
     observer.done(Stage::Pieces, count, count);
     Ok(summary)
+}
+
+/// By how much corners of areas are rounded on a level, at most: the build has them on a lattice of 0.1 m on the finest level, of a quarter of
+/// a cell above.
+fn rounding_m(package: &FilePackage, level: u8) -> f64 {
+    let frame = &package.manifest().frame;
+    let step_m =
+        if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 };
+    step_m / 2.0 + frame.lattice_step_m()
 }
 
 /// What a tile has of areas of these classes.
@@ -141,7 +152,7 @@ fn pieces(
 
 fn feature(
     pieces: &[AreaPiece],
-    places: &Places<'_>,
+    (places, rounding_m): (&Places<'_>, f64),
     summary: &mut AreasSummary,
 ) -> Result<Record, ExportError> {
     let first = &pieces[0];
@@ -159,7 +170,7 @@ fn feature(
             area_m2 += area_of(ring.points(), places);
             rings.push(places.carry_ring(object, ring.points())?);
         }
-        shape.push(rings);
+        shape.extend(places.cut_polygon(object, rings, rounding_m)?);
     }
     summary.areas += 1;
     summary.polygons += polygons.len() as u64;
@@ -193,13 +204,6 @@ fn joined(pieces: &[AreaPiece]) -> (Vec<Polygon>, bool) {
         polygons_of(&rings)
     });
     (parts.flatten().collect(), false)
-}
-
-fn polygons_of(rings: &[&[LatticePoint]]) -> Option<Vec<Polygon>> {
-    let closed: Vec<Vec<LatticePoint>> =
-        rings.iter().map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
-    let ways: Vec<OutlineWay<'_>> = closed.iter().map(|points| OutlineWay { points }).collect();
-    assemble(&ways).ok().map(|assembled| assembled.polygons)
 }
 
 /// True area inside a ring, square metres; negative for a clockwise one.

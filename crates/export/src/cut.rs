@@ -1,4 +1,7 @@
-//! Lines cut: at the bounds, and at the antimeridian.
+//! Lines cut: at the bounds, and at the antimeridian; polygons at the antimeridian.
+
+use corniche_areas::{OutlineWay, Polygon, Ring, assemble, split_polygon, unroll_rings};
+use corniche_geom::{LatticePoint, Seam};
 
 use crate::{
     bounds::DegreeBounds,
@@ -61,44 +64,84 @@ fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
     }
 }
 
+/// Places this near to 180° lie on it, degrees: the lattice has steps of up to a millimetre.
+const ON_ANTIMERIDIAN_DEG: f64 = 2e-8;
+
 /// Positions of longitude, latitude and height, as lines that do not cross the antimeridian (RFC 7946, 3.1.9), with longitudes
-/// within ±180. Neighbours are less than half the earth apart; longitudes may have run on past 180.
+/// within ±180. Neighbours are less than half the earth apart; longitudes may have run on past 180. Nothing as short as a step of the lattice
+/// is left beyond it.
 pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>> {
-    for [lon, ..] in line.iter_mut().filter(|[lon, ..]| lon.abs() > 180.0) {
-        *lon -= 360.0 * (*lon / 360.0).round();
+    let seam = Seam::of_degrees();
+    for place in &mut line {
+        place[0] = seam.image(place[0]);
     }
-    let crosses = |pair: &[[f64; 3]]| (pair[1][0] - pair[0][0]).abs() > 180.0;
-    if !line.windows(2).any(crosses) {
+    if !line.array_windows().any(|[from, to]| seam.parts(from, to)) {
         return vec![line];
     }
-    let mut lines = Vec::new();
-    let mut current: Vec<[f64; 3]> = Vec::new();
-    for (at, &position) in line.iter().enumerate() {
-        let Some(before) = at.checked_sub(1).map(|before| line[before]) else {
-            current.push(position);
-            continue;
-        };
-        if crosses(&[before, position]) {
-            // The side of 180° on which the line is before it crosses.
-            let side = 180.0_f64.copysign(before[0]);
-            let beyond = position[0] + 2.0 * side;
-            let share = (side - before[0]) / (beyond - before[0]);
-            let mix = |axis: usize| before[axis] + share * (position[axis] - before[axis]);
-            push(&mut current, [side, mix(1), mix(2)]);
-            lines.push(std::mem::replace(&mut current, vec![[-side, mix(1), mix(2)]]));
+    let whole = line.clone();
+    for [lon, lat, _] in &mut line {
+        if (180.0 - lon.abs()) * lat.to_radians().cos() <= ON_ANTIMERIDIAN_DEG {
+            *lon = 180.0_f64.copysign(*lon);
         }
-        push(&mut current, position);
     }
-    lines.push(current);
-    lines.retain(|line| line.len() > 1);
-    lines
+    let mut lines = seam.split(line);
+    lines.retain(|line| is_long(line));
+    if lines.is_empty() { vec![whole] } else { lines }
 }
 
-/// Adds a position unless the line is there already.
-fn push(line: &mut Vec<[f64; 3]>, position: [f64; 3]) {
-    if line.last().is_none_or(|last| last[..2] != position[..2]) {
-        line.push(position);
+/// Whether a line reaches farther than from one place of the lattice to the next.
+fn is_long(line: &[[f64; 3]]) -> bool {
+    line.iter().any(|[lon, lat, _]| {
+        let [first_lon, first_lat, _] = line[0];
+        let east = (lon - first_lon) * lat.to_radians().cos();
+        east.hypot(lat - first_lat) > ON_ANTIMERIDIAN_DEG
+    })
+}
+
+/// Steps of a degree in which polygons are cut: a tenth of a millimetre.
+const STEPS: f64 = 1e9;
+
+/// Rings of a polygon in degrees, the outer one first, as polygons that do not cross the antimeridian, with longitudes within ±180. Corners
+/// that lie as near to it as `rounding_deg` lie on it, and what is no wider is left out. `None` where that is no polygon.
+pub(crate) fn cut_polygon_at_antimeridian(
+    rings: Vec<Vec<[f64; 2]>>,
+    rounding_deg: f64,
+) -> Option<Vec<Vec<Vec<[f64; 2]>>>> {
+    let degrees = Seam::of_degrees();
+    let is_beyond = |ring: &Vec<[f64; 2]>| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().zip(next).any(|(at, next)| at[0].abs() > 180.0 || degrees.parts(at, next))
+    };
+    if !rings.iter().any(is_beyond) {
+        return Some(vec![rings]);
     }
+    let on_lattice = |&[lon, lat]: &[f64; 2]| {
+        let is_near = |end: f64| (lon - end).abs() * lat.to_radians().cos() <= rounding_deg;
+        let lon = [-180.0, 180.0].into_iter().find(|&end| is_near(end)).unwrap_or(lon);
+        LatticePoint::new((lon * STEPS).round() as i64, (lat * STEPS).round() as i64)
+    };
+    let mut rings: Vec<Vec<LatticePoint>> =
+        rings.iter().map(|ring| ring.iter().map(on_lattice).collect()).collect();
+    let seam = Seam::new(0.0, 360.0 * STEPS);
+    unroll_rings(&mut rings, seam);
+    if rings[0].iter().all(|point| point.u == rings[0][0].u) {
+        return Some(Vec::new());
+    }
+    let mut polygons = Vec::new();
+    for polygon in polygons_of(&rings)? {
+        polygons.extend(split_polygon(polygon, seam).ok()?);
+    }
+    let place = |point: &LatticePoint| [point.u, point.v].map(|steps| steps as f64 / STEPS);
+    let ring = |ring: &Ring| ring.points().iter().map(place).collect();
+    Some(polygons.iter().map(|polygon| polygon.rings().map(ring).collect()).collect())
+}
+
+/// The polygons between closed lines; `None` where these are no outline.
+pub(crate) fn polygons_of<R: AsRef<[LatticePoint]>>(rings: &[R]) -> Option<Vec<Polygon>> {
+    let close = |ring: &R| ring.as_ref().iter().chain(ring.as_ref().first()).copied().collect();
+    let closed: Vec<Vec<LatticePoint>> = rings.iter().map(close).collect();
+    let ways: Vec<OutlineWay<'_>> = closed.iter().map(|points| OutlineWay { points }).collect();
+    assemble(&ways).ok().map(|assembled| assembled.polygons)
 }
 
 #[cfg(test)]

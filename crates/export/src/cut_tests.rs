@@ -110,6 +110,53 @@ fn a_vertex_on_the_antimeridian_is_there_once() {
     assert_eq!(cut_at_antimeridian(line.clone()), [line]);
 }
 
+/// What is left beyond 180° of a vertex that the lattice has moved by half a millimetre is no part.
+#[test]
+fn no_part_is_as_short_as_a_step_of_the_lattice() {
+    let line = vec![[179.9, -16.6, 1.0], [180.000_000_004, -16.6, 2.0]];
+    assert_eq!(cut_at_antimeridian(line), [vec![[179.9, -16.6, 1.0], [180.0, -16.6, 2.0]]]);
+    let line =
+        vec![[-180.000_000_004, -16.6, 1.0], [-179.999_999_999, -16.6, 1.0], [-179.9, -16.6, 2.0]];
+    assert_eq!(cut_at_antimeridian(line), [vec![[-180.0, -16.6, 1.0], [-179.9, -16.6, 2.0]]]);
+    let along = vec![[179.9, 0.0, 1.0], [180.0, 0.0, 2.0], [180.000_000_004, 0.000_000_004, 2.0]];
+    assert_eq!(cut_at_antimeridian(along), [vec![[179.9, 0.0, 1.0], [180.0, 0.0, 2.0]]]);
+}
+
+/// A polygon over the antimeridian is cut there with its hole; others stay, to the last bit.
+#[test]
+fn polygons_are_cut_at_the_antimeridian() {
+    let square = |west: f64, east: f64, half: f64| {
+        vec![[west, -half], [east, -half], [east, half], [west, half]]
+    };
+    let whole = vec![square(9.1, 9.3, 0.1), square(9.15, 9.2, 0.01)];
+    assert_eq!(cut_polygon_at_antimeridian(whole.clone(), 1e-6), Some(vec![whole]));
+    for east in [181.0, -179.0] {
+        let found = cut_polygon_at_antimeridian(
+            vec![square(179.0, east, 1.0), square(179.5, 180.0, 0.5)],
+            1e-6,
+        );
+        let found = found.unwrap();
+        let ends: Vec<[f64; 2]> = found
+            .iter()
+            .map(|rings| {
+                let x = || rings[0].iter().map(|place| place[0]);
+                [x().fold(f64::INFINITY, f64::min), x().fold(f64::NEG_INFINITY, f64::max)]
+            })
+            .collect();
+        assert_eq!(ends, [[179.0, 180.0], [-180.0, -179.0]], "{found:?}");
+        // The hole ends at the antimeridian, so it is a notch of the western part.
+        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
+        assert_eq!(found.iter().map(|rings| rings[0].len()).collect::<Vec<_>>(), [8, 4]);
+    }
+    let beyond = cut_polygon_at_antimeridian(vec![square(270.0, 271.0, 1.0)], 1e-6).unwrap();
+    assert_eq!(beyond, [vec![square(-90.0, -89.0, 1.0)]]);
+    // Rounded beyond the antimeridian, and nothing but that.
+    let rounded = cut_polygon_at_antimeridian(vec![square(179.0, 180.000_000_5, 1.0)], 1e-6);
+    assert_eq!(rounded, Some(vec![vec![square(179.0, 180.0, 1.0)]]));
+    let sliver = cut_polygon_at_antimeridian(vec![square(180.0, 180.000_000_5, 1.0)], 1e-6);
+    assert_eq!(sliver, Some(Vec::new()));
+}
+
 /// A line that runs on across 180° and goes around the earth stays whole in a rectangle all around it.
 #[test]
 fn all_around_the_earth_nothing_is_cut() {

@@ -35,7 +35,7 @@ pub enum ExportError {
     #[error("a position of {object} has no longitude and latitude in WGS84")]
     NoAreaPosition { object: AreaObject },
     #[error(
-        "{object} lies across 180 degrees of longitude, where a polygon in degrees would go around the earth; export it in the package's CRS"
+        "{object} lies across 180 degrees of longitude and cannot be cut there; export it in the package's CRS"
     )]
     AcrossAntimeridian { object: AreaObject },
     #[error("{package:?} has no areas: it was built without --areas")]

@@ -6,7 +6,10 @@ use corniche_geom::{LatticePoint, Projection as _, wgs84};
 use corniche_tileset::Manifest;
 
 use crate::{
-    cut::cut_at_antimeridian, error::ExportError, feature_request::Coordinates, piece::Vertex,
+    cut::{cut_at_antimeridian, cut_polygon_at_antimeridian},
+    error::ExportError,
+    feature_request::Coordinates,
+    piece::Vertex,
 };
 
 /// Carries places on the lattice to the coordinates of features.
@@ -36,7 +39,8 @@ impl<'a> Places<'a> {
         coordinates: Coordinates,
     ) -> Result<Self, ExportError> {
         let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
-        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, *data_bounds).map_err(crs_failed)?;
+        let whole = manifest.whole_data_bounds();
+        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(crs_failed)?;
         let area = manifest.wgs84_bounds;
         let datum = &vertical.datum;
         let given = [&settings.vertical_crs, &settings.dem_vertical_crs];
@@ -184,12 +188,28 @@ impl<'a> Places<'a> {
                 if plan.iter().flatten().any(|degrees| !degrees.is_finite()) {
                     return Err(ExportError::NoAreaPosition { object });
                 }
-                if plan.windows(2).any(|pair| (pair[1][0] - pair[0][0]).abs() > 180.0) {
-                    return Err(ExportError::AcrossAntimeridian { object });
-                }
             }
         }
         Ok(plan)
+    }
+
+    /// Carried rings of a polygon, the outer one first: one polygon, or several where it crosses the antimeridian in degrees. Its corners were
+    /// rounded by up to `rounding_m`.
+    pub(crate) fn cut_polygon(
+        &self,
+        object: AreaObject,
+        rings: Vec<Vec<[f64; 2]>>,
+        rounding_m: f64,
+    ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, ExportError> {
+        match self.target {
+            Target::Package => Ok(vec![rings]),
+            Target::Wgs84 { .. } => {
+                // The smallest number of metres to a degree of longitude or latitude at the equator.
+                let rounding_deg = rounding_m / 110_000.0;
+                cut_polygon_at_antimeridian(rings, rounding_deg)
+                    .ok_or(ExportError::AcrossAntimeridian { object })
+            }
+        }
     }
 
     /// A line of a way in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.

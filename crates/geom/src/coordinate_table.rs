@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Bounds, ProjectError, Projection, wgs84};
+use crate::{Bounds, ProjectError, Projection, Seam, wgs84};
 
 /// WGS84 positions sampled over the working CRS, from which a reader interpolates both ways without PROJ.
 ///
@@ -294,7 +294,7 @@ fn cubic(t: f64, size: usize) -> (usize, [f64; 4]) {
 
 /// The longitude equal to `lon` modulo 360 that is nearest to `center`.
 fn near_longitude(lon: f64, center: f64) -> f64 {
-    lon - 360.0 * ((lon - center) / 360.0).round()
+    Seam::of_degrees().around(center).image(lon)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The interface of projections between WGS84 and working metres.
 
+use crate::Seam;
+
 /// Why positions could not be projected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("cannot transform coordinates: {reason}")]
@@ -23,4 +25,10 @@ pub trait Projection {
     /// # Errors
     /// When the transformation as a whole cannot be carried out.
     fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError>;
+
+    /// The seam of the working CRS, in working metres, where x comes back after a turn around the earth. Positions come out on the map
+    /// that ends there; lines between them are for [`Seam::split`].
+    fn seam(&self) -> Option<Seam> {
+        None
+    }
 }

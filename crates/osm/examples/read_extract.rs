@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         others: &[],
         table: &table,
         place: &to_lattice,
+        seam: None,
         pool: &pool,
         memory_bytes: memory_mib.parse::<u64>()? << 20,
         scratch: &scratch,

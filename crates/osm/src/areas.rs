@@ -18,6 +18,7 @@ mod hand_parts;
 pub(crate) mod located_ways;
 mod make_areas;
 pub(crate) mod outline_ways;
+mod over_seam;
 mod read_areas;
 pub(crate) mod records;
 mod summary;

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use corniche_geom::{LatticePoint, Polyline, wgs84};
+use corniche_geom::{LatticePoint, Polyline, Seam, split_at_seam, wgs84};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location, read_request::ToLattice, records::Stop,
+    Defect, LeftOutReason, ReadOsmError, location, read_request::Placing, records::Stop,
     self_crossings::self_crossings, way_bytes::WayKind,
 };
 
@@ -32,13 +32,13 @@ pub(crate) struct Assembled {
 pub(crate) fn assemble(
     some: &[PlainWay],
     all_stops: &[Stop],
-    place: &ToLattice<'_>,
+    placing: Placing<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
     let is_road = |way: &&PlainWay| matches!(way.kind, WayKind::Road(..));
     let stops = some.iter().filter(is_road).flat_map(stops_of);
     let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
-    let points = place(&positions_deg);
+    let points = (placing.place)(&positions_deg);
     if points.len() != positions_deg.len() {
         return Err(ReadOsmError::Place { expected: positions_deg.len(), got: points.len() });
     }
@@ -46,7 +46,7 @@ pub(crate) fn assemble(
     let assemble = |way: &PlainWay| match &way.kind {
         WayKind::Road(class, attributes) => {
             let what = What { way_id: way.way_id, class: *class, attributes };
-            assemble_way(&what, stops_of(way), &mut points)
+            assemble_way(&what, stops_of(way), &mut points, placing.seam)
         }
         WayKind::LeftOut(reason, highway) => {
             let left_out = Some((*reason, highway.clone(), length_um(stops_of(way))));
@@ -78,10 +78,13 @@ struct What<'a> {
 ///  nodes   1 ─ 2 ─ ? ─ 4 ─ 5 ─ 5 ─ 6 ─ ?        joining 2 and 4 would draw a road where none may be
 ///  roads   1 ─ 2       4 ─ 5 ───── 6
 /// ```
+///
+/// Where the way goes over the seam of the map, it goes on at the other end as another road. That is no defect.
 fn assemble_way(
     way: &What<'_>,
     stops: &[Stop],
     points: &mut impl Iterator<Item = Option<LatticePoint>>,
+    seam: Option<Seam>,
 ) -> Assembled {
     let way_id = way.way_id;
     let mut assembled = Assembled::default();
@@ -111,15 +114,16 @@ fn assemble_way(
         assembled.defects.push(Defect::TooFewNodes { way_id, nodes: stops.len() as u32 });
         return assembled;
     }
-    let mut crossings = 0;
+    let (mut crossings, mut roads) = (0, 0);
     for piece in pieces {
         let count = piece.len() as u32;
-        let road = road(way, piece);
-        crossings += road.as_ref().map_or(0, |road| self_crossings(road.line.points()));
-        strays += if road.is_none() { count } else { 0 };
-        assembled.roads.extend(road);
+        let parts = split_at_seam(piece, seam);
+        let own: Vec<Road> = parts.into_iter().filter_map(|part| road(way, part)).collect();
+        crossings += own.iter().map(|road| self_crossings(road.line.points())).sum::<u32>();
+        strays += if own.is_empty() { count } else { 0 };
+        roads += u32::from(!own.is_empty());
+        assembled.roads.extend(own);
     }
-    let roads = assembled.roads.len() as u32;
     for (count, defect) in [
         (missing, Defect::MissingNodes { way_id, points: missing }),
         (out_of_range, Defect::OutOfRange { way_id, points: out_of_range }),

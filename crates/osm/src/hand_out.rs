@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::{
     ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
-    read_request::ToLattice,
+    read_request::Placing,
     reading::{Reading, Step},
     records::Stop,
     spool::{SpoolReader, damaged},
@@ -31,7 +31,7 @@ pub(crate) fn hand_out(
     take: &mut dyn FnMut(Assembled),
 ) -> Result<(), ReadOsmError> {
     let pool = reading.request.pool;
-    let place = reading.request.place;
+    let placing = reading.request.placing();
     let mut done = 0;
     let mut next = || Batch::read(reading, &mut ways, &mut stops, pool.current_num_threads());
     let mut batch = next()?;
@@ -42,7 +42,7 @@ pub(crate) fn hand_out(
         let following = pool.in_place_scope(|scope| {
             scope.spawn(|_| {
                 let tasks = batch.ways.par_chunks(WAYS_PER_TASK);
-                assembled = tasks.map(|some| batch.assemble(some, place)).collect();
+                assembled = tasks.map(|some| batch.assemble(some, placing)).collect();
             });
             let following = next();
             before.drain(..).flatten().for_each(&mut *take);
@@ -126,13 +126,14 @@ impl Batch {
     fn assemble(
         &self,
         some: &[PackedWay],
-        place: &ToLattice<'_>,
+        placing: Placing<'_>,
     ) -> Result<Vec<Assembled>, HandOutError> {
         let plain = |way: &PackedWay| {
             let kind = take_way(&mut &self.kinds[way.kind.clone()])?;
             Some(PlainWay { way_id: way.way_id, kind, stops: way.stops.clone() })
         };
         let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
-        assemble(&ways.ok_or(HandOutError::Damaged)?, &self.stops, place).map_err(HandOutError::Osm)
+        assemble(&ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)
+            .map_err(HandOutError::Osm)
     }
 }

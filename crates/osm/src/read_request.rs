@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{LatticePoint, Seam};
 use corniche_roads::FrcTable;
 use corniche_store::Scratch;
 
@@ -30,6 +30,8 @@ pub struct ReadRequest<'a> {
     pub table: &'a FrcTable,
     /// Where positions lie on the lattice.
     pub place: &'a ToLattice<'a>,
+    /// Where the lattice's map of the earth is cut open, if it is: lines over it are cut there.
+    pub seam: Option<Seam>,
     /// Where blobs are decoded and points placed.
     pub pool: &'a rayon::ThreadPool,
     /// About how much the ways and nodes of all roads may take, bytes; what does not fit goes to `scratch`. The blobs that
@@ -41,7 +43,18 @@ pub struct ReadRequest<'a> {
     pub on_progress: Option<&'a OnProgress<'a>>,
 }
 
+/// How positions come to the package's lattice.
+#[derive(Clone, Copy)]
+pub(crate) struct Placing<'a> {
+    pub(crate) place: &'a ToLattice<'a>,
+    pub(crate) seam: Option<Seam>,
+}
+
 impl ReadRequest<'_> {
+    pub(crate) fn placing(&self) -> Placing<'_> {
+        Placing { place: self.place, seam: self.seam }
+    }
+
     /// One of the extracts, by its number: 0 is the first.
     pub(crate) fn extract(&self, number: u32) -> PathBuf {
         let further = (number as usize).checked_sub(1).and_then(|number| self.others.get(number));

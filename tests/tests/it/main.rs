@@ -8,6 +8,7 @@ mod changing_inputs;
 mod choice;
 mod conventions;
 mod cookbook;
+mod date_line;
 mod datums;
 mod die_with_parent;
 mod export_areas;

@@ -7,6 +7,7 @@ use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 
 use crate::DemError;
+use crate::crs::cylindrical;
 use crate::crs::wkt::{child, children, keyword, wkt2};
 
 /// A horizontal coordinate system, kept as text: PROJ's objects belong to one thread.
@@ -18,8 +19,9 @@ pub(crate) struct Crs {
     pub(crate) label: String,
     /// Whether the label is a code.
     has_code: bool,
-    /// Period of the first coordinate: a full turn in the system's angular unit, `None` when projected.
+    /// Period of the first coordinate: how far it goes in a full turn around the earth. `None` for projections that are not cylindrical.
     pub(crate) turn: Option<f64>,
+    is_projected: bool,
     /// Metres to a unit of the coordinates; 1 for a geographic system.
     pub(crate) unit_m: f64,
 }
@@ -30,12 +32,18 @@ impl Crs {
         let wkt = wkt2(reference)
             .map_err(|source| DemError::Wkt { name: name.clone(), source: source.into() })?;
         let projected = reference.is_projected();
+        let turn = if projected {
+            cylindrical::turn_of(reference, &wkt)
+        } else {
+            Some(std::f64::consts::TAU / reference.angular_units())
+        };
         let code = reference.authority();
         Ok(Self {
             wkt: wkt.into(),
             has_code: code.is_ok(),
             label: code.unwrap_or(name),
-            turn: (!projected).then(|| std::f64::consts::TAU / reference.angular_units()),
+            turn,
+            is_projected: projected,
             unit_m: if projected { reference.linear_units() } else { 1.0 },
         })
     }
@@ -79,7 +87,12 @@ impl Crs {
     }
 
     pub(crate) fn is_projected(&self) -> bool {
-        self.turn.is_none()
+        self.is_projected
+    }
+
+    /// A full turn in the system's angular unit; `None` when projected.
+    pub(crate) fn turn_angle(&self) -> Option<f64> {
+        self.turn.filter(|_| !self.is_projected)
     }
 
     /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of the system's ellipsoid;
@@ -88,7 +101,7 @@ impl Crs {
         &self,
         latitude_deg: f64,
     ) -> Result<Option<[f64; 2]>, DemError> {
-        let Some(turn) = self.turn else { return Ok(None) };
+        let Some(turn) = self.turn_angle() else { return Ok(None) };
         let unreadable =
             |source: GdalError| DemError::Wkt { name: self.label.clone(), source: source.into() };
         let reference = self.spatial_ref().map_err(unreadable)?;

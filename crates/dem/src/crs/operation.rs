@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Seam};
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
 
@@ -32,8 +32,8 @@ pub(crate) struct Operation {
     divide: [f64; 2],
     /// Coordinates are multiplied by these factors after it, to make working metres.
     multiply: [f64; 2],
-    /// A full turn of the resulting first coordinate, and the value to which the result is to be near.
-    turn: Option<[f64; 2]>,
+    /// Around what the resulting first coordinate is to be.
+    seam: Option<Seam>,
     key: String,
 }
 
@@ -65,16 +65,16 @@ impl Operation {
             is_exact: false,
             divide: [1.0; 2],
             multiply: [1.0; 2],
-            turn: None,
+            seam: None,
             key,
         }
     }
 
-    /// The operation from a system to working metres. Longitudes come out as those images that are nearest to the data's middle.
+    /// The operation from a system to working metres. Where x comes back after a turn around the earth,
+    /// the images nearest to the data's middle come out.
     pub(crate) fn into_working(from: &Crs, working: &Working, area_deg: Option<Bounds>) -> Self {
-        let turn = working.crs.turn.map(|turn| [turn, working.middle]);
         let multiply = working.metres_per_unit;
-        Self { multiply, turn, ..Self::new(from, &working.crs, area_deg) }
+        Self { multiply, seam: working.seam(), ..Self::new(from, &working.crs, area_deg) }
     }
 
     /// The operation from working metres to a system.
@@ -82,10 +82,9 @@ impl Operation {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }
 
-    /// The same operation; its first coordinate is then moved by whole turns to be as near as possible to a value:
-    /// `[turn, near]`.
-    pub(crate) fn around(self, turn: Option<[f64; 2]>) -> Self {
-        Self { turn, ..self }
+    /// The same operation; its first coordinate is then moved by whole turns onto the map that ends at a seam.
+    pub(crate) fn around(self, seam: Option<Seam>) -> Self {
+        Self { seam, ..self }
     }
 
     /// An operation for heights: PROJ may not replace a missing grid by an approximation.
@@ -139,8 +138,8 @@ impl Operation {
         for ((point, mut x), y) in points.iter_mut().zip(xs).zip(ys) {
             let image_exists =
                 x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
-            if let Some([turn, near]) = self.turn {
-                x -= turn * ((x - near) / turn).round();
+            if let Some(seam) = self.seam {
+                x = seam.image(x);
             }
             *point = if image_exists {
                 [x * self.multiply[0], y * self.multiply[1]]

@@ -23,10 +23,10 @@ impl RecordedCrs {
     /// When PROJ cannot read it, or it is neither projected nor geographic.
     pub fn new(text: &str, metres_per_unit: [f64; 2], data: Bounds) -> Result<Self, DemError> {
         let crs = compound::from_text("the package's", text)?.0;
-        let middle = data.center()[0] / metres_per_unit[0];
         let is_unit = |factor: f64| factor.abs().to_bits() == crs.unit_m.to_bits();
         let is_scaled = !(crs.is_projected() && metres_per_unit.into_iter().all(is_unit));
-        Ok(Self { working: Working { crs, metres_per_unit, middle, is_scaled } })
+        let working = Working { crs, metres_per_unit, middle: 0.0, is_scaled }.around(data);
+        Ok(Self { working })
     }
 
     pub(crate) fn working(&self) -> &Working {
@@ -51,7 +51,7 @@ impl RecordedCrs {
     /// # Errors
     /// When PROJ knows no operation.
     pub fn projection(&self, wgs84_bounds: Bounds) -> Result<DemProjection, DemError> {
-        DemProjection::new(&self.working, wgs84_bounds)
+        DemProjection::new(&self.working, wgs84_bounds, wgs84_bounds)
     }
 
     /// The operations that carry positions between the package's datum and that of WGS84, over the rectangle of all elevation files in

@@ -118,7 +118,7 @@ impl RecordedHeights {
         let place = |&[x, y]: &[f64; 2]| {
             let x = x / unit_x;
             // Past the antimeridian longitudes run on; grids end there.
-            let turns = self.horizontal.turn.map_or(0.0, |turn| turn * (x / turn).round());
+            let turns = self.horizontal.turn_angle().map_or(0.0, |turn| turn * (x / turn).round());
             [x - turns, y / unit_y]
         };
         let m_per_value = self.vertical.m_per_value();

@@ -76,7 +76,7 @@ pub(crate) fn refuse_off_globe(
     crs_from_pixel: &GeoTransform,
     (columns, rows): (usize, usize),
 ) -> Result<(), DemError> {
-    let Some(turn) = crs.turn else { return Ok(()) };
+    let Some(turn) = crs.turn_angle() else { return Ok(()) };
     let (right, bottom) = (columns as f64 - 0.5, rows as f64 - 0.5);
     let corners = [[0.5, 0.5], [right, 0.5], [0.5, bottom], [right, bottom]];
     let step = crs_from_pixel.coefficients;

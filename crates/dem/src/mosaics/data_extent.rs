@@ -1,9 +1,8 @@
 //! Where a DEM's files lie, from positions along their sides and inside them.
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Seam};
 
 use crate::DemError;
-use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
 use crate::files::source::Source;
 use crate::mosaics::mosaic::Mosaic;
@@ -83,7 +82,7 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
 }
 
 /// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes are continuous:
-/// past the antimeridian they go on beyond ±180. Refuses a file of which no position is on earth.
+/// across the antimeridian they go on beyond ±180. Refuses a file of which no position is on earth.
 pub(crate) fn wgs84(
     sources: &[Source],
     mosaics: &[Mosaic],
@@ -93,7 +92,8 @@ pub(crate) fn wgs84(
     let mut bounds = Bounds::EMPTY;
     for (mosaic, operation) in mosaics.iter().zip(operations) {
         // Degrees of one grid belong together already: they are moved by the same turns.
-        let degrees = mosaic.turn().map(|[turn, middle]| (360.0 / turn, middle * 360.0 / turn));
+        let degrees =
+            mosaic.crs.turn_angle().map(|turn| (360.0 / turn, mosaic.middle()[0] * 360.0 / turn));
         let of_mosaic = degrees.map(|(_, middle_deg)| turns_beside(middle_deg, bounds));
         for file in &mosaic.files {
             let own = positions(mosaic, &file.rect);
@@ -101,10 +101,10 @@ pub(crate) fn wgs84(
             operation.apply(&mut points)?;
             if let Some((to_degrees, _)) = degrees {
                 for (point, own) in points.iter_mut().zip(&own) {
-                    point[0] = near_image(point[0], own[0] * to_degrees, 360.0);
+                    point[0] = Seam::of_degrees().around(own[0] * to_degrees).image(point[0]);
                 }
             } else {
-                unwrap(&mut points, 360.0);
+                unwrap(&mut points, Seam::of_degrees());
             }
             points.retain(|point| point[0].is_finite() && point[1].is_finite());
             if points.is_empty() {
@@ -120,24 +120,38 @@ pub(crate) fn wgs84(
             all.extend(points);
         }
     }
-    Ok((all, bounds))
+    let away = turns_beyond(bounds);
+    for point in &mut all {
+        point[0] -= 360.0 * away;
+    }
+    Ok((all, moved_back(bounds, away)))
 }
 
-/// Makes the longitudes of images of [`rim_and_inside`] continuous; `turn` is a full turn in their unit. Along the rim each
-/// longitude is moved next to the one before it, which is near. Inside, each is moved next to the middle of the rim: neighbours
-/// in the list can be as far apart as the rectangle is wide.
-pub(crate) fn unwrap(points: &mut [[f64; 2]], turn: f64) {
+/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies within.
+pub(crate) fn turns_beyond(bounds: Bounds) -> f64 {
+    let is_beyond = bounds.min_x >= 180.0 || bounds.max_x <= -180.0;
+    if is_beyond { Seam::of_degrees().turns(bounds.center()[0]) } else { 0.0 }
+}
+
+/// A rectangle in degrees, so many full turns to the west.
+pub(crate) fn moved_back(bounds: Bounds, turns: f64) -> Bounds {
+    let away = 360.0 * turns;
+    Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds }
+}
+
+/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved next to the one before it, which is
+/// near. Inside, each is moved next to the middle of the rim: neighbours in the list can be as far apart as the rectangle is wide.
+pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
-    let mut previous: Option<f64> = None;
-    for point in rim.iter_mut().filter(|point| point[0].is_finite()) {
-        point[0] = previous.map_or(point[0], |near| near_image(point[0], near, turn));
-        previous = Some(point[0]);
+    let is_somewhere = |point: &&mut [f64; 2]| point[0].is_finite();
+    let first = rim.iter().find(|point| point[0].is_finite()).map(|point| point[0]);
+    if let Some(first) = first {
+        seam.around(first).unroll(rim);
     }
-    let middle = if previous.is_some() { Some(around(rim).center()[0]) } else { None };
     // If no position of the rim is on earth, the first inner position is used.
-    let mut near = middle;
-    for point in inside.iter_mut().filter(|point| point[0].is_finite()) {
-        point[0] = near_image(point[0], *near.get_or_insert(point[0]), turn);
+    let mut near = first.map(|_| around(rim).center()[0]);
+    for point in inside.iter_mut().filter(is_somewhere) {
+        point[0] = seam.around(*near.get_or_insert(point[0])).image(point[0]);
     }
 }
 
@@ -155,10 +169,5 @@ fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
-    turns(lon_deg - bounds.center()[0], 360.0)
-}
-
-/// The image of a longitude that is nearest to another one; `turn` is a full turn in their unit.
-pub(crate) fn near_image(longitude: f64, near: f64, turn: f64) -> f64 {
-    longitude - turn * ((longitude - near) / turn).round()
+    Seam::of_degrees().around(bounds.center()[0]).turns(lon_deg)
 }

@@ -1,9 +1,8 @@
 //! Files of one grid as one raster of samples.
 
-use corniche_geom::GeoTransform;
+use corniche_geom::{GeoTransform, Seam};
 
 use crate::DemError;
-use crate::crs::full_turns::turns;
 use crate::crs::horizontal::Crs;
 use crate::files::source::Source;
 use crate::mosaics::sample_rect::SampleRect;
@@ -61,7 +60,7 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// How many columns of a geographic grid make a full turn; `None` when this is not a whole number. A spacing that is
+/// How many columns make a full turn around the earth; `None` when this is not a whole number. A spacing that is
 /// written with few digits is read as the number that is meant.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
@@ -98,9 +97,9 @@ impl Mosaic {
         self.crs_from_sample.crs_from_pixel(middle)
     }
 
-    /// A full turn of longitude and the longitude in the middle; `None` for projected CRSs.
-    pub(crate) fn turn(&self) -> Option<[f64; 2]> {
-        self.crs.turn.map(|turn| [turn, self.middle()[0]])
+    /// The seam of the CRS around the middle; `None` where x never comes back.
+    pub(crate) fn seam(&self) -> Option<Seam> {
+        self.crs.turn.map(|turn| Seam::new(self.middle()[0], turn))
     }
 
     /// The samples that a position can refer to. A grid all around the earth repeats, so its columns go on to both
@@ -130,7 +129,7 @@ impl Mosaic {
         let [columns, rows] = [source.columns, source.rows];
         // The shorter way around the earth: files on both sides of the antimeridian are neighbours.
         let middle = own.crs_from_pixel([columns, rows].map(|samples| (samples - 1) as f64 / 2.0));
-        let moved = self.turn().map_or(0.0, |[turn, near]| turn * turns(middle[0] - near, turn));
+        let moved = self.seam().map_or(0.0, |seam| seam.turn() * seam.turns(middle[0]));
         let corner = |c: i64, r: i64| {
             let [x, y] = own.crs_from_pixel([c as f64, r as f64]);
             self.crs_from_sample.pixel_from_crs([x - moved, y])

@@ -4,13 +4,12 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex};
+use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex, Seam};
 
-use crate::crs::full_turns::turns;
 use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
-use crate::mosaics::data_extent::{near_image, rim_and_inside, unwrap, with_bend};
+use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
 use crate::mosaics::mosaic::{Mosaic, Placed};
 use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
@@ -38,14 +37,12 @@ pub(crate) fn nodes_of(
     let mut points = rim_and_inside([west, north], [east, south]);
     let operation = Operation::into_working(&Crs::wgs84()?, working, Some(area_deg));
     operation.around(None).apply(&mut points)?;
-    if let Some(turn) = working.crs.turn {
+    if let Some(seam_m) = working.seam_m() {
         // The whole rectangle lies where the data's middle is near.
-        let turn_m = turn * working.metres_per_unit[0];
-        unwrap(&mut points, turn_m);
-        let middle_m = working.middle * working.metres_per_unit[0];
-        let away = turns(with_bend(&points).center()[0] - middle_m, turn_m);
+        unwrap(&mut points, seam_m);
+        let away = seam_m.turns(with_bend(&points).center()[0]);
         for point in &mut points {
-            point[0] -= away * turn_m;
+            point[0] -= away * seam_m.turn();
         }
     }
     let bounds_m = with_bend(&points);
@@ -162,8 +159,8 @@ fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
     ]
 }
 
-/// The rectangle in WGS84 degrees around a rectangle of nodes; past the antimeridian longitudes go on beyond ±180, as those of
-/// the whole DEM do.
+/// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes go on beyond ±180, as those
+/// of the whole DEM do.
 pub(crate) fn wgs84_bounds(
     data: Bounds,
     working: &Working,
@@ -171,14 +168,15 @@ pub(crate) fn wgs84_bounds(
 ) -> Result<Bounds, DemError> {
     let own = rim_and_inside([data.min_x, data.max_y], [data.max_x, data.min_y]);
     let mut points = own.clone();
+    let degrees = Seam::of_degrees();
     Operation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
-    if let Some(turn) = working.crs.turn {
+    if let Some(turn) = working.crs.turn_angle() {
         let to_degrees = 360.0 / turn / working.metres_per_unit[0];
         for (point, own) in points.iter_mut().zip(&own) {
-            point[0] = near_image(point[0], own[0] * to_degrees, 360.0);
+            point[0] = degrees.around(own[0] * to_degrees).image(point[0]);
         }
     } else {
-        unwrap(&mut points, 360.0);
+        unwrap(&mut points, degrees);
     }
     let mut bounds = Bounds::EMPTY;
     for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
@@ -187,8 +185,9 @@ pub(crate) fn wgs84_bounds(
     if bounds.is_empty() {
         return Err(DemError::OutsideCrs { crs: working.crs.label.clone() });
     }
-    let away = 360.0 * turns(bounds.center()[0] - whole_deg.center()[0], 360.0);
-    Ok(Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds })
+    let away = degrees.around(whole_deg.center()[0]).turns(bounds.center()[0]);
+    let bounds = moved_back(bounds, away);
+    Ok(moved_back(bounds, turns_beyond(bounds)))
 }
 
 /// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.

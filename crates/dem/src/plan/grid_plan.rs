@@ -170,6 +170,6 @@ impl GridPlan {
     /// projection. Positions beyond it have no longitude.
     #[must_use]
     pub fn poles_y_m(&self) -> Option<f64> {
-        self.working.crs.turn.map(|turn| turn / 4.0 * self.metres_per_unit[1].abs())
+        self.working.crs.turn_angle().map(|turn| turn / 4.0 * self.metres_per_unit[1].abs())
     }
 }

@@ -2,7 +2,6 @@
 
 use corniche_geom::{Bounds, Cell, NodeIndex};
 
-use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::data_extent;
@@ -127,7 +126,7 @@ impl Layout {
             let east = cell.east_m / (spacing[0] * every as f64);
             working.metres_per_unit[0] = east.copysign(factor[0]);
         }
-        let is_degrees = mosaic.crs.turn.is_some();
+        let is_degrees = !mosaic.crs.is_projected();
         let origin_m = [0, 1].map(|axis| {
             let factor = working.metres_per_unit[axis];
             let at = [c[0], c[3]][axis] * factor.signum();
@@ -146,9 +145,8 @@ impl Layout {
         // A cell between samples, when only every n-th is taken.
         let between = self.cell.times(1.0 / self.every as f64).to_array();
         // Past the antimeridian the mosaic lies where the data's middle is near.
-        let moved = mosaic
-            .turn()
-            .map_or(0.0, |[turn, middle]| turn * turns(middle - self.working.middle, turn));
+        let [middle, _] = mosaic.middle();
+        let moved = self.working.seam().map_or(0.0, |seam| seam.turn() * seam.turns(middle));
         let cells = |sample: [i64; 2]| {
             let mut at = transform.crs_from_pixel(sample.map(|index| index as f64));
             at[0] -= moved;

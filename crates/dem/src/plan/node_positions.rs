@@ -1,6 +1,6 @@
 //! Where nodes lie among the DEM's samples.
 
-use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow};
+use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow, Seam};
 
 use crate::DemError;
 use crate::crs::operation::Operation;
@@ -31,8 +31,8 @@ const TRIAL_MESHES: i64 = 12;
 pub(crate) struct NodePositions {
     pub(crate) crs_from_working: Operation,
     crs_from_sample: GeoTransform,
-    /// A full turn of longitude and the longitude in the middle of the data; `None` for projected CRSs.
-    turn: Option<[f64; 2]>,
+    /// The seam of the mosaic's CRS around its middle.
+    seam: Option<Seam>,
     step: i64,
     /// The tolerance, in samples.
     tolerance: f64,
@@ -48,13 +48,13 @@ impl NodePositions {
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
     ) -> Result<Self, DemError> {
-        let turn = mosaic.turn();
+        let seam = mosaic.seam();
         let crs_from_sample = mosaic.crs_from_sample;
         let scale = samples_per_node.min(1.0);
         let mut positions = Self {
             crs_from_working,
             crs_from_sample,
-            turn,
+            seam,
             step: 1,
             tolerance: PLAN_TOLERANCE * scale,
         };
@@ -163,8 +163,8 @@ impl NodePositions {
         }
         self.crs_from_working.apply(points)?;
         for point in points {
-            if let Some([turn, middle]) = self.turn {
-                point[0] -= turn * ((point[0] - middle) / turn).round();
+            if let Some(seam) = self.seam {
+                point[0] = seam.image(point[0]);
             }
             *point = self.crs_from_sample.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
         }

@@ -56,7 +56,10 @@ impl Dem {
     /// # Errors
     /// When PROJ knows no operation.
     pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
-        DemProjection::new(&plan.working, plan.area_deg())
+        // The middle of what packages record, so that all that read them find the same seam.
+        let data_m = plan.clip.map_or(plan.data_bounds, |clip| clip.whole_data_bounds);
+        let working = plan.working.clone().around(data_m);
+        DemProjection::new(&working, plan.area_deg(), plan.wgs84_bounds)
     }
 }
 
@@ -162,10 +165,10 @@ fn around(extents: &[[NodeIndex; 2]]) -> Option<[NodeIndex; 2]> {
     })
 }
 
-/// Columns of nodes all around the earth, rounded; `None` in a projection.
+/// Columns of nodes all around the earth, rounded; `None` where x never comes back.
 fn columns_of_a_turn(layout: &Layout) -> Option<i64> {
-    let turn_m = layout.working.crs.turn? * layout.working.metres_per_unit[0].abs();
-    Some((turn_m / layout.cell.east_m).round() as i64)
+    let seam_m = layout.working.seam_m()?;
+    Some((seam_m.turn() / layout.cell.east_m).round() as i64)
 }
 
 /// Refuses to take so few samples that a single row or column of nodes is left.

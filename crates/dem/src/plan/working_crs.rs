@@ -35,10 +35,16 @@ struct StandardLatitude {
 }
 
 impl Working {
-    fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Self {
+    fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<Self, DemError> {
         let own = &dem.mosaics[0];
-        let middle = if crs.is_same(&own.crs) { own.middle()[0] } else { dem.center_deg[0] };
-        Self { crs, metres_per_unit, middle, is_scaled: false }
+        let middle = if crs.is_same(&own.crs) {
+            own.middle()[0]
+        } else {
+            let mut middle = [dem.center_deg];
+            Operation::new(&Crs::wgs84()?, &crs, Some(dem.wgs84_bounds)).apply(&mut middle)?;
+            middle[0][0]
+        };
+        Ok(Self { crs, metres_per_unit, middle, is_scaled: false })
     }
 
     /// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
@@ -51,14 +57,14 @@ impl Working {
         latitude: StandardLatitude,
     ) -> Result<Option<Self>, DemError> {
         let scaled = |factors: [f64; 2]| {
-            let plain = Self::new(crs.clone(), factors, dem);
+            let plain = Self::new(crs.clone(), factors, dem)?;
             Ok(Some(Self { is_scaled: true, ..plain }))
         };
         if let Some(factors) = crs.metres_per_turn_unit(latitude.deg)? {
             return scaled(factors);
         }
         let unit = crs.signs().map(|sign| sign * crs.unit_m);
-        let plain = Self::new(crs.clone(), unit, dem);
+        let plain = Self::new(crs.clone(), unit, dem)?;
         let is_true = |scale: &Option<Scale>| {
             let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
             scale.is_some_and(|scale| scale.along.iter().all(is_near))
@@ -221,7 +227,7 @@ fn utm(dem: &Dem) -> Result<Option<Working>, DemError> {
     let zone = (((lon + 180.0) / 6.0).floor() as u32).min(59) + 1;
     let code = if lat < 0.0 { 32700 } else { 32600 } + zone;
     let (crs, _) = compound::from_text("the chosen", &format!("EPSG:{code}"))?;
-    Ok(Some(Working::new(crs, [1.0; 2], dem)))
+    Ok(Some(Working::new(crs, [1.0; 2], dem)?))
 }
 
 /// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
@@ -236,7 +242,7 @@ fn equal_area(dem: &Dem) -> Result<Working, DemError> {
     })?;
     let mut crs = Crs::from_spatial_ref(&reference)?;
     crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
-    Ok(Working::new(crs, [1.0; 2], dem))
+    Working::new(crs, [1.0; 2], dem)
 }
 
 /// CRS positions of the corners, the middles of the sides and the centre of every file.

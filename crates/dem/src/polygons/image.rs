@@ -1,11 +1,9 @@
 //! A polygon in the working CRS, and on the lattice of a package.
 
-use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion};
+use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion, Seam};
 
-use crate::crs::full_turns::turns;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
-use crate::mosaics::data_extent::near_image;
 use crate::polygons::polygon::{Polygon, PolygonRings, Ring};
 use crate::{DemError, PolygonError, RecordedCrs};
 
@@ -95,19 +93,18 @@ fn of_part(
     tolerance_m: f64,
 ) -> Result<Option<Vec<Ring>>, DemError> {
     let operation = Operation::into_working(&part.crs, working, Some(area_deg)).around(None);
-    let turn_m = working.crs.turn.map(|turn| turn * working.metres_per_unit[0]);
+    let seam_m = working.seam_m();
     let mut rings: Vec<Ring> = Vec::with_capacity(part.rings.len());
     let mut center_m = None;
     for ring in &part.rings {
-        let Some(mut ring) = of_ring(ring, &operation, turn_m, tolerance_m)? else {
+        let Some(mut ring) = of_ring(ring, &operation, seam_m, tolerance_m)? else {
             return Ok(None);
         };
-        if let Some(turn_m) = turn_m {
+        if let Some(seam_m) = seam_m {
             // The outer ring goes where the data's middle is near, and holes go with it.
             let own = center_x(&ring);
-            let middle_m = working.middle * working.metres_per_unit[0];
-            let near = *center_m.get_or_insert(own - turn_m * turns(own - middle_m, turn_m));
-            let away = turn_m * ((own - near) / turn_m).round();
+            let near = *center_m.get_or_insert(own - seam_m.turn() * seam_m.turns(own));
+            let away = seam_m.turn() * seam_m.around(near).turns(own);
             for corner in &mut ring {
                 corner[0] -= away;
             }
@@ -137,7 +134,7 @@ struct Corner {
 fn of_ring(
     ring: &Ring,
     operation: &Operation,
-    turn_m: Option<f64>,
+    seam_m: Option<Seam>,
     tolerance_m: f64,
 ) -> Result<Option<Ring>, DemError> {
     let carry = |own: &[[f64; 2]]| -> Result<Option<Vec<[f64; 2]>>, DemError> {
@@ -145,16 +142,16 @@ fn of_ring(
         operation.apply(&mut images)?;
         Ok(images.iter().flatten().all(|value| value.is_finite()).then_some(images))
     };
-    let beside = |image: [f64; 2], near: [f64; 2]| match turn_m {
-        Some(turn_m) => [near_image(image[0], near[0], turn_m), image[1]],
+    let beside = |image: [f64; 2], near: [f64; 2]| match seam_m {
+        Some(seam_m) => [seam_m.around(near[0]).image(image[0]), image[1]],
         None => image,
     };
     let Some(mut images) = carry(ring)? else { return Ok(None) };
-    for index in 1..images.len() {
-        images[index] = beside(images[index], images[index - 1]);
+    if let (Some(&first), Some(seam_m)) = (images.first(), seam_m) {
+        seam_m.around(first[0]).unroll(&mut images);
     }
-    if let (Some(&first), Some(&last), Some(turn_m)) = (images.first(), images.last(), turn_m)
-        && (beside(first, last)[0] - first[0]).abs() > turn_m.abs() / 2.0
+    if let (Some(first), Some(last), Some(seam_m)) = (images.first(), images.last(), seam_m)
+        && seam_m.parts(first, last)
     {
         // It goes around a pole.
         return Ok(None);

@@ -180,7 +180,7 @@ impl Reader<'_> {
         let mosaic = &dem.mosaics[mosaic];
         let mut at = positions_m.to_vec();
         Operation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
-            .around(mosaic.turn())
+            .around(mosaic.seam())
             .apply(&mut at)?;
         for position in &mut at {
             let sample = mosaic.crs_from_sample.pixel_from_crs(*position);

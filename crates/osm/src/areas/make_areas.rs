@@ -3,14 +3,14 @@
 use std::collections::HashSet;
 
 use corniche_areas::{
-    Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, Ring,
-    assemble,
+    Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
 };
-use corniche_geom::{LatticePoint, wgs84};
+use corniche_geom::{LatticePoint, split_at_seam, wgs84};
 use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use super::{
+    over_seam,
     records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
     summary::AreaSummary,
 };
@@ -18,7 +18,7 @@ use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
     find_ways::check_held,
-    read_request::ToLattice,
+    read_request::Placing,
     reading::{Reading, Step},
     spool::SpoolReader,
 };
@@ -58,9 +58,9 @@ pub(crate) fn make_areas(
             reading.tell(Step::Roads, 1, 1);
             return Ok(());
         }
-        let place = reading.request.place;
+        let placing = reading.request.placing();
         let made: Vec<Made> = pool.install(|| {
-            batch.into_par_iter().map(|(known, parts)| make(known, &parts, place)).collect()
+            batch.into_par_iter().map(|(known, parts)| make(known, &parts, placing)).collect()
         });
         for made in made {
             made.defects.into_iter().for_each(&mut *on_defect);
@@ -116,18 +116,18 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, parts: &[OutlineWayRecord], place: &ToLattice<'_>) -> Made {
+fn make(known: Known, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
-    let lines = if known.is_coastline { coastlines(id, parts, place) } else { Ok(Vec::new()) };
+    let lines = if known.is_coastline { coastlines(id, parts, placing) } else { Ok(Vec::new()) };
     let (coastlines, failed) = match lines {
         Ok(lines) => (lines, None),
         Err(loss) => (Vec::new(), Some(loss)),
     };
     let class = known.class.and_then(AreaClass::from_number);
     let area = match (class, failed) {
-        (Some(class), _) => try_making((known, class), parts, place, &mut defects).map(Some),
+        (Some(class), _) => try_making((known, class), parts, placing, &mut defects).map(Some),
         (None, Some(loss)) => Err(loss),
         (None, None) => Ok(None),
     };
@@ -137,11 +137,12 @@ fn make(known: Known, parts: &[OutlineWayRecord], place: &ToLattice<'_>) -> Made
     Made { area, coastlines, defects }
 }
 
-/// The lines of a way on the package's lattice: several where points between them cannot be placed.
+/// The lines of a way on the package's lattice: several where points between them cannot be placed, or where it
+/// goes over the seam of the map.
 fn coastlines(
     way_id: i64,
     parts: &[OutlineWayRecord],
-    place: &ToLattice<'_>,
+    placing: Placing<'_>,
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
@@ -153,9 +154,11 @@ fn coastlines(
         };
         let positions_deg: Vec<[f64; 2]> =
             points.iter().copied().map(to_point).map(degrees_of).collect();
-        let placed = place(&positions_deg);
-        let runs = placed.split(Option::is_none).map(|run| run.iter().flatten().copied());
-        let runs = runs.map(|points| Coastline { way_id, points: points.collect() });
+        let placed = (placing.place)(&positions_deg);
+        let runs = placed
+            .split(Option::is_none)
+            .flat_map(|run| split_at_seam(run.iter().flatten().copied().collect(), placing.seam));
+        let runs = runs.map(|points| Coastline { way_id, points });
         lines.extend(runs.filter(|line| line.points.len() >= 2));
     }
     if lines.is_empty() { Err(AreaLoss::OutsideProjection) } else { Ok(lines) }
@@ -164,7 +167,7 @@ fn coastlines(
 fn try_making(
     (known, class): (Known, AreaClass),
     parts: &[OutlineWayRecord],
-    place: &ToLattice<'_>,
+    placing: Placing<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
     let Known { object, name, .. } = known;
@@ -185,6 +188,7 @@ fn try_making(
             OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
         }
     }
+    over_seam::join(&mut ways);
     let outline: Vec<OutlineWay<'_>> =
         ways.iter().map(|way| OutlineWay { points: &way.points }).collect();
     let mut assembled = assemble(&outline).map_err(|error| match error {
@@ -201,9 +205,10 @@ fn try_making(
         }
     }
     let area_m2 = assembled.polygons.iter().map(area_m2).sum();
-    let polygons: Option<Vec<Polygon>> =
-        assembled.polygons.iter().map(|polygon| placed(polygon, place)).collect();
-    let polygons = polygons.ok_or(AreaLoss::OutsideProjection)?;
+    let mut polygons = Vec::with_capacity(assembled.polygons.len());
+    for polygon in &assembled.polygons {
+        polygons.extend(over_seam::placed(polygon, placing)?);
+    }
     if let (AreaObject::Relation(relation_id), true) = (object, missing > 0) {
         defects.push(Defect::MissingWays { relation_id, ways: missing });
     }
@@ -217,8 +222,8 @@ fn try_making(
 }
 
 /// A way of an outline that the file has.
-struct Line {
-    points: Vec<LatticePoint>,
+pub(crate) struct Line {
+    pub(crate) points: Vec<LatticePoint>,
     is_inner: bool,
 }
 
@@ -243,13 +248,4 @@ fn area_m2(polygon: &Polygon) -> f64 {
         wgs84::area_m2(&ring_deg)
     };
     polygon.rings().map(|ring| of_ring(ring.points())).sum()
-}
-
-/// The same polygon on the package's lattice.
-fn placed(polygon: &Polygon, place: &ToLattice<'_>) -> Option<Polygon> {
-    let points = polygon.rings().flat_map(Ring::points);
-    let positions_deg: Vec<[f64; 2]> = points.copied().map(degrees_of).collect();
-    let mut placed = place(&positions_deg).into_iter();
-    // Rings are gone through in the same order.
-    polygon.placed(|_| placed.next().flatten())
 }

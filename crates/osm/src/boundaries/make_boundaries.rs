@@ -1,7 +1,7 @@
 //! Boundaries are made of ways and of the relations that hold them.
 
 use corniche_areas::BoundaryClass;
-use corniche_geom::LatticePoint;
+use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::SortRecord as _;
 
 use super::{boundary::Boundary, summary::BoundarySummary};
@@ -142,7 +142,10 @@ fn parts_of(
         .collect();
     let parts: Vec<Boundary> = points
         .split(Option::is_none)
-        .filter_map(|run| part(way.way_id, class, run.iter().flatten().copied()))
+        .flat_map(|run| {
+            split_at_seam(run.iter().flatten().copied().collect(), reading.request.seam)
+        })
+        .filter_map(|line| part(way.way_id, class, line))
         .collect();
     if !parts.is_empty() {
         return Ok(parts);
@@ -158,11 +161,7 @@ fn parts_of(
     })
 }
 
-fn part(
-    way_id: i64,
-    class: BoundaryClass,
-    run: impl Iterator<Item = (LatticePoint, bool)>,
-) -> Option<Boundary> {
+fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Option<Boundary> {
     let mut points: Vec<(LatticePoint, bool)> = Vec::new();
     for (at, is_shared) in run {
         match points.last_mut() {

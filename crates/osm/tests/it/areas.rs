@@ -34,6 +34,7 @@ fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
         others: &[],
         table: &frc_table,
         place: &to_lattice,
+        seam: None,
         pool: &pool,
         memory_bytes,
         scratch: &scratch,
@@ -235,4 +236,23 @@ fn coastlines_are_handed_on_in_order_of_their_points() {
     let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
     let expected = [way(3, AreaLoss::OpenWay), way(4, AreaLoss::MissingNodes)];
     assert_eq!(found.defects, expected);
+}
+
+/// A forest over 180° of two ways, one of which ends at −180° where the other begins at 180°: outlines are joined around the earth.
+#[test]
+fn an_outline_over_180_degrees_is_closed() {
+    let mut block = Block::new();
+    let places = [(1799, 100), (1800, 100), (-1799, 100), (-1799, 101), (-1800, 101), (1799, 101)];
+    let nodes: Vec<_> =
+        (1..).zip(places).map(|(id, (lon, lat))| (id, lat * 1_000_000, lon * 1_000_000)).collect();
+    block.dense(&nodes);
+    block.way(1, PLAIN, &[1, 2, 3, 4]);
+    block.way(2, PLAIN, &[4, 5, 6, 1]);
+    block.relation(9, FOREST, &[(1, "outer"), (2, "outer")]);
+    let found = read_within(&file(&block), 1 << 24).unwrap();
+    assert_eq!(found.defects, []);
+    let [forest] = &found.areas[..] else { panic!("{:?}", found.areas) };
+    // As GeographicLib has it for 0.2 by 0.1 degrees at 10 degrees north.
+    let expected_m2 = 242_503_054.0;
+    assert!((forest.area_m2 / expected_m2 - 1.0).abs() < 1e-5, "{}", forest.area_m2);
 }

@@ -81,6 +81,7 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, Area
         others: &[],
         table: &default_table(),
         place: &to_lattice,
+        seam: None,
         pool: &pool,
         memory_bytes: 1 << 26,
         scratch: &scratch,

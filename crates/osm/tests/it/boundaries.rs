@@ -29,6 +29,7 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         others: &[],
         table: &frc_table,
         place: &to_lattice,
+        seam: None,
         pool: &pool,
         memory_bytes,
         scratch: &scratch,

@@ -82,6 +82,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             others: &[],
             table: &default_table(),
             place: &to_lattice,
+            seam: None,
             pool: &pool,
             memory_bytes: 1 << 26,
             scratch: &MemoryScratch::default(),

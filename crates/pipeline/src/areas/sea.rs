@@ -29,11 +29,23 @@ impl SeaPlace<'_> {
     fn bounds(&self) -> Result<LatticeBounds, BuildError> {
         let boxes: Result<Option<Vec<[f64; 4]>>, _> =
             self.osm.iter().map(|path| corniche_osm::header_bounds_deg(path)).collect();
-        let Some(boxes) = boxes.map_err(BuildError::Osm)? else { return Ok(self.data) };
+        let data = self.data_on_map();
+        let Some(boxes) = boxes.map_err(BuildError::Osm)? else { return Ok(data) };
         let around = extract_bounds::around(&boxes);
         let covered = inner_rectangle(around, self.frame, self.projection);
-        let both = covered.map(|covered| self.data.intersection(&covered));
-        Ok(both.filter(has_area).unwrap_or(self.data))
+        let both = covered.map(|covered| data.intersection(&covered));
+        Ok(both.filter(has_area).unwrap_or(data))
+    }
+
+    /// The data's rectangle as far as the map of the earth goes: where it is cut open, coastlines end.
+    fn data_on_map(&self) -> LatticeBounds {
+        let Some(seam) = self.projection.seam() else { return self.data };
+        let [west, east] = seam.on_lattice(self.frame).ends().map(|end| end as i64);
+        let LatticeBounds { min, max } = self.data;
+        LatticeBounds {
+            min: LatticePoint::new(min.u.max(west), min.v),
+            max: LatticePoint::new(max.u.min(east), max.v),
+        }
     }
 
     /// Makes the sea, if there are coastlines, and counts it in `summary`, and what is wrong with coastlines.

@@ -223,6 +223,7 @@ fn on_extract<T>(
         others,
         table: &input.settings.table,
         place: &place,
+        seam: input.projection.seam().map(|seam| seam.on_lattice(input.levels.frame())),
         pool: input.pool,
         memory_bytes: input.memory_bytes,
         scratch,

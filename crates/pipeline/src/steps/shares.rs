@@ -57,6 +57,7 @@ fn read(
         table: &context.settings.roads.table,
         // Places on the lattice are the business of the step that makes roads.
         place: &|positions_deg| vec![None; positions_deg.len()],
+        seam: None,
         pool: &pool(context)?,
         memory_bytes: context.memory().sorting,
         scratch,

@@ -1,5 +1,6 @@
 //! What a package says for PMTiles tools, beside its manifest.
 
+use corniche_geom::{Bounds, Seam};
 use serde::de::IgnoredAny;
 
 use crate::Manifest;
@@ -44,7 +45,7 @@ impl ToolRecord {
     /// What a package of this manifest and so many tiles says.
     #[must_use]
     pub fn of(manifest: &Manifest, tiles: u64) -> Self {
-        let bounds = manifest.wgs84_bounds;
+        let bounds = header_bounds(manifest.wgs84_bounds);
         let Metadata { name, description, attribution, .. } = Metadata::of(manifest);
         Self {
             addressed_tiles: tiles,
@@ -93,6 +94,17 @@ impl ToolRecord {
             attribution: texts.attribution,
         })
     }
+}
+
+/// A rectangle in degrees as the header can have it. Its numbers end at 214.75 degrees: what reaches beyond, such as a grid that counts from 0 to
+/// 360, counts as all around the earth.
+pub(crate) fn header_bounds(bounds: Bounds) -> Bounds {
+    let most = f64::from(i32::MAX) / STEPS_PER_DEGREE;
+    if bounds.min_x >= -most && bounds.max_x <= most {
+        return bounds;
+    }
+    let [west, east] = Seam::of_degrees().ends();
+    Bounds { min_x: west, max_x: east, ..bounds }
 }
 
 /// Degrees in the header's steps.

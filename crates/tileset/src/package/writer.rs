@@ -13,6 +13,7 @@ use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoo
 use crate::package::close_up::CloseUp;
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
 use crate::package::tile_order::pmtiles_order;
+use crate::package::tool_record::header_bounds;
 use crate::{
     Manifest,
     limits::{MAX_METADATA_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES},
@@ -112,7 +113,7 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// As [`Writer::new`]; when there are more, [`Writer::finish`] may fail.
     pub fn new_for(out: W, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
-        let bounds = manifest.wgs84_bounds;
+        let bounds = header_bounds(manifest.wgs84_bounds);
         let [lon, lat] = bounds.center();
         let max_level = manifest.frame.max_level();
         let tiles = PmTilesWriter::new(TileType::Unknown)

@@ -117,7 +117,17 @@ pub(crate) fn request<'a>(
     scratch: &'a dyn Scratch,
 ) -> ReadRequest<'a> {
     let (table, memory_bytes) = (&*TABLE, 1 << 30);
-    ReadRequest { path, others: &[], table, place, pool, memory_bytes, scratch, on_progress: None }
+    ReadRequest {
+        path,
+        others: &[],
+        table,
+        place,
+        seam: None,
+        pool,
+        memory_bytes,
+        scratch,
+        on_progress: None,
+    }
 }
 
 pub(crate) static POOL: LazyLock<ThreadPool> =
