@@ -72,5 +72,6 @@ fn inherit<'t>(own: &mut DeTable<'t>, mut base: DeTable<'t>) {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "base_tests.rs"]
 mod tests;

@@ -81,12 +81,12 @@ fn an_area_is_told_once_and_as_no_defect() {
     assert_eq!(corniche([&line[..], &quick[..]].concat()).code, 0);
     let counts = json(&["info", text(&package), "--json"])["manifest"]["counts"].take();
     let defects = counts["defects"].as_array().unwrap();
-    let area = defects.iter().find(|defect| defect[0] == "area").expect("the sample has one");
+    let area = defects.iter().find(|defect| defect["name"] == "area").expect("the sample has one");
     let info = corniche(["info", text(&package)]).out;
     assert!(!info.contains("defect: area"), "{info}");
-    assert!(info.contains(&format!("not taken, an area: {}", area[1])), "{info}");
+    assert!(info.contains(&format!("not taken, an area: {}", area["count"])), "{info}");
     let others = ["area", "unknown highway value", "tag taken for another value"];
-    let told = defects.iter().filter(|defect| !others.contains(&defect[0].as_str().unwrap()));
+    let told = defects.iter().filter(|defect| !others.contains(&defect["name"].as_str().unwrap()));
     assert_eq!(info.matches("defect: ").count(), told.count(), "{info}");
 }
 
