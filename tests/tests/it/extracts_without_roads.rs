@@ -10,8 +10,11 @@ use std::{
 use corniche_testing::pbf::{Block, file};
 use e2e::{Ran, corniche, manifest, sample, text};
 
+/// Tags, and places of a lattice.
+type Way<'a> = (&'a [(&'a str, &'a str)], &'a [[i64; 2]]);
+
 /// Ways over the sample `pass`, each through places of a lattice 0.005 and 0.004 degrees apart.
-fn extract(folder: &Path, name: &str, ways: &[(&[(&str, &str)], &[[i64; 2]])]) -> PathBuf {
+fn extract(folder: &Path, name: &str, ways: &[Way<'_>]) -> PathBuf {
     let mut block = Block::new();
     let place =
         |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);

@@ -116,7 +116,8 @@ impl<'a> Ground<'a> {
         let manifest = self.package.manifest();
         let frame = &manifest.frame;
         // The axis along which the line goes, and the one along which it stays.
-        let along = usize::from(from_deg[0] == to_deg[0]);
+        let long = [0, 1].map(|axis| (to_deg[axis] - from_deg[axis]).abs());
+        let along = usize::from(long[1] > long[0]);
         let across = 1 - along;
         let length_deg = to_deg[along] - from_deg[along];
         let room_deg = length_deg * ROOM_BESIDE_LINES;
@@ -134,7 +135,7 @@ impl<'a> Ground<'a> {
                 };
                 let beside = |share: f64| place(share)[across] - line;
                 let [first, last] = [beside(0.0), beside(1.0)];
-                if first == last || first * last > 0.0 {
+                if (first - last).abs() < f64::MIN_POSITIVE || first * last > 0.0 {
                     continue;
                 }
                 // Edges bend a little in degrees.
