@@ -120,13 +120,11 @@ pub fn export_areas(
     Ok(summary)
 }
 
-/// By how much corners of areas are rounded on a level, at most: the build has them on a lattice of 0.1 m on the finest level, of a quarter of
-/// a cell above.
+/// By how much corners of areas can be off on a level: the build has them on a lattice of 0.1 m on the finest level, of a quarter of a cell
+/// above. Where tiles meet they are rounded twice, by half a step each time.
 fn rounding_m(package: &FilePackage, level: u8) -> f64 {
     let frame = &package.manifest().frame;
-    let step_m =
-        if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 };
-    step_m / 2.0 + frame.lattice_step_m()
+    if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 }
 }
 
 /// What a tile has of areas of these classes.

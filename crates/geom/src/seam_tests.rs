@@ -1,9 +1,11 @@
 //! Lines over the seam of a map are cut there, and others are not touched.
 
+#![expect(clippy::float_cmp, reason = "degrees and steps are exact")]
+
 use super::*;
 
 fn split(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
-    Seam::of_degrees().split(line.to_vec())
+    Seam::of_degrees().split(Vec::from(line))
 }
 
 /// Lines that do not meet the seam come back as they are, whatever is in them.

@@ -1,6 +1,6 @@
 //! Roads, areas, boundaries and lines of other files over ±180° and over the opposite meridian, on elevation models of many systems.
 //!
-//! All lie on the same ground; right lengths and areas are those of GeographicLib's geodesics on WGS84.
+//! All lie on the same ground; right lengths and areas are those of `GeographicLib`'s geodesics on WGS84.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
