@@ -13,6 +13,7 @@ use crate::{
     documents::{plan::PlanDocument, to_line},
     exit::ExitCode,
     failure::Failure,
+    info::datum_operation,
     interrupt, jobs,
     output::{Output, existing_of},
     settings,
@@ -105,6 +106,9 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: 
     say("CRS", &grid.crs);
     say("grid", &format!("cell {east_m:.3} × {north_m:.3} m, {}", grid.resampling));
     say("heights", &grid.vertical_treatment);
+    for found in &grid.datum_operations {
+        say("positions", &datum_operation(found));
+    }
     say("max error", &format!("{:.3} m on the finest level", plan.settings.max_error_m));
     for input in &plan.inputs {
         say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));

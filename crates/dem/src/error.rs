@@ -176,9 +176,9 @@ pub enum DemError {
     )]
     Transform { from: String, to: String, source: Box<LibraryError> },
     #[error(
-        "{whose}: PROJ knows nothing between the datums of {from} and {to}, and would take the one for the other ({operation:?}): roads could lie \
-         100 m and more beside the ground; name the true coordinate system (gdal_edit.py -a_srs EPSG:n), or give --allow-ballpark if you \
-         want this"
+        "{whose}: PROJ knows nothing between the datums of {from} and {to}, and would take the one for the other ({operation:?}): ground, roads and \
+         what else is put together can then lie 100 m and more beside each other; name the true coordinate system (gdal_edit.py -a_srs EPSG:n; \
+         for vectors ogr2ogr -a_srs), or give --allow-ballpark if you want this"
     )]
     Ballpark { whose: String, from: String, to: String, operation: String },
     #[error("the DEM's centre has no position in {crs}; choose another --crs")]

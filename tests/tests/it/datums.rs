@@ -9,7 +9,11 @@ use std::{
 
 use corniche_testing::Raster;
 use e2e::{Ran, built_in_parts, corniche, manifest, text, write_ascii_grid};
-use gdal::Metadata as _;
+use gdal::{
+    DriverManager, Metadata as _,
+    spatial_ref::SpatialRef,
+    vector::{Geometry, LayerAccess as _, LayerOptions},
+};
 use serde_json::json;
 
 fn height([x, y]: [f64; 2]) -> f32 {
@@ -87,6 +91,12 @@ fn a_missing_grid_is_told_by_its_name() {
     verified(&package, &dem);
 }
 
+/// A local datum on the ellipsoid of Bessel, as a `.prj` file has it.
+const LOCAL: &str = "PROJCS[\"Local\",GEOGCS[\"GCS_Local\",DATUM[\"D_Local_Survey\",SPHEROID[\"Bessel_1841\",6377397.155,\
+    299.1528128]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Gauss_Kruger\"],\
+    PARAMETER[\"False_Easting\",4500000.0],PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",12.0],\
+    PARAMETER[\"Scale_Factor\",1.0],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
+
 /// An ASCII grid with a `.prj` of a local datum on the ellipsoid of Bessel: WGS84 is 100 m and more beside it.
 #[test]
 fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
@@ -97,13 +107,9 @@ fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
     write_ascii_grid(&dem, [40, 40], place, |column, row| {
         f64::from(height([column as f64, row as f64]))
     });
-    let projection = "PROJCS[\"Local\",GEOGCS[\"GCS_Local\",DATUM[\"D_Local_Survey\",SPHEROID[\"Bessel_1841\",6377397.155,\
-         299.1528128]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Gauss_Kruger\"],\
-         PARAMETER[\"False_Easting\",4500000.0],PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",12.0],\
-         PARAMETER[\"Scale_Factor\",1.0],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
-    fs::write(dem.with_extension("prj"), projection).unwrap();
+    fs::write(dem.with_extension("prj"), LOCAL).unwrap();
     for command in ["build", "plan"] {
-        let output = folder.path().join(command);
+        let output = folder.path().join(format!("{command}.pmtiles"));
         let ran = corniche([command, "--dem", text(&dem), "-o", text(&output)]);
         assert_eq!(ran.code, 2, "{command}: {}", ran.err);
         for word in ["local.asc", "datum", "100 m", "-a_srs", "--allow-ballpark"] {
@@ -119,6 +125,8 @@ fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
     assert!(told.contains("takes one datum for the other"), "{told}");
     verified(&package, &dem);
     // Parts of a build that was allowed to need not be allowed again.
+    let planned = corniche(["plan", "--dem", text(&dem), "--allow-ballpark"]);
+    assert!(planned.out.contains("takes one datum for the other"), "{}", planned.out);
     let parts = built_in_parts(folder.path(), &["--dem", text(&dem), "--allow-ballpark"]);
     assert!(parts == fs::read(&package).unwrap(), "parts make another package");
 }
@@ -174,4 +182,36 @@ fn of_several_bands_one_is_to_be_chosen() {
     assert!(manifest(&package)["settings"].get("dem_band").is_none());
     assert_eq!(build(&both, &package, &["--dem-band", "2"]).code, 0);
     assert_eq!(manifest(&package)["vertical"]["range_m"], json!([0.0, 0.0]));
+}
+
+/// What is laid on the ground or cuts it comes to its datum likewise.
+#[test]
+fn photos_and_polygons_of_an_unknown_datum_are_refused_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let [package, polygon] = ["out.pmtiles", "part.gpkg"].map(|name| folder.path().join(name));
+    let dem = raster(folder.path(), 31468, [4_500_000.0, 5_403_000.0], 75.0);
+    let local = LOCAL.replace("Gauss_Kruger", "Transverse_Mercator");
+    let local = SpatialRef::from_wkt(&local).unwrap();
+    let photo = Raster::new(0, [40, 40], [4_500_000.0, 75.0, 0.0, 5_403_000.0, 0.0, -75.0])
+        .bands(3)
+        .created(&["PHOTOMETRIC=RGB"])
+        .tagged(|dataset| dataset.set_spatial_ref(&local).unwrap())
+        .write(folder.path(), "photo.tif", |_| 100_u8);
+    let driver = DriverManager::get_driver_by_name("GPKG").unwrap();
+    let mut vectors = driver.create_vector_only(&polygon).unwrap();
+    let layer = LayerOptions { srs: Some(&local), ..LayerOptions::default() };
+    let corners = "4500600 5400600, 4502000 5400600, 4502000 5402000, 4500600 5400600";
+    let triangle = Geometry::from_wkt(&format!("POLYGON(({corners}))")).unwrap();
+    vectors.create_layer(layer).unwrap().create_feature(triangle).unwrap();
+    vectors.close().unwrap();
+    for (option, file) in [("--photo", &photo), ("--polygon", &polygon)] {
+        let ran = build(&dem, &package, &[option, text(file)]);
+        assert_eq!(ran.code, 2, "{option}: {}", ran.err);
+        let name = file.file_name().unwrap().to_str().unwrap();
+        for word in [name, "datum", "--allow-ballpark"] {
+            assert!(ran.err.contains(word), "{option}: {}", ran.err);
+        }
+        let ran = build(&dem, &package, &[option, text(file), "--allow-ballpark"]);
+        assert_eq!(ran.code, 0, "{option}: {}", ran.err);
+    }
 }

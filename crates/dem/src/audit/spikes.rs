@@ -11,28 +11,28 @@ const KEPT_SPIKES: usize = 3;
 
 /// A sample that stands alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Spike {
-    pub(super) row: usize,
-    pub(super) column: usize,
-    pub(super) height_m: f64,
+pub(crate) struct Spike {
+    pub(crate) row: usize,
+    pub(crate) column: usize,
+    pub(crate) height_m: f64,
     /// The value as the file stores it.
-    pub(super) stored: f64,
+    pub(crate) stored: f64,
 }
 
 /// How many spikes there are in some samples of a file, and the first of them, row by row. Parts merge in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Spikes {
-    pub(super) count: u64,
-    pub(super) first: Vec<Spike>,
+pub(crate) struct Spikes {
+    pub(crate) count: u64,
+    pub(crate) first: Vec<Spike>,
 }
 
 impl Spikes {
-    pub(super) fn add(&mut self, spike: Spike) {
+    pub(crate) fn add(&mut self, spike: Spike) {
         self.count += 1;
         self.keep(spike);
     }
 
-    pub(super) fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.count += other.count;
         other.first.iter().for_each(|&spike| self.keep(spike));
     }
@@ -46,7 +46,7 @@ impl Spikes {
 }
 
 /// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it.
-pub(super) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
+pub(crate) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
     let mut found = Vec::new();
     for (row, line) in heights_m.chunks_exact(columns).enumerate() {
         let mut before = f64::NAN;
@@ -64,7 +64,7 @@ pub(super) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
 }
 
 /// Whether a sample of a rectangle is a spike, by the neighbours inside it.
-pub(super) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2]) -> bool {
+pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2]) -> bool {
     stands_alone(heights_m, columns, at, FEWEST_NEIGHBOURS)
 }
 

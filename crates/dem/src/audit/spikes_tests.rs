@@ -57,7 +57,7 @@ fn parts_merge_to_the_first_few_in_any_order() {
     (0..20).for_each(|k| whole.add(spike(k)));
     let parts = [[3, 19], [0, 5], [11, 2]].map(|[a, b]| {
         let mut part = Spikes::default();
-        [a, b].map(|k| part.add(spike(k)));
+        [a, b].into_iter().for_each(|k| part.add(spike(k)));
         part
     });
     let mut rest = Spikes::default();

@@ -8,9 +8,9 @@ use std::ptr::{NonNull, null, null_mut};
 /// Which operations are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Listed {
-    /// Those whose grids are there, as GDAL lists them.
+    /// Operations whose grids are there, as GDAL lists them.
     Usable,
-    /// All that PROJ knows.
+    /// All operations that PROJ knows.
     Known,
 }
 
@@ -21,13 +21,13 @@ pub(crate) struct ProjOperation {
     pub(crate) name: String,
     /// `None` where PROJ does not know it.
     pub(crate) accuracy_m: Option<f64>,
-    /// It takes one datum for another.
+    /// Whether it takes one datum for another.
     pub(crate) is_ballpark: bool,
     /// West, south, east and north in degrees; the west is larger across ±180°.
     pub(crate) area_deg: Option<[f64; 4]>,
     /// Files of the grids that it needs and that are not there.
     pub(crate) missing_grids: Vec<String>,
-    /// It needs grids.
+    /// Whether it needs grids.
     pub(crate) has_grids: bool,
 }
 

@@ -10,7 +10,7 @@ use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::data_extent;
-use crate::{Dem, DemError, GridPlan, PlacedRaster, Polygon};
+use crate::{Dem, DemError, GridPlan, Polygon};
 
 /// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data` is the rectangle of all nodes,
 /// `into_working` has an operation for each mosaic. None where all datums are that of WGS84.
@@ -54,7 +54,8 @@ impl Dem {
             mosaic.files.first().map(|file| self.sources[file.index].path.clone())
         };
         let path: Option<PathBuf> = has_it(&refused.from).or_else(|| has_it(&refused.to));
-        Err(refused.refusal(path.map_or_else(|| "--crs".to_owned(), |path| format!("{path:?}"))))
+        Err(refused
+            .refusal(path.map_or_else(|| "--crs".to_owned(), |path| path.display().to_string())))
     }
 }
 
@@ -67,18 +68,8 @@ impl GridPlan {
         self.refuse_ballpark_of(polygon.parts().iter().map(|part| (polygon.path(), &part.crs)))
     }
 
-    /// Refuses rasters such as photos whose datum would be taken for that of the grid.
-    ///
-    /// # Errors
-    /// [`DemError::Ballpark`] where it is so.
-    pub fn refuse_ballpark_of_rasters<'a>(
-        &self,
-        rasters: impl Iterator<Item = &'a PlacedRaster>,
-    ) -> Result<(), DemError> {
-        self.refuse_ballpark_of(rasters.map(|raster| (raster.path(), raster.crs())))
-    }
-
-    fn refuse_ballpark_of<'a>(
+    /// Refuses files whose datum would be taken for that of the grid.
+    pub(crate) fn refuse_ballpark_of<'a>(
         &self,
         files: impl Iterator<Item = (&'a Path, &'a Crs)>,
     ) -> Result<(), DemError> {
@@ -92,7 +83,7 @@ impl GridPlan {
             let operation = Operation::into_working(crs, &self.working, Some(area_deg));
             let found = datum_operation::used(&operation, &[area_deg.center()]);
             if let Some(refused) = found.into_iter().find(|found| found.must_be_allowed) {
-                return Err(refused.refusal(format!("{path:?}")));
+                return Err(refused.refusal(path.display().to_string()));
             }
         }
         Ok(())

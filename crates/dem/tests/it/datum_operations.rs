@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{DatumOperation, Dem, PlanOptions, RecordedCrs};
+use corniche_dem::{DatumOperation, PlanOptions, RecordedCrs};
 use corniche_geom::{Bounds, Projection};
 
 use crate::fixture::{Raster, check_words, folder, open, options, plan};
@@ -31,7 +31,7 @@ fn the_datum_of_wgs84_needs_no_operation() {
 fn an_operation_is_told_with_the_accuracy_that_the_registry_has() {
     for (epsg, corner, name, accuracy_m) in [
         (25832, [500_000.0, 5_200_000.0], "ETRS89 to WGS 84 (1)", 1.0),
-        (31287, [430_000.0, 420_000.0], "MGI to WGS 84", 1.5),
+        (31287, [170_000.0, 350_000.0], "MGI to WGS 84 (3)", 1.5),
         (2056, [2_600_000.0, 1_200_000.0], "CH1903+ to WGS 84 (1)", 1.0),
     ] {
         let found = operations(epsg, corner, 30.0);

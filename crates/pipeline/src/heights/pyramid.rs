@@ -133,8 +133,9 @@ impl Pyramid<'_> {
     /// Warns of samples of `patches` that stand alone, unless the user said which heights there are.
     pub(crate) fn warn_of_spikes(&self, patches: &PatchRecord) {
         if self.range_m.is_none() {
-            let texts = self.audit(patches).spikes(self.dem);
-            texts.iter().for_each(|text| self.observer.warning(text));
+            for text in self.audit(patches).spikes(self.dem) {
+                self.observer.warning(&text);
+            }
         }
     }
 
