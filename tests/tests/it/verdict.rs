@@ -115,6 +115,12 @@ fn packages_tell_what_the_classes_of_a_table_of_ones_own_are_called() {
     let expected = ["motorway", "secondary, track", "path", "class 3"];
     assert_eq!(labels.as_array().unwrap()[..4], expected.map(Value::from));
     assert_eq!(labels[7], "via ferrata");
+    // A plan that is read again is the same.
+    let plan = folder.path().join("plan.json");
+    let line = ["plan", "--dem", text(&dem), "--osm", text(&osm), "--frc-table", text(&own), "-q"];
+    assert_eq!(corniche([&line[..], &["-o", text(&plan)]].concat()).code, 0);
+    let ran = corniche(["jobs", text(&plan), "--slots", "1"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
     let verify = ["verify", text(&package), "--osm", text(&osm), "--frc-table", text(&own), "-q"];
     let ran = corniche(verify);
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);

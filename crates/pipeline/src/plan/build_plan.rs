@@ -207,6 +207,8 @@ impl BuildPlan {
             Some(classes) => table.with_classes(classes)?,
             None => table,
         };
+        let tells_labels = self.settings.class_labels.is_some();
+        let table = if tells_labels { table.with_recorded_labels() } else { table };
         let mut terrain = settings_record::terrain(&self.settings);
         terrain.plan.polygon =
             paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;

@@ -126,7 +126,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
-        class_labels: _,
+        class_labels,
         classes: chosen_classes,
         class_max_cell_m,
         simplify_cells,
@@ -159,6 +159,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         fact("--polygon", &given(polygon.as_ref().map(polygon_text).as_ref())),
         fact("--relief", &relief.name()),
         fact("--frc-table", frc_table),
+        fact("the names of classes", &given(class_labels.as_ref().map(list).as_ref())),
         fact(
             "--classes",
             &given(
