@@ -57,12 +57,16 @@ fn parts_merge_to_the_first_few_in_any_order() {
     (0..20).for_each(|k| whole.add(spike(k)));
     let parts = [[3, 19], [0, 5], [11, 2]].map(|[a, b]| {
         let mut part = Spikes::default();
-        [a, b].into_iter().for_each(|k| part.add(spike(k)));
+        for k in [a, b] {
+            part.add(spike(k));
+        }
         part
     });
     let mut rest = Spikes::default();
     (0..20).filter(|k| ![3, 19, 0, 5, 11, 2].contains(k)).rev().for_each(|k| rest.add(spike(k)));
-    parts.iter().for_each(|part| rest.merge(part));
+    for part in &parts {
+        rest.merge(part);
+    }
     assert_eq!(rest, whole);
     assert_eq!((whole.count, whole.first.len(), whole.first[2]), (20, 3, spike(2)));
 }
