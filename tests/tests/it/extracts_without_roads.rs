@@ -39,7 +39,8 @@ fn build(folder: &Path, osm: &Path, options: &[&str]) -> Ran {
     let dem = sample("pass/pass-dem.tif");
     let target = folder.join("a.pmtiles");
     let line = ["build", "--dem", text(&dem), "--osm", text(osm), "-O", "-o", text(&target)];
-    corniche(line.iter().chain(options))
+    let coarse = ["--max-error", "20", "--relief", "off"];
+    corniche(line.iter().chain(&coarse).chain(options))
 }
 
 /// A build of these is refused, and says these words.
@@ -58,8 +59,8 @@ fn refused(folder: &Path, osm: &Path, options: &[&str], words: &[&str]) {
 fn built(folder: &Path, osm: &Path, options: &[&str]) -> (Ran, serde_json::Value) {
     let ran = build(folder, osm, options);
     assert_eq!(ran.code, 0, "{}", ran.err);
-    let (package, dem) = (folder.join("a.pmtiles"), sample("pass/pass-dem.tif"));
-    let verified = corniche(["verify", text(&package), "--dem", text(&dem), "--osm", text(osm)]);
+    let package = folder.join("a.pmtiles");
+    let verified = corniche(["verify", text(&package), "--osm", text(osm)]);
     assert_eq!(verified.code, 0, "{}{}", verified.out, verified.err);
     let manifest = manifest(&package);
     fs::remove_file(package).unwrap();

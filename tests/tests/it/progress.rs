@@ -123,7 +123,7 @@ fn nothing_is_told_to_whoever_asks_for_silence() {
 fn exports_and_comparisons_tell_how_far_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
-    copy_pass(&package, &["--quiet"]);
+    copy_pass(&package, &["--quiet", "--max-error", "20"]);
     let package = text(&package);
     let export = |what: &'static str, name: &str, more: &[&'static str]| {
         let words = ["export", what, package, "-O", "-o"].map(str::to_owned);
@@ -163,6 +163,10 @@ fn exports_and_comparisons_tell_how_far_they_are() {
             assert!(own.iter().all(|record| record.get("seconds_left").is_some()), "{last}");
         }
         assert_eq!(records.last().unwrap()["end"]["result"], "done");
+        // Once is enough: all tell through one observer.
+        if line[1] != "roads" && line[0] != "match" {
+            continue;
+        }
         let ran = corniche(&line);
         assert!(
             ran.err.lines().any(|line| line.contains(" in ") && line.contains(" s")),

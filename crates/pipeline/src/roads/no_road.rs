@@ -9,9 +9,9 @@ use corniche_roads::{Classified, FrcTable};
 const MOST_VALUES: usize = 5;
 
 /// Why an extract gives no road.
-pub(super) struct NoRoad {
+pub(crate) struct NoRoad {
     /// What its ways are instead.
-    pub(super) reason: String,
+    pub(crate) reason: String,
     /// How to have what it holds.
     advice: String,
 }
@@ -23,7 +23,7 @@ impl fmt::Display for NoRoad {
 }
 
 /// Why an extract gives no road under a table of classes.
-pub(super) fn why(extract: &ExtractSummary, table: &FrcTable) -> NoRoad {
+pub(crate) fn why(extract: &ExtractSummary, table: &FrcTable) -> NoRoad {
     const RIGHT_ONE: &str = "is it the right extract?";
     let ways = extract.highway_ways;
     let because = |reason: String, advice: &str| NoRoad { reason, advice: advice.to_owned() };
