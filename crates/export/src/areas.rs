@@ -120,7 +120,7 @@ pub fn export_areas(
     Ok(summary)
 }
 
-/// By how much corners of areas can be off on a level: the build has them on a lattice of 0.1 m on the finest level, of a quarter of a cell
+/// The most by which corners of areas can be off on a level: the build has them on a lattice of 0.1 m on the finest level, of a quarter of a cell
 /// above. Where tiles meet they are rounded twice, by half a step each time.
 fn rounding_m(package: &FilePackage, level: u8) -> f64 {
     let frame = &package.manifest().frame;

@@ -69,10 +69,9 @@ fn places_are_continuous_from_one_to_the_next() {
 /// On a lattice both ends are whole steps, a whole turn apart, and parts of a line meet.
 #[test]
 fn on_a_lattice_cuts_are_points() {
-    let cell = 111_319.490_793_273_57;
-    let node = crate::NodeIndex { i: -180, j: -90 };
-    let frame = GridFrame::new([0.0; 2], cell, node, 2).unwrap();
-    let half_m = 20_037_508.342_789_244;
+    let frame = GridFrame::new([0.0; 2], 10.0, crate::NodeIndex { i: 0, j: 0 }, 2).unwrap();
+    // An earth of 40 km, no whole number of steps.
+    let half_m = 20_037.508_342_789_244;
     let seam = Seam::new(0.0, 2.0 * half_m).on_lattice(&frame);
     let [west, east] = seam.ends();
     assert!(west.fract() == 0.0 && east.fract() == 0.0 && east - west == seam.turn());

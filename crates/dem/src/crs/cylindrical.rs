@@ -8,7 +8,7 @@ use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
 /// Methods of projections that may be such, by parts of their names; of others nothing is computed.
 const NAMED: [&str; 5] = ["mercator", "cylindrical", "plate carr", "miller", "gall"];
-/// Of these some have such parts in their names and are none.
+/// Some methods with such a part in their names are none: parts of theirs.
 const TURNED: [&str; 4] = ["transverse", "oblique", "hotine", "laborde"];
 /// Longitudes that are looked at, in twelfths of a turn.
 const PLACES: usize = 12;

@@ -188,7 +188,7 @@ fn try_making(
             OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
         }
     }
-    over_seam::join(&mut ways);
+    over_seam::join(&mut ways.iter_mut().map(|way| &mut way.points).collect::<Vec<_>>());
     let outline: Vec<OutlineWay<'_>> =
         ways.iter().map(|way| OutlineWay { points: &way.points }).collect();
     let mut assembled = assemble(&outline).map_err(|error| match error {
@@ -222,8 +222,8 @@ fn try_making(
 }
 
 /// A way of an outline that the file has.
-pub(crate) struct Line {
-    pub(crate) points: Vec<LatticePoint>,
+struct Line {
+    points: Vec<LatticePoint>,
     is_inner: bool,
 }
 

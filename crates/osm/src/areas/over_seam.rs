@@ -3,7 +3,7 @@
 use corniche_areas::{Polygon, Ring, split_polygon, unroll_rings};
 use corniche_geom::{LatticePoint, OnSeamedMap as _, Seam};
 
-use super::{make_areas::Line, records::degrees_of};
+use super::records::degrees_of;
 use crate::{AreaLoss, read_request::Placing};
 
 /// Steps of a degree on the lattice of outlines.
@@ -11,10 +11,10 @@ const STEPS: f64 = 1e7;
 
 /// Moves the points of an outline, in 1e-7 degrees, onto a map whose seam it does not meet. An outline that does not go over ±180° stays; one
 /// that goes around a pole meets every meridian, and stays, too.
-pub(crate) fn join(ways: &mut [Line]) {
-    let meets = |ways: &[Line], seam: Seam| {
+pub(crate) fn join(ways: &mut [&mut Vec<LatticePoint>]) {
+    let meets = |ways: &[&mut Vec<LatticePoint>], seam: Seam| {
         let image = |point: LatticePoint| point.with_x(seam.image(point.x()));
-        let mut segments = ways.iter().flat_map(|way| way.points.array_windows());
+        let mut segments = ways.iter().flat_map(|way| way.array_windows());
         segments.any(|&[from, to]| seam.parts(&image(from), &image(to)))
     };
     let degrees = Seam::new(0.0, 360.0 * STEPS);
@@ -24,7 +24,7 @@ pub(crate) fn join(ways: &mut [Line]) {
     // Middles of maps, the one that ends at Greenwich first.
     let maps = (0..360).map(|away| degrees.around(STEPS * f64::from(180 - away)));
     let Some(map) = maps.into_iter().find(|&map| !meets(ways, map)) else { return };
-    for point in ways.iter_mut().flat_map(|way| &mut way.points) {
+    for point in ways.iter_mut().flat_map(|way| way.iter_mut()) {
         *point = point.with_x(map.image(point.x()));
     }
 }
