@@ -27,7 +27,7 @@ pub(crate) fn to_text(
     let layers = [layers(manifest, digits), defects(counts, digits), datum(manifest)];
     let mut end: Vec<String> = layers.into_iter().flatten().collect();
     end.extend([error(manifest), size(manifest, package_bytes, digits), look(output)]);
-    let mut lines = vec![roads(counts, digits)];
+    let mut lines = vec![roads(manifest, digits)];
     lines.extend(left_out(counts, digits, MOST_LEFT_OUT.min(MOST_LINES - 1 - end.len())));
     lines.extend(end);
     let lines: Vec<String> =
@@ -36,9 +36,16 @@ pub(crate) fn to_text(
 }
 
 /// Roads kept of those that were read.
-fn roads(counts: &Counts, digits: Digits) -> String {
+fn roads(manifest: &Manifest, digits: Digits) -> String {
+    let counts = &manifest.counts;
     if counts.roads_in == 0 {
-        return "roads        none: built without an extract".to_owned();
+        let has_extract = manifest.inputs.iter().any(|input| input.kind == "osm");
+        let why = match (has_extract, counts.highways_in) {
+            (false, _) => "built without an extract",
+            (true, 0) => "the extract has none",
+            (true, _) => "the extract has none of the classes that are on",
+        };
+        return format!("roads        none: {why}");
     }
     format!(
         "roads        {} of {} kept, {} of {}",

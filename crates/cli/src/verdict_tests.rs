@@ -1,7 +1,7 @@
 //! A build ends with its verdict: a few lines, with all that was left out, and how to have it.
 
 use corniche_testing::package::manifest;
-use corniche_tileset::{AreaCounts, AreasRecord, LeftOutRecord, Manifest, RoadLoss};
+use corniche_tileset::{AreaCounts, AreasRecord, InputRecord, LeftOutRecord, Manifest, RoadLoss};
 
 use super::*;
 
@@ -94,4 +94,13 @@ fn a_whole_build_has_four_lines() {
     let names: Vec<&str> = text.lines().map(|line| line.split(' ').next().unwrap()).collect();
     assert_eq!(names, ["roads", "error", "size", "wrote"], "{text}");
     assert!(text.starts_with("roads        none: built without an extract\n"), "{text}");
+    let dem = manifest.inputs[0].clone();
+    manifest.inputs.push(InputRecord { kind: "osm".to_owned(), ..dem });
+    manifest.counts.highways_in = 0;
+    assert!(told(&manifest).starts_with("roads        none: the extract has none\n"));
+    manifest.counts.highways_in = 3;
+    let text = told(&manifest);
+    assert!(
+        text.starts_with("roads        none: the extract has none of the classes that are on\n")
+    );
 }

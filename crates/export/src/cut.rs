@@ -78,15 +78,22 @@ pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>>
     if !line.array_windows().any(|[from, to]| seam.parts(from, to)) {
         return vec![line];
     }
-    let whole = line.clone();
+    let first = line[0][0];
     for [lon, lat, _] in &mut line {
         if (180.0 - lon.abs()) * lat.to_radians().cos() <= ON_ANTIMERIDIAN_DEG {
             *lon = 180.0_f64.copysign(*lon);
         }
     }
-    let mut lines = seam.split(line);
+    let mut lines = seam.split(line.clone());
     lines.retain(|line| is_long(line));
-    if lines.is_empty() { vec![whole] } else { lines }
+    if lines.is_empty() {
+        // No longer than a step of the lattice: it lies on the antimeridian as a whole.
+        for place in &mut line {
+            place[0] = 180.0_f64.copysign(first);
+        }
+        lines.push(line);
+    }
+    lines
 }
 
 /// Whether a line reaches farther than from one place of the lattice to the next.

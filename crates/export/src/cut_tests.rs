@@ -174,3 +174,9 @@ fn all_around_the_earth_nothing_is_cut() {
     let ends: Vec<_> = found.iter().map(longitudes).collect();
     assert_eq!(ends, [vec![178.0, 179.0], vec![181.0, 182.0, 183.0]]);
 }
+
+#[test]
+fn a_line_no_longer_than_a_step_lies_on_one_end() {
+    let line = vec![[179.999_999_999, 10.0, 1.0], [-179.999_999_999, 10.0, 2.0]];
+    assert_eq!(cut_at_antimeridian(line), [[[180.0, 10.0, 1.0], [180.0, 10.0, 2.0]]]);
+}

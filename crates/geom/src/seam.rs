@@ -13,6 +13,8 @@ use crate::{GridFrame, LatticePoint};
 pub struct Seam {
     middle: f64,
     turn: f64,
+    /// Places this near to an end lie on it: what is rounded to a lattice is rounded apart at the two ends.
+    rounding: f64,
 }
 
 /// A place on such a map.
@@ -33,7 +35,7 @@ impl Seam {
     /// The seam of a map around a middle; `turn` is a full turn in the same unit, of either sign.
     #[must_use]
     pub fn new(middle: f64, turn: f64) -> Self {
-        Self { middle, turn: turn.abs() }
+        Self { middle, turn: turn.abs(), rounding: 0.0 }
     }
 
     /// The seam of degrees that are counted from −180 to 180.
@@ -66,7 +68,7 @@ impl Seam {
         let [_, east] = self.ends();
         let east = frame.fraction_of_position([east, 0.0])[0].round();
         let turn = (self.turn / frame.lattice_step_m()).round();
-        Self { middle: east - turn / 2.0, turn }
+        Self { middle: east - turn / 2.0, turn, rounding: 1.0 }
     }
 
     /// The image of a coordinate on this map. Half a turn from the middle it stays as it is: both ways around are equally long.
@@ -113,7 +115,7 @@ impl Seam {
         }
         let mut lines = Vec::new();
         let mut part: Vec<P> = Vec::new();
-        for place in line {
+        for place in line.into_iter().map(|place| self.onto_end(place)) {
             if let Some(&before) = part.last()
                 && self.parts(&before, &place)
             {
@@ -126,6 +128,12 @@ impl Seam {
         lines.push(part);
         lines.retain(|part| part.len() >= 2);
         lines
+    }
+
+    /// A place on the end of the map that it is as near to as rounding goes; others stay.
+    fn onto_end<P: OnSeamedMap>(&self, place: P) -> P {
+        let is_near = |end: &f64| (place.x() - end).abs() <= self.rounding;
+        self.ends().into_iter().find(is_near).map_or(place, |end| place.with_x(end))
     }
 
     /// Where a line over the seam is cut: on the side of `from`, and on that of `to`.

@@ -82,3 +82,15 @@ fn on_a_lattice_cuts_are_points() {
         [vec![line[0], (point(east, 400), true)], vec![(point(west, 400), true), line[1]],]
     );
 }
+
+/// A turn of 10.3 steps with its eastern end at −0.4: the ends are 0 and −10, and a place at the western end is rounded to −11.
+#[test]
+fn a_line_to_an_end_that_is_rounded_apart_ends_there_once() {
+    let seam = Seam { middle: -5.0, turn: 10.0, rounding: 1.0 };
+    let line = |u: i64| vec![LatticePoint::new(-2, 0), LatticePoint::new(u, 0)];
+    for u in [-11, -10, -9] {
+        let expected = vec![vec![LatticePoint::new(-2, 0), LatticePoint::new(0, 0)]];
+        assert_eq!(seam.split(line(u)), expected, "{u}");
+    }
+    assert_eq!(seam.split(line(-8)).len(), 2);
+}

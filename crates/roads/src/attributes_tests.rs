@@ -138,6 +138,8 @@ fn texts_stay_as_tagged_with_the_spaces_around_them() {
     let lanes = road.lanes.map(NonZeroU8::get);
     assert_eq!((road.oneway, road.layer, lanes), (Oneway::Forward, 1, Some(2)));
     assert_eq!(attributes(&[("maxspeed", " 50 km/h ")]).max_speed, "50");
+    let trimmed = road.trimmed();
+    assert_eq!((&*trimmed.name, &*trimmed.reference), ("Pass Road", "16"));
     let odd: Vec<_> = tags_taken_otherwise(&[("layer", " x ")]).collect();
     assert_eq!(odd, [("layer", " x ")]);
 }

@@ -171,6 +171,18 @@ impl RoadAttributes {
         self.width_mm.map(|mm| f64::from(mm.get()) / 1e3)
     }
 
+    /// The same without spaces around its texts, as packages of before have them.
+    #[must_use]
+    pub fn trimmed(&self) -> Self {
+        let mut trimmed = self.clone();
+        let Self { name, reference, surface, highway, max_speed, sac_scale, tracktype, .. } =
+            &mut trimmed;
+        for text in [name, reference, surface, highway, max_speed, sac_scale, tracktype] {
+            *text = text.trim().to_owned();
+        }
+        trimmed
+    }
+
     /// What the tags say of the road's width: `width`, or else `lanes`.
     #[must_use]
     pub fn own_width(&self) -> OwnWidth {

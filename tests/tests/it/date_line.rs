@@ -291,8 +291,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
     }
 
     let told = manifest(&package);
-    let kept = &told["boundaries"]["counts"]["kept"];
-    let kept = if kept.is_null() { &told["boundaries"]["kept"] } else { kept };
+    let kept = &told["boundaries"]["kept"];
     let borders: f64 = BORDERS.iter().map(|&(_, along)| WAYS[along].2).sum();
     near(&format!("{name}, borders"), kept[0]["length_um"].as_f64().unwrap() / 1e6, borders);
     if !model.is_global {

@@ -187,7 +187,7 @@ fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
     let later = text.replace("\"plan_version\": 5", "\"plan_version\": 6");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 5") && error.contains("version 4"), "{error}");
+    assert!(error.contains("version 6") && error.contains("version 5"), "{error}");
     for bad in ["", "{}", "[4]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");
