@@ -95,7 +95,9 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
                 worst_share = worst_share.max(off_m / finest_m.max(error_px * pixel_m));
             }
         }
-        let skirts = drawing.ground.chunks_exact(4).filter(|pixel| pixel[3] == 128).count();
+        // A half is 127 on some cards.
+        let is_skirt = |pixel: &&[u8]| (127..=128).contains(&pixel[3]);
+        let skirts = drawing.ground.chunks_exact(4).filter(is_skirt).count();
         println!(
             "levels {levels:?}: {worst_px:.2} px off at most, {worst_share:.2} of what is allowed, {skirts} pixels of skirts"
         );

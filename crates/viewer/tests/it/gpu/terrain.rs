@@ -122,7 +122,9 @@ fn skirts_close_the_crack_between_levels() {
             *depth = skirt_m;
         }
         let drawing = draw(&gpu, &camera, &plain_style(10.0), &scene);
-        let skirts = drawing.ground.chunks_exact(4).filter(|pixel| pixel[3] == 128).count();
+        // A half is 127 on some cards.
+        let is_skirt = |pixel: &&[u8]| (127..=128).contains(&pixel[3]);
+        let skirts = drawing.ground.chunks_exact(4).filter(is_skirt).count();
         // Below the middle of the picture there is ground everywhere.
         let below = (SIZE[0] * SIZE[1] / 2) as usize;
         (drawing.depth[below..].iter().filter(|depth| **depth == 0.0).count(), skirts)
