@@ -65,3 +65,29 @@ fn without_a_recorded_band_the_first_one_was_read() {
     let nodes = other.checks.iter().find(|check| check.id == CheckId::Nodes).unwrap();
     assert!(!nodes.holds(), "heights are those of the second band");
 }
+
+/// Packages that were written before operations were recorded have the same `generator`.
+#[test]
+fn other_operations_between_datums_are_told_in_words_and_none_are_those_of_before() {
+    let sound = OfTwoBands::build();
+    assert_eq!(sound.manifest.datum_operations[0].operation, "ETRS89 to WGS 84 (1)");
+    assert_broken(sound.changed(|manifest| manifest.datum_operations.clear()), &[]);
+    let document =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/promises.md"))
+            .unwrap();
+    assert!(document.contains("| `datum_operations`, if left out | "), "docs/promises.md");
+    let report = sound.changed(|manifest| {
+        manifest.datum_operations[0].operation = "ETRS89 to WGS 84 (9)".to_owned();
+    });
+    let report = assert_broken(report, &[CheckId::Crs, CheckId::DemPlan]);
+    for check in report.checks.iter().filter(|check| !check.holds()) {
+        assert_eq!(
+            check.examples,
+            [
+                "between datums the package records \"ETRS89 to WGS 84 (9)\" from EPSG:25832 to EPSG:4326 (1 m); PROJ now takes \
+              \"ETRS89 to WGS 84 (1)\" from EPSG:25832 to EPSG:4326 (1 m): one of its grids may have been installed or removed \
+              since the build, so build the package again"
+            ]
+        );
+    }
+}
