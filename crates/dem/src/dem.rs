@@ -89,7 +89,7 @@ impl Dem {
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, DemError> {
         let mut found = Vec::new();
         for source in &self.sources {
-            found.extend(file_blocks::of_file(&source.path)?);
+            found.extend(file_blocks::of_file(&source.path, source.band)?);
         }
         Ok(found)
     }

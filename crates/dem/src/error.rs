@@ -76,9 +76,9 @@ pub enum DemError {
     )]
     NoSuchBand { path: PathBuf, asked: u32, count: usize },
     #[error(
-        "the first band of {path:?} has complex numbers or another type of samples that are no heights; give integers or real numbers"
+        "band {band} of {path:?} has complex numbers or another type of samples that are no heights; give integers or real numbers"
     )]
-    SampleType { path: PathBuf },
+    SampleType { path: PathBuf, band: usize },
     #[error(
         "heights of {path:?} are in {unit:?}, which is not a known unit of length; convert them to metres, or correct the band's unit (m, ft, US survey foot)"
     )]
@@ -88,9 +88,9 @@ pub enum DemError {
     )]
     UnitsDisagree { path: PathBuf, unit: String, vertical: String, vertical_unit_m: f64 },
     #[error(
-        "the first band of {path:?} has scale {scale} and offset {offset}, with which no heights can be computed; correct them (gdal_edit.py -scale -offset)"
+        "band {band} of {path:?} has scale {scale} and offset {offset}, with which no heights can be computed; correct them (gdal_edit.py -scale -offset)"
     )]
-    Scale { path: PathBuf, scale: f64, offset: f64 },
+    Scale { path: PathBuf, band: usize, scale: f64, offset: f64 },
     #[error(
         "{path:?} has no georeference (geotransform); add one with gdal_translate -a_ullr or a world file"
     )]

@@ -59,7 +59,7 @@ impl PlacedRaster {
     /// # Errors
     /// When it cannot be opened any more.
     pub fn blocks(&self) -> Result<Vec<FileBlocks>, DemError> {
-        file_blocks::of_file(&self.path)
+        file_blocks::of_file(&self.path, 1)
     }
 
     /// The file.

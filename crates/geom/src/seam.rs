@@ -78,6 +78,13 @@ impl Seam {
         if away.abs() <= self.turn / 2.0 { x } else { x - self.turn * (away / self.turn).round() }
     }
 
+    /// The image of a coordinate between the ends of the map; what lies at the eastern end comes to the western one.
+    #[must_use]
+    pub fn image_from_west(&self, x: f64) -> f64 {
+        let [west, _] = self.ends();
+        x - self.turn * ((x - west) / self.turn).floor()
+    }
+
     /// Whole turns that something as wide as its middle `x` is away from the middle of the map; none from half a turn, be it a rounding more.
     #[must_use]
     pub fn turns(&self, x: f64) -> f64 {

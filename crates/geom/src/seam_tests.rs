@@ -66,6 +66,13 @@ fn places_are_continuous_from_one_to_the_next() {
     assert_eq!([0.0, 360.0, -0.5, -360.5].map(|x| seam.turns(x)), [0.0, 0.0, -1.0, -2.0]);
 }
 
+#[test]
+fn between_the_ends_the_eastern_one_is_the_western_one() {
+    let from_west = |x: f64| Seam::of_degrees().image_from_west(x);
+    let found = [-180.0, 180.0, 179.5, 540.0, -180.5, 725.0].map(from_west);
+    assert_eq!(found, [-180.0, -180.0, 179.5, -180.0, 179.5, 5.0]);
+}
+
 /// On a lattice both ends are whole steps, a whole turn apart, and parts of a line meet.
 #[test]
 fn on_a_lattice_cuts_are_points() {

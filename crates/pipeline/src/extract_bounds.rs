@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use corniche_geom::Seam;
+
 use crate::BuildError;
 
 /// How much farther the bounds reach than the extract's own box, on each side and in degrees. Ways that cross the box are whole in
@@ -53,7 +55,7 @@ fn with_margin([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     if east - west >= 360.0 {
         return [-180.0, south, 180.0, north];
     }
-    let on_earth = |deg: f64| deg - 360.0 * ((deg + 180.0) / 360.0).floor();
+    let on_earth = |deg: f64| Seam::of_degrees().image_from_west(deg);
     let east = on_earth(east);
     // 180° as an east is the end of the earth, and not its beginning.
     [on_earth(west), south, if east <= -180.0 { 180.0 } else { east }, north]

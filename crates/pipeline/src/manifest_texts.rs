@@ -31,8 +31,32 @@ pub(crate) fn datum_operations(found: &[DatumOperation]) -> Vec<DatumOperationRe
     found.iter().map(record).collect()
 }
 
+/// An operation between datums in words.
+pub(crate) fn operation_words(found: &DatumOperationRecord) -> String {
+    let DatumOperationRecord { from, to, operation, accuracy_m, ballpark: _ } = found;
+    let accuracy = accuracy_m.map_or("unknown accuracy".to_owned(), |m| format!("{m} m"));
+    format!("{operation:?} from {from} to {to} ({accuracy})")
+}
+
+/// What is to be said where PROJ takes other operations between datums than those that are recorded.
+pub(crate) fn other_operations(
+    said: &[DatumOperationRecord],
+    found: &[DatumOperationRecord],
+) -> String {
+    let list = |all: &[DatumOperationRecord]| match all {
+        [] => "none".to_owned(),
+        all => all.iter().map(operation_words).collect::<Vec<_>>().join("; "),
+    };
+    format!(
+        "between datums the package records {}; PROJ now takes {}: one of its grids may have been installed or removed since the build, so \
+         build the package again",
+        list(said),
+        list(found)
+    )
+}
+
 /// Whether a package tells of operations between datums that this program can compare with its own: its PROJ has the same registry. Packages
-/// of before tell of none.
+/// of before tell of none, and can have the same `generator`.
 pub(crate) fn has_comparable_operations(manifest: &Manifest) -> bool {
     !manifest.datum_operations.is_empty() && manifest.generator.ends_with(&libraries())
 }

@@ -45,8 +45,10 @@ impl Spikes {
     }
 }
 
-/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it.
+/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it. Those off its rim are some; one on the rim
+/// can have neighbours outside.
 pub(crate) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
+    let size = [columns, heights_m.len() / columns];
     let mut found = Vec::new();
     for (row, line) in heights_m.chunks_exact(columns).enumerate() {
         let mut before = f64::NAN;
@@ -54,8 +56,11 @@ pub(crate) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
             // Nearly all samples are near the one before, and are not looked at any further.
             let is_near = (height_m - before).abs() <= SPIKE_M;
             before = height_m;
-            if !is_near && !height_m.is_nan() && stands_alone(heights_m, columns, [column, row], 1)
-            {
+            if is_near || height_m.is_nan() {
+                continue;
+            }
+            let fewest = if is_on_rim(size, [column, row]) { 0 } else { FEWEST_NEIGHBOURS };
+            if stands_alone(heights_m, columns, [column, row], fewest) {
                 found.push([column, row]);
             }
         }
@@ -63,12 +68,17 @@ pub(crate) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
     found
 }
 
+/// Whether a place lies in the first or last row or column of a rectangle.
+pub(crate) fn is_on_rim(size: [usize; 2], at: [usize; 2]) -> bool {
+    (0..2).any(|axis| at[axis] == 0 || at[axis] + 1 == size[axis])
+}
+
 /// Whether a sample of a rectangle is a spike, by the neighbours inside it.
 pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2]) -> bool {
     stands_alone(heights_m, columns, at, FEWEST_NEIGHBOURS)
 }
 
-/// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at least `fewest`.
+/// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at least `fewest`; one without any lies beyond all.
 fn stands_alone(
     heights_m: &[f64],
     columns: usize,
@@ -87,9 +97,7 @@ fn stands_alone(
             }
         }
     }
-    // A candidate without any neighbour in its block may have some outside.
-    count == 0 && fewest <= 1
-        || count >= fewest && (own_m < low_m - SPIKE_M || own_m > high_m + SPIKE_M)
+    count >= fewest && (own_m < low_m - SPIKE_M || own_m > high_m + SPIKE_M)
 }
 
 #[cfg(test)]

@@ -49,6 +49,20 @@ fn neighbours_without_height_do_not_count() {
     }
 }
 
+/// Only on the rim of a block is it not known what is around a sample: these alone are read again.
+#[test]
+fn among_voids_candidates_are_on_the_rim_alone() {
+    for (at, is_candidate) in [([2, 2], false), ([1, 3], false), ([0, 2], true), ([4, 4], true)] {
+        let mut alone = vec![f64::NAN; 25];
+        alone[at[1] * COLUMNS + at[0]] = 5000.0;
+        let expected = if is_candidate { vec![at] } else { vec![] };
+        assert_eq!(candidates(&alone, COLUMNS), expected);
+        assert_eq!(is_on_rim([COLUMNS; 2], at), is_candidate);
+    }
+    // One neighbour of two is too few to judge by, and its own rim is that of the block.
+    assert_eq!(candidates(&[300.0, 5000.0], 2), [[0, 0], [1, 0]]);
+}
+
 #[test]
 fn parts_merge_to_the_first_few_in_any_order() {
     let spike =

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Seam};
 
 use crate::DemError;
 use crate::crs::horizontal::Crs;
@@ -184,7 +184,7 @@ fn size(area_deg: Option<[f64; 4]>) -> f64 {
 /// Whether an area holds a place; one that is not known holds all.
 fn holds(area_deg: Option<[f64; 4]>, [lon, lat]: [f64; 2]) -> bool {
     let Some([west, south, east, north]) = area_deg else { return true };
-    let lon = lon - 360.0 * ((lon + 180.0) / 360.0).floor();
+    let lon = Seam::of_degrees().image_from_west(lon);
     let is_between =
         if west <= east { (west..=east).contains(&lon) } else { lon >= west || lon <= east };
     is_between && (south..=north).contains(&lat)

@@ -48,7 +48,7 @@ const KEPT: usize = 64;
 impl Operation {
     /// The operation from one system to another for data inside `area_deg` (WGS84; past the antimeridian beyond ±180).
     pub(crate) fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
-        let wrap = |lon: f64| lon - 360.0 * ((lon + 180.0) / 360.0).floor();
+        let wrap = |lon: f64| Seam::of_degrees().image_from_west(lon);
         let area_deg = area_deg.filter(|area| !area.is_empty()).map(|area| {
             let (south, north) = (area.min_y.max(-90.0), area.max_y.min(90.0));
             if area.width() >= 360.0 {

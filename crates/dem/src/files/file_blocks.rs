@@ -43,8 +43,10 @@ impl FileBlocks {
         across.saturating_mul(block)
     }
 
-    fn of(path: &Path, dataset: &Dataset) -> Option<Self> {
-        let band = dataset.rasterband(1).ok()?;
+    /// Those of a band, or of the first one where the file has fewer.
+    fn of(path: &Path, dataset: &Dataset, band: usize) -> Option<Self> {
+        let has_it = band <= dataset.raster_count();
+        let band = dataset.rasterband(if has_it { band } else { 1 }).ok()?;
         let (columns, rows) = dataset.raster_size();
         let size = [columns as u64, rows as u64];
         let (block_columns, block_rows) = band.block_size();
@@ -61,15 +63,15 @@ impl FileBlocks {
     }
 }
 
-/// The blocks of a file; of a virtual raster (VRT) also those of the files that it refers to.
-pub(crate) fn of_file(path: &Path) -> Result<Vec<FileBlocks>, DemError> {
+/// The blocks of a file's band; of a virtual raster (VRT) also those of the files that it refers to.
+pub(crate) fn of_file(path: &Path, band: usize) -> Result<Vec<FileBlocks>, DemError> {
     let dataset = open_dataset(path)?;
-    let mut found: Vec<FileBlocks> = FileBlocks::of(path, &dataset).into_iter().collect();
+    let mut found: Vec<FileBlocks> = FileBlocks::of(path, &dataset, band).into_iter().collect();
     if dataset.driver().short_name() == "VRT" {
         for part in raster_files(path)?.iter().filter(|part| *part != path) {
             // Not every part is a raster.
             let dataset = open_dataset(part).ok();
-            found.extend(dataset.and_then(|dataset| FileBlocks::of(part, &dataset)));
+            found.extend(dataset.and_then(|dataset| FileBlocks::of(part, &dataset, band)));
         }
     }
     Ok(found)

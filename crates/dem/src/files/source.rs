@@ -33,7 +33,7 @@ pub(crate) struct Source {
     /// Whether its band or its vertical CRS says what heights are in.
     pub(crate) has_height_unit: bool,
     /// Number of the band with the heights.
-    band: usize,
+    pub(crate) band: usize,
     values: StoredValues,
     /// Stored in whole rows rather than in tiles.
     pub(crate) is_striped: bool,
@@ -81,7 +81,7 @@ impl Source {
             crs,
             band: number,
             has_height_unit: vertical.is_some() || !band.unit().trim().is_empty(),
-            values: StoredValues::of(path, &band, vertical.as_ref(), options)?,
+            values: StoredValues::of(path, (number, &band), vertical.as_ref(), options)?,
             vertical,
             is_striped: band.block_size().0 == columns,
             alpha_band: alpha_band(&dataset),
@@ -189,25 +189,26 @@ fn no_band(path: &Path, dataset: &Dataset) -> DemError {
     }
 }
 
-/// The band with the heights: the one asked for, or the only one beside an alpha band. A raster with several is refused where none is asked
-/// for: which of them has heights is not to be guessed.
+/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A raster with several is refused where none is
+/// asked for: which of them has heights is not to be guessed.
 fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, DemError> {
     let count = dataset.raster_count();
-    if let Some(asked) = asked {
-        return match asked as usize {
-            number if (1..=count).contains(&number) => Ok(number),
-            _ => Err(DemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
-        };
+    if asked.is_none() {
+        refuse_imagery(path, dataset)?;
     }
-    refuse_imagery(path, dataset)?;
     let is_alpha =
         |band: &RasterBand<'_>| band.color_interpretation() == ColorInterpretation::AlphaBand;
     let bands = (1..=count).filter_map(|number| Some((number, dataset.rasterband(number).ok()?)));
     let of_values: Vec<_> = bands.filter(|(_, band)| !is_alpha(band)).collect();
-    match of_values.as_slice() {
-        [] => Ok(1),
-        [(number, _)] => Ok(*number),
-        [_, ..] => {
+    match (asked, of_values.as_slice()) {
+        // There is no band 0 of any file.
+        (Some(asked), bands) if asked == 0 || bands.len() > 1 => match asked as usize {
+            number if (1..=count).contains(&number) => Ok(number),
+            _ => Err(DemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
+        },
+        (_, []) => Ok(1),
+        (_, [(number, _)]) => Ok(*number),
+        (_, [_, ..]) => {
             let names = of_values.iter().map(|(number, band)| match band.description() {
                 Ok(name) if !name.trim().is_empty() => format!("{number} {name:?}"),
                 _ => format!("{number} (no name, {})", band.band_type()),

@@ -35,14 +35,14 @@ pub(crate) struct StoredValues {
 impl StoredValues {
     pub(crate) fn of(
         path: &Path,
-        band: &RasterBand<'_>,
+        (number, band): (usize, &RasterBand<'_>),
         vertical: Option<&VerticalCrs>,
         options: &OpenOptions,
     ) -> Result<Self, DemError> {
         let kind = band.band_type();
         // Complex numbers of all kinds are among the unknown here.
         if kind == GdalDataType::Unknown {
-            return Err(DemError::SampleType { path: path.to_path_buf() });
+            return Err(DemError::SampleType { path: path.to_path_buf(), band: number });
         }
         let mut nodata: Vec<f64> =
             declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
@@ -51,7 +51,8 @@ impl StoredValues {
         }
         let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
         if !(scale.is_finite() && offset.is_finite()) || scale == 0.0 {
-            return Err(DemError::Scale { path: path.to_path_buf(), scale, offset });
+            let path = path.to_path_buf();
+            return Err(DemError::Scale { path, band: number, scale, offset });
         }
         let flags = band
             .mask_flags()

@@ -13,7 +13,7 @@ use crate::mosaics::data_extent;
 use crate::{Dem, DemError, GridPlan, Polygon};
 
 /// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data` is the rectangle of all nodes,
-/// `into_working` has an operation for each mosaic. None where all datums are that of WGS84.
+/// `into_working` has an operation for each mosaic. PROJ is asked once for each system. None where all datums are that of WGS84.
 pub(crate) fn datum_operations(
     dem: &Dem,
     working: &Working,
@@ -21,14 +21,24 @@ pub(crate) fn datum_operations(
     into_working: &[Operation],
 ) -> Result<Vec<DatumOperation>, DemError> {
     let mut all = datum_operation::to_wgs84(working, data, dem.wgs84_bounds)?;
-    let wgs84 = Crs::wgs84()?;
+    // Of thousands of mosaics nearly all have the same system, and asking PROJ takes long.
+    let mut asked: Vec<(&Operation, Vec<[f64; 2]>)> = Vec::new();
     for (mosaic, operation) in dem.mosaics.iter().zip(into_working) {
         if mosaic.crs.is_same(&working.crs) {
             continue;
         }
-        let to_degrees = Operation::new(&mosaic.crs, &wgs84, Some(dem.wgs84_bounds));
-        let mut places = vec![mosaic.middle()];
+        let known = asked.iter().position(|(known, _)| known.from.wkt == operation.from.wkt);
+        let at = known.unwrap_or_else(|| {
+            asked.push((operation, Vec::new()));
+            asked.len() - 1
+        });
+        let places = &mut asked[at].1;
+        places.push(mosaic.middle());
         places.extend(data_extent::positions(mosaic, &mosaic.extent));
+    }
+    let wgs84 = Crs::wgs84()?;
+    for (operation, mut places) in asked {
+        let to_degrees = Operation::new(&operation.from, &wgs84, Some(dem.wgs84_bounds));
         to_degrees.apply(&mut places)?;
         for found in datum_operation::used(operation, &places) {
             if !all.contains(&found) {

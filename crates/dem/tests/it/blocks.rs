@@ -52,6 +52,21 @@ fn blocks_are_those_of_the_file_also_behind_a_virtual_one() {
     assert_ne!(found[0].block, [600, 400]);
 }
 
+/// Bands of a virtual raster have types of their own.
+#[test]
+fn blocks_are_those_of_the_band_that_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two.vrt");
+    let vrt = "<VRTDataset rasterXSize=\"600\" rasterYSize=\"400\"><SRS>EPSG:32632</SRS><GeoTransform>500000,10,0,5200000,0,-10</GeoTransform>\
+               <VRTRasterBand dataType=\"Byte\" band=\"1\"/><VRTRasterBand dataType=\"Float64\" band=\"2\"/></VRTDataset>";
+    std::fs::write(&path, vrt).unwrap();
+    for (band, bytes) in [(1, 1), (2, 8)] {
+        let chosen = OpenOptions { band: Some(band), ..OpenOptions::default() };
+        let dem = Dem::open(std::slice::from_ref(&path), &chosen).unwrap();
+        assert_eq!(dem.file_blocks().unwrap()[0].sample_bytes, bytes, "band {band}");
+    }
+}
+
 /// `OpenJPEG` offers blocks, but decodes the image for one.
 #[test]
 fn a_jpeg_2000_is_one_block() {

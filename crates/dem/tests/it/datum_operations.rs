@@ -43,6 +43,25 @@ fn an_operation_is_told_with_the_accuracy_that_the_registry_has() {
     }
 }
 
+/// Files on several grids, in two systems by turns.
+#[test]
+fn each_system_of_files_has_its_operations_once() {
+    let folder = folder();
+    let files = [(32632, 30.0), (25832, 20.0), (25833, 25.0), (25832, 15.0), (25833, 10.0)];
+    let files: Vec<PathBuf> = (0..)
+        .zip(files)
+        .map(|(k, (epsg, spacing))| {
+            let x = if epsg == 25833 { 44_000.0 } else { 500_000.0 } + 600.0 * f64::from(k);
+            let frame = [x, spacing, 0.0, 5_200_000.0, 0.0, -spacing];
+            let name = format!("{k}.tif");
+            Raster::new(epsg, [20, 20], frame).write(folder.path(), &name, |_| 300.0_f32)
+        })
+        .collect();
+    let found = plan(&open(&files)).datum_operations;
+    let from: Vec<&str> = found.iter().map(|found| found.from.as_str()).collect();
+    assert_eq!(from, ["EPSG:25832", "EPSG:25833"], "{found:?}");
+}
+
 /// NAD27 in Utah: by the registry PROJ is accurate to 2.15 m with the grids of NADCON and HARN, without them to 7 m.
 #[test]
 fn a_better_operation_whose_grid_is_missing_is_told() {

@@ -243,6 +243,19 @@ fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
     }
     let missing = OpenOptions { band: Some(3), ..given.clone() };
     check_refused(&[two], &missing, &["two.tif", "2 bands", "--dem-band"]);
+    // Of files with one band, as others of a set can be, that one counts whichever is chosen; an alpha band has no heights.
+    let one = row(folder.path(), "one.tif", raster(), &[5_i16, 6]);
+    let with_alpha = raster().bands(2).created(&["ALPHA=YES"]).tagged(|dataset| {
+        let mut opaque = Buffer::new((2, 5), vec![255_u8; 10]);
+        dataset.rasterband(2).unwrap().write((0, 0), (2, 5), &mut opaque).unwrap();
+    });
+    let with_alpha = row(folder.path(), "alpha.tif", with_alpha, &[5_u8, 6]);
+    let second = OpenOptions { band: Some(2), ..given.clone() };
+    for path in [&one, &with_alpha] {
+        check("one band", path.clone(), &second, &[Some(5.0), Some(6.0)]);
+    }
+    let none = OpenOptions { band: Some(0), ..given.clone() };
+    check_refused(&[one], &none, &["one.tif", "--dem-band is 0"]);
     let palette = raster().tagged(|dataset| {
         let mut table = ColorTable::new(PaletteInterpretation::Rgba);
         table.set_color_entry(5, &ColorEntry::rgba(255, 0, 0, 255));
@@ -260,6 +273,25 @@ fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
         &given,
         &["photo.tif", "image", "red", "--dem-band"],
     );
+}
+
+/// A virtual raster can have a band of each type: what is said of one is said of the chosen one.
+#[test]
+fn what_is_wrong_with_a_band_is_told_with_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let second = OpenOptions { band: Some(2), ..OpenOptions::default() };
+    for (name, kind, inside, word) in [
+        ("complex.vrt", "CFloat32", "", "complex numbers"),
+        ("flat.vrt", "Float32", "<Scale>0</Scale>", "scale 0"),
+    ] {
+        let path = folder.path().join(name);
+        let vrt = format!(
+            "<VRTDataset rasterXSize=\"3\" rasterYSize=\"5\"><SRS>EPSG:32632</SRS><GeoTransform>500000,10,0,5200050,0,-10</GeoTransform>\
+             <VRTRasterBand dataType=\"Float32\" band=\"1\"/><VRTRasterBand dataType=\"{kind}\" band=\"2\">{inside}</VRTRasterBand></VRTDataset>"
+        );
+        fs::write(&path, vrt).unwrap();
+        check_refused(&[path], &second, &["band 2 of", name, word]);
+    }
 }
 
 /// Heights keep their own unit where the plan is in feet.

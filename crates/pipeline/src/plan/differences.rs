@@ -1,11 +1,10 @@
 //! In what two plans differ, in the words of the command line.
 
-use corniche_tileset::DatumOperationRecord;
-
 use super::{
     BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel,
     facts::{Fact, different, different_facts, fact, given, list, pair, setting_facts},
 };
+use crate::manifest_texts;
 
 impl BuildPlan {
     /// What differs between this plan and `store`, the plan that a store was made with: what the user can change first (program,
@@ -129,10 +128,6 @@ fn grid_facts(grid: &PlannedGrid) -> Vec<Fact> {
         datum_operations,
         quantum_m,
     } = grid;
-    let words = |DatumOperationRecord { from, to, operation, accuracy_m, ballpark: _ }: &DatumOperationRecord| {
-        let accuracy = accuracy_m.map_or("unknown accuracy".to_owned(), |m| format!("{m} m"));
-        format!("{operation:?} from {from} to {to} ({accuracy})")
-    };
     vec![
         fact("the working CRS", crs),
         fact("the working CRS's WKT", crs_wkt),
@@ -147,7 +142,10 @@ fn grid_facts(grid: &PlannedGrid) -> Vec<Fact> {
         fact("how nodes relate to samples", resampling),
         fact("the vertical datum", vertical_datum),
         fact("the treatment of heights", vertical_treatment),
-        fact("PROJ's operation between datums", &list(datum_operations.iter().map(words))),
+        fact(
+            "PROJ's operation between datums",
+            &list(datum_operations.iter().map(manifest_texts::operation_words)),
+        ),
         fact("the step of heights in metres", quantum_m),
     ]
 }

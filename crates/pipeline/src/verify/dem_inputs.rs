@@ -1,6 +1,8 @@
 //! Checks that the elevation files are those of the build, and that they give its grid.
 
-use corniche_dem::{Dem, GridPlan};
+use std::path::PathBuf;
+
+use corniche_dem::{Dem, DemError, GridPlan, OpenOptions};
 use corniche_tileset::{InputRecord, Manifest};
 
 use super::{
@@ -31,7 +33,7 @@ pub(crate) fn open(
     };
     let mut terrain = settings_record::terrain(&manifest.settings);
     terrain.plan.polygon.clone_from(&settings.polygon);
-    let dem = Dem::open(&settings.dem, &terrain.open)?;
+    let dem = open_as_recorded(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
     // Files are compared by content, not by name: a file may have been moved or renamed. Parts are sorted by their hash,
     // because their recorded order is that of their names.
@@ -60,6 +62,16 @@ pub(crate) fn open(
     let plan = dem.plan(&terrain.plan)?;
     checks.push(check_plan(&plan, manifest));
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
+}
+
+/// Opens elevation files with recorded options. Packages of before the band was recorded were made of the first one, also of files with several.
+fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, DemError> {
+    match Dem::open(files, options) {
+        Err(DemError::SeveralBands { .. }) => {
+            Dem::open(files, &OpenOptions { band: Some(1), ..options.clone() })
+        }
+        opened => opened,
+    }
 }
 
 /// Whether files are those that are recorded, by their content. Of files that were not used, outside the bounds of the package, there is no
@@ -102,7 +114,9 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     same("vertical.treatment", &vertical.treatment, &plan.vertical);
     if manifest_texts::has_comparable_operations(manifest) {
         let found = manifest_texts::datum_operations(&plan.datum_operations);
-        same("datum_operations", &manifest.datum_operations, &found);
+        check.look(manifest.datum_operations == found, || {
+            manifest_texts::other_operations(&manifest.datum_operations, &found)
+        });
     }
     check
 }

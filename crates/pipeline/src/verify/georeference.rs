@@ -52,7 +52,16 @@ fn datum_operations(
     let of_files = said.get(found.len()..).unwrap_or_default();
     let holds = said.starts_with(&found) && of_files.iter().all(|of| of.to == manifest.crs);
     findings.look(CheckId::Crs, holds, || {
-        format!("operations between datums are recorded as {said:?}, to WGS84 PROJ takes {found:?}")
+        let to_wgs84 = said.get(..found.len()).unwrap_or(said);
+        if to_wgs84 != found {
+            return manifest_texts::other_operations(to_wgs84, &found);
+        }
+        let words: Vec<_> = of_files.iter().map(manifest_texts::operation_words).collect();
+        format!(
+            "not all operations of elevation files lead to {}: {}",
+            manifest.crs,
+            words.join("; ")
+        )
     });
     Ok(())
 }

@@ -18,6 +18,7 @@ mod skirts;
 mod support;
 mod true_lengths;
 mod verify_areas;
+mod verify_datums;
 mod verify_fields;
 mod verify_header;
 mod verify_payload;
