@@ -43,7 +43,7 @@ impl FileBlocks {
         across.saturating_mul(block)
     }
 
-    /// Those of a band, or of the first one where the file has fewer.
+    /// The blocks of a band, or of the first one where the file has fewer.
     fn of(path: &Path, dataset: &Dataset, band: usize) -> Option<Self> {
         let has_it = band <= dataset.raster_count();
         let band = dataset.rasterband(if has_it { band } else { 1 }).ok()?;
