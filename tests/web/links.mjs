@@ -126,7 +126,7 @@ export function tests({ browser, server }) {
     const parts = (await page.evaluate(() => location.hash)).slice(1).split("&").sort();
     assert.equal(parts.length, 3, String(parts));
     assert.match(parts[0], /^a=9\.515,46\.905,[^;]*;roads=sv$/);
-    // While ground comes, the place in the middle moves by centimetres.
+    // While ground comes, the place in the middle moves by decimetres.
     const [, lon, lat] = parts[1].match(/^b=([\d.]+),([\d.]+),[^;]*;map-style=dark$/) ?? assert.fail(parts[1]);
     assert.ok(Math.hypot(lon - 9.51, lat - 46.91) < 1e-4, parts[1]);
     assert.equal(parts[2], "chapter-2");
