@@ -59,6 +59,12 @@ export function checkFaults(page) {
   assert.deepEqual(page.faults.errors, [], "errors of scripts");
 }
 
+/** The page's workers end, which a busy machine takes a while for. */
+export async function checkWorkersEnd(page) {
+  for (let wait = 0; wait < 200 && page.workers().length > 0; wait += 1) await page.waitForTimeout(50);
+  assert.equal(page.workers().length, 0, "workers that are left");
+}
+
 /** Puts a map into the page and waits until it is open or has failed. Returns { ready } or { error }. */
 export function addMap(page, attributes, { width = "100%", height = "600px" } = {}) {
   return page.evaluate(

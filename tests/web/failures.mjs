@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import path from "node:path";
 import { test } from "node:test";
 import { rendered, colours } from "./rendering.mjs";
-import { addMap, ask, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
+import { addMap, ask, checkWorkersEnd, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
 import { FAILURES, LATER, keepDevices } from "./failing.mjs";
 import { PNG } from "pngjs";
 
@@ -51,7 +51,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       assert.ok(isSaid(opened.error.advice) && opened.error.advice.length > 10, `advice: ${opened.error.advice}`);
       assert.doesNotMatch(said, /undefined|\[object|panicked|unreachable|RuntimeError/, said);
       assert.ok(await page.locator("corniche-map").getByRole("button", { name: "Try again" }).isVisible());
-      assert.equal(page.workers().length, 0, "no worker is left");
+      await checkWorkersEnd(page);
       assert.deepEqual(page.faults.errors, []);
       const panics = page.faults.console.filter((text) => /panicked/.test(text));
       assert.deepEqual(panics, []);

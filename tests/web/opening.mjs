@@ -1,7 +1,7 @@
 // A map opens, says what it is, and draws.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { addMap, ask, checkFaults, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
+import { addMap, ask, checkFaults, checkWorkersEnd, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
 import { colours } from "./rendering.mjs";
 
 export function tests({ browser, server }) {
@@ -133,8 +133,7 @@ export function tests({ browser, server }) {
       window.kept.remove();
     });
     await page.waitForFunction(() => window.kept.about === null);
-    for (let wait = 0; wait < 50 && page.workers().length > 0; wait += 1) await page.waitForTimeout(50);
-    assert.equal(page.workers().length, 0, "workers are ended");
+    await checkWorkersEnd(page);
     await page.evaluate(
       () =>
         new Promise((ready) => {
