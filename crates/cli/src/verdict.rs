@@ -94,7 +94,8 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     let mut all: Vec<LeftOut> = lost.chain(ways).collect();
     // What can be had comes first. The sort is stable.
     all.sort_by_key(|one| (one.remedy.is_none(), std::cmp::Reverse(one.length_um)));
-    let told = if all.len() > most { most.saturating_sub(1) } else { all.len() };
+    // Where there is one line alone, what is not told stands at its end.
+    let told = if all.len() > most { most.saturating_sub(1).max(1) } else { all.len() };
     let line = |one: &LeftOut| {
         let LeftOut { number, length_um, what, remedy } = one;
         let remedy = remedy.map(|remedy| format!(": {remedy}")).unwrap_or_default();
@@ -106,8 +107,10 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
         let number: u64 = rest.iter().map(|one| one.number).sum();
         let length_um = rest.iter().map(|one| one.length_um).sum();
         let number = digits.count(number);
-        let why = if told == 0 { "for several reasons" } else { "more for other reasons" };
-        lines.push(format!("{number} {why}, {}", length(length_um)));
+        match lines.last_mut().filter(|_| told == most) {
+            Some(line) => *line = format!("{line}; {number} more"),
+            None => lines.push(format!("{number} more for other reasons, {}", length(length_um))),
+        }
     }
     let name = |index: usize| if index == 0 { "left out" } else { "" };
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()
