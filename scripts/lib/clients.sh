@@ -5,7 +5,7 @@
 make_clients_environment() {
     clients_env=${CARGO_TARGET_DIR:-$PWD/target}/clients
     if ! npm_folder "$clients_env" tests/clients/package.json; then
-        say "skipped: packages of npm cannot be installed here, so exports are not read by other programs"
+        skipped "packages of npm cannot be installed here, so exports are not read by other programs"
         return 1
     fi
     cp tests/clients/*.mjs tests/clients/*.py "$clients_env"
@@ -17,7 +17,7 @@ missing_for_browser() {
 
 has_browser() {
     if (install_missing missing_for_browser); then return 0; fi
-    say "skipped: Chromium cannot be installed here, so no page is opened"
+    skipped "Chromium cannot be installed here, so no page is opened"
     return 1
 }
 
@@ -29,6 +29,6 @@ terrain_python() {
         echo "$folder/bin/python"
         return 0
     fi
-    say "skipped: quantized-mesh-tile cannot be installed here, so terrain tiles are not decoded by another program"
+    skipped "quantized-mesh-tile cannot be installed here, so terrain tiles are not decoded by another program"
     return 1
 }

@@ -1,18 +1,10 @@
 # Sourced by scripts/test-dask and scripts/torture: a virtual environment with corniche-dask; the examples for clusters.
 # shellcheck shell=bash
 
-# Sets `dask_env` to a virtual environment with corniche-dask and pytest. Says so and fails where there are no packages to be had; in CI that ends
-# the script if only ours cannot be installed.
+# Sets `dask_env` to a virtual environment with corniche-dask and pytest, or fails as python_package does.
 make_dask_environment() {
-    local package=python/corniche-dask
     dask_env=${CARGO_TARGET_DIR:-target}/dask-env
-    if python_folder "$dask_env" $package/lock.txt -e "$package[test]"; then return 0; fi
-    if [ "${CI:-}" = true ] && [ ! -x "$dask_env/bin/python" ]; then fail 1 "no virtual environment can be made; see above"; fi
-    if [ "${CI:-}" = true ] && "$dask_env/bin/python" -m pip install --quiet --disable-pip-version-check distributed; then
-        fail 1 "corniche-dask cannot be installed, though its dependencies can; see above"
-    fi
-    say "skipped: Python packages cannot be installed here, so corniche-dask is not tested"
-    return 1
+    python_package "$dask_env" corniche-dask distributed
 }
 
 missing_for_examples() {
@@ -43,7 +35,7 @@ example_runs() {
     local folder inputs=(--dem "$PWD/data-samples/pass/pass-dem.tif" --osm "$PWD/data-samples/pass/pass.osm.pbf" --max-error 10) run
     # Its failure ends a shell.
     if ! (install_missing missing_for_examples); then
-        say "skipped: jq and parallel cannot be installed here"
+        skipped "jq and parallel cannot be installed here"
         return 0
     fi
     folder=$(mktemp -d)

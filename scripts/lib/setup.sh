@@ -6,6 +6,12 @@
 
 say() { printf '%s\n' "$*" >&2; }
 
+# skipped REASON…: says that a part of a script is left out, and why; .ci/run tells it once more at its end.
+skipped() {
+    say "skipped: $*"
+    if [ -n "${CORNICHE_SKIPPED_PARTS:-}" ]; then printf '%s\n' "$*" >>"$CORNICHE_SKIPPED_PARTS"; fi
+}
+
 fail() {
     local code=$1
     shift

@@ -10,6 +10,7 @@ import path from "node:path";
 import { after, describe } from "node:test";
 import { startChromium } from "./browser.mjs";
 import { startServer } from "./server.mjs";
+import { someOf } from "./tier.mjs";
 
 const [site, packages, corniche, pictures, sources] = process.argv.slice(2).map((name) => path.resolve(name));
 if (!sources) {
@@ -24,7 +25,10 @@ const other = await startServer({ site, packages });
 
 /** What tests share. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
-const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "streaming", "embedding", "own_styles", "links", "gestures", "failures", "access", "pictures"];
+const usual = ["units", "opening", "pixels", "sizes", "failures", "access", "pictures"];
+// What people do with a page takes longest; in CI days take turns.
+const uses = ["drags", "keys", "streaming", "embedding", "own_styles", "links", "gestures"];
+const names = [...usual, ...someOf(uses, 2)];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
 describe("the page of the browser viewer", () => {
   for (const { tests } of parts) tests(world);

@@ -69,3 +69,40 @@ fn too_little_disk_space_is_said_first() {
         "{said}"
     );
 }
+
+/// What `scripts/test` says last, of a run with a failed test, a skipped one and one that is left out as slow.
+#[test]
+fn tests_are_counted_with_those_that_are_skipped() {
+    let folder = tempfile::tempdir().unwrap();
+    let (output, skipped) = (folder.path().join("output"), folder.path().join("skipped"));
+    let result = |passed, failed, ignored| {
+        format!("test result: ok. {passed} passed; {failed} failed; {ignored} ignored; 0 measured")
+    };
+    let lines = [
+        "test rooms::cellar::a_lamp_burns ... FAILED".to_owned(),
+        result(7, 1, 2),
+        result(3, 0, 0),
+    ];
+    fs::write(&output, lines.join("\n")).unwrap();
+    // One test says twice that a part of it is skipped.
+    let reason = "it rooms::attic: no ladder: none in ../shared\n";
+    fs::write(&skipped, reason.repeat(2)).unwrap();
+    let count = |tier: &str| {
+        let script =
+            ". scripts/lib/setup.sh; . scripts/lib/count-tests.sh; count_tests \"$@\" 2>&1";
+        let mut bash = Command::new("bash");
+        bash.args(["-c", script, "bash"]).arg(&output).arg(&skipped).arg(tier);
+        let done = bash.current_dir(e2e::root()).output().unwrap();
+        assert!(done.status.success());
+        String::from_utf8(done.stdout).unwrap()
+    };
+    let said = count("quick");
+    assert!(said.ends_with("9 passed, 1 failed, 3 skipped\n"), "{said}");
+    assert!(said.contains("failed:\n  rooms::cellar::a_lamp_burns\n"), "{said}");
+    assert!(said.contains("2 no ladder: none in ../shared\n"), "{said}");
+    assert!(said.contains("2 slow tests"), "{said}");
+    let said = count("full");
+    assert!(said.ends_with("9 passed, 1 failed, 1 skipped\n"), "{said}");
+    fs::write(&output, "error: could not compile").unwrap();
+    assert!(count("quick").contains("they do not compile"));
+}
