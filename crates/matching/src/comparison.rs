@@ -7,6 +7,7 @@ use corniche_photo::TexelWindow;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
+use geo::{Euclidean, Length as _, LineString};
 
 use crate::{
     error::MatchError,
@@ -219,10 +220,7 @@ impl Matching<'_> {
 
     fn report(self) -> MatchReport {
         let Self { search, request, found, .. } = self;
-        let length = |line: &Vec<[f64; 2]>| -> f64 {
-            let pairs = line.array_windows::<2>();
-            pairs.map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1])).sum()
-        };
+        let length = |line: &Vec<[f64; 2]>| Euclidean.length(&LineString::from(line.clone()));
         let regions = found.regions.iter().map(|(place, votes)| MatchedRegion {
             center_m: place.map(|at| (at as f64 + 0.5) * request.region_m),
             samples: votes.samples,
