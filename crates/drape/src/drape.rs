@@ -36,7 +36,7 @@ pub struct Gap {
 /// differences fit 128 bits.
 ///
 /// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*,
-/// section 6.1, decided by exact orientations instead of floating-point barycentric coordinates.
+/// section 6.1. Its barycentric coordinates are exact whole numbers here (`Barycentric`).
 #[must_use]
 pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
     let points = line.points();
@@ -90,7 +90,7 @@ impl Walk<'_> {
                     self.push(DrapedVertex::Crossing { a: a.min(b), b: a.max(b) });
                     match self.surface.twin(half_edge) {
                         NO_TWIN => {
-                            last = Fraction::of_crossing([p, q], [ray.point(a), ray.point(b)]);
+                            last = ray.coordinate([a, b]).zero();
                             Next::Ends
                         }
                         twin => ray.entered(twin),
@@ -148,7 +148,7 @@ impl Walk<'_> {
             let (at, entry) = if side_a == 0 {
                 (Fraction::of_point([p, q], at_a), Entry::Vertex(a))
             } else if side_a > 0 && cross(p, q, at_b) < 0 {
-                (Fraction::of_crossing([p, q], [at_a, at_b]), Entry::Edge(half_edge))
+                (ray.coordinate([a, b]).zero(), Entry::Edge(half_edge))
             } else {
                 continue;
             };

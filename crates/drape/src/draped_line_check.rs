@@ -4,7 +4,8 @@ use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
 use crate::{
-    BadLine, DrapedLine, DrapedVertex, fraction::Fraction, line_positions::for_each_vertex,
+    BadLine, DrapedLine, DrapedVertex, barycentric::Barycentric, fraction::Fraction,
+    line_positions::for_each_vertex,
 };
 
 /// Whether `line` is what [`drape`](crate::drape()) could have made on `surface`, exactly: its indices exist, every
@@ -56,7 +57,7 @@ pub fn check(line: &DrapedLine, surface: &Surface) -> Result<(), BadLine> {
 fn fraction(vertex: DrapedVertex, segment: [LatticePoint; 2], surface: &Surface) -> Fraction {
     let at = |vertex: u32| surface.points()[vertex as usize];
     match vertex {
-        DrapedVertex::Crossing { a, b } => Fraction::of_crossing(segment, [at(a), at(b)]),
+        DrapedVertex::Crossing { a, b } => Barycentric::new(segment, [at(a), at(b)]).zero(),
         DrapedVertex::Vertex { vertex } => Fraction::of_point(segment, at(vertex)),
         DrapedVertex::Source { .. } => Fraction::ZERO,
     }

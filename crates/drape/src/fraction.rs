@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::LatticePoint;
 
 /// A position along a segment p → q as an exact fraction: 0 at p, 1 at q.
 #[derive(Debug, Clone, Copy)]
@@ -23,12 +23,6 @@ impl Fraction {
         } else {
             Self { numerator, denominator }
         }
-    }
-
-    /// Where p → q meets the line through `a` and `b`; the two must not be parallel.
-    pub(crate) fn of_crossing([p, q]: [LatticePoint; 2], [a, b]: [LatticePoint; 2]) -> Self {
-        let at_p = cross(a, b, p);
-        Self::new(at_p, at_p - cross(a, b, q))
     }
 
     /// Where `point`, which lies on the line through p and q, lies along it.

@@ -62,6 +62,7 @@ mod extrude;
 mod near_ground;
 mod road_bed;
 
+mod barycentric;
 mod cut_polygon;
 mod fraction;
 mod height_range;

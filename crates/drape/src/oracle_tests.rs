@@ -1,6 +1,6 @@
 //! The walk against brute force, for TINs and lines of every awkward kind.
 
-mod exact;
+pub(crate) mod exact;
 mod lines;
 mod terrains;
 

@@ -5,6 +5,8 @@ use std::cmp::Ordering;
 use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
+use crate::barycentric::{Barycentric, turn};
+
 /// Where on the ground a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlaceOnTin {
@@ -49,20 +51,6 @@ impl PlaceOnTin {
     }
 }
 
-/// On which side of the line from `a` to `b` the point `c` lies, exactly: `Greater` on its left. The sign of
-/// [`cross`], without making the number: for a tile's own triangles products fit 64 bits.
-#[inline]
-fn turn(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> Ordering {
-    const SMALL: i64 = 1 << 31;
-    let (abu, abv) = (b.u - a.u, b.v - a.v);
-    let (acu, acv) = (c.u - a.u, c.v - a.v);
-    if abu.abs() | abv.abs() | acu.abs() | acv.abs() < SMALL {
-        (abu * acv).cmp(&(abv * acu))
-    } else {
-        cross(a, b, c).cmp(&0)
-    }
-}
-
 /// What a segment meets next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Next {
@@ -81,9 +69,9 @@ pub(crate) enum Next {
 /// ```text
 ///                 c                 Entered across o–d, the segment leaves across d–c when c lies on its
 ///                / \                left, across c–o when on its right, through c when on it. This is the
-///       p ─ ─ ─ /─ ─\─ ─ ► q        smallest positive exit in barycentric coordinates (Vaaraniemi, Treib &
-///              /     \              Westermann 2011, section 6.1), without their division: one orientation
-///             o───────d             tells the edge, a second whether q lies before it.
+///       p ─ ─ ─ /─ ─\─ ─ ► q        smallest positive exit in barycentric coordinates, without their
+///              /     \              division (`Barycentric`): one orientation tells the edge, a second
+///             o───────d             whether q lies before it.
 /// ```
 #[derive(Clone, Copy)]
 pub(crate) struct Ray<'a> {
@@ -111,7 +99,7 @@ impl Ray<'_> {
         let k = half_edge % 3;
         let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
         let apex = self.surface.triangles()[triangle as usize][((k + 2) % 3) as usize];
-        match turn(self.p, self.q, self.point(apex)) {
+        match Barycentric::compare_exits([self.p, self.q], self.point(apex)) {
             Ordering::Equal => self.towards(apex, PlaceOnTin::Inside(triangle)),
             Ordering::Greater => self.out_of(next),
             Ordering::Less => self.out_of(previous),
@@ -144,7 +132,8 @@ impl Ray<'_> {
     /// The next step from p, which lies in the inside of an edge.
     fn leave_edge(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
-        match turn(self.point(a), self.point(b), self.q) {
+        // On the edge the coordinate is 0, so its sign at the end is that of its rate.
+        match self.coordinate([a, b]).sign_at_end() {
             Ordering::Equal => {
                 let target = if self.ahead(self.p, self.point(b)) { b } else { a };
                 self.towards(target, PlaceOnTin::Edge(half_edge))
@@ -160,7 +149,9 @@ impl Ray<'_> {
     /// The way on through the inside of a triangle that holds p in its inside or on an edge.
     fn through(&self, triangle: u32) -> Next {
         let corners = self.surface.triangles()[triangle as usize];
-        let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));
+        // The smallest of three exits: it comes before that across the edge before it, and before that across the next one.
+        let sides =
+            corners.map(|vertex| Barycentric::compare_exits([self.p, self.q], self.point(vertex)));
         for k in 0..3 {
             let (this, next, previous) = (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]);
             if this.is_lt() && next.is_gt() {
@@ -177,7 +168,7 @@ impl Ray<'_> {
     #[inline]
     fn out_of(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
-        match turn(self.point(a), self.point(b), self.q) {
+        match self.coordinate([a, b]).sign_at_end() {
             Ordering::Equal => Next::Arrives(PlaceOnTin::Edge(half_edge)),
             Ordering::Greater => Next::Arrives(PlaceOnTin::Inside(half_edge / 3)),
             Ordering::Less => Next::Crosses { half_edge, a, b },
@@ -204,6 +195,12 @@ impl Ray<'_> {
         } else {
             (to.u - from.u).signum() == du.signum()
         }
+    }
+
+    /// The barycentric coordinate that is 0 on an edge between two TIN vertices, along the segment.
+    #[inline]
+    pub(crate) fn coordinate(&self, edge: [u32; 2]) -> Barycentric {
+        Barycentric::new([self.p, self.q], edge.map(|vertex| self.point(vertex)))
     }
 
     #[inline]

@@ -7,6 +7,7 @@ use corniche_photo::TexelWindow;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
+use geo::{Euclidean, Length as _, LineString};
 
 use crate::{
     error::MatchError,
@@ -21,8 +22,6 @@ use crate::{
 const RUN: usize = 16;
 /// Texels along a side of the blocks whose samples are looked at together.
 const BLOCK_TEXELS: i64 = 512;
-/// Least distance beside a road at which the ground is looked at, metres.
-const LEAST_BESIDE_M: f64 = 2.0;
 
 /// What is compared, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,16 +157,13 @@ impl Matching<'_> {
         Ok(())
     }
 
-    /// Half of the tagged width, or what is usual for the class, and not less than half a texel.
+    /// What is looked for: the tagged width, or what is usual for the class.
     fn profile(&self, class: FunctionalRoadClass, attributes: &RoadAttributes) -> Profile {
         const USUAL_M: [f64; FunctionalRoadClass::COUNT] =
             [12.0, 10.0, 9.0, 7.5, 6.5, 5.5, 5.5, 3.5, 2.0];
         let usual_m = USUAL_M.get(usize::from(class.number())).copied().unwrap_or(4.0);
         let width_m = attributes.width_mm.map_or(usual_m, |width| f64::from(width.get()) / 1e3);
-        Profile {
-            half_width_m: (width_m / 2.0).clamp(self.texel_m / 2.0, 15.0),
-            beside_m: LEAST_BESIDE_M.max(self.texel_m),
-        }
+        Profile::new(width_m, self.texel_m)
     }
 
     fn block(&mut self, id: TileId, block: [i64; 2], runs: &[Run]) -> Result<(), MatchError> {
@@ -219,10 +215,7 @@ impl Matching<'_> {
 
     fn report(self) -> MatchReport {
         let Self { search, request, found, .. } = self;
-        let length = |line: &Vec<[f64; 2]>| -> f64 {
-            let pairs = line.array_windows::<2>();
-            pairs.map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1])).sum()
-        };
+        let length = |line: &Vec<[f64; 2]>| Euclidean.length(&LineString::from(line.clone()));
         let regions = found.regions.iter().map(|(place, votes)| MatchedRegion {
             center_m: place.map(|at| (at as f64 + 0.5) * request.region_m),
             samples: votes.samples,

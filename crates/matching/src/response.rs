@@ -17,6 +17,11 @@ impl TexelScale {
     }
 }
 
+/// Least distance beside a road at which the ground is looked at, metres.
+const LEAST_BESIDE_M: f64 = 2.0;
+/// Half the width of the widest road that is looked for, but on texels that are wider, metres.
+const MOST_HALF_WIDTH_M: f64 = 15.0;
+
 /// Half the width of a road, and how far beside its edges the ground is looked at, metres.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Profile {
@@ -25,6 +30,14 @@ pub(crate) struct Profile {
 }
 
 impl Profile {
+    /// The profile of a road so wide in an image of such texels, of which a half is the least that is looked at.
+    pub(crate) fn new(width_m: f64, texel_m: f64) -> Self {
+        Self {
+            half_width_m: (width_m / 2.0).min(MOST_HALF_WIDTH_M).max(texel_m / 2.0),
+            beside_m: LEAST_BESIDE_M.max(texel_m),
+        }
+    }
+
     /// How far from its middle it looks.
     pub(crate) fn reach_m(&self) -> f64 {
         self.half_width_m + 2.0 * self.beside_m

@@ -37,3 +37,13 @@ fn places_without_image_give_no_answer() {
     assert!(found(&grey, [74.0, 50.0]).is_none());
     assert!(found(&grey, [3.0, 50.0]).is_none(), "beyond the image");
 }
+
+#[test]
+fn texels_wider_than_roads_are_the_least_that_is_looked_at() {
+    for (width_m, texel_m, half_width_m) in
+        [(7.0, 2.0, 3.5), (0.5, 2.0, 1.0), (90.0, 2.0, 15.0), (7.0, 92.7, 46.35)]
+    {
+        let profile = Profile::new(width_m, texel_m);
+        assert!((profile.half_width_m - half_width_m).abs() < 1e-9, "{profile:?}");
+    }
+}

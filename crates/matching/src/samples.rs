@@ -1,5 +1,7 @@
 //! Samples along roads, with the direction of the road at each.
 
+use geo::{Euclidean, InterpolatePoint as _, Length as _, LineString};
+
 /// Metres between samples.
 const SPACING_M: f64 = 4.0;
 
@@ -14,9 +16,8 @@ pub(crate) struct Sample {
 
 /// Samples in the middles of equal parts of a line; none on a line that has no length.
 pub(crate) fn samples(line: &[[f64; 2]]) -> Vec<Sample> {
-    let length = |pair: &[[f64; 2]; 2]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-    let segments = || line.array_windows::<2>();
-    let total: f64 = segments().map(length).sum();
+    let line = LineString::from(line.to_vec());
+    let total = Euclidean.length(&line);
     let count = (total / SPACING_M).ceil();
     if count < 1.0 {
         return Vec::new();
@@ -25,13 +26,14 @@ pub(crate) fn samples(line: &[[f64; 2]]) -> Vec<Sample> {
     let mut samples = Vec::with_capacity(count as usize);
     let mut next = spacing / 2.0;
     let mut before = 0.0;
-    for pair in segments() {
-        let own = length(pair);
+    for segment in line.lines() {
+        let own = Euclidean.length(&segment);
         while own > 0.0 && next < before + own && samples.len() < count as usize {
             let share = (next - before) / own;
-            let [east, north] = [0, 1].map(|axis| pair[1][axis] - pair[0][axis]);
-            let at = [pair[0][0] + east * share, pair[0][1] + north * share];
-            samples.push(Sample { at, normal: [-north / own, east / own] });
+            let (from, to) = (segment.start_point(), segment.end_point());
+            let at = Euclidean.point_at_ratio_between(from, to, share);
+            let normal = [-segment.dy() / own, segment.dx() / own];
+            samples.push(Sample { at: at.into(), normal });
             next += spacing;
         }
         before += own;

@@ -2,6 +2,7 @@
 
 use std::{fs, io::Read as _, path::Path};
 
+use geo::{LineString, Winding as _};
 use serde_json::{Map, Value, json};
 
 use crate::OverlayError;
@@ -205,7 +206,8 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
         Shape::Line => json!({"type": "LineString", "coordinates": coordinates}),
         Shape::Area => {
             // Outer rings are counter-clockwise (RFC 7946, section 3.1.6).
-            if doubled_area(&line.points_deg) < 0.0 {
+            let ring = line.points_deg.iter().chain(line.points_deg.first()).copied();
+            if ring.collect::<LineString>().is_cw() {
                 coordinates.reverse();
             }
             coordinates.extend(coordinates.first().cloned());
@@ -216,12 +218,6 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
         members.remove("bbox");
     }
     Some(feature)
-}
-
-/// Twice the area that a closed line surrounds; negative if it is clockwise.
-fn doubled_area(points: &[[f64; 2]]) -> f64 {
-    let next = points.iter().cycle().skip(1);
-    points.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum()
 }
 
 #[cfg(test)]

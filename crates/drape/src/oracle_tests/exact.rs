@@ -15,7 +15,7 @@ pub(crate) const START: Along = Along(0, 1);
 pub(crate) const END: Along = Along(1, 1);
 
 impl Along {
-    fn new(n: i128, d: i128) -> Self {
+    pub(crate) fn new(n: i128, d: i128) -> Self {
         if d < 0 { Self(-n, -d) } else { Self(n, d) }
     }
 
@@ -52,7 +52,7 @@ impl Ord for Along {
 }
 
 /// Sign and magnitude, ordered as the product is: high and low 128 bits, both negated for a negative one.
-fn wide_product(a: i128, b: i128) -> (bool, [i128; 4]) {
+pub(crate) fn wide_product(a: i128, b: i128) -> (bool, [i128; 4]) {
     const LIMB: u128 = (1 << 64) - 1;
     let (x, y) = (a.unsigned_abs(), b.unsigned_abs());
     let low = (x & LIMB) * (y & LIMB);
