@@ -334,6 +334,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
         let said = done(&["profile", text(&package), "--line", text(&line)]);
         let length = said.split_whitespace().nth(1).and_then(|word| word.parse().ok());
         near(&format!("{name}, {kind}: {said}"), length.unwrap(), WAYS[0].2);
+        assert!(!said.contains("parts"), "{name}, {kind}: {said}");
     }
 }
 
