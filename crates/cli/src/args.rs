@@ -35,7 +35,7 @@ pub(crate) use export::{
     ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, Format, OnOrNone, TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;
-pub(crate) use look::Roads;
+pub(crate) use look::{LookArgs, Roads};
 pub(crate) use matching::MatchArgs;
 #[cfg(test)]
 pub(crate) use overlay::parse as overlay;

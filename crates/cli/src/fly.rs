@@ -26,7 +26,9 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, messages, overlays, packages, presets, progress, styles,
+    interrupt, messages, overlays, packages, presets,
+    progress::Progress,
+    styles,
     table::Digits,
 };
 use corniche_styles::Style;
@@ -47,7 +49,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let methods = args.look.roads(&args.drawing.roads)?;
     let package = packages::source(&args.from.package)?;
     let flight = flight(args, &package)?;
-    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let overlays = overlays::load(&args.look, package.manifest())?;
     let (flown, methods) = (&flight, &methods);
     let plan = Plan { args, flight: flown, style: &style, methods, outputs: &outputs, overlays };
     let Drawn { runs, adapter } =
@@ -214,8 +216,8 @@ impl Plan<'_> {
             ));
         }
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
-        // The bar hides itself if standard error is no terminal.
-        let bar = progress::bar(run.name(), Some(options.frames.into()));
+        messages::note(&format!("flying {}", run.name()));
+        let progress = Progress::new();
         while let Some(record) = replay.next_frame()? {
             let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
             self.outputs.add_picture(&name, &replay)?;
@@ -223,9 +225,9 @@ impl Plan<'_> {
                 watcher.show(&replay)?;
             }
             run.frames.push(record);
-            bar.inc(1);
+            progress.frames(run.frames.len() as u64, options.frames.into());
         }
-        bar.finish_and_clear();
+        progress.finish();
         if let Some(doubt) = run.doubt() {
             messages::warning(&format!("{}: {doubt}", run.name()));
         }

@@ -14,7 +14,7 @@ use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
 
 use crate::{
-    args::MatchArgs, exit::ExitCode, failure::Failure, output::existing_of, packages,
+    args::MatchArgs, exit::ExitCode, failure::Failure, messages, output::existing_of, packages,
     progress::Progress, report_files::ReportFiles, table::Digits,
 };
 
@@ -40,6 +40,9 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         let opened = Photos::open(&photos).map_err(MatchError::from)?;
         let grid = corniche_pipeline::grid_of(manifest)
             .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+        let datums = grid.datums_of_rasters(opened.rasters()).allowed(args.allow_ballpark);
+        let datums = datums.map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+        datums.warnings().for_each(|text| messages::warning(&text));
         match_roads(&package, &Target::Photos(&opened, &grid), &request, &progress)
     };
     progress.finish();

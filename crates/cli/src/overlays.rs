@@ -7,17 +7,23 @@ use corniche_styles::LineStyle;
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{LayerLine, Overlays};
 
-use crate::{args::OverlayArg, exit::ExitCode, failure::Failure, messages};
+use crate::{
+    args::{LookArgs, OverlayArg},
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+};
 
 /// Reads the files and lays out their lines for a package. What has no place on it, or is no line, is told.
-pub(crate) fn load(files: &[OverlayArg], manifest: &Manifest) -> Result<Arc<Overlays>, Failure> {
+pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>, Failure> {
+    let files = &look.overlay;
     if files.len() > LineStyle::MOST {
         let most = LineStyle::MOST;
         return Err(Failure::unusable(format!("at most {most} files can be given as --overlay")));
     }
     let (mut lines, mut first) = (Vec::new(), 0);
     for (style, file) in (0..).zip(files) {
-        let found = read(file.path())?;
+        let found = read(file.path(), look.allow_ballpark)?;
         let placed = place(&found.lines, manifest)?;
         tell(file.path(), &found);
         let is_near = placed.iter().any(|line| {
@@ -42,6 +48,7 @@ pub(crate) fn tell(path: &Path, found: &VectorLines) {
     for notice in found.notices() {
         note(path, &notice);
     }
+    found.datums.warnings().for_each(|text| messages::warning(&text));
 }
 
 fn note(path: &Path, what: &str) {

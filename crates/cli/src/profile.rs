@@ -33,7 +33,8 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let inputs: Vec<&Path> =
         [args.from.package.name()].into_iter().chain(args.line.as_deref()).collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
-    let lines = args.line.as_deref().map(|path| placed_lines(path, &package)).transpose()?;
+    let placed = |path| placed_lines(path, args.allow_ballpark, &package);
+    let lines = args.line.as_deref().map(placed).transpose()?;
     let progress = Progress::new();
     let found = match &lines {
         Some(lines) => profile_of_lines(&package, lines, args.at.level, &progress),
@@ -61,8 +62,12 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The lines of a file on the package's lattice.
-fn placed_lines(path: &Path, package: &FilePackage) -> Result<Vec<Vec<LatticePoint>>, Failure> {
-    let found = corniche_overlay::read(path)?;
+fn placed_lines(
+    path: &Path,
+    allow_ballpark: bool,
+    package: &FilePackage,
+) -> Result<Vec<Vec<LatticePoint>>, Failure> {
+    let found = corniche_overlay::read(path, allow_ballpark)?;
     overlays::tell(path, &found);
     let placed = corniche_overlay::place(&found.lines, package.manifest())?;
     Ok(placed.into_iter().map(|line| line.points).collect())

@@ -11,7 +11,6 @@ mod texts;
 mod usage;
 
 use std::{
-    borrow::Cow,
     io::{IsTerminal as _, stderr},
     path::Path,
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
@@ -137,6 +136,11 @@ impl Progress {
         Self { shared, ticker }
     }
 
+    /// A flight has drawn so many of its frames.
+    pub(crate) fn frames(&self, done: u64, total: u64) {
+        self.count(Task::FLY, done, total);
+    }
+
     /// The stage that runs has done `done` of `total`. It begins with its first step that is told.
     fn count(&self, task: Task, done: u64, total: u64) {
         let mut state = self.shared.state();
@@ -191,22 +195,13 @@ impl Drop for Progress {
     }
 }
 
-/// A progress bar; a spinner if the total is unknown; hidden where bars are not wanted.
-pub(crate) fn bar(title: impl Into<Cow<'static, str>>, total: Option<u64>) -> ProgressBar {
-    if Manner::of(messages::voice()) != Manner::Bars {
-        return ProgressBar::hidden();
-    }
-    styled_bar(title, total, "{pos}/{len} {eta}")
-}
-
-fn styled_bar(
-    title: impl Into<Cow<'static, str>>,
-    total: Option<u64>,
-    figures: &str,
-) -> ProgressBar {
+/// A progress bar; a spinner if the total is unknown.
+fn bar(title: &'static str, total: Option<u64>) -> ProgressBar {
     let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
     let drawing = if total.is_some() { "{bar:20}" } else { "{spinner}" };
-    if let Ok(style) = ProgressStyle::with_template(&format!("{{prefix:22}} {drawing} {figures}")) {
+    if let Ok(style) =
+        ProgressStyle::with_template(&format!("{{prefix:22}} {drawing} {{wide_msg}}"))
+    {
         bar.set_style(style);
     }
     bar.with_prefix(title)
@@ -299,7 +294,7 @@ impl Running {
             used_before: Usage::now(),
             told: now,
             told_done: 0,
-            bar: (manner == Manner::Bars).then(|| styled_bar(task.title, total, "{wide_msg}")),
+            bar: (manner == Manner::Bars).then(|| bar(task.title, total)),
         }
     }
 

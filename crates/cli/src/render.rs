@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     request.check()?;
     let package =
         packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
-    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let overlays = overlays::load(&args.look, package.manifest())?;
     let package = package.with_overlays(overlays);
     let legend = args.legend.then(|| presets::class_labels(package.manifest()));
     let request = RenderRequest { legend, ..request };

@@ -116,15 +116,22 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()
 }
 
-/// How to have what was left out for a reason, as packages name it; `None` where it is no road, or was not asked for.
+/// Why something is left out, as packages name it, and how to have it; `None` where it is no road, or was not asked for. All reasons are here.
+const REMEDIES: [(&str, Option<&str>); 9] = [
+    ("listed as no road", None),
+    ("class is off", Some("--classes 0-8 has them")),
+    ("value in no class", Some("--frc-table FILE, with these values, has them")),
+    ("an area", None),
+    ("id occurs twice", None),
+    ("no line is left", None),
+    ("outside the elevation data", Some("give --dem files that cover them")),
+    ("where the data have no ground (void or edge)", Some("--fill-voids N fills gaps of N cells")),
+    ("outside the bounds that were asked for", None),
+];
+
+/// How to have what was left out for a reason.
 fn remedy(reason: &str) -> Option<&'static str> {
-    const REMEDIES: [(&str, &str); 4] = [
-        ("class is off", "--classes 0-8 has them"),
-        ("value in no class", "--frc-table FILE, with these values, has them"),
-        ("outside the elevation data", "give --dem files that cover them"),
-        ("where the data have no ground (void or edge)", "--fill-voids N fills gaps of N cells"),
-    ];
-    REMEDIES.into_iter().find_map(|(known, remedy)| (known == reason).then_some(remedy))
+    REMEDIES.into_iter().find(|(known, _)| *known == reason)?.1
 }
 
 /// Areas and boundaries, where they were asked for.

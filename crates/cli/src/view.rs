@@ -38,7 +38,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         )));
     }
     let package = packages::source(&args.from.package)?;
-    let overlays = overlays::load(&args.look.overlay, package.manifest())?;
+    let overlays = overlays::load(&args.look, package.manifest())?;
     let package = Arc::new(package.with_overlays(overlays));
     let draw = args.draw.as_deref();
     let drawing = Drawing::begin(draw, &args.folder, &used, Arc::clone(&package))?;
@@ -52,7 +52,11 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         roads: args.look.road_options(roads),
         software_method: software_method(args),
         class_labels: presets::class_labels(package.manifest()),
-        command_of: command_of(args.from.package.name(), &args.look.overlay),
+        command_of: command_of(
+            args.from.package.name(),
+            &args.look.overlay,
+            args.look.allow_ballpark,
+        ),
         styles,
         photo: args.look.photo,
         areas: args.look.areas.in_window(),

@@ -15,11 +15,18 @@ use crate::args::{OverlayArg, Roads};
 const PICTURE: &str = "view.png";
 
 /// Tells the command that draws a view of this package, quoted for a POSIX shell.
-pub(crate) fn command_of(package: &Path, overlays: &[OverlayArg]) -> CommandOf {
+pub(crate) fn command_of(
+    package: &Path,
+    overlays: &[OverlayArg],
+    allow_ballpark: bool,
+) -> CommandOf {
     let package = package.display().to_string();
     let overlays = overlays.to_vec();
     Box::new(move |shown| {
-        let words = words(&package, &overlays, shown);
+        let mut words = words(&package, &overlays, shown);
+        if allow_ballpark && words.iter().any(|word| word == "--overlay") {
+            words.push("--allow-ballpark".to_owned());
+        }
         // The character 0, which no argument of a program can hold, is the one that cannot be quoted.
         shlex::Quoter::new()
             .allow_nul(true)

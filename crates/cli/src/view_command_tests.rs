@@ -40,7 +40,7 @@ fn overlays() -> Vec<OverlayArg> {
 
 /// The command as the program reads it, after a shell has split it into words.
 fn read(package: &str, shown: &ShownView) -> RenderArgs {
-    let command = command_of(Path::new(package), &overlays())(shown);
+    let command = command_of(Path::new(package), &overlays(), true)(shown);
     let words = shlex::split(&command).expect("quotes that a shell understands");
     match Arguments::try_parse_from(words)
         .unwrap_or_else(|error| panic!("{command}: {error}"))
@@ -63,7 +63,7 @@ fn the_command_draws_what_the_window_shows() {
     let numbers = [ground.exaggeration, ground.screen_space_error, ground.cell_px];
     assert_eq!(numbers.map(f64::to_bits), [1.5, 0.75, f64::INFINITY].map(f64::to_bits));
     assert_eq!(args.look.photo.map(f32::to_bits), Some(0.25_f32.to_bits()));
-    assert!(!args.wireframe);
+    assert!(!args.wireframe && args.look.allow_ballpark);
     assert!(read("a", &ShownView { wireframe: Wireframe::Shown, ..shown }).wireframe);
 }
 
@@ -80,7 +80,11 @@ fn files_of_lines_are_drawn_as_they_are_shown() {
     let all = ["my tracks/a.gpx,color=#FF8000", "b.geojson,color=#00FF00", "c.gpx,color=#0000FF"];
     assert_eq!(texts(&shown), all);
     let hidden_overlays = [0, 1].into_iter().collect();
-    assert_eq!(texts(&ShownView { hidden_overlays, ..shown }), all[2..]);
+    assert_eq!(texts(&ShownView { hidden_overlays, ..shown.clone() }), all[2..]);
+    // An option for files of lines is not given without one.
+    let hidden_overlays = [0, 1, 2].into_iter().collect();
+    let without = ShownView { hidden_overlays, ..shown };
+    assert!(texts(&without).is_empty() && !read("a.pmtiles", &without).look.allow_ballpark);
 }
 
 /// A ten-millionth of a degree is at most 1.2 cm.

@@ -217,7 +217,8 @@ impl Auditor<'_> {
             found.add(stored, height_m, self.range_m);
         }
         let columns = block.size[0];
-        for [column, row] in spikes::candidates(&self.heights_m, columns) {
+        let limit_m = spikes::limit_m(source.spacing_m());
+        for [column, row] in spikes::candidates(&self.heights_m, columns, limit_m) {
             let index = row * columns + column;
             let (height_m, stored) = (self.heights_m[index], self.stored[index]);
             // Off the block's rim all neighbours are known, and nothing is read again.
@@ -240,7 +241,8 @@ impl Auditor<'_> {
         let mut around_m = Vec::new();
         source.read_stored(dataset, start, size, &mut around_m)?;
         source.convert(&mut around_m);
-        Ok(spikes::is_spike(&around_m, size[0], [column - start[0], row - start[1]]))
+        let limit_m = spikes::limit_m(source.spacing_m());
+        Ok(spikes::is_spike(&around_m, size[0], [column - start[0], row - start[1]], limit_m))
     }
 }
 
@@ -404,7 +406,7 @@ impl Audit {
         })
     }
 
-    /// What a user should know of single samples that stand more than 2000 m above or below all of their neighbours: one text for each file that
+    /// What a user should know of single samples that stand far above or below all of their neighbours: one text for each file that
     /// has some.
     #[must_use]
     pub fn spikes(&self, dem: &Dem) -> Vec<String> {
@@ -427,9 +429,10 @@ impl Audit {
                 0 => String::new(),
                 more => format!("; and {more} more"),
             };
+            let limit_m = spikes::limit_m(source.spacing_m()).floor();
             let option = first.first().map(|spike| source.stored_text(spike.stored));
             format!(
-                "{}: samples that stand alone, more than 2000 m above or below all around them: {places}{more}; if such a value means \"no data\", \
+                "{}: samples that stand alone, more than {limit_m} m above or below all around them: {places}{more}; if such a value means \"no data\", \
                  give it with --nodata {}, and if all are heights, allow them with --height-range LOW,HIGH",
                 source.path.display(),
                 option.unwrap_or_default()

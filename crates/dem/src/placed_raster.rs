@@ -68,6 +68,10 @@ impl PlacedRaster {
         &self.path
     }
 
+    pub(crate) fn crs(&self) -> &Crs {
+        &self.crs
+    }
+
     /// Columns and rows.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
@@ -86,19 +90,6 @@ impl PlacedRaster {
             working_from_crs: Operation::into_working(&self.crs, &grid.working, area_deg),
             crs_from_pixel: self.crs_from_pixel,
         }
-    }
-}
-
-impl GridPlan {
-    /// Refuses rasters such as photos whose datum would be taken for that of the grid.
-    ///
-    /// # Errors
-    /// [`DemError::Ballpark`] where it is so.
-    pub fn refuse_ballpark_of_rasters<'a>(
-        &self,
-        rasters: impl Iterator<Item = &'a PlacedRaster>,
-    ) -> Result<(), DemError> {
-        self.refuse_ballpark_of(rasters.map(|raster| (raster.path(), &raster.crs)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to it.
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Seam};
 
 /// A rectangle of longitudes and latitudes, degrees (WGS84); it may cross the antimeridian.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,20 +60,18 @@ impl DegreeBounds {
 
     /// The longitude, within ±180, and the latitude of its middle.
     pub(crate) fn middle(&self) -> [f64; 2] {
-        let lon = self.center - 360.0 * (self.center / 360.0).round();
-        [lon, f64::midpoint(self.south, self.north)]
+        [Seam::of_degrees().image(self.center), f64::midpoint(self.south, self.north)]
     }
 
     /// A position as degrees east of the rectangle's middle, within ±180, and degrees of latitude.
     pub(crate) fn relative(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
-        let east = lon - self.center;
-        [east - 360.0 * (east / 360.0).round(), lat]
+        [Seam::of_degrees().image(lon - self.center), lat]
     }
 
     /// The same for a position that follows another one: a line between the two never goes around the earth.
     pub(crate) fn relative_after(&self, position: [f64; 2], before: [f64; 2]) -> [f64; 2] {
         let [east, lat] = self.relative(position);
-        [east - 360.0 * ((east - before[0]) / 360.0).round(), lat]
+        [Seam::of_degrees().around(before[0]).image(east), lat]
     }
 
     /// What of the line between two positions (longitude and latitude) lies inside: from which share of it to which, in its order. There

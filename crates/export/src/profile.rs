@@ -16,6 +16,9 @@ use crate::{
     read,
 };
 
+/// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
+const SAME_PLACE_M: f64 = 0.02;
+
 /// The profile of some ways, one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
@@ -110,7 +113,7 @@ pub fn profile_of_lines(
         };
         parts.into_iter().map(of_line)
     });
-    let parts: Vec<ProfileLine> = numbered.collect();
+    let parts = joined(numbered, &places);
     if parts.is_empty() {
         return Err(ExportError::NoLineOnGround { package: package.path().to_path_buf() });
     }
@@ -198,6 +201,24 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
                 None => parts.push(vertices.collect()),
             }
             end = parts.last().and_then(|part| part.last()).map(|(_, vertex)| vertex.at);
+        }
+    }
+    parts
+}
+
+/// Lines of which each begins where the one before ends are one part: also where a line ends at the end of the map and goes on at its other end.
+fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<ProfileLine> {
+    let mut parts: Vec<ProfileLine> = Vec::new();
+    for line in lines {
+        let goes_on = |before: &&mut ProfileLine| match (before.last(), line.first()) {
+            (Some((_, end)), Some((_, begin))) => {
+                places.distance_m(end.at, begin.at) <= SAME_PLACE_M
+            }
+            _ => false,
+        };
+        match parts.last_mut().filter(goes_on) {
+            Some(before) => before.extend(line.into_iter().skip(1)),
+            None => parts.push(line),
         }
     }
     parts

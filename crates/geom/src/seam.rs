@@ -2,6 +2,9 @@
 
 use crate::{GridFrame, LatticePoint};
 
+/// What computing with coordinates rounds, in turns.
+const ROUNDING: f64 = 1e-12;
+
 /// Where a map is cut open whose first coordinate comes back after a full turn around the earth: half a turn from its middle, on both
 /// sides.
 ///
@@ -71,11 +74,15 @@ impl Seam {
         Self { middle: east - turn / 2.0, turn, rounding: 1.0 }
     }
 
-    /// The image of a coordinate on this map. Half a turn from the middle it stays as it is: both ways around are equally long.
+    /// The image of a coordinate on this map. Half a turn from the middle, be it a rounding more, it stays as it is: both ways around are equally long.
     #[must_use]
     pub fn image(&self, x: f64) -> f64 {
         let away = x - self.middle;
-        if away.abs() <= self.turn / 2.0 { x } else { x - self.turn * (away / self.turn).round() }
+        if away.abs() <= self.turn * (0.5 + ROUNDING) {
+            x
+        } else {
+            x - self.turn * (away / self.turn).round()
+        }
     }
 
     /// The image of a coordinate between the ends of the map; what lies at the eastern end comes to the western one.

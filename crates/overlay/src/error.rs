@@ -33,7 +33,9 @@ pub enum OverlayError {
     )]
     NoCrs { path: PathBuf, layer: String },
     #[error("the coordinate system of layer {layer:?} of {path:?} cannot be used")]
-    Crs { path: PathBuf, layer: String, source: Box<LibraryError> },
+    Crs { path: PathBuf, layer: String, source: Box<DemError> },
+    #[error(transparent)]
+    Datum(Box<DemError>),
     #[error(
         "{path:?} has more than {limit} points in its lines; simplify it (ogr2ogr -simplify), or cut it to the package (ogr2ogr -clipsrc)"
     )]

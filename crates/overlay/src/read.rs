@@ -2,10 +2,9 @@
 
 use std::{collections::HashMap, path::Path};
 
-use corniche_dem::{NotOpened, failure, forget, open_vectors};
-use gdal::{
-    spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef},
-    vector::{Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten},
+use corniche_dem::{DemError, FileDatums, NotOpened, ToWgs84, failure, forget, open_vectors};
+use gdal::vector::{
+    Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten,
 };
 
 use crate::OverlayError;
@@ -31,6 +30,8 @@ pub struct VectorLines {
     pub others: u64,
     /// Lines of routes, and lines of tracks, in a GPX file that has both.
     pub routes_and_tracks: Option<[usize; 2]>,
+    /// How positions came to the datum of WGS84.
+    pub datums: FileDatums,
 }
 
 impl VectorLines {
@@ -89,11 +90,12 @@ impl VectorLine {
     }
 }
 
-/// Reads the lines of all layers of a vector file, each in its own coordinate system.
+/// Reads the lines of all layers of a vector file, each in its own coordinate system. With `allow_ballpark` its datum may be taken for that of
+/// WGS84 where PROJ knows nothing between the two.
 ///
 /// # Errors
-/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system.
-pub fn read(path: &Path) -> Result<VectorLines, OverlayError> {
+/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system, or one of an unknown datum.
+pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
     let dataset = open_vectors(path).map_err(|error| match error {
         NotOpened::Missing(source) => OverlayError::Missing { path: own(), source },
@@ -101,7 +103,7 @@ pub fn read(path: &Path) -> Result<VectorLines, OverlayError> {
         NotOpened::Unreadable(source) => OverlayError::Open { path: own(), source },
     })?;
     let is_gpx = dataset.driver().short_name() == "GPX";
-    let mut reading = Reading { path, found: VectorLines::default(), points: 0 };
+    let mut reading = Reading { path, found: VectorLines::default(), points: 0, allow_ballpark };
     let [mut routes, mut tracks] = [0; 2];
     for mut layer in dataset.layers() {
         let name = layer.name();
@@ -131,18 +133,21 @@ struct Reading<'a> {
     path: &'a Path,
     found: VectorLines,
     points: usize,
+    allow_ballpark: bool,
 }
 
 impl Reading<'_> {
     fn layer(&mut self, layer: &mut Layer<'_>) -> Result<(), OverlayError> {
         let path = || self.path.to_path_buf();
         let (name, claimed) = (layer.name(), layer.try_feature_count());
-        let to_wgs84 = layer.spatial_ref().map(to_wgs84).transpose();
-        let to_wgs84 = to_wgs84.map_err(|source| OverlayError::Crs {
+        let unusable = |source: DemError| OverlayError::Crs {
             path: path(),
             layer: name.clone(),
-            source: source.into(),
-        })?;
+            source: Box::new(source),
+        };
+        let to_wgs84 = layer.spatial_ref().as_ref().map(ToWgs84::new).transpose();
+        let to_wgs84 = to_wgs84.map_err(unusable)?;
+        let before = self.found.lines.len();
         let mut features = 0;
         forget();
         for feature in layer.features() {
@@ -160,14 +165,15 @@ impl Reading<'_> {
             let Some(to_wgs84) = &to_wgs84 else {
                 return Err(OverlayError::NoCrs { path: self.path.to_path_buf(), layer: name });
             };
-            for part in parts {
+            for mut part in parts {
                 self.points += part.len();
                 if self.points > MOST_POINTS {
                     let (path, limit) = (self.path.to_path_buf(), MOST_POINTS);
                     return Err(OverlayError::TooManyPoints { path, limit });
                 }
-                let positions_deg = carried(&part, to_wgs84);
-                self.found.lines.push(VectorLine { name: label.clone(), positions_deg });
+                to_wgs84.apply(&mut part).map_err(unusable)?;
+                let (name, positions_deg) = (label.clone(), part);
+                self.found.lines.push(VectorLine { name, positions_deg });
             }
             // What PROJ says of single points is no failure to read the file.
             forget();
@@ -177,21 +183,18 @@ impl Reading<'_> {
         if let Some(source) = failure() {
             return Err(OverlayError::Damaged { path, source });
         }
-        match claimed {
-            Some(claimed) if claimed != features => {
-                Err(OverlayError::CutOff { path, layer: name, claimed, found: features })
-            }
-            _ => Ok(()),
+        if let Some(claimed) = claimed.filter(|claimed| *claimed != features) {
+            return Err(OverlayError::CutOff { path, layer: name, claimed, found: features });
         }
+        let Some(to_wgs84) = to_wgs84 else { return Ok(()) };
+        let first = |line: &VectorLine| {
+            line.positions_deg.iter().find(|position| position[0].is_finite()).copied()
+        };
+        let places_deg: Vec<_> = self.found.lines[before..].iter().filter_map(first).collect();
+        let datums = to_wgs84.datums(&path, &places_deg).allowed(self.allow_ballpark);
+        self.found.datums.extend(datums.map_err(|error| OverlayError::Datum(Box::new(error)))?);
+        Ok(())
     }
-}
-
-fn to_wgs84(mut from: SpatialRef) -> Result<CoordTransform, gdal::errors::GdalError> {
-    let mut to = SpatialRef::from_epsg(4326)?;
-    for reference in [&mut from, &mut to] {
-        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
-    }
-    CoordTransform::new(&from, &to)
 }
 
 fn label_of(feature: &Feature<'_>) -> Option<String> {
@@ -217,22 +220,6 @@ fn take(geometry: &Geometry, parts: &mut Vec<Vec<[f64; 2]>>) {
         }
         _ => {}
     }
-}
-
-/// Longitudes and latitudes; NaN where there is none.
-fn carried(points: &[[f64; 2]], to_wgs84: &CoordTransform) -> Vec<[f64; 2]> {
-    let carry = |points: &[[f64; 2]]| -> Option<Vec<[f64; 2]>> {
-        let mut x: Vec<f64> = points.iter().map(|point| point[0]).collect();
-        let mut y: Vec<f64> = points.iter().map(|point| point[1]).collect();
-        to_wgs84.transform_coords(&mut x, &mut y, &mut []).ok()?;
-        let finite = |at: f64| if at.is_finite() { at } else { f64::NAN };
-        Some(x.into_iter().zip(y).map(|(x, y)| [finite(x), finite(y)]).collect())
-    };
-    // Where one point fails, GDAL fails them all.
-    carry(points).unwrap_or_else(|| {
-        let one = |point: &[f64; 2]| carry(&[*point]).map_or([f64::NAN; 2], |carried| carried[0]);
-        points.iter().map(one).collect()
-    })
 }
 
 #[cfg(test)]

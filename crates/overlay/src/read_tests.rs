@@ -21,7 +21,7 @@ const GEOJSON: &str = r#"{"type":"FeatureCollection","features":[
 #[test]
 fn lines_and_outlines_come_in_the_order_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let found = read(&written(folder.path(), "a.geojson", GEOJSON)).unwrap();
+    let found = read(&written(folder.path(), "a.geojson", GEOJSON), false).unwrap();
     let counts: Vec<usize> = found.lines.iter().map(|line| line.positions_deg.len()).collect();
     assert_eq!(counts, [2, 2, 3, 4, 4]);
     assert_eq!(found.others, 1, "the point");
@@ -38,7 +38,7 @@ fn a_track_of_gpx_is_one_line() {
     let text = r#"<?xml version="1.0"?><gpx version="1.1" creator="t" xmlns="http://www.topografix.com/GPX/1/1">
       <wpt lat="47" lon="9"><name>hut</name></wpt>
       <trk><name>up</name><trkseg><trkpt lat="47.0" lon="9.0"/><trkpt lat="47.1" lon="9.1"/></trkseg></trk></gpx>"#;
-    let found = read(&written(folder.path(), "a.gpx", text)).unwrap();
+    let found = read(&written(folder.path(), "a.gpx", text), false).unwrap();
     assert_eq!((found.lines.len(), found.others), (1, 1));
     assert_eq!(found.lines[0].name.as_deref(), Some("up"));
 }
@@ -55,7 +55,7 @@ fn a_line_that_counts_twice_is_told() {
         )
     };
     let notices = |name: &str, text: &str| {
-        let found = read(&written(folder.path(), name, text)).unwrap();
+        let found = read(&written(folder.path(), name, text), false).unwrap();
         (found.lines.len(), found.notices())
     };
     let same = r#"<rte><rtept lat="47.0" lon="9.0"/><rtept lat="47.05" lon="9.02"/><rtept lat="47.1" lon="9.1"/></rte>"#;
@@ -85,13 +85,14 @@ fn a_line_that_counts_twice_is_told() {
 #[test]
 fn what_gives_no_lines_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    let told =
-        |name: &str, text: &str| read(&written(folder.path(), name, text)).unwrap_err().to_string();
+    let told = |name: &str, text: &str| {
+        read(&written(folder.path(), name, text), false).unwrap_err().to_string()
+    };
     let point = r#"{"type":"Point","coordinates":[9,47]}"#;
     assert!(told("point.geojson", point).contains("no line and no outline, but 1 other"));
     assert!(told("no.geojson", "{}").contains("not a vector file"));
     assert!(told("half.geojson", &GEOJSON[..300]).contains("half.geojson"));
     assert!(told("empty.gpx", "").contains("not a vector file"));
-    let missing = read(&folder.path().join("missing.gpx")).unwrap_err();
+    let missing = read(&folder.path().join("missing.gpx"), false).unwrap_err();
     assert!(matches!(missing, OverlayError::Missing { .. }), "{missing}");
 }

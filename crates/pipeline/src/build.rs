@@ -113,6 +113,7 @@ pub(crate) fn warn(context: &Context<'_>) {
             context.observer.warning(&text);
         }
     }
+    context.file_datums.warnings().for_each(|text| context.observer.warning(&text));
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
     warn_of_other_network(context);
 }

@@ -1,6 +1,6 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
-use corniche_dem::{Dem, GridPlan};
+use corniche_dem::{Dem, FileDatums, GridPlan};
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
 use corniche_store::Artifacts;
 
@@ -27,6 +27,8 @@ pub(crate) struct Context<'a> {
     pub(crate) max_error_m: f64,
     /// Photos of the ground.
     pub(crate) photo: &'a PhotoSource,
+    /// How polygons and photos come to the datum of the grid.
+    pub(crate) file_datums: &'a FileDatums,
     pub(crate) store: &'a dyn Artifacts,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -40,8 +42,17 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened { inputs, source, grid, levels, max_error_m, coordinates, photo, relief: _ } =
-            opened;
+        let Opened {
+            inputs,
+            source,
+            grid,
+            levels,
+            max_error_m,
+            coordinates,
+            photo,
+            relief: _,
+            file_datums,
+        } = opened;
         let max_error_m = *max_error_m;
         Self {
             settings,
@@ -53,6 +64,7 @@ impl<'a> Context<'a> {
             coordinates,
             max_error_m,
             photo,
+            file_datums,
             store,
             observer,
         }

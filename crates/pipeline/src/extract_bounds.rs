@@ -34,9 +34,9 @@ pub(crate) fn around(boxes: &[[f64; 4]]) -> [f64; 4] {
         let mut own = [west, south, if west > east { east + 360.0 } else { east }, north];
         if let Some([first_west, _, first_east, _]) = all {
             // Next to the others, on the shorter way around the earth.
-            let away = f64::midpoint(own[0], own[2]) - f64::midpoint(first_west, first_east);
-            let turns = (away / 360.0).round();
-            (own[0], own[2]) = (own[0] - 360.0 * turns, own[2] - 360.0 * turns);
+            let seam = Seam::of_degrees().around(f64::midpoint(first_west, first_east));
+            let away = seam.turn() * seam.turns(f64::midpoint(own[0], own[2]));
+            (own[0], own[2]) = (own[0] - away, own[2] - away);
         }
         all = Some(all.map_or(own, |all| {
             [all[0].min(own[0]), all[1].min(own[1]), all[2].max(own[2]), all[3].max(own[3])]

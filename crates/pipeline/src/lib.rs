@@ -20,6 +20,7 @@ mod manifest_texts;
 mod memory_shares;
 mod objects;
 mod observer;
+mod open_package;
 mod parts;
 mod photos;
 mod plan;
@@ -49,6 +50,7 @@ pub use inputs::{PlannedInput, elevation_names, extract_names, input_name, photo
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use objects::is_in_object_storage;
 pub use observer::{Observer, Silent, Stage, Unit};
+pub use open_package::open_package;
 pub use parts::{
     Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs,
     make_part, merge, plan_with_jobs,
@@ -57,6 +59,7 @@ pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,
 };
 pub use plan_error::PlanError;
+pub use roads::totals::reasons_left_out;
 pub use settings::{
     BuildSettings, Existing, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources,
     RoadSettings, TerrainSettings,

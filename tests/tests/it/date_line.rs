@@ -118,6 +118,11 @@ fn models() -> Vec<Model> {
         model("32660", 32660, utm, own),
         globe("from-180", -180.0),
         globe("from-0", 0.0),
+        cells("cells-from-180", &[(-180.0, 360)], own),
+        cells("cells-from-0", &[(0.0, 360)], own),
+        cells("cells-of-two-files", &[(-180.0, 200), (20.0, 160)], own),
+        cells("cells-on-others", &[(-180.0, 360)], &["--crs", "dem", "--cell", "70000"]),
+        cells("cells-in-4087", &[(0.0, 360)], &["--crs", "EPSG:4087"]),
         around("3857-globe", 3857),
         around("4087-globe", 4087),
     ]
@@ -127,6 +132,12 @@ fn models() -> Vec<Model> {
 fn globe(name: &'static str, west: f64) -> Model {
     let files = vec![([361, 21], [west - 0.5, 1.0, 0.0, 20.5, 0.0, -1.0])];
     Model { name, epsg: 4326, files, options: &["--crs", "dem"], is_global: true }
+}
+
+/// The same with one sample in each cell: the ground between the last column and the first one has no samples of its own.
+fn cells(name: &'static str, parts: &[(f64, usize)], options: &'static [&'static str]) -> Model {
+    let file = |&(west, columns): &(f64, usize)| ([columns, 40], [west, 1.0, 0.0, 20.0, 0.0, -1.0]);
+    Model { name, epsg: 4326, files: parts.iter().map(file).collect(), options, is_global: true }
 }
 
 /// The same in metres.
@@ -323,6 +334,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
         let said = done(&["profile", text(&package), "--line", text(&line)]);
         let length = said.split_whitespace().nth(1).and_then(|word| word.parse().ok());
         near(&format!("{name}, {kind}: {said}"), length.unwrap(), WAYS[0].2);
+        assert!(!said.contains("parts"), "{name}, {kind}: {said}");
     }
 }
 
@@ -426,6 +438,47 @@ fn what_lies_beyond_180_degrees_comes_back() {
         let lon = list.lines().nth(1).and_then(|row| row.split(',').nth_back(1)).unwrap();
         if model.name == "beyond" || part.is_some() {
             assert!(lon.starts_with("-89."), "{name}: {list}");
+        }
+    }
+}
+
+/// A globe with one sample in each cell has ground all around: between its last column and its first one, too. A grid that ends a column earlier
+/// has none there.
+#[test]
+fn a_globe_of_cells_has_no_gap_where_it_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let line = |points_deg: &[[f64; 2]]| Line {
+        tags: vec![("highway", "primary")],
+        points_deg: points_deg.to_vec(),
+    };
+    let osm = at("ends.osm.pbf");
+    let ways = [line(&[[179.9, -16.5], [-179.9, -16.5]]), line(&[[-0.1, 16.5], [0.1, 16.6]])];
+    fs::write(&osm, extract_of(&[], &ways)).unwrap();
+    let lengths_m = [21_352.830, 24_045.265];
+    let globe = [(-180.0, 360)];
+    for (model, kept) in [
+        (cells("whole", &globe, &["--crs", "dem"]), &[1, 2][..]),
+        (cells("second", &globe, &["--crs", "dem", "--cell-every", "2"]), &[1, 2]),
+        (cells("open-180", &[(-180.0, 359)], &["--crs", "dem"]), &[2]),
+        (cells("open-0", &[(1.0, 359)], &["--crs", "dem"]), &[1]),
+    ] {
+        let name = model.name;
+        let (package, target) = (at(&format!("{name}.pmtiles")), at(&format!("{name}.gpkg")));
+        let dems = model.write(folder.path());
+        let words =
+            ["build", "-q", "--dem", text(&dems[0]), "--osm", text(&osm), "-o", text(&package)];
+        done(&[&words[..], model.options].concat());
+        let said = done(&["verify", text(&package), "--dem", text(&dems[0]), "--osm", text(&osm)]);
+        assert!(!said.contains("broken"), "{name}: {said}");
+        done(&["export", "roads", "-q", text(&package), "-o", text(&target)]);
+        let mut found: Vec<_> = features(&target).into_iter().map(|(numbers, _)| numbers).collect();
+        found.sort_by(|a, b| a["way_id"].total_cmp(&b["way_id"]));
+        let ids: Vec<i64> = found.iter().map(|numbers| numbers["way_id"] as i64).collect();
+        assert_eq!(ids, kept, "{name}");
+        for numbers in found {
+            let id = numbers["way_id"] as usize;
+            near(&format!("{name}, way {id}"), numbers["length_2d_m"], lengths_m[id - 1]);
         }
     }
 }

@@ -213,5 +213,47 @@ fn photos_and_polygons_of_an_unknown_datum_are_refused_too() {
         }
         let ran = build(&dem, &package, &[option, text(file), "--allow-ballpark"]);
         assert_eq!(ran.code, 0, "{option}: {}", ran.err);
+        assert!(ran.err.contains(name) && ran.err.contains("unknown accuracy"), "{}", ran.err);
+    }
+    assert_eq!(build(&dem, &package, &[]).code, 0);
+    // Lines: here the outline of the triangle.
+    let picture = folder.path().join("map.png");
+    for command in [
+        &["profile", text(&package), "--line", text(&polygon)][..],
+        &["render", text(&package), "-o", text(&picture), "--overlay", text(&polygon)],
+        &["match", text(&package), "--photo", text(&photo)],
+    ] {
+        let ran = corniche(command);
+        assert_eq!(ran.code, 2, "{command:?}: {}", ran.err);
+        for word in ["datum", "--allow-ballpark"] {
+            assert!(ran.err.contains(word), "{command:?}: {}", ran.err);
+        }
+        let allowed = corniche([command, &["--allow-ballpark"]].concat());
+        assert!(!allowed.err.contains("--allow-ballpark"), "{command:?}: {}", allowed.err);
+        assert!(allowed.err.contains("unknown accuracy"), "{command:?}: {}", allowed.err);
+    }
+}
+
+/// Lines in NAD27, where grids may be missing: carried, and told.
+#[test]
+fn lines_whose_datum_has_a_better_operation_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [package, lines] = ["out.pmtiles", "lines.gpkg"].map(|name| folder.path().join(name));
+    let dem = raster(folder.path(), 26912, [420_000.0, 4_500_000.0], 30.0);
+    assert_eq!(build(&dem, &package, &[]).code, 0);
+    let driver = DriverManager::get_driver_by_name("GPKG").unwrap();
+    let mut vectors = driver.create_vector_only(&lines).unwrap();
+    let system = SpatialRef::from_epsg(26712).unwrap();
+    let layer = LayerOptions { srs: Some(&system), ..LayerOptions::default() };
+    let line = Geometry::from_wkt("LINESTRING(420300 4499500, 420800 4499000)").unwrap();
+    vectors.create_layer(layer).unwrap().create_feature(line).unwrap();
+    vectors.close().unwrap();
+    let ran = corniche(["profile", text(&package), "--line", text(&lines)]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    // Where the grids are installed there is nothing to tell.
+    if !ran.err.is_empty() {
+        for word in ["lines.gpkg", "EPSG:26712", "us_noaa_", "projsync"] {
+            assert!(ran.err.contains(word), "{}", ran.err);
+        }
     }
 }

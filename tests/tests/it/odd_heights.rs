@@ -118,6 +118,28 @@ fn a_single_sample_far_beyond_its_neighbours_is_told_and_kept() {
     }
 }
 
+/// Hawaii and Tenerife on a grid of half a degree: peaks of 4205 and 3715 m, whose neighbours are sea floor of 4500 and 3500 m depth. The same
+/// heights a kilometre apart stand alone.
+#[test]
+fn islands_on_coarse_grids_are_no_single_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    for (degrees, is_told) in [(0.5, false), (0.01, true)] {
+        let dem = folder.path().join("islands.asc");
+        let place = format!("xllcorner -160\nyllcorner 0\ncellsize {degrees}");
+        write_ascii_grid(&dem, [60, 60], &place, |column, row| match [column, row] {
+            [9, 18] => 4205.0,
+            [50, 45] => 3715.0,
+            [column, _] if column < 30 => -4500.0 - (column as f64),
+            [column, row] => -3500.0 - (row as f64) - (column as f64) / 8.0,
+        });
+        let line = ["build", "-O", "--quiet", "--dem", text(&dem), "-o", text(&package)];
+        let ran = corniche([&line[..], &["--dem-crs", "EPSG:4326", "--crs", "dem"]].concat());
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        assert_eq!(ran.err.contains("stand alone"), is_told, "{degrees}: {}", ran.err);
+    }
+}
+
 /// What lies outside the bounds does not count, however the file is stored; what lies inside counts as if the file ended there.
 #[test]
 fn bounds_and_parts_are_judged_as_a_file_of_that_area() {

@@ -320,3 +320,35 @@ fn projected_rasters_are_not_resampled() {
         assert!(samples["max_m"].as_f64().unwrap() <= max_error_m + 1e-6, "{file}: {samples}");
     }
 }
+
+/// What failed downloads leave in the place of a package is told as what it is.
+#[test]
+fn a_web_page_or_a_pointer_in_the_place_of_a_package_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [package, other] = ["a.pmtiles", "b.pmtiles"].map(|name| folder.path().join(name));
+    let osm = folder.path().join("a.osm.pbf");
+    fs::write(&osm, []).unwrap();
+    for (content, words) in [
+        (
+            "<!DOCTYPE html>\n<html><body>404</body></html>",
+            ["an HTML page", "fetch the file again"],
+        ),
+        (
+            "version https://git-lfs.github.com/spec/v1\noid sha256:00\n",
+            ["a Git LFS pointer", "git lfs pull"],
+        ),
+        ("nothing of the kind", ["not a PMTiles file", "not a Corniche package"]),
+    ] {
+        fs::write(&package, content).unwrap();
+        for command in [
+            &["info", text(&package)][..],
+            &["build", "--terrain", text(&package), "--osm", text(&osm), "-o", text(&other)],
+        ] {
+            let ran = corniche(command);
+            assert_eq!(ran.code, 2, "{command:?}: {}", ran.err);
+            for word in words.into_iter().chain(["a.pmtiles"]) {
+                assert!(ran.err.contains(word), "{command:?}: {}", ran.err);
+            }
+        }
+    }
+}

@@ -165,6 +165,9 @@ pub(crate) struct LookArgs {
     /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
     pub(crate) overlay: Vec<OverlayArg>,
+    /// Take the datum of such a file for that of WGS84 where PROJ knows nothing between them; its lines can then lie 100 m and more beside the map
+    #[arg(long, requires = "overlay")]
+    pub(crate) allow_ballpark: bool,
     /// How roads begin, bend and end
     #[arg(long, value_enum, default_value_t = Caps::Round, help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,

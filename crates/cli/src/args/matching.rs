@@ -26,6 +26,9 @@ pub(crate) struct MatchArgs {
     /// Photos of the ground that roads are compared with, as for build --photo: any format and CRS that GDAL reads; the first lies on top
     #[arg(long, value_name = "FILE", num_args = 1..)]
     photo: Vec<PathBuf>,
+    /// Take the datum of photos for that of the package where PROJ knows nothing between them; photos can then lie 100 m and more beside it
+    #[arg(long, requires = "photo")]
+    pub(crate) allow_ballpark: bool,
     /// Compare with the slope of the ground, in which roads are flat across; for lidar of some metres, of a package with relief
     #[arg(long)]
     pub(crate) slope: bool,

@@ -21,6 +21,9 @@ pub(crate) struct ProfileArgs {
     /// The lines to follow instead: those of a file (GeoJSON, GPX, GeoPackage, Shapefile …), one after the other
     #[arg(long, value_name = "FILE")]
     pub(crate) line: Option<PathBuf>,
+    /// Take the datum of that file for that of WGS84 where PROJ knows nothing between them; its lines can then lie 100 m and more beside the ground
+    #[arg(long, requires = "line")]
+    pub(crate) allow_ballpark: bool,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     /// Also write a line for each vertex (CSV)

@@ -35,6 +35,9 @@ impl Task {
     /// The comparison of a package with an image.
     pub(crate) const MATCH: Self =
         Self { id: "match", title: "comparing tiles", counts: Counts::Things("tiles") };
+    /// The frames of a flight, of one way of drawing.
+    pub(crate) const FLY: Self =
+        Self { id: "fly", title: "drawing frames", counts: Counts::Things("frames") };
 }
 
 impl From<Stage> for Task {

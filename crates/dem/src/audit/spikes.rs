@@ -2,12 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A sample this far beyond each of its neighbours stands alone: no slope of the earth is so long and so steep on all sides.
-const SPIKE_M: f64 = 2000.0;
+/// A sample that stands alone is at least this far beyond each of its neighbours: no slope of the earth is so long and so steep on all sides …
+const LEAST_M: f64 = 2000.0;
+/// … unless samples are kilometres apart. On grids of half a degree islands stand alone in the ocean, but not on slopes as steep as this.
+const STEEPNESS: f64 = 2.0 / 3.0;
 /// With fewer neighbours nothing is known of a sample.
 const FEWEST_NEIGHBOURS: usize = 3;
 /// Spikes that are kept with their places.
 const KEPT_SPIKES: usize = 3;
+
+/// How far beyond all of its neighbours a sample stands alone, where neighbours are so far apart.
+pub(crate) fn limit_m(spacing_m: f64) -> f64 {
+    (spacing_m * STEEPNESS).max(LEAST_M)
+}
 
 /// A sample that stands alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -47,20 +54,20 @@ impl Spikes {
 
 /// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it. Those off its rim are some; one on the rim
 /// can have neighbours outside.
-pub(crate) fn candidates(heights_m: &[f64], columns: usize) -> Vec<[usize; 2]> {
+pub(crate) fn candidates(heights_m: &[f64], columns: usize, limit_m: f64) -> Vec<[usize; 2]> {
     let size = [columns, heights_m.len() / columns];
     let mut found = Vec::new();
     for (row, line) in heights_m.chunks_exact(columns).enumerate() {
         let mut before = f64::NAN;
         for (column, &height_m) in line.iter().enumerate() {
             // Nearly all samples are near the one before, and are not looked at any further.
-            let is_near = (height_m - before).abs() <= SPIKE_M;
+            let is_near = (height_m - before).abs() <= limit_m;
             before = height_m;
             if is_near || height_m.is_nan() {
                 continue;
             }
             let fewest = if is_on_rim(size, [column, row]) { 0 } else { FEWEST_NEIGHBOURS };
-            if stands_alone(heights_m, columns, [column, row], fewest) {
+            if stands_alone(heights_m, columns, [column, row], (fewest, limit_m)) {
                 found.push([column, row]);
             }
         }
@@ -74,8 +81,8 @@ pub(crate) fn is_on_rim(size: [usize; 2], at: [usize; 2]) -> bool {
 }
 
 /// Whether a sample of a rectangle is a spike, by the neighbours inside it.
-pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2]) -> bool {
-    stands_alone(heights_m, columns, at, FEWEST_NEIGHBOURS)
+pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2], limit_m: f64) -> bool {
+    stands_alone(heights_m, columns, at, (FEWEST_NEIGHBOURS, limit_m))
 }
 
 /// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at least `fewest`; one without any lies beyond all.
@@ -83,7 +90,7 @@ fn stands_alone(
     heights_m: &[f64],
     columns: usize,
     [column, row]: [usize; 2],
-    fewest: usize,
+    (fewest, limit_m): (usize, f64),
 ) -> bool {
     let rows = heights_m.len() / columns;
     let own_m = heights_m[row * columns + column];
@@ -97,7 +104,7 @@ fn stands_alone(
             }
         }
     }
-    count >= fewest && (own_m < low_m - SPIKE_M || own_m > high_m + SPIKE_M)
+    count >= fewest && (own_m < low_m - limit_m || own_m > high_m + limit_m)
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ fn plain(changed: &[([usize; 2], f64)]) -> Vec<f64> {
 }
 
 fn found(heights_m: &[f64]) -> Vec<[usize; 2]> {
-    let candidates = candidates(heights_m, COLUMNS).into_iter();
-    candidates.filter(|&at| is_spike(heights_m, COLUMNS, at)).collect()
+    let candidates = candidates(heights_m, COLUMNS, LEAST_M).into_iter();
+    candidates.filter(|&at| is_spike(heights_m, COLUMNS, at, LEAST_M)).collect()
 }
 
 #[test]
@@ -56,11 +56,11 @@ fn among_voids_candidates_are_on_the_rim_alone() {
         let mut alone = vec![f64::NAN; 25];
         alone[at[1] * COLUMNS + at[0]] = 5000.0;
         let expected = if is_candidate { vec![at] } else { vec![] };
-        assert_eq!(candidates(&alone, COLUMNS), expected);
+        assert_eq!(candidates(&alone, COLUMNS, LEAST_M), expected);
         assert_eq!(is_on_rim([COLUMNS; 2], at), is_candidate);
     }
     // One neighbour of two is too few to judge by, and its own rim is that of the block.
-    assert_eq!(candidates(&[300.0, 5000.0], 2), [[0, 0], [1, 0]]);
+    assert_eq!(candidates(&[300.0, 5000.0], 2, LEAST_M), [[0, 0], [1, 0]]);
 }
 
 #[test]

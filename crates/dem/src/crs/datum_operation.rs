@@ -56,7 +56,7 @@ impl DatumOperation {
             )),
             None if self.accuracy_m.is_none() => Some(format!(
                 "{begin}: ground and roads may lie beside each other; if the true coordinate system is another, name it \
-                 (gdal_edit.py -a_srs EPSG:n)"
+                 (gdal_edit.py -a_srs EPSG:n; for vectors ogr2ogr -a_srs)"
             )),
             None => None,
         }

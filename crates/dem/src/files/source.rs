@@ -1,8 +1,9 @@
 //! One elevation file: what it says about itself, and its samples as metres.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use corniche_geom::GeoTransform;
+use corniche_geom::{GeoTransform, wgs84::SEMI_MAJOR_M};
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, RasterBand};
 use gdal::{Dataset, Metadata};
@@ -186,6 +187,16 @@ fn no_band(path: &Path, dataset: &Dataset) -> DemError {
         DemError::NoBand { path }
     } else {
         DemError::Subdatasets { path, names: names.join(", ") }
+    }
+}
+
+impl Source {
+    /// How far samples are from their neighbours, along the axis where they are farther, metres; in degrees as at the equator.
+    pub(crate) fn spacing_m(&self) -> f64 {
+        let c = self.crs_from_pixel.coefficients;
+        let around_m = TAU * SEMI_MAJOR_M;
+        let unit_m = self.crs.turn_angle().map_or(self.crs.unit_m, |turn| around_m / turn);
+        c[1].hypot(c[4]).max(c[2].hypot(c[5])) * unit_m
     }
 }
 

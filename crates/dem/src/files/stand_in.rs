@@ -6,7 +6,8 @@ use std::{fs::File, io::Read as _, path::Path};
 const START_BYTES: u64 = 4096;
 
 /// What a file is that stands where geodata were to be, and what to do; `None` if it is nothing of the kind, or cannot be read.
-pub(crate) fn stand_in(path: &Path) -> Option<(&'static str, &'static str)> {
+#[must_use]
+pub fn stand_in(path: &Path) -> Option<(&'static str, &'static str)> {
     // Opening a pipe would block until something is written to it.
     if !path.is_file() {
         return None;

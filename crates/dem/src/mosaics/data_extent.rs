@@ -120,6 +120,9 @@ pub(crate) fn wgs84(
             all.extend(points);
         }
     }
+    if mosaics.iter().any(Mosaic::is_ring) {
+        bounds.max_x = bounds.max_x.max(bounds.min_x + 360.0);
+    }
     let away = turns_beyond(bounds);
     for point in &mut all {
         point[0] -= 360.0 * away;

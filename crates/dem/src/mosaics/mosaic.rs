@@ -90,10 +90,33 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
-    /// CRS position of the middle.
+    /// Whether it goes all around the earth with one sample in each cell: between its last column and its first one there is ground, too.
+    pub(crate) fn is_ring(&self) -> bool {
+        self.period == Some(self.extent.max[0] - self.extent.min[0])
+    }
+
+    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has the ring's first column once more, so that the
+    /// ring ends where it begins.
+    ///
+    /// ```text
+    ///   │ 0 │ 1 │ … │ 359 ┊ 0 ┊     A globe with cells of a degree: 360 columns of samples, 361 of nodes.
+    /// ```
+    pub(crate) fn closed(&self, rect: &SampleRect) -> SampleRect {
+        let mut closed = *rect;
+        if self.is_ring() {
+            if self.crs_from_sample.coefficients[1] > 0.0 {
+                closed.max[0] += i64::from(rect.max[0] == self.extent.max[0]);
+            } else {
+                closed.min[0] -= i64::from(rect.min[0] == self.extent.min[0]);
+            }
+        }
+        closed
+    }
+
+    /// CRS position of the middle, of a closed ring where it is one.
     pub(crate) fn middle(&self) -> [f64; 2] {
-        let middle =
-            [0, 1].map(|axis| (self.extent.min[axis] + self.extent.max[axis] - 1) as f64 / 2.0);
+        let SampleRect { min, max } = self.closed(&self.extent);
+        let middle = [0, 1].map(|axis| (min[axis] + max[axis] - 1) as f64 / 2.0);
         self.crs_from_sample.crs_from_pixel(middle)
     }
 

@@ -19,9 +19,10 @@ impl Dem {
             for file in &mosaic.files {
                 let [south_west, north_east] = match &role.method {
                     Method::Aligned(Alignment { first, way, every }) => {
+                        let rect = mosaic.closed(&file.rect);
                         let ends = |axis: usize| {
                             let at = |index: i64| first[axis] + way[axis] * index;
-                            let (a, b) = (at(file.rect.min[axis]), at(file.rect.max[axis] - 1));
+                            let (a, b) = (at(rect.min[axis]), at(rect.max[axis] - 1));
                             // Rounded inwards: the outermost samples can lie between two nodes.
                             (-(-a.min(b)).div_euclid(*every), a.max(b).div_euclid(*every))
                         };

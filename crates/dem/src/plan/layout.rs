@@ -179,7 +179,8 @@ impl Layout {
         operation: &Operation,
     ) -> Result<[NodeIndex; 2], DemError> {
         if let Some(Alignment { first, way, every }) = self.alignment(mosaic) {
-            let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
+            let closed = mosaic.closed(&mosaic.extent);
+            let (low, high) = (closed.min, closed.max.map(|index| index - 1));
             let ends = |axis: usize| {
                 let (a, b) =
                     (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
@@ -200,6 +201,9 @@ impl Layout {
             }
             bounds.include([found.min_x, found.min_y]);
             bounds.include([found.max_x, found.max_y]);
+        }
+        if let Some(seam_m) = self.working.seam_m().filter(|_| mosaic.is_ring()) {
+            bounds.max_x = bounds.max_x.max(bounds.min_x + seam_m.turn());
         }
         let cells =
             |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell.to_array()[axis];

@@ -101,8 +101,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         None => whole,
     };
     let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
-    let datum_operations =
-        datum_operations(dem, &layout.working, bounds_of(&frame, whole), &operations)?;
+    let datum_operations = datum_operations(dem, &layout.working, bounds_of(&frame, whole))?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()

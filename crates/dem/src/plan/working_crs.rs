@@ -40,7 +40,11 @@ impl Working {
         let middle = if crs.is_same(&own.crs) {
             own.middle()[0]
         } else {
-            let mut middle = [dem.center_deg];
+            // Files all around the earth end where they begin, and not half a turn from the mean of their positions.
+            let [lon, lat] = dem.center_deg;
+            let is_ring = dem.mosaics.iter().any(Mosaic::is_ring);
+            let lon = if is_ring { dem.wgs84_bounds.center()[0] } else { lon };
+            let mut middle = [[lon, lat]];
             Operation::new(&Crs::wgs84()?, &crs, Some(dem.wgs84_bounds)).apply(&mut middle)?;
             middle[0][0]
         };

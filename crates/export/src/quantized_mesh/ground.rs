@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use corniche_geom::{Bounds, LatticePoint, TileId};
+use corniche_geom::{Bounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections, pmtiles_order};
 use corniche_tin::{Placement, Surface};
 
@@ -64,9 +64,8 @@ impl<'a> Ground<'a> {
     }
 
     fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {
-        let Bounds { min_x, max_x, .. } = self.around_deg;
-        let turns = ((f64::midpoint(min_x, max_x) - lon) / 360.0).round();
-        self.around_deg.contains([lon + 360.0 * turns, lat])
+        let seam = Seam::of_degrees().around(self.around_deg.center()[0]);
+        self.around_deg.contains([seam.image(lon), lat])
     }
 
     /// Longitudes and latitudes of the vertices of one of the package's levels, and of places along its edges, `spacing_m` apart, in a rectangle of
@@ -125,9 +124,9 @@ impl<'a> Ground<'a> {
         let mut shares = Vec::new();
         for part in self.near_parts(corners_deg) {
             // Where the data cross 180°, the line has their longitudes.
-            let turns = ((part.center()[0] - from_deg[0]) / 360.0).round();
-            let line = from_deg[across] + if across == 0 { 360.0 * turns } else { 0.0 };
-            let begin = from_deg[along] + if along == 0 { 360.0 * turns } else { 0.0 };
+            let seam = Seam::of_degrees().around(part.center()[0]);
+            let from_deg = [seam.image(from_deg[0]), from_deg[1]];
+            let (line, begin) = (from_deg[across], from_deg[along]);
             for [from, to] in self.edges(part, level)?.into_iter().flat_map(|tile| tile.edges) {
                 let place = |share: f64| {
                     let steps = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);

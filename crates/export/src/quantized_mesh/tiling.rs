@@ -2,7 +2,7 @@
 
 use std::{f64::consts::PI, fmt};
 
-use corniche_geom::wgs84::SEMI_MAJOR_M;
+use corniche_geom::{Seam, wgs84::SEMI_MAJOR_M};
 
 /// The largest value of u and v: they are 0 in the west and south of a tile and this in its east and north.
 pub(crate) const LAST_STEP: u16 = 32_767;
@@ -203,9 +203,8 @@ impl Nodes {
     /// u and v nearest to a longitude and latitude, if it is in the tile.
     pub(crate) fn steps_at(self, tile: TerrainTile, [lon, lat]: [f64; 2]) -> Option<[u16; 2]> {
         let [[west, south], [east, north]] = self.corners_deg(tile);
-        let turns = ((f64::midpoint(west, east) - lon) / 360.0).round();
-        let shares =
-            [(lon + 360.0 * turns - west) / (east - west), (lat - south) / (north - south)];
+        let lon = Seam::of_degrees().around(f64::midpoint(west, east)).image(lon);
+        let shares = [(lon - west) / (east - west), (lat - south) / (north - south)];
         let inside = shares.iter().all(|share| (0.0..=1.0).contains(share));
         inside.then(|| shares.map(|share| (share * f64::from(LAST_STEP)).round() as u16))
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_dem::{Dem, GridPlan, Polygon};
+use corniche_dem::{Dem, FileDatums, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
 use corniche_tileset::ReliefLevels;
 
@@ -33,6 +33,8 @@ pub(crate) struct Opened {
     pub(crate) photo: PhotoSource,
     /// Which levels have relief sections.
     pub(crate) relief: ReliefLevels,
+    /// How polygons and photos come to the datum of the grid.
+    pub(crate) file_datums: FileDatums,
 }
 
 impl Opened {
@@ -53,23 +55,37 @@ impl Opened {
             None => Self::plan(settings),
         };
         let checked = planned.and_then(|planned| {
-            if let Some(polygon) = &settings.terrain.plan.polygon
-                && !settings.terrain.allow_ballpark
-            {
-                planned.grid.refuse_ballpark_of_polygon(polygon)?;
+            let mut file_datums = FileDatums::default();
+            if let Some(polygon) = &settings.terrain.plan.polygon {
+                let found = planned.grid.datums_of_polygon(polygon);
+                file_datums.extend(found.allowed(settings.terrain.allow_ballpark)?);
             }
-            Ok(planned)
+            Ok((planned, file_datums))
         });
         match checked {
-            Ok(Planned { source, grid, levels, max_error_m, coordinates }) => {
+            Ok((planned, mut file_datums)) => {
+                let Planned { source, grid, levels, max_error_m, coordinates } = planned;
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
                 let allow_ballpark = settings.terrain.allow_ballpark;
                 let photo = PhotoSource::open(&settings.photo, allow_ballpark, &source, &grid);
                 let photo = photo.map_err(|error| inputs.changed_instead_of(error))?;
+                if let Some(photos) = photo.files() {
+                    file_datums.extend(photos.datums.clone());
+                }
                 let relief = settings.terrain.relief;
-                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo, relief })
+                Ok(Self {
+                    inputs,
+                    source,
+                    grid,
+                    levels,
+                    max_error_m,
+                    coordinates,
+                    photo,
+                    relief,
+                    file_datums,
+                })
             }
             // A changed input may be the cause of any other error, so it is reported instead.
             Err(error) => Err(inputs.changed_instead_of(error)),

@@ -1,6 +1,6 @@
 //! The photos of a build are opened and placed on the grid, or taken from another package.
 
-use corniche_dem::{FileBlocks, GridPlan};
+use corniche_dem::{FileBlocks, FileDatums, GridPlan};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;
 
@@ -61,6 +61,8 @@ pub(crate) struct OpenedPhotos {
     pub(crate) credits: Vec<String>,
     /// How the files are cut into blocks.
     pub(crate) blocks: Vec<FileBlocks>,
+    /// How they come to the datum of the grid.
+    pub(crate) datums: FileDatums,
 }
 
 impl OpenedPhotos {
@@ -70,15 +72,14 @@ impl OpenedPhotos {
         grid: &GridPlan,
     ) -> Result<Self, BuildError> {
         let photos = Photos::open(&settings.files)?;
-        if !allow_ballpark {
-            grid.refuse_ballpark_of_rasters(photos.rasters())?;
-        }
+        let datums = grid.datums_of_rasters(photos.rasters()).allowed(allow_ballpark)?;
         let levels = settings.levels.map_or(LevelChoice::OfPhotos, LevelChoice::Given);
         Ok(Self {
             grid: photos.on(grid, levels)?,
             quality: settings.quality,
             credits: photos.credits(),
             blocks: photos.file_blocks()?,
+            datums,
         })
     }
 

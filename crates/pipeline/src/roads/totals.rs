@@ -3,13 +3,14 @@
 use std::{cmp::Reverse, collections::BTreeMap};
 
 use corniche_geom::LatticePoint;
-use corniche_osm::{ExtractSummary, LeftOutReason, LeftOutWays};
+use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_store::Artifacts;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     BuildError,
     artifacts::{self, Kind},
+    defect::Loss,
 };
 
 /// Roads of a block of [`Kind::RoadLengths`].
@@ -102,20 +103,30 @@ fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
     counts.into_iter().map(|(_, count)| count).collect()
 }
 
+/// Why roads, and ways with a `highway` tag, are not in a package: all reasons, in the words under which packages count them.
+pub fn reasons_left_out() -> impl Iterator<Item = &'static str> {
+    let of_ways = by_reason(&LeftOut::default()).map(|(reason, _)| reason);
+    of_ways.into_iter().chain(Loss::ALL.map(Loss::reason))
+}
+
 fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
-    let left_out = &extract.left_out;
+    by_reason(&extract.left_out)
+        .into_iter()
+        .filter(|&(_, ways)| ways > 0)
+        .map(|(reason, ways)| (reason.to_owned(), ways))
+        .collect()
+}
+
+fn by_reason(ways: &LeftOut) -> [(&'static str, u64); 6] {
+    let LeftOut { listed, class_off, unknown, area, duplicate, without_line } = *ways;
     [
-        (LeftOutReason::Listed.text(), left_out.listed),
-        (LeftOutReason::ClassOff.text(), left_out.class_off),
-        (LeftOutReason::Unknown.text(), left_out.unknown),
-        (LeftOutReason::Area.text(), left_out.area),
-        ("id occurs twice", left_out.duplicate),
-        ("no line is left", left_out.without_line),
+        (LeftOutReason::Listed.text(), listed),
+        (LeftOutReason::ClassOff.text(), class_off),
+        (LeftOutReason::Unknown.text(), unknown),
+        (LeftOutReason::Area.text(), area),
+        ("id occurs twice", duplicate),
+        ("no line is left", without_line),
     ]
-    .into_iter()
-    .filter(|&(_, ways)| ways > 0)
-    .map(|(reason, ways)| (reason.to_owned(), ways))
-    .collect()
 }
 
 /// Keeps the lengths of roads, block by block, as they come in the order of their ordinals.

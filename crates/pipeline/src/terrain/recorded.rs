@@ -9,7 +9,9 @@ use corniche_tileset::{
 };
 
 use super::recorded_grid;
-use crate::{BuildError, TerrainSettings, inputs::InputKind, settings_record};
+use crate::{
+    BuildError, TerrainSettings, inputs::InputKind, open_package::open_package, settings_record,
+};
 
 /// What a package records of how its terrain was made: defaults for a build that takes its terrain.
 #[derive(Debug, Clone)]
@@ -26,7 +28,7 @@ impl TerrainRecord {
     /// # Errors
     /// When the file cannot be read or is no package of this format version.
     pub fn of_package(path: &Path) -> Result<Self, BuildError> {
-        let package = FilePackage::open(path)?;
+        let package = open_package(path)?;
         let manifest = package.manifest();
         Ok(Self {
             terrain: settings_record::terrain(&manifest.settings),
@@ -56,7 +58,7 @@ impl RecordedTerrain {
     /// Opens a package that `generator` made with the libraries that it runs with now. Fails for another one, whose terrain could
     /// differ from what would be made today.
     pub(crate) fn open(path: &Path, generator: &str) -> Result<Self, BuildError> {
-        let package = FilePackage::open(path)?;
+        let package = open_package(path)?;
         let manifest = package.manifest();
         let this = format!("{generator}, {}", corniche_dem::libraries());
         if manifest.generator != this {

@@ -1,7 +1,7 @@
 //! Where on Earth a package lies: its CRS, and what it says in degrees.
 
 use corniche_dem::{DemError, RecordedCrs};
-use corniche_geom::{Bounds, Projection};
+use corniche_geom::{Bounds, Projection, Seam};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
@@ -152,13 +152,13 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
     }
     let [east_m, north_m] = manifest.frame.cell().to_array();
     let rim_m = RIM_CELLS * east_m.max(north_m);
-    let middle_deg = f64::midpoint(degrees.min_x, degrees.max_x);
+    let seam = Seam::of_degrees().around(degrees.center()[0]);
 
     let mut points = points_around(data);
     let carried = projection.wgs84_from_working(&mut points).is_ok();
     let mut around = Bounds::EMPTY;
     for [lon, lat] in points.into_iter().filter(|at| at[0].is_finite()) {
-        around.include([lon - 360.0 * ((lon - middle_deg) / 360.0).round(), lat]);
+        around.include([seam.image(lon), lat]);
     }
     let rim_deg = [
         rim_m
@@ -206,8 +206,7 @@ fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findin
     let carried = projection.wgs84_from_working(&mut truth).is_ok();
     let worst_m = places.iter().zip(&truth).fold(0.0_f64, |worst_m, (&place, &[lon, lat])| {
         let found = table.wgs84_from_working(place);
-        let turns = ((found[0] - lon) / 360.0).round();
-        let east_deg = (found[0] - lon - 360.0 * turns) * lat.to_radians().cos();
+        let east_deg = Seam::of_degrees().image(found[0] - lon) * lat.to_radians().cos();
         let off_m = east_deg.hypot(found[1] - lat) * METRES_PER_DEGREE;
         if off_m.is_nan() { f64::INFINITY } else { worst_m.max(off_m) }
     });

@@ -46,7 +46,7 @@ fn check_bounds(manifest: &Manifest, expected: [f64; 4]) {
     }
 }
 
-/// Heights of a strip around the equator are the DEM's own samples, from one end of longitudes to the other.
+/// Heights of a strip around the equator are the DEM's own samples, from the first column all around to the same one.
 #[test]
 fn a_strip_around_the_equator_is_built() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,8 +55,8 @@ fn a_strip_around_the_equator_is_built() {
     let manifest = checked(&dem, Options::plain(50.0));
     assert_eq!(manifest.crs, "EPSG:4326");
     assert!(manifest.nodes_are_samples);
-    assert_eq!(manifest.counts.samples.with_data, 360 * 20);
-    check_bounds(&manifest, [-179.5, -9.5, 179.5, 9.5]);
+    assert_eq!(manifest.counts.samples.with_data, 361 * 20);
+    check_bounds(&manifest, [-179.5, -9.5, 180.5, 9.5]);
 }
 
 /// The globe in its own degrees, with samples between the poles and on them.
@@ -68,8 +68,8 @@ fn the_globe_is_built_in_its_own_degrees() {
         let dem = folder.path().join(format!("{rows}.tif"));
         degrees(&dem, [360, rows], [-180.0, north]);
         let manifest = checked(&dem, options);
-        assert_eq!(manifest.counts.samples.with_data, 360 * rows as u64);
-        check_bounds(&manifest, [-179.5, 0.5 - north, 179.5, north - 0.5]);
+        assert_eq!(manifest.counts.samples.with_data, 361 * rows as u64);
+        check_bounds(&manifest, [-179.5, 0.5 - north, 180.5, north - 0.5]);
         // The table for readers without PROJ has room around the data, and none beyond the poles.
         let table = &manifest.coordinates;
         let Bounds { min_y, max_y, .. } = table.bounds();
@@ -89,10 +89,10 @@ fn what_has_longitudes_all_over_is_built() {
     let north_west = [-179.5 * DEGREE_M, 89.5 * DEGREE_M];
     let values = (0..360 * 180).map(|k| (k % 77) as f32).collect();
     write_samples(&dem, [360, 180], (4087, north_west, [DEGREE_M; 2]), values);
-    check_bounds(&checked(&dem, options), [-179.5, -89.5, 179.5, 89.5]);
+    check_bounds(&checked(&dem, options), [-179.5, -89.5, 180.5, 89.5]);
     let dem = folder.path().join("arctic.tif");
     degrees(&dem, [360, 20], [-180.0, 90.0]);
-    check_bounds(&checked(&dem, options), [-179.5, 70.5, 179.5, 89.5]);
+    check_bounds(&checked(&dem, options), [-179.5, 70.5, 180.5, 89.5]);
 }
 
 /// What no CRS holds in one package is refused with a way out, and with no option that nobody gave.

@@ -24,6 +24,14 @@ pub enum OpenError {
     /// It is something else.
     #[error("this is not a PMTiles file, so it is not a Corniche package")]
     NotPmtiles,
+    /// It is what a failed download leaves.
+    #[error("this is {found}, and not a package; {advice}")]
+    StandIn {
+        /// What it is.
+        found: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
     /// It is of another version of PMTiles.
     #[error("PMTiles version {found} is not supported; Corniche packages are version 3")]
     PmtilesVersion {

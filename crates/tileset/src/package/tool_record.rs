@@ -97,13 +97,15 @@ impl ToolRecord {
 }
 
 /// A rectangle in degrees as the header can have it. Its numbers end at 214.75 degrees: what reaches beyond, such as a grid that counts from 0 to
-/// 360, counts as all around the earth.
+/// 360, counts as all around the earth, as does a full turn.
 pub(crate) fn header_bounds(bounds: Bounds) -> Bounds {
     let most = f64::from(i32::MAX) / STEPS_PER_DEGREE;
-    if bounds.min_x >= -most && bounds.max_x <= most {
+    let degrees = Seam::of_degrees();
+    let is_turn = bounds.width() >= degrees.turn() - 1.0 / STEPS_PER_DEGREE;
+    if bounds.min_x >= -most && bounds.max_x <= most && !is_turn {
         return bounds;
     }
-    let [west, east] = Seam::of_degrees().ends();
+    let [west, east] = degrees.ends();
     Bounds { min_x: west, max_x: east, ..bounds }
 }
 
