@@ -24,7 +24,7 @@ const other = await startServer({ site, packages });
 
 /** What tests share. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
-const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "streaming", "embedding", "own_styles", "links", "gestures", "failures", "access", "pictures"];
+const names = ["units", "opening", "pixels", "drags", "keys", "sizes", "streaming", "embedding", "served", "own_styles", "links", "gestures", "failures", "access", "pictures"];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
 describe("the page of the browser viewer", () => {
   for (const { tests } of parts) tests(world);
