@@ -116,6 +116,15 @@ pub fn without_times(csv: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').take(kept).map(str::to_owned).collect()).collect()
 }
 
+/// The folder in a folder in which something is made that is not complete yet: its name has a random part.
+#[must_use]
+pub fn unfinished(folder: &Path) -> Option<std::path::PathBuf> {
+    let entries = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    entries
+        .into_iter()
+        .find(|path| path.is_dir() && path.extension().is_some_and(|ending| ending == "unfinished"))
+}
+
 /// The names of what is in a folder, sorted.
 ///
 /// # Panics

@@ -25,7 +25,7 @@ const other = await startServer({ site, packages });
 
 /** What tests share. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
-const usual = ["units", "opening", "pixels", "sizes", "failures", "access", "pictures"];
+const usual = ["units", "opening", "pixels", "sizes", "served", "failures", "access", "pictures"];
 // What people do with a page takes longest; in CI days take turns.
 const uses = ["drags", "keys", "streaming", "embedding", "own_styles", "links", "gestures"];
 const names = [...usual, ...someOf(uses, 2)];

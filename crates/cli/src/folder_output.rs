@@ -1,30 +1,35 @@
 //! A folder that a command writes: beside its target, from where it gets to its place as a whole when it is complete.
 //!
 //! ```text
-//!   .NAME.unfinished           empty; its lock tells whether someone writes
-//!   .NAME.unfinished.files/    what is made
-//!   .NAME.replaced/            the export that was there, for as long as the new one takes its place
+//!   .NAME.unfinished        the claim of the target (corniche_store::Claim)
+//!   .NAME.ID.unfinished/    what is made
+//!   .NAME.ID.replaced/      the export that was there, for as long as the new one takes its place
 //! ```
 //!
 //! A finished folder holds a marker. Only a folder with it is ever replaced.
 
 use std::{
     fs::{self, File},
-    io,
+    io::{self, Read as _},
     path::{Path, PathBuf},
 };
 
-use corniche_pipeline::folder_of;
-use tempfile::NamedTempFile;
+use corniche_pipeline::{Claim, OpenMode, folder_of, open_own, sync_folder};
 
 use crate::{
     failure::Failure,
-    interrupt,
+    interrupt, leftovers,
     output::{Existing, exists, failed, is_same_file},
 };
 
 /// The marker of a folder that an export wrote.
 pub(crate) const MARKER: &str = "corniche-export.txt";
+/// What the marker says between what the folder holds and the version that wrote it.
+const WRITTEN_BY: &str = ", written by corniche ";
+/// What the marker says at its end.
+const IS_REPLACED: &str = "corniche replaces this folder when it is asked to (-O).\n";
+/// Longer is no marker.
+const MARKER_BYTES: u64 = 1000;
 
 /// A folder to be written at [`FolderOutput::path`].
 #[derive(Debug)]
@@ -33,7 +38,7 @@ pub(crate) struct FolderOutput {
     existing: Existing,
     folder: PathBuf,
     /// Held as long as the folder is in use.
-    _lock: NamedTempFile,
+    claim: Claim,
 }
 
 impl FolderOutput {
@@ -60,12 +65,11 @@ impl FolderOutput {
             }
             Err(error) => return Err(unusable(&error)),
         };
-        let own_name = target.file_name().ok_or_else(|| unusable(&"that is no name"))?;
-        let beside =
-            |end: &str| target.with_file_name(format!(".{}.{end}", own_name.to_string_lossy()));
-        let lock = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
-        interrupt::remove_at_end(lock.path());
-        put_right(&target, &beside("replaced")).map_err(|error| unusable(&error))?;
+        if target.file_name().is_none() {
+            return Err(unusable(&"that is no name"));
+        }
+        let claim = Claim::take(&target).map_err(|error| unusable(&error))?;
+        put_back(&target, &claim.replaced()).map_err(|error| unusable(&error))?;
         match kind_of(&target).map_err(|error| unusable(&error))? {
             Kind::Export if existing == Existing::Keep => return Err(exists(named)),
             Kind::Free | Kind::Export => {}
@@ -83,15 +87,11 @@ impl FolderOutput {
         if let Some(used) = used.iter().find(holds) {
             return Err(unusable(&format_args!("{} is in it", used.display())));
         }
-        let folder = beside("unfinished.files");
-        // What a killed program left: the lock says that nobody writes there.
-        match fs::remove_dir_all(&folder) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(unusable(&error)),
-            _ => {}
-        }
-        interrupt::remove_at_end(&folder);
-        fs::create_dir(&folder).map_err(|error| unusable(&error))?;
-        Ok(Self { target, existing, folder, _lock: lock })
+        leftovers::tell(&target);
+        interrupt::remove_at_end(claim.path());
+        interrupt::remove_at_end(&claim.unfinished());
+        let folder = claim.begin_folder().map_err(|error| unusable(&error))?;
+        Ok(Self { target, existing, folder, claim })
     }
 
     /// Where to write.
@@ -103,18 +103,19 @@ impl FolderOutput {
     pub(crate) fn place(self, what: &str) -> Result<u64, Failure> {
         let not_written = |error: io::Error| failed(&self.target, &error);
         let version = env!("CARGO_PKG_VERSION");
-        let marker = format!(
-            "{what}, written by corniche {version}. corniche replaces this folder when it is asked to (-O).\n"
-        );
+        let marker = format!("{what}{WRITTEN_BY}{version}. {IS_REPLACED}");
         fs::write(self.folder.join(MARKER), marker).map_err(not_written)?;
         let bytes = sync(&self.folder).map_err(not_written)?;
-        let own_name = self.target.file_name().unwrap_or_default().to_string_lossy();
-        let replaced = self.target.with_file_name(format!(".{own_name}.replaced"));
+        let replaced = self.claim.replaced();
         match kind_of(&self.target).map_err(not_written)? {
             Kind::Free => {}
             // Someone else was faster.
             Kind::Export if self.existing == Existing::Keep => return Err(exists(&self.target)),
-            Kind::Export => fs::rename(&self.target, &replaced).map_err(not_written)?,
+            Kind::Export => {
+                // What the old one is called now is known by the claim alone.
+                self.claim.sync().map_err(not_written)?;
+                fs::rename(&self.target, &replaced).map_err(not_written)?;
+            }
             Kind::File | Kind::Other => return Err(exists(&self.target)),
         }
         // An empty folder is replaced by a rename, at least on Unix.
@@ -154,22 +155,28 @@ fn kind_of(target: &Path) -> io::Result<Kind> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Kind::Free),
         Err(error) => Err(error),
         Ok(found) if !found.is_dir() => Ok(Kind::File),
-        Ok(_) if target.join(MARKER).is_file() => Ok(Kind::Export),
+        Ok(_) if is_marked(target) => Ok(Kind::Export),
         Ok(_) if fs::read_dir(target)?.next().is_none() => Ok(Kind::Free),
         Ok(_) => Ok(Kind::Other),
     }
 }
 
-/// Puts right what a program left that was killed between two renames: the old export gets back to its place, or is removed where the new one is there.
-fn put_right(target: &Path, replaced: &Path) -> io::Result<()> {
-    if !replaced.join(MARKER).is_file() {
-        return Ok(());
+/// Whether a folder has the marker: a file with its words. One that is empty, or a link, proves nothing.
+fn is_marked(folder: &Path) -> bool {
+    let mut text = String::new();
+    let read = open_own(&folder.join(MARKER), OpenMode::Read)
+        .and_then(|file| file.take(MARKER_BYTES).read_to_string(&mut text));
+    read.is_ok() && text.contains(WRITTEN_BY) && text.ends_with(IS_REPLACED)
+}
+
+/// Gives an export its place back that a program had moved aside when it was killed. Where the new one is there already, the old one is
+/// removed later, once nothing can be refused any more.
+fn put_back(target: &Path, replaced: &Path) -> io::Result<()> {
+    let is_there = replaced.symlink_metadata().is_ok_and(|found| found.is_dir());
+    if is_there && matches!(kind_of(target)?, Kind::Free) {
+        fs::rename(replaced, target)?;
     }
-    if matches!(kind_of(target)?, Kind::Free) {
-        fs::rename(replaced, target)
-    } else {
-        fs::remove_dir_all(replaced)
-    }
+    Ok(())
 }
 
 /// Writes all files below a folder to the disk; returns how many bytes they have.
@@ -187,16 +194,6 @@ fn sync(folder: &Path) -> io::Result<u64> {
     }
     sync_folder(folder)?;
     Ok(bytes)
-}
-
-#[cfg(unix)]
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    File::open(folder)?.sync_all()
-}
-
-#[cfg(not(unix))]
-fn sync_folder(_: &Path) -> io::Result<()> {
-    Ok(())
 }
 
 #[cfg(test)]

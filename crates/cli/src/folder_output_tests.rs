@@ -85,20 +85,74 @@ fn only_one_writes_at_a_time() {
     write(&target, Existing::Keep, "one");
 }
 
-/// A kill between the two renames of a replacement loses nothing.
+const ID: &str = "0123456789abcdef";
+
+/// What a program leaves that is killed while it writes a folder: its claim, and some of what that is for.
+fn left(folder: &Path, ends: &[&str]) {
+    fs::write(folder.join(".out.unfinished"), format!("corniche unfinished {ID}\n")).unwrap();
+    for end in ends {
+        fs::create_dir(folder.join(format!(".out.{ID}.{end}"))).unwrap();
+        fs::write(folder.join(format!(".out.{ID}.{end}/a")), "half").unwrap();
+    }
+}
+
+/// A kill between any two steps of a replacement loses nothing, and the next run clears what is left.
 #[test]
 fn what_a_kill_leaves_is_put_right() {
     let folder = TempDir::new().unwrap();
     let target = folder.path().join("out");
     write(&target, Existing::Keep, "one");
-    let replaced = folder.path().join(".out.replaced");
-    fs::rename(&target, &replaced).unwrap();
+    // Before the first rename.
+    left(folder.path(), &["unfinished"]);
+    let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
+    assert!(kept.to_string().contains("exists already"), "{kept}");
+    assert!(folder.path().join(format!(".out.{ID}.unfinished/a")).exists(), "it was removed");
+    // Between the two.
+    fs::rename(&target, folder.path().join(format!(".out.{ID}.replaced"))).unwrap();
     let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
     assert!(kept.to_string().contains("exists already"), "{kept}");
     assert_eq!(fs::read(target.join("0/a")).unwrap(), b"one");
-    // After the second rename only the old one is left over.
-    fs::create_dir(&replaced).unwrap();
-    fs::write(replaced.join(MARKER), "").unwrap();
     write(&target, Existing::Replace, "two");
     assert_eq!(names(folder.path()), ["out"]);
+    // After the second only the old one is left over.
+    left(folder.path(), &["replaced"]);
+    write(&target, Existing::Replace, "three");
+    assert_eq!(names(folder.path()), ["out"]);
+    assert_eq!(fs::read(target.join("0/a")).unwrap(), b"three");
+}
+
+/// Folders are not taken for ours because of their names, nor because of a marker that is empty or a link.
+#[test]
+fn folders_of_others_beside_a_target_stay() {
+    let folder = TempDir::new().unwrap();
+    let target = folder.path().join("out");
+    let others = [".out.unfinished.files", ".out.replaced", ".out.0123456789abcdef.replaced"];
+    for name in others {
+        fs::create_dir(folder.path().join(name)).unwrap();
+        fs::write(folder.path().join(name).join(MARKER), "").unwrap();
+        fs::write(folder.path().join(name).join("thesis"), "mine").unwrap();
+    }
+    write(&target, Existing::Keep, "one");
+    write(&target, Existing::Replace, "two");
+    for name in others {
+        assert_eq!(fs::read(folder.path().join(name).join("thesis")).unwrap(), b"mine");
+    }
+    let marker = fs::read(target.join(MARKER)).unwrap();
+    fs::write(folder.path().join("marker"), marker).unwrap();
+    let mine = folder.path().join("mine");
+    fs::create_dir(&mine).unwrap();
+    fs::write(mine.join("thesis"), "mine").unwrap();
+    let check = |what: &str| {
+        let refused = FolderOutput::create(&mine, Existing::Replace, &[]).unwrap_err();
+        assert!(refused.to_string().contains("other things"), "{what}: {refused}");
+        assert_eq!(fs::read(mine.join("thesis")).unwrap(), b"mine", "{what}");
+    };
+    fs::write(mine.join(MARKER), "").unwrap();
+    check("an empty marker");
+    #[cfg(unix)]
+    {
+        fs::remove_file(mine.join(MARKER)).unwrap();
+        std::os::unix::fs::symlink("../marker", mine.join(MARKER)).unwrap();
+        check("a linked marker");
+    }
 }

@@ -120,8 +120,13 @@ fn end() -> ! {
         TEMPORARY.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
     // Other threads are still at work and may add files while a folder is emptied, so it is tried again.
     for _ in 0..3 {
-        for path in temporary.iter().filter(|path| path.symlink_metadata().is_ok()) {
-            let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+        // What was begun first says whose the rest is, so it goes last.
+        for path in temporary.iter().rev() {
+            let _ = match path.symlink_metadata() {
+                Ok(found) if found.is_dir() => fs::remove_dir_all(path),
+                Ok(_) => fs::remove_file(path),
+                Err(_) => Ok(()),
+            };
         }
     }
     // A message can wait for ever when the reader of a full pipe has stopped, so it gets a limited time.

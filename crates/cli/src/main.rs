@@ -19,6 +19,7 @@ mod growth;
 mod info;
 mod interrupt;
 mod jobs;
+mod leftovers;
 mod man;
 mod matching;
 mod merge;

@@ -11,6 +11,7 @@ use std::{
     time::Instant,
 };
 
+use corniche_remote::without_secrets;
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
@@ -33,12 +34,18 @@ static BEGUN: OnceLock<Instant> = OnceLock::new();
 /// Targets of our own events: names of crates, which begin so.
 const OWN_TARGETS: &str = "corniche";
 
+/// Target of a library that tells user names of addresses with its connections.
+const TELLS_USER_NAMES: &str = "hyper_util";
+
 /// Sets how messages are written, once, before the first one.
 pub(crate) fn begin(voice: Voice) {
     let _ = VOICE.set(voice);
     let _ = BEGUN.set(Instant::now());
     let (own, libraries) = levels(voice);
-    let shown = Targets::new().with_target(OWN_TARGETS, own).with_default(libraries);
+    let shown = Targets::new()
+        .with_target(OWN_TARGETS, own)
+        .with_target(TELLS_USER_NAMES, libraries.min(LevelFilter::WARN))
+        .with_default(libraries);
     let layer = fmt::layer().with_writer(|| Tolerant).with_ansi(false).log_internal_errors(false);
     // It can fail only if someone else was first, and nobody else is in this program.
     let _ = match voice.format {
@@ -117,9 +124,9 @@ pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
     }
 }
 
-/// A line that is complete as it is.
+/// A line that is complete as it is, but for the secrets of addresses.
 pub(crate) fn write_line(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", without_secrets(line));
 }
 
 /// Standard error, where it does not matter if nobody reads any more.
@@ -127,7 +134,9 @@ struct Tolerant;
 
 impl Write for Tolerant {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = io::stderr().write_all(bytes);
+        // Whoever wrote it, a library or a server that redirects: an event comes as a whole.
+        let text = String::from_utf8_lossy(bytes);
+        let _ = io::stderr().write_all(without_secrets(&text).as_bytes());
         Ok(bytes.len())
     }
 

@@ -2,8 +2,8 @@
 //! complete.
 //!
 //! ```text
-//!   .NAME.unfinished           empty; its lock tells whether someone writes
-//!   .NAME.unfinished.files/    what the library makes: the file, and others that go with it while it is written
+//!   .NAME.unfinished        the claim of the target (corniche_store::Claim)
+//!   .NAME.ID.unfinished/    what the library makes: the file, and others that go with it while it is written
 //! ```
 
 use std::{
@@ -12,12 +12,13 @@ use std::{
 };
 
 use corniche_export::ExportError;
-use tempfile::{NamedTempFile, TempPath};
+use corniche_pipeline::Claim;
+use tempfile::TempPath;
 
 use crate::{
     exit::ExitCode,
     failure::Failure,
-    interrupt,
+    leftovers,
     output::{Existing, claim, failed, place},
 };
 
@@ -29,7 +30,7 @@ pub(crate) struct NamedOutput {
     folder: PathBuf,
     name: String,
     /// Held as long as the folder is in use.
-    _lock: NamedTempFile,
+    _claim: Claim,
 }
 
 impl NamedOutput {
@@ -40,20 +41,13 @@ impl NamedOutput {
         name: String,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let (target, lock) = claim(named, existing, others)?;
+        let (target, claim) = claim(named, existing, others)?;
         let unusable = |error: io::Error| {
             Failure::unusable(format!("cannot write {}: {error}", named.display()))
         };
-        let own_name = target.file_name().unwrap_or_default().to_string_lossy();
-        let folder = target.with_file_name(format!(".{own_name}.unfinished.files"));
-        // What a killed program left: the lock says that nobody writes there.
-        match fs::remove_dir_all(&folder) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(unusable(error)),
-            _ => {}
-        }
-        interrupt::remove_at_end(&folder);
-        fs::create_dir(&folder).map_err(unusable)?;
-        Ok(Self { target, existing, folder, name, _lock: lock })
+        leftovers::tell(&target);
+        let folder = claim.begin_folder().map_err(unusable)?;
+        Ok(Self { target, existing, folder, name, _claim: claim })
     }
 
     /// Where the library writes.

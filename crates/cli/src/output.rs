@@ -7,7 +7,7 @@ use std::{
 };
 
 pub(crate) use corniche_pipeline::Existing;
-use corniche_pipeline::{file_target, folder_of};
+use corniche_pipeline::{Claim, file_target, folder_of};
 use image::RgbaImage;
 use tempfile::{NamedTempFile, TempPath};
 
@@ -18,12 +18,12 @@ pub(crate) fn existing_of(overwrite: bool) -> Existing {
     if overwrite { Existing::Replace } else { Existing::Keep }
 }
 
-/// A place for a file, with the file beside it that is locked while it is written.
+/// A place for a file, claimed while it is written.
 pub(crate) fn claim(
     named: &Path,
     existing: Existing,
     others: &[&Path],
-) -> Result<(PathBuf, NamedTempFile), Failure> {
+) -> Result<(PathBuf, Claim), Failure> {
     let unusable = |reason: &dyn Display| {
         Failure::unusable(format!("cannot write {}: {reason}", named.display()))
     };
@@ -34,9 +34,10 @@ pub(crate) fn claim(
     if existing == Existing::Keep && named.symlink_metadata().is_ok() {
         return Err(exists(named));
     }
-    let file = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
-    interrupt::remove_at_end(file.path());
-    Ok((target, file))
+    let claim = Claim::take(&target).map_err(|error| unusable(&error))?;
+    interrupt::remove_at_end(claim.path());
+    interrupt::remove_at_end(&claim.unfinished());
+    Ok((target, claim))
 }
 
 /// Puts a finished file in its place, durably; returns its size in bytes.
@@ -54,6 +55,8 @@ pub(crate) struct Output {
     target: PathBuf,
     existing: Existing,
     file: BufWriter<NamedTempFile>,
+    /// Dropped last.
+    claim: Claim,
 }
 
 impl Output {
@@ -64,8 +67,12 @@ impl Output {
         existing: Existing,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let (target, file) = claim(target, existing, others)?;
-        Ok(Self { target, existing, file: BufWriter::new(file) })
+        let named = target;
+        let (target, claim) = claim(named, existing, others)?;
+        let file = claim.begin_file().map_err(|error| {
+            Failure::unusable(format!("cannot write {}: {error}", named.display()))
+        })?;
+        Ok(Self { target, existing, file: BufWriter::new(file), claim })
     }
 
     /// Puts the file in its place.
@@ -85,11 +92,11 @@ impl Output {
     }
 
     fn end(self) -> Result<Complete, Failure> {
-        let Self { target, existing, file } = self;
+        let Self { target, existing, file, claim } = self;
         let file = file
             .into_inner()
             .map_err(|error| failed(&target, &io::IntoInnerError::into_error(error)))?;
-        Ok(Complete { target, existing, file })
+        Ok(Complete { target, existing, file, claim })
     }
 }
 
@@ -99,15 +106,16 @@ pub(crate) struct Complete {
     target: PathBuf,
     existing: Existing,
     file: NamedTempFile,
+    /// Dropped last.
+    claim: Claim,
 }
 
 impl Complete {
     /// Puts it in its place.
     pub(crate) fn place(self) -> Result<(), Failure> {
-        let Self { target, existing, file } = self;
-        // The file is held, and with it its lock, until it is in its place.
-        let (_held, path) = file.into_parts();
-        place(path, &target, existing)?;
+        // The claim is held until the file is in its place.
+        let Self { target, existing, file, claim: _claim } = self;
+        place(file.into_temp_path(), &target, existing)?;
         tracing::debug!(path = %target.display(), "file written");
         Ok(())
     }

@@ -9,8 +9,8 @@ use std::{
 use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, messages, parent, progress::Progress,
-    settings, table::bytes,
+    args::PartArgs, exit::ExitCode, failure::Failure, messages, parent, presets::refuse_stream,
+    progress::Progress, settings, table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
@@ -70,7 +70,8 @@ pub(crate) fn told(requests: &Requests) -> String {
 
 /// Reads a plan's file.
 pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan, Failure> {
-    let text = fs::read_to_string(path)
+    let text = refuse_stream(path)
+        .and_then(|()| fs::read_to_string(path))
         .map_err(|error| Failure::unusable(format!("cannot read {}: {error}", path.display())))?;
     BuildPlan::from_json(&text).map_err(|error| Failure::new(ExitCode::Unusable, error).about(path))
 }

@@ -7,6 +7,7 @@ use std::{
 };
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
+use corniche_remote::without_secrets;
 
 use crate::{
     args::PlanArgs,
@@ -54,9 +55,11 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     let digits = Digits::on(&io::stdout());
     let mut out = io::stdout().lock();
     if args.json {
-        writeln!(out, "{}", to_line(&PlanDocument::new(&plan, estimate)))?;
+        let line = to_line(&PlanDocument::new(&plan, estimate));
+        writeln!(out, "{}", without_secrets(&line))?;
     } else {
-        out.write_all(to_text(&plan, &estimate, work.resources, digits).as_bytes())?;
+        let text = to_text(&plan, &estimate, work.resources, digits);
+        out.write_all(without_secrets(&text).as_bytes())?;
     }
     Ok(ExitCode::Done)
 }

@@ -1,5 +1,6 @@
 //! `corniche serve`: packages in web browsers, by a small web server, or by the files for another one.
 
+mod package_file;
 mod page;
 mod page_files;
 mod shown;
@@ -17,6 +18,7 @@ use corniche_pipeline::folder_of;
 use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
 
 use self::{
+    package_file::PackageFile,
     page::PageFile,
     shown::{LIST, Shown},
 };
@@ -80,7 +82,9 @@ fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<Ex
     // What is shown here is nobody's business who does not know it.
     routes.add(LIST, Content::Memory(shown::list(packages).into()), Readers::OwnPages);
     for package in packages {
-        routes.add(package.path(), Content::Disk(package.file.clone()), Readers::AnyPage);
+        let file = PackageFile::of(&package.file);
+        let file = file.map_err(|error| Failure::from(error).about(&package.file))?;
+        routes.add(package.path(), Content::Disk(Arc::new(file)), Readers::AnyPage);
     }
     let server = Server::bind(&args.address, args.port)?;
     let address = server.address();

@@ -3,12 +3,13 @@
 use std::{
     fs::{self, File},
     hash::{BuildHasher as _, Hasher as _, RandomState},
-    io::{self, Read},
+    io::{self, Read, Write as _},
     path::{Path, PathBuf},
     sync::Arc,
     time::Duration,
 };
 
+use corniche_store::{OpenMode, open_own};
 use object_store::{
     Error, ObjectStore, PutMode, PutMultipartOptions, PutOptions,
     aws::AmazonS3,
@@ -229,12 +230,15 @@ impl Note {
     }
 
     fn write(&self, key: &str, id: &str) -> io::Result<()> {
-        fs::write(&self.path, format!("{key}\n{id}\n"))
+        let mut file = open_own(&self.path, OpenMode::ChangeOrNew)?;
+        file.set_len(0)?;
+        file.write_all(format!("{key}\n{id}\n").as_bytes())
     }
 
     /// What a process left that was killed. A note that is not whole names no upload.
     fn read(&self) -> Option<(String, String)> {
-        let text = fs::read_to_string(&self.path).ok()?;
+        let mut text = String::new();
+        open_own(&self.path, OpenMode::Read).ok()?.read_to_string(&mut text).ok()?;
         let (key, rest) = text.split_once('\n')?;
         let id = rest.strip_suffix('\n')?;
         Some((key.to_owned(), id.to_owned()))

@@ -20,7 +20,7 @@ use corniche_geom::TileId;
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
-use self::{destination::Destination, unfinished::Unfinished};
+use self::{destination::Destination, unfinished::Claimed};
 use crate::{
     BuildError, BuildPlan, BuildSettings, Observer, PlanSettings, TerrainSettings,
     context::Context,
@@ -71,9 +71,7 @@ pub fn build_on(
     let plan = BuildPlan::of(&settings.plan, &opened)?;
     let store_folder = work_store::folder_of(&destination.target, settings.tmp.as_deref());
     // Before the store is looked at: what another build is at work on is no leftover.
-    let finished = Unfinished::create(&destination)?;
-    observer.temporary(finished.path());
-    let finished_path = finished.path().to_path_buf();
+    let claimed = Claimed::take(&destination)?;
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
         let folder = &*destination.folder;
@@ -83,10 +81,13 @@ pub fn build_on(
     let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
+    let finished = claimed.begin()?;
+    finished.paths().into_iter().for_each(|path| observer.temporary(path));
+    let finished_path = finished.path().to_path_buf();
     let context = Context::new(&settings.plan, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: &finished_path, named: &settings.output };
-    let built = run(&context, &store, &wanted)
-        .and_then(|manifest| Ok((manifest, finished.place(&destination)?)));
+    let built =
+        run(&context, &store, &wanted).and_then(|manifest| Ok((manifest, finished.place()?)));
     match built {
         Ok((manifest, package_bytes)) => {
             work_store::remove(store, observer);

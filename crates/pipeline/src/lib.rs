@@ -35,7 +35,6 @@ mod terrain;
 mod tile;
 mod tiles_near;
 mod true_lengths;
-mod unfinished;
 mod verify;
 mod workers;
 
@@ -43,6 +42,9 @@ pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
 pub use corniche_objects::Requests;
 pub use corniche_osm::{Defect as OsmDefect, Share};
+pub use corniche_store::{
+    Claim, Existing, OpenMode, folder_of, open_own, place_finished, sync_folder,
+};
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
@@ -61,13 +63,12 @@ pub use plan::{
 pub use plan_error::PlanError;
 pub use roads::totals::reasons_left_out;
 pub use settings::{
-    BuildSettings, Existing, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources,
-    RoadSettings, TerrainSettings,
+    BuildSettings, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings,
+    TerrainSettings,
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
 pub use terrain::recorded_grid::grid_of;
-pub use unfinished::{folder_of, place_finished, unfinished_file};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, RecordedElevation, VerifyError, VerifyOsm,
     VerifyReport, VerifySettings, verify,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_roads::{ClassFilter, FrcTable};
+use corniche_store::Existing;
 use corniche_tileset::ReliefLevels;
 
 /// What to build, from what, and how: checked, ready to run.
@@ -89,15 +90,6 @@ pub struct PhotoSettings {
     pub levels: Option<u8>,
     /// JPEG's quality, from 1 to 100.
     pub quality: u8,
-}
-
-/// What to do with a package that exists at the target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Existing {
-    /// Refuse to build.
-    Keep,
-    /// Replace it when the new one is complete.
-    Replace,
 }
 
 /// What to do with intermediate results that an earlier build of the same package left.

@@ -108,6 +108,12 @@ pub enum HttpError {
     #[error("the server does not answer within {} seconds, also after {tries} tries; run the same command later", .within.as_secs_f64())]
     Timeout { within: Duration, tries: u32 },
     #[error(
+        "the server is slower than {least} bytes a second, so that an answer takes longer than {:.1} seconds; run the same command later, or \
+         fetch the package to a file",
+        .within.as_secs_f64()
+    )]
+    TooSlow { within: Duration, least: u64 },
+    #[error(
         "the connection breaks off again and again ({tries} tries): {reason}; run the same command later"
     )]
     BrokenOff { reason: String, tries: u32 },
@@ -135,13 +141,15 @@ impl HttpError {
                 | Self::UnknownHost { .. }
                 | Self::NoConnection { .. }
                 | Self::Timeout { .. }
+                | Self::TooSlow { .. }
                 | Self::BrokenOff { .. }
         )
     }
 
     /// Whether it is worth while to try again at once.
     pub(crate) fn is_momentary(&self) -> bool {
-        self.may_pass() && !matches!(self, Self::Changed { .. } | Self::ComeBack { .. })
+        self.may_pass()
+            && !matches!(self, Self::Changed { .. } | Self::ComeBack { .. } | Self::TooSlow { .. })
     }
 
     /// Whether there was not even a connection. At the first request that is most likely a wrong address.

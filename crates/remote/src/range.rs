@@ -14,7 +14,7 @@ use std::{
 
 use bytes::{Bytes, BytesMut};
 use reqwest::{Client, Url, header::RANGE};
-use tokio::runtime::Runtime;
+use tokio::{runtime::Runtime, time::timeout};
 
 use crate::{
     HttpAddress, HttpError, HttpSettings,
@@ -90,7 +90,7 @@ impl Ranges {
         loop {
             let redirected = self.redirected().clone();
             let url = redirected.as_ref().unwrap_or(self.address.url());
-            let got = self.runtime.block_on(self.once(url, asked, known));
+            let got = self.runtime.block_on(self.in_time(url, asked, known));
             let Failed { error, wait } = match got {
                 Ok(got) => {
                     self.is_down.store(false, Ordering::Relaxed);
@@ -131,6 +131,20 @@ impl Ranges {
 
     fn redirected(&self) -> MutexGuard<'_, Option<Url>> {
         self.redirected.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Does the same as `once`, and ends it where the server is too slow.
+    async fn in_time(
+        &self,
+        url: &Url,
+        asked: &Range<u64>,
+        known: Option<&Version>,
+    ) -> Result<(Version, Bytes), Failed> {
+        let limit = self.settings.longest(asked.end.saturating_sub(asked.start));
+        timeout(limit, self.once(url, asked, known)).await.unwrap_or_else(|_| {
+            let least = self.settings.least_bytes_per_second;
+            Err(HttpError::TooSlow { within: limit, least }.into())
+        })
     }
 
     async fn once(

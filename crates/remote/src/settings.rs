@@ -15,6 +15,16 @@ pub struct HttpSettings {
     pub connect_timeout: Duration,
     /// Time without a byte, while an answer is awaited or read.
     pub idle_timeout: Duration,
+    /// The least bytes a second, on average over an answer: what is slower ends, however often a byte comes.
+    pub least_bytes_per_second: u64,
+}
+
+impl HttpSettings {
+    /// The longest time of a request for so many bytes: twice that of a pause, for the head and for a pause on the way, and what the bytes take.
+    pub(crate) fn longest(&self, bytes: u64) -> Duration {
+        let share = bytes as f64 / self.least_bytes_per_second.max(1) as f64;
+        self.idle_timeout * 2 + Duration::from_secs_f64(share)
+    }
 }
 
 impl Default for HttpSettings {
@@ -26,6 +36,7 @@ impl Default for HttpSettings {
             longest_pause: Duration::from_mins(1),
             connect_timeout: Duration::from_secs(10),
             idle_timeout: Duration::from_secs(30),
+            least_bytes_per_second: 4096,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! From a request to an answer.
 
-use std::{fs, io, path::Path, time::UNIX_EPOCH};
+use std::{io, sync::Arc};
 
 use bytes::Bytes;
 use hyper::{
@@ -8,8 +8,8 @@ use hyper::{
     header::{
         ACCEPT_RANGES, ACCESS_CONTROL_ALLOW_HEADERS, ACCESS_CONTROL_ALLOW_METHODS,
         ACCESS_CONTROL_ALLOW_ORIGIN, ACCESS_CONTROL_EXPOSE_HEADERS, ACCESS_CONTROL_MAX_AGE, ALLOW,
-        CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_TYPE, ETAG, HOST, HeaderName,
-        HeaderValue, X_CONTENT_TYPE_OPTIONS,
+        CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG,
+        HOST, HeaderName, HeaderValue, X_CONTENT_TYPE_OPTIONS,
     },
 };
 use tokio::fs::File;
@@ -19,6 +19,7 @@ use crate::{
     conditions::Wanted,
     host::Hosts,
     media_type::media_type,
+    on_disk::{self, OpenedFile},
     refusal::{METHODS, Refusal},
     routes::{Content, Readers, Route, Routes},
 };
@@ -138,6 +139,9 @@ async fn send<B>(
     };
     if status != StatusCode::NOT_MODIFIED {
         set(CONTENT_TYPE, media_type(path));
+        if let Some(policy) = &route.policy {
+            set(CONTENT_SECURITY_POLICY, policy);
+        }
         let sent = range.as_ref().map_or(0, |range| range.end() - range.start() + 1);
         set(CONTENT_LENGTH, &sent.to_string());
     }
@@ -163,29 +167,12 @@ async fn open(route: &Route) -> io::Result<Opened> {
             tag: route.tag_in_memory.clone(),
             source: Source::Memory(bytes.clone()),
         }),
-        Content::Disk(path) => {
-            let path = path.clone();
-            tokio::task::spawn_blocking(move || open_on_disk(&path))
-                .await
-                .map_err(io::Error::other)?
+        Content::Disk(on_disk) => {
+            let (on_disk, known) = (Arc::clone(on_disk), Arc::clone(&route.known));
+            let opened = tokio::task::spawn_blocking(move || on_disk::open(&*on_disk, &known));
+            let OpenedFile { file, length_bytes, tag } =
+                opened.await.map_err(io::Error::other)??;
+            Ok(Opened { length_bytes, tag, source: Source::Disk(File::from_std(file)) })
         }
     }
-}
-
-/// Opens a file; length and tag are those of what was opened, whatever is at its path by then.
-fn open_on_disk(path: &Path) -> io::Result<Opened> {
-    // Opening a pipe would wait for someone who writes to it.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::ErrorKind::NotFound.into());
-    }
-    let file = fs::File::open(path)?;
-    let found = file.metadata()?;
-    let length_bytes = found.len();
-    // Times before 1970 are told apart, too.
-    let (sign, since) = match found.modified()?.duration_since(UNIX_EPOCH) {
-        Ok(since) => ("", since),
-        Err(before) => ("-", before.duration()),
-    };
-    let tag = format!("\"{length_bytes:x}-{sign}{:x}\"", since.as_nanos());
-    Ok(Opened { length_bytes, tag, source: Source::Disk(File::from_std(file)) })
 }

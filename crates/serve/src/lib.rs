@@ -18,10 +18,14 @@ mod conditions;
 mod error;
 mod host;
 mod media_type;
+mod on_disk;
+mod patience;
+mod policy;
 mod refusal;
 mod routes;
 mod server;
 
 pub use error::ServeError;
+pub use on_disk::OnDisk;
 pub use routes::{Content, Readers, Routes};
 pub use server::{Answered, Server, Watch};

@@ -1,10 +1,20 @@
 //! The table of what is served.
 
-use std::{collections::BTreeMap, fmt::Write as _, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    sync::{Arc, Mutex},
+};
 
 use bytes::Bytes;
 use percent_encoding::percent_decode_str;
 use sha2::{Digest as _, Sha256};
+
+use crate::{
+    media_type::media_type,
+    on_disk::{Known, OnDisk},
+    policy::policy,
+};
 
 /// Where the bytes of a file come from.
 #[derive(Debug, Clone)]
@@ -12,7 +22,7 @@ pub enum Content {
     /// They are known.
     Memory(Bytes),
     /// They are on disk, and may change or go.
-    Disk(PathBuf),
+    Disk(Arc<dyn OnDisk>),
 }
 
 /// Which pages may read a file.
@@ -31,6 +41,10 @@ pub(crate) struct Route {
     pub(crate) readers: Readers,
     /// The `ETag` of what is in memory.
     pub(crate) tag_in_memory: String,
+    /// What a page may load and do; `None` for what is no page.
+    pub(crate) policy: Option<String>,
+    /// The version on disk that was hashed last.
+    pub(crate) known: Arc<Mutex<Option<Known>>>,
 }
 
 /// What is served, by path. A path has no slash at its beginning: `examples/fly.html`.
@@ -42,11 +56,16 @@ pub struct Routes {
 impl Routes {
     /// Adds a file. One that was added at the same path before is replaced.
     pub fn add(&mut self, path: impl Into<String>, content: Content, readers: Readers) {
-        let tag_in_memory = match &content {
-            Content::Memory(bytes) => tag_of(bytes),
-            Content::Disk(_) => String::new(),
+        let path = path.into();
+        let (tag_in_memory, policy) = match &content {
+            Content::Memory(bytes) => {
+                let is_page = media_type(&path).starts_with("text/html");
+                (tag_of(bytes), is_page.then(|| policy(bytes)))
+            }
+            Content::Disk(_) => (String::new(), None),
         };
-        self.by_path.insert(path.into(), Route { content, readers, tag_in_memory });
+        let known = Arc::default();
+        self.by_path.insert(path, Route { content, readers, tag_in_memory, policy, known });
     }
 
     /// What is served at the path of an address, with the path as it is in the table. A folder's own path means its `index.html`.

@@ -20,7 +20,7 @@ use tokio::{
     time::{sleep, timeout},
 };
 
-use crate::{ServeError, answer::Site, host::Hosts, routes::Routes};
+use crate::{ServeError, answer::Site, host::Hosts, patience::Patient, routes::Routes};
 
 /// How often it is asked whether to stop.
 const ASKS_EVERY: Duration = Duration::from_millis(100);
@@ -28,6 +28,8 @@ const ASKS_EVERY: Duration = Duration::from_millis(100);
 const ENDS_WITHIN: Duration = Duration::from_secs(2);
 /// What a client may take to say what it wants; also how long a connection stays open on which nothing is said.
 const REQUEST_WITHIN: Duration = Duration::from_mins(1);
+/// How long is waited in all, on a connection, for a client that does not read what it asked for.
+const READS_WITHIN: Duration = Duration::from_secs(30);
 /// Connections at once; more wait. A browser opens six.
 const MOST_CONNECTIONS: usize = 256;
 /// Threads that answer; files are read by others.
@@ -60,6 +62,8 @@ pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     hosts: Hosts,
+    patience: Duration,
+    most_connections: usize,
 }
 
 impl Server {
@@ -79,7 +83,16 @@ impl Server {
         let listener = TcpListener::bind(&found[..]).map_err(listen)?;
         let address = listener.local_addr().map_err(listen)?;
         listener.set_nonblocking(true).map_err(listen)?;
-        Ok(Self { listener, address, hosts: Hosts::of(bare, address) })
+        let hosts = Hosts::of(bare, address);
+        let (patience, most_connections) = (READS_WITHIN, MOST_CONNECTIONS);
+        Ok(Self { listener, address, hosts, patience, most_connections })
+    }
+
+    /// Waits so long for clients that do not read, and has so many at once: for tests.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_limits(self, patience: Duration, most_connections: usize) -> Self {
+        Self { patience, most_connections, ..self }
     }
 
     /// Where it listens.
@@ -93,7 +106,7 @@ impl Server {
     /// # Errors
     /// [`ServeError::Start`].
     pub fn serve(self, routes: Routes, watch: &Watch<'_>) -> Result<(), ServeError> {
-        let Self { listener, address, hosts } = self;
+        let Self { listener, address, hosts, patience, most_connections } = self;
         let start = |source| ServeError::Start { address, source };
         let runtime = Builder::new_multi_thread()
             .worker_threads(THREADS)
@@ -102,23 +115,33 @@ impl Server {
             .build()
             .map_err(start)?;
         let site = Arc::new(Site { routes, hosts });
-        runtime.block_on(accept(listener, site, watch)).map_err(start)?;
+        let limits = (patience, most_connections);
+        runtime.block_on(accept(listener, &site, limits, watch)).map_err(start)?;
         // A read that hangs must not keep the program.
         runtime.shutdown_background();
         Ok(())
     }
 }
 
-async fn accept(listener: TcpListener, site: Arc<Site>, watch: &Watch<'_>) -> io::Result<()> {
+async fn accept(
+    listener: TcpListener,
+    site: &Arc<Site>,
+    (patience, most_connections): (Duration, usize),
+    watch: &Watch<'_>,
+) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
     let graceful = GracefulShutdown::new();
-    let free = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let free = Arc::new(Semaphore::new(most_connections));
     while !(watch.is_stopped)() {
         let Ok(Ok(permit)) = timeout(ASKS_EVERY, Arc::clone(&free).acquire_owned()).await else {
             continue;
         };
         match timeout(ASKS_EVERY, listener.accept()).await {
-            Ok(Ok((stream, _))) => begin(stream, permit, &site, watch, &graceful),
+            Ok(Ok((stream, _))) => {
+                // Without it small answers may wait for each other.
+                let _ = stream.set_nodelay(true);
+                begin(Patient::new(stream, patience), permit, site, watch, &graceful);
+            }
             // Too many open files, or a client that is gone already: neither ends the server.
             Ok(Err(_)) => sleep(ASKS_EVERY).await,
             Err(_) => {}
@@ -131,14 +154,12 @@ async fn accept(listener: TcpListener, site: Arc<Site>, watch: &Watch<'_>) -> io
 
 /// Answers what is asked on a connection.
 fn begin(
-    stream: TcpStream,
+    stream: Patient<TcpStream>,
     permit: OwnedSemaphorePermit,
     site: &Arc<Site>,
     watch: &Watch<'_>,
     graceful: &GracefulShutdown,
 ) {
-    // Without it small answers may wait for each other.
-    let _ = stream.set_nodelay(true);
     let (site, observer) = (Arc::clone(site), Arc::clone(&watch.observer));
     let service = service_fn(move |request: Request<Incoming>| {
         let (site, observer) = (Arc::clone(&site), Arc::clone(&observer));

@@ -30,12 +30,14 @@
 //! removes no file that it did not make.
 
 mod artifacts;
+mod claim;
 mod disk;
 mod error;
 mod files;
 mod groups;
 mod local;
 mod memory;
+mod own_files;
 mod parts_place;
 mod scratch;
 mod sorter;
@@ -43,6 +45,7 @@ mod stored_plan;
 mod system_disk;
 
 pub use artifacts::{Artifacts, Key};
+pub use claim::{Claim, Existing, place_finished};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
@@ -52,6 +55,7 @@ pub use local::{
     SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 pub use memory::{MemoryScratch, MemoryStore};
+pub use own_files::{folder_of, make_own_folder, open_own, sync_folder};
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};

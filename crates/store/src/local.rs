@@ -36,11 +36,13 @@ use std::{
 pub use binding::{plan_of_header, store_header};
 pub use folder::Folder;
 pub use layout::{PARTS as PARTS_NAME, PLAN as PLAN_NAME, STORE as STORE_NAME, part_of_sealed};
+pub(crate) use lock::random_digits;
 pub use scratch::LocalScratch;
 pub use sealed_part::check_sealed;
 
 use crate::{
-    Artifacts, Disk, Hold, Key, PartFile, PartsPlace, PlanHash, Publish, StoreError, StoredPlan,
+    Artifacts, Disk, Hold, Key, Listed, PartFile, PartsPlace, PlanHash, Publish, StoreError,
+    StoredPlan,
     files::{Files, OpenFile, Traffic},
 };
 use binding::FolderState;
@@ -344,7 +346,8 @@ impl LocalStore {
         remove_all(&self.files, &own.folder)
     }
 
-    /// Removes the store in a folder, as [`Self::remove`] does, without opening it: it may be damaged, or of another plan or version.
+    /// Removes the store in a folder without opening it: it may be damaged, or of another plan or version. Where the folder holds something
+    /// else, nothing is removed, and what it is is returned.
     ///
     /// # Errors
     /// [`StoreError::NotAStore`], [`StoreError::Locked`], and where the disk fails.
@@ -354,7 +357,8 @@ impl LocalStore {
             return Ok(Vec::new());
         }
         let _lock = lock::lock_store(&files, folder, Hold::Alone)?;
-        remove_all(&files, folder)
+        let foreign = foreign(&files, folder)?;
+        if foreign.is_empty() { remove_all(&files, folder) } else { Ok(foreign) }
     }
 
     /// How many artifacts were cut off when the own part was opened: torn, damaged, or put after such a one.
@@ -489,7 +493,7 @@ fn part_number(path: &Path, count: usize) -> Result<u32, StoreError> {
 }
 
 /// Refuses a folder that is a store already, or holds something else.
-fn refuse_store(files: &Files, folder: &Path) -> Result<(), StoreError> {
+fn refuse_store(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     match binding::state(files, folder)?.0 {
         FolderState::Store => Err(StoreError::Exists { path: folder.to_owned() }),
         FolderState::Absent | FolderState::Free => Ok(()),
@@ -535,19 +539,35 @@ fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreEr
     Ok(left)
 }
 
+/// What a store's folder holds that no store makes.
+fn foreign(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let found = layout::look(files, folder)?.unwrap_or_default();
+    let mut foreign: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
+    if found.of(Role::Parts).next().is_some() {
+        let parts = folder.join(layout::PARTS);
+        let is_part = |entry: &Listed| {
+            !entry.is_folder
+                && entry.name.to_str().is_some_and(|n| layout::part_of_sealed(n).is_some())
+        };
+        let rest = files.list(&parts)?.unwrap_or_default().into_iter();
+        foreign.extend(rest.filter(|entry| !is_part(entry)).map(|entry| parts.join(entry.name)));
+    }
+    Ok(foreign)
+}
+
 /// Removes all files of a store but the lock; returns what is left. The header goes before the plan: at any moment the folder is a store that
 /// can be read, or none.
 fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
-    let mut left: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
-    for path in sealed_paths(files, folder)? {
-        files.remove(&path)?;
-    }
+    let left = foreign(files, folder)?;
     let parts = folder.join(layout::PARTS);
-    let rest = files.list(&parts)?.unwrap_or_default();
-    left.extend(rest.into_iter().map(|entry| parts.join(entry.name)));
-    if !left.iter().any(|path| path.starts_with(&parts)) {
-        files.remove_folder(&parts)?;
+    if found.of(Role::Parts).next().is_some() {
+        for path in sealed_paths(files, folder)? {
+            files.remove(&path)?;
+        }
+        if !left.iter().any(|path| path.starts_with(&parts)) {
+            files.remove_folder(&parts)?;
+        }
     }
     for (name, role) in &found.own {
         if !matches!(role, Role::Fixed | Role::Parts) {

@@ -6,28 +6,36 @@ use std::{
     path::Path,
 };
 
-use crate::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
+#[cfg(unix)]
+use crate::own_files::system::OwnFolder;
+use crate::{Disk, DiskFile, FileId, Hold, Listed, OpenMode, sync_folder};
 
 /// The file system of the machine.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SystemDisk;
 
 impl Disk for SystemDisk {
+    #[cfg(unix)]
     fn open(&self, path: &Path, mode: OpenMode) -> io::Result<Box<dyn DiskFile>> {
-        let mut options = File::options();
-        options.read(true).write(mode != OpenMode::Read);
-        match mode {
-            OpenMode::Read | OpenMode::Change => &mut options,
-            OpenMode::New => options.create_new(true),
-            OpenMode::ChangeOrNew => options.create(true),
-        };
-        Ok(Box::new(SystemFile(options.open(path)?)))
+        let (folder, name) = OwnFolder::around(path)?;
+        Ok(Box::new(SystemFile(folder.open_file(name, path, mode)?)))
+    }
+
+    #[cfg(not(unix))]
+    fn open(&self, path: &Path, mode: OpenMode) -> io::Result<Box<dyn DiskFile>> {
+        Ok(Box::new(SystemFile(crate::open_own(path, mode)?)))
     }
 
     fn create_folder(&self, path: &Path) -> io::Result<()> {
         fs::create_dir(path)
     }
 
+    #[cfg(unix)]
+    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+        OwnFolder::open(folder)?.list()
+    }
+
+    #[cfg(not(unix))]
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         fs::read_dir(folder)?
             .map(|entry| {
@@ -37,10 +45,24 @@ impl Disk for SystemDisk {
             .collect()
     }
 
+    #[cfg(unix)]
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let ((folder, from), (other, to)) = (OwnFolder::around(from)?, OwnFolder::around(to)?);
+        folder.rename(from, (&other, to))
+    }
+
+    #[cfg(not(unix))]
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         fs::rename(from, to)
     }
 
+    #[cfg(unix)]
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        let (folder, name) = OwnFolder::around(path)?;
+        folder.remove(name)
+    }
+
+    #[cfg(not(unix))]
     fn remove(&self, path: &Path) -> io::Result<()> {
         fs::remove_file(path)
     }
@@ -49,23 +71,27 @@ impl Disk for SystemDisk {
         fs::remove_dir(path)
     }
 
-    #[cfg(unix)]
     fn sync_folder(&self, folder: &Path) -> io::Result<()> {
-        File::open(folder)?.sync_all()
+        sync_folder(folder)
     }
 
-    /// Elsewhere a folder cannot be opened as a file; its names are durable when the system says so.
-    #[cfg(not(unix))]
-    fn sync_folder(&self, _: &Path) -> io::Result<()> {
-        Ok(())
-    }
-
+    #[cfg(unix)]
     fn identity(&self, path: &Path) -> io::Result<Option<FileId>> {
-        match fs::metadata(path) {
-            Ok(metadata) => Ok(Some(file_id(&metadata))),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error),
-        }
+        let found = OwnFolder::around(path).and_then(|(folder, name)| folder.identity(name));
+        absent_is_none(found)
+    }
+
+    /// Elsewhere only that something of this name is there can be told.
+    #[cfg(not(unix))]
+    fn identity(&self, path: &Path) -> io::Result<Option<FileId>> {
+        absent_is_none(fs::symlink_metadata(path).map(|_| FileId(0, 0)))
+    }
+}
+
+fn absent_is_none(found: io::Result<FileId>) -> io::Result<Option<FileId>> {
+    match found {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        found => found.map(Some),
     }
 }
 

@@ -44,7 +44,7 @@ pub use manifest::{
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
-    ToolRecord, pmtiles_order, tile_of_order,
+    ToolRecord, pmtiles_order, telling_ranges, tile_of_order,
 };
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};

@@ -18,6 +18,7 @@ mod writer;
 pub use error::{OpenError, ReadError};
 #[cfg(not(target_arch = "wasm32"))]
 pub use file_package::FilePackage;
+pub use header::telling_ranges;
 pub use metadata::FORMAT_VERSION;
 pub use reader::Package;
 #[cfg(not(target_arch = "wasm32"))]

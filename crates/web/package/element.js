@@ -98,10 +98,10 @@ export class CornicheMap extends HTMLElement {
     }
   }
 
-  /** The address of the package. */
+  /** The address of the package; what is no address stays as it is, as with pictures. */
   get src() {
-    const text = this.getAttribute("src");
-    return text === null || text === "" ? "" : new URL(text, document.baseURI).href;
+    const text = this.getAttribute("src") ?? "";
+    return text !== "" && URL.canParse(text, document.baseURI) ? new URL(text, document.baseURI).href : text;
   }
 
   set src(address) {

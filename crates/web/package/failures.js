@@ -31,7 +31,7 @@ const WITH_PICTURE = new Set(["no-webgpu", "no-adapter", "limits", "files", "dev
 /** Pictures that may lie beside a package, the likeliest first. */
 export function stillsOf(/** @type {string | null} */ still, /** @type {string} */ src) {
   if (still) return [still];
-  if (!src || /^(blob|data):/.test(src)) return [];
+  if (!src || /^(blob|data):/.test(src) || !URL.canParse(src, document.baseURI)) return [];
   const address = new URL(src, document.baseURI);
   const path = address.pathname;
   return ["png", "jpg"].flatMap((ending) => {

@@ -14,6 +14,7 @@ const MIB = 1 << 20;
 
 /** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
 function nameOf(/** @type {string} */ src) {
+  if (!URL.canParse(src)) return src;
   const { hash, pathname, protocol } = new URL(src);
   const name = protocol === "blob:" ? hash.slice(1) : (pathname.split("/").pop() ?? "");
   try {

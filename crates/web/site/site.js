@@ -13,7 +13,14 @@ function show(src, title) {
   map.src = src;
 }
 
-const nameOf = (src) => decodeURIComponent(new URL(src, location.href).pathname.split("/").pop()).replace(/\.pmtiles$/, "") || src;
+/** What a package is called: its file's name. One that cannot be read as an address has its own words. */
+function nameOf(src) {
+  try {
+    return decodeURIComponent(new URL(src, location.href).pathname.split("/").pop()).replace(/\.pmtiles$/, "") || src;
+  } catch {
+    return src;
+  }
+}
 
 /** A file of this computer: a blob's address answers range requests as a server does. */
 function showFile(file) {

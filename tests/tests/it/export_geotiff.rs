@@ -11,7 +11,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, corniche, ended, json, manifest, names, real_data, sample, text, write_ascii_grid};
+use e2e::{
+    Ran, corniche, ended, json, manifest, names, real_data, sample, text, unfinished,
+    write_ascii_grid,
+};
 use gdal::{Dataset, Metadata as _};
 use serde_json::Value;
 
@@ -489,7 +492,6 @@ fn an_interrupted_export_leaves_nothing() {
     let package = folder.path().join("pass.pmtiles");
     e2e::copy_pass(&package, &["--max-error", "5"]);
     let target = folder.path().join("a.tif");
-    let unfinished = folder.path().join(".a.tif.unfinished.files");
     let mut interrupted = 0;
     for round in 0..8 {
         let mut child = Command::new(e2e::binary())
@@ -500,7 +502,7 @@ fn an_interrupted_export_leaves_nothing() {
             .spawn()
             .unwrap();
         let begun = Instant::now();
-        while !unfinished.exists() && child.try_wait().unwrap().is_none() {
+        while unfinished(folder.path()).is_none() && child.try_wait().unwrap().is_none() {
             assert!(begun.elapsed() < Duration::from_mins(1), "it does not begin");
             thread::sleep(Duration::from_millis(1));
         }

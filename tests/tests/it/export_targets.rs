@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, copy_pass, corniche, ended, names, sample, text};
+use e2e::{Ran, copy_pass, corniche, ended, names, sample, text, unfinished};
 use gdal::{Dataset, vector::LayerAccess as _};
 
 fn pass(folder: &Path) -> PathBuf {
@@ -133,12 +133,11 @@ fn an_interrupted_export_leaves_nothing() {
     let package = pass(folder.path());
     let target = folder.path().join("roads.gpkg");
     let mut interrupted = 0;
-    let unfinished = folder.path().join(".roads.gpkg.unfinished.files");
     for round in 0..12 {
         let mut child = start(&package, &target);
         // From the moment at which the export writes; a little later in every round.
         let begun = Instant::now();
-        while !unfinished.exists() && child.try_wait().unwrap().is_none() {
+        while unfinished(folder.path()).is_none() && child.try_wait().unwrap().is_none() {
             assert!(begun.elapsed() < Duration::from_mins(1), "it does not begin");
             thread::sleep(Duration::from_millis(1));
         }
@@ -169,17 +168,16 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
     let folder = tempfile::tempdir().unwrap();
     let package = pass(folder.path());
     let target = folder.path().join("roads.gpkg");
-    let unfinished = folder.path().join(".roads.gpkg.unfinished.files");
     let mut child = start(&package, &target);
     let begun = Instant::now();
-    while !unfinished.join("roads.gpkg").exists() {
+    while !unfinished(folder.path()).is_some_and(|made| made.join("roads.gpkg").exists()) {
         assert!(begun.elapsed() < Duration::from_mins(1), "it does not begin");
         assert!(child.try_wait().unwrap().is_none(), "it was faster than the signal");
         thread::sleep(Duration::from_millis(1));
     }
     signal(&child, "KILL");
     assert_eq!(ended(&mut child).code, -1, "SIGKILL ended it");
-    assert!(unfinished.exists() && !target.exists(), "{:?}", names(folder.path()));
+    assert!(unfinished(folder.path()).is_some() && !target.exists(), "{:?}", names(folder.path()));
     let ran = export(&package, &target, &[]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(names(folder.path()), ["pass.pmtiles", "roads.gpkg"]);

@@ -21,6 +21,7 @@ mod export_tiles3d;
 mod extracts_without_roads;
 mod fly;
 mod fly_window;
+mod folders_of_others;
 mod growth;
 mod jobs;
 mod kills;

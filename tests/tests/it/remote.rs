@@ -4,7 +4,7 @@
 
 use std::{
     fs,
-    io::Read as _,
+    io::{Read as _, Write as _},
     net::TcpListener,
     path::Path,
     process::{Command, Stdio},
@@ -203,6 +203,9 @@ fn secrets_of_addresses_are_shown_and_written_nowhere() {
         "https://me:SECRET@host/x.pmtiles?sig=SECRET#part",
         "https://me:SECRET@host:port/x",
         "ftp://me:SECRET@host/x",
+        "http:/me:SECRET@host/x",
+        "  http://me:SECRET@host/x",
+        "http//me:SECRET@host/x",
     ] {
         for command in ["info", "verify", "growth"] {
             let ran = run(&[command, &wrong.replace("SECRET", secret)]);
@@ -270,4 +273,47 @@ fn waiting_for_a_server_can_be_interrupted() {
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(begun.elapsed() < Duration::from_secs(20), "it waits for the server");
     assert!(names(folder.path()).is_empty(), "{:?}", names(folder.path()));
+}
+
+/// What a library logs of a redirection, and what GDAL says of its files.
+#[test]
+fn no_secret_is_told_of_redirections_and_inputs() {
+    let secret = "tell-nobody-0123456789";
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let host = listener.local_addr().unwrap().to_string();
+    let to = format!("http://me:{secret}@{host}/y?{secret}");
+    thread::spawn(move || {
+        for mut stream in listener.incoming().flatten() {
+            let to = to.clone();
+            // A connection that is kept is told of, too.
+            thread::spawn(move || {
+                let mut asked = [0; 4096];
+                while let Ok(length @ 1..) = stream.read(&mut asked) {
+                    let is_first = asked[..length].starts_with(b"GET /x");
+                    let status = if is_first { "302 Found" } else { "404 Not Found" };
+                    let answer =
+                        format!("HTTP/1.1 {status}\r\nLocation: {to}\r\nContent-Length: 0\r\n\r\n");
+                    let _ = stream.write_all(answer.as_bytes());
+                }
+            });
+        }
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let (there, output) = (format!("http://{host}/x"), folder.path().join("a.pmtiles"));
+    let input = format!("http://me:{secret}@{host}/y.tif?{secret}");
+    let dem = sample("pass/pass-dem.tif");
+    let lines: [&[&str]; 4] = [
+        &["info", &there],
+        &["build", "--dem", &input, "-o", text(&output)],
+        &["plan", "--dem", &format!(" {input}")],
+        &["build", "--dem", text(&dem), "-o", &input],
+    ];
+    for line in lines {
+        for format in ["text", "json"] {
+            let ran = run(&[&["-v", "-v", "--log-format", format], line].concat());
+            assert!(ran.code == 2 || ran.code == 1, "{line:?}: {}", ran.err);
+            assert!(!ran.out.contains(secret), "{line:?}: {}", ran.out);
+            assert!(!ran.err.contains(secret), "{line:?}: {}", ran.err);
+        }
+    }
 }

@@ -464,3 +464,41 @@ fn a_site_is_the_same_files_for_another_server() {
     let left: Vec<String> = before.into_iter().filter(|name| name != "pass.pmtiles").collect();
     assert_eq!(names(place.folder.path()), left, "nothing else is left");
 }
+
+/// A package that is replaced by a link while it is served: what the link leads to is for nobody who asks.
+#[test]
+#[cfg(unix)]
+fn a_link_in_the_place_of_a_package_is_not_followed() {
+    let folder = ServedFolder::new();
+    let (package, other) = (folder.package(), folder.at("other.pmtiles"));
+    fs::copy(&package, &other).unwrap();
+    fs::write(folder.at("secret"), "mine").unwrap();
+    let server = folder.serve(&[&package], &[]);
+    let path = "/packages/pass.pmtiles";
+    let tag = |answer: &Answer| {
+        let line = answer.head.lines().find(|line| line.starts_with("etag: ")).unwrap_or_default();
+        line.to_owned()
+    };
+    let first = server.get(path);
+    assert_eq!(first.status, 200);
+    for target in ["secret", "other.pmtiles"] {
+        fs::remove_file(&package).unwrap();
+        std::os::unix::fs::symlink(target, &package).unwrap();
+        let answer = server.get(path);
+        let said = String::from_utf8_lossy(&answer.body);
+        assert_eq!(answer.status, 404, "{target}: {said}");
+        assert!(said.contains("gone") && !said.contains(text(&folder.at(""))), "{said}");
+    }
+    // Nor is a file that is no package.
+    fs::remove_file(&package).unwrap();
+    fs::copy(folder.at("secret"), &package).unwrap();
+    assert_eq!(server.get(path).status, 404);
+    fs::remove_file(&package).unwrap();
+    fs::rename(&other, &package).unwrap();
+    let again = server.get(path);
+    assert!(again.status == 200 && again.body == first.body);
+    // The part of the tag that comes from the package itself.
+    let digest = |answer: &Answer| tag(answer).rsplit_once('-').map(|(_, end)| end.to_owned());
+    assert!(digest(&first).is_some_and(|digest| digest.len() == 33), "{}", tag(&first));
+    assert_eq!(digest(&again), digest(&first));
+}

@@ -36,7 +36,7 @@ const UNSAFE: [(&str, &str); 2] = [
 ];
 
 /// Crates that open files.
-const FILES: [(&str, &str); 11] = [
+const FILES: [(&str, &str); 10] = [
     ("cli", "settings, styles, lists, pages and everything that commands write"),
     ("dem", "elevation files, polygons, lists of files"),
     ("export", "the files that it makes, and scratch space"),
@@ -47,8 +47,7 @@ const FILES: [(&str, &str); 11] = [
         "pipeline",
         "hashes of inputs, the package while it is written, what the system says of its memory",
     ),
-    ("serve", "the files that it serves"),
-    ("store", "the store's own files"),
+    ("store", "the store's own files, and what is written beside targets"),
     ("tileset", "packages"),
     ("window", "pictures and flights that a person saves"),
 ];

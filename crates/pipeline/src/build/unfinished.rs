@@ -2,22 +2,30 @@
 
 use std::{io, path::Path};
 
+use corniche_store::Claim;
 use tempfile::NamedTempFile;
 
 use super::destination::Destination;
-use crate::{BuildError, place_finished, unfinished_file};
+use crate::{BuildError, place_finished};
 
-/// The file that becomes the package. It is removed when the build fails; what a killed build leaves is removed by the next one.
-pub(crate) struct Unfinished {
-    file: NamedTempFile,
+/// The right to write a package at its target: of two builds of one target one is refused.
+pub(crate) struct Claimed<'a> {
+    destination: &'a Destination,
+    claim: Claim,
 }
 
-impl Unfinished {
-    /// Makes the file and locks it: of two builds of one target one is refused.
-    pub(crate) fn create(destination: &Destination) -> Result<Self, BuildError> {
+/// The file that becomes the package. It is removed when the build fails; what a killed build leaves is removed by the next one.
+pub(crate) struct Unfinished<'a> {
+    // Dropped before what claims it.
+    file: NamedTempFile,
+    claimed: Claimed<'a>,
+}
+
+impl<'a> Claimed<'a> {
+    pub(crate) fn take(destination: &'a Destination) -> Result<Self, BuildError> {
         let Destination { target, folder, .. } = destination;
-        match unfinished_file(target) {
-            Ok(file) => Ok(Self { file }),
+        match Claim::take(target) {
+            Ok(claim) => Ok(Self { destination, claim }),
             Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
                 Err(BuildError::AtWork { path: target.clone() })
             }
@@ -25,18 +33,35 @@ impl Unfinished {
         }
     }
 
+    /// Makes the file, once nothing can be refused any more.
+    pub(crate) fn begin(self) -> Result<Unfinished<'a>, BuildError> {
+        let file = self.claim.begin_file().map_err(|source| BuildError::Target {
+            folder: self.destination.folder.clone(),
+            source,
+        })?;
+        Ok(Unfinished { file, claimed: self })
+    }
+}
+
+impl Unfinished<'_> {
+    /// What a caller removes that ends the program early.
+    pub(crate) fn paths(&self) -> [&Path; 2] {
+        [self.claimed.claim.path(), self.path()]
+    }
+
     pub(crate) fn path(&self) -> &Path {
         self.file.path()
     }
 
     /// Moves the finished package to its place, durably; the store is removed only after that. Returns its size.
-    pub(crate) fn place(self, destination: &Destination) -> Result<u64, BuildError> {
-        let Destination { target, existing, .. } = destination;
-        // The file is held, and with it its lock, until it is in its place.
-        let (_held, path) = self.file.into_parts();
-        place_finished(path, target, *existing).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => BuildError::Exists { path: target.clone() },
-            _ => BuildError::Rename { path: target.clone(), source: error },
+    pub(crate) fn place(self) -> Result<u64, BuildError> {
+        let Self { file, claimed } = self;
+        let Destination { target, existing, .. } = claimed.destination;
+        place_finished(file.into_temp_path(), target, *existing).map_err(|error| {
+            match error.kind() {
+                io::ErrorKind::AlreadyExists => BuildError::Exists { path: target.clone() },
+                _ => BuildError::Rename { path: target.clone(), source: error },
+            }
         })
     }
 }

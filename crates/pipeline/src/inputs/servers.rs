@@ -107,8 +107,13 @@ pub(crate) fn reach_servers<'a>(files: impl IntoIterator<Item = &'a Path>) -> Re
 fn options(settings: &StorageSettings) -> Vec<(&'static str, String)> {
     let text = str::to_owned;
     // What fails for a moment is tried again. GDAL does so only if it is told.
-    let mut options =
-        vec![("GDAL_HTTP_MAX_RETRY", text("8")), ("GDAL_HTTP_RETRY_DELAY", text("0.5"))];
+    let mut options = vec![
+        ("GDAL_HTTP_MAX_RETRY", text("8")),
+        ("GDAL_HTTP_RETRY_DELAY", text("0.5")),
+        // A server that sends fewer bytes a second for a minute is given up.
+        ("GDAL_HTTP_LOW_SPEED_LIMIT", text("1024")),
+        ("GDAL_HTTP_LOW_SPEED_TIME", text("60")),
+    ];
     if let Some(endpoint) = settings.endpoint() {
         let is_plain = endpoint.starts_with("http://");
         let host = endpoint.split_once("://").map_or(endpoint, |(_, host)| host);

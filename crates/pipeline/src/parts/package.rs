@@ -6,13 +6,12 @@ use std::{
 };
 
 use corniche_objects::{Bucket, Existing as ExistingObject, ObjectAddress, ObjectError, Upload};
-use corniche_store::{PARTS_NAME, PLAN_NAME, STORE_NAME};
+use corniche_store::{Claim, PARTS_NAME, PLAN_NAME, STORE_NAME, make_own_folder};
 use sha2::{Digest as _, Sha256};
-use tempfile::NamedTempFile;
 
 use crate::{
     BuildError, Existing, Observer, PlanSettings, build::destination::Destination, hex::hex,
-    objects::ObjectAccess, unfinished_file,
+    objects::ObjectAccess,
 };
 
 /// Where a package goes, looked at before any work is done.
@@ -28,7 +27,7 @@ struct PackageObject {
     address: ObjectAddress,
     existing: Existing,
     /// Is locked until the package is sent. Its name follows from the address: of two merges of one package at once, one is refused.
-    _lock: NamedTempFile,
+    _lock: Claim,
     /// Holds nothing but the file and the lock. Dropped last.
     _folder: EmptyFolder,
 }
@@ -69,13 +68,10 @@ impl PackagePlace {
         let digest = hex(&Sha256::digest(address.to_string().as_bytes()));
         let tmp = tmp.map_or_else(env::temp_dir, Path::to_path_buf);
         let folder = tmp.join(format!("corniche-{}-package", &digest[..16]));
-        match fs::create_dir(&folder) {
-            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
-                return Err(BuildError::Target { folder: tmp, source: error });
-            }
-            _ => {}
+        if let Err(source) = make_own_folder(&folder) {
+            return Err(BuildError::Target { folder: tmp, source });
         }
-        let lock = match unfinished_file(&folder.join("merge")) {
+        let lock = match Claim::take(&folder.join("merge")) {
             Ok(lock) => lock,
             Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
                 return Err(BuildError::AtWork { path: output.to_path_buf() });

@@ -72,6 +72,11 @@ impl<'a> Stores<'a> {
         for (index, name) in given.names.iter().enumerate() {
             let store = match address(name)? {
                 Some(address) => OneStore::Objects(Box::new(access.place(&address)?)),
+                // What a person names may be a link to a folder; within it none is followed.
+                None if name.is_symlink() => {
+                    let led_to = fs::canonicalize(name).unwrap_or_else(|_| name.clone());
+                    OneStore::Folder(Folder::new(Arc::clone(&disk), &led_to))
+                }
                 None => OneStore::Folder(Folder::new(Arc::clone(&disk), name)),
             };
             match store.place().stored_plan()? {

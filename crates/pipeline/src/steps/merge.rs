@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use corniche_store::Scratch;
-use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, Writer};
+use corniche_store::{OpenMode, Scratch, open_own};
+use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
 
 use super::{
     hashes,
@@ -146,8 +146,11 @@ fn write(
     let failed = |source| BuildError::Write { path: target.named.to_path_buf(), source };
     let payloads = context.store.items(Kind::Payload as u8);
     context.observer.begin(Stage::Package, Some(payloads.len() as u64));
-    let mut writer =
-        Writer::create_for(target.finished, manifest, payloads.len()).map_err(failed)?;
+    let file = open_own(target.finished, OpenMode::Change);
+    let mut writer = file
+        .map_err(WriteError::Io)
+        .and_then(|file| Writer::of_file(file, manifest, payloads.len()))
+        .map_err(failed)?;
     for item in payloads {
         if context.observer.is_cancelled() {
             return Err(BuildError::Interrupted);

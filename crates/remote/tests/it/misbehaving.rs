@@ -67,6 +67,8 @@ fn each_kind_is_named() {
         (Mode::Cut, "breaks off again and again (4 tries)", all),
         (Mode::Silent, "does not answer within 0.3 seconds, also after 4 tries", all),
         (Mode::Stuck, "does not answer within 0.3 seconds, also after 4 tries", all),
+        (Mode::Dripping, "slower than 1048576 bytes a second", 1),
+        (Mode::DrippingHead, "does not answer within 0.3 seconds, also after 4 tries", all),
         (Mode::Noise, "speaks no HTTP", 1),
     ];
     for (mode, said, count) in cases {

@@ -38,6 +38,10 @@ pub(crate) enum Mode {
     Silent,
     /// The head, half of the body, and then nothing.
     Stuck,
+    /// The head, and then a byte now and then.
+    Dripping,
+    /// A byte of the head now and then.
+    DrippingHead,
     /// To another place.
     Redirect(String),
     /// What is no HTTP.
@@ -78,6 +82,7 @@ pub(crate) fn settings() -> HttpSettings {
         longest_pause: Duration::from_secs(2),
         connect_timeout: Duration::from_secs(5),
         idle_timeout: Duration::from_millis(300),
+        least_bytes_per_second: 1 << 20,
     }
 }
 
@@ -207,6 +212,19 @@ impl Server {
             Mode::Stuck => {
                 send(head("206", wanted.len(), &range), &wanted[..wanted.len() / 2])?;
                 thread::sleep(Duration::from_mins(1));
+            }
+            Mode::Dripping => {
+                send(head("206", wanted.len(), &range), b"")?;
+                for byte in wanted {
+                    send(String::new(), &[*byte])?;
+                    thread::sleep(Duration::from_millis(50));
+                }
+            }
+            Mode::DrippingHead => {
+                for byte in head("206", wanted.len(), &range).bytes() {
+                    send(String::new(), &[byte])?;
+                    thread::sleep(Duration::from_millis(50));
+                }
             }
             Mode::Redirect(to) => send(empty(302, &format!("Location: {to}\r\n")), b"")?,
             Mode::Noise => {

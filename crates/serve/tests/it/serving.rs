@@ -5,8 +5,9 @@
 use std::{
     collections::BTreeMap,
     fs::{self, File},
-    io::{Read as _, Write as _},
+    io::{self, Read as _, Write as _},
     net::{SocketAddr, TcpListener, TcpStream},
+    ops::Range,
     path::PathBuf,
     sync::{
         Arc, Mutex,
@@ -17,13 +18,36 @@ use std::{
 };
 
 use bytes::Bytes;
-use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
+use corniche_serve::{Answered, Content, OnDisk, Readers, Routes, ServeError, Server, Watch};
 use tempfile::TempDir;
 
 const PAGE: &str = "<!doctype html><title>A map</title>";
 
+/// How long is waited for clients that do not read.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// How many clients there are at once.
+const CONNECTIONS: usize = 16;
+
 /// More than is read at once.
 const PACKAGE_BYTES: usize = 700_001;
+
+/// A file of which the first bytes tell the versions apart.
+#[derive(Debug)]
+struct Told(PathBuf);
+
+impl OnDisk for Told {
+    fn open(&self) -> io::Result<File> {
+        // A link is not followed.
+        if !fs::symlink_metadata(&self.0)?.is_file() {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        File::open(&self.0)
+    }
+
+    fn telling(&self, _: &File) -> io::Result<Vec<Range<u64>>> {
+        Ok(vec![0..100])
+    }
+}
 
 struct Running {
     address: SocketAddr,
@@ -62,8 +86,12 @@ fn start_at(host: &str) -> Running {
     routes.add("empty.css", of(""), Readers::AnyPage);
     routes.add("examples/fly.html", of(PAGE), Readers::AnyPage);
     routes.add("packages.json", of("[]"), Readers::OwnPages);
-    routes.add("packages/a b.pmtiles", Content::Disk(package.clone()), Readers::AnyPage);
-    let server = Server::bind(host, 0).unwrap();
+    routes.add(
+        "packages/a b.pmtiles",
+        Content::Disk(Arc::new(Told(package.clone()))),
+        Readers::AnyPage,
+    );
+    let server = Server::bind(host, 0).unwrap().with_limits(PATIENCE, CONNECTIONS);
     let address = server.address();
     let is_stopped = Arc::new(AtomicBool::new(false));
     let answered = Arc::new(Mutex::new(Vec::new()));
@@ -451,4 +479,75 @@ fn every_answer_is_told() {
     let expected =
         [told("GET", PACKAGE, Some("bytes=0-3"), 206), told("GET", "/nothing", None, 404)];
     assert_eq!(server.answered.lock().unwrap()[..], expected);
+}
+
+/// Times can be set, and are the same for two files of one archive. On Unix the system's own note of a change is asked, too.
+#[test]
+#[cfg(unix)]
+fn a_version_is_told_by_its_bytes_and_not_by_times_alone() {
+    let server = start();
+    let modified = fs::metadata(&server.package).unwrap().modified().unwrap();
+    let tag =
+        |server: &Running| server.get(PACKAGE, &[("Range", "bytes=0-9")]).header("etag").to_owned();
+    let before = tag(&server);
+    let mut other = server.bytes.clone();
+    other[50] ^= 1;
+    let beside = server.package.with_extension("new");
+    fs::write(&beside, &other).unwrap();
+    File::options().write(true).open(&beside).unwrap().set_modified(modified).unwrap();
+    fs::rename(&beside, &server.package).unwrap();
+    assert_ne!(tag(&server), before, "another file of the same length and time");
+    fs::write(&beside, &server.bytes).unwrap();
+    File::options().write(true).open(&beside).unwrap().set_modified(modified).unwrap();
+    fs::rename(&beside, &server.package).unwrap();
+    assert_eq!(tag(&server), before, "the first one again");
+}
+
+/// As many clients as connections ask for far more than buffers hold, and read nothing: others are answered all the same, soon.
+#[test]
+fn clients_that_do_not_read_are_not_waited_for() {
+    let server = start();
+    let file = File::options().write(true).open(&server.package).unwrap();
+    file.set_len(64 << 20).unwrap();
+    let begun = Instant::now();
+    let deaf: Vec<TcpStream> = (0..CONNECTIONS)
+        .map(|_| {
+            let mut stream = TcpStream::connect(server.address).unwrap();
+            write!(stream, "GET {PACKAGE} HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).unwrap();
+            stream
+        })
+        .collect();
+    assert_eq!(server.get("/", &[]).status, 200);
+    assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
+    // What they asked for has ended before its end.
+    for mut stream in deaf {
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        let got = io::copy(&mut stream, &mut io::sink()).unwrap_or(0);
+        assert!(got < 64 << 20, "{got}");
+    }
+}
+
+/// Scripts of the page itself run by their hashes; what is no page has no policy; every answer says that its type is what it is.
+#[test]
+fn pages_have_a_policy_and_may_be_embedded() {
+    let server = start();
+    for path in ["/", "/examples/fly.html"] {
+        let policy = server.get(path, &[]).header("content-security-policy").to_owned();
+        for part in [
+            "script-src 'self' 'wasm-unsafe-eval';",
+            "worker-src 'self' blob:;",
+            "connect-src * data: blob:;",
+            "object-src 'none'",
+        ] {
+            assert!(policy.contains(part), "{path}: no {part:?} in {policy}");
+        }
+        assert!(!policy.contains("frame-ancestors"), "{policy}");
+        assert_eq!(server.get(path, &[]).header("x-frame-options"), "");
+    }
+    for path in ["/", "/corniche-map.js", PACKAGE, "/packages.json", "/no-such-file"] {
+        let answer = server.get(path, &[]);
+        assert_eq!(answer.header("x-content-type-options"), "nosniff", "{path}");
+        let is_page = answer.header("content-type").starts_with("text/html");
+        assert_eq!(answer.header("content-security-policy").is_empty(), !is_page, "{path}");
+    }
 }

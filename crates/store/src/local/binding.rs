@@ -11,7 +11,7 @@ use crate::{
     local::{
         header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
         layout::{self, Found},
-        lock,
+        lock::{self, Signature},
     },
 };
 
@@ -25,24 +25,40 @@ pub(crate) enum FolderState {
     Store,
 }
 
-/// Looks at a folder.
+/// Looks at a folder. That it is ours is proved by what its files say, never by their names.
 ///
 /// # Errors
 /// [`StoreError::NotAStore`] where it holds something that is not the store's.
-pub(crate) fn state(files: &Files, folder: &Path) -> Result<(FolderState, Found), StoreError> {
+pub(crate) fn state(files: &Arc<Files>, folder: &Path) -> Result<(FolderState, Found), StoreError> {
     let Some(found) = layout::look(files, folder)? else {
         return Ok((FolderState::Absent, Found::default()));
     };
-    if found.has(layout::STORE) {
-        return Ok((FolderState::Store, found));
+    let not_ours = |what: String| Err(StoreError::NotAStore { path: folder.to_owned(), what });
+    let has_header = found.has(layout::STORE);
+    if !has_header && let Some(name) = found.foreign.first() {
+        return not_ours(format!("it holds {name:?}"));
     }
-    match found.foreign.first() {
-        Some(name) => Err(StoreError::NotAStore {
-            path: folder.to_owned(),
-            what: format!("it holds {name:?}"),
-        }),
-        None => Ok((FolderState::Free, found)),
+    let signature =
+        if found.has(layout::LOCK) { lock::signature(files, folder)? } else { Signature::None };
+    let mut unsigned = found.own.iter().map(|(name, _)| name).filter(|&name| name != layout::LOCK);
+    match (signature, unsigned.next()) {
+        (Signature::Foreign, _) => {
+            not_ours(format!("its {:?} was not written by Corniche", layout::LOCK))
+        }
+        (Signature::None, Some(name)) if !(has_header && is_header(files, folder)?) => {
+            not_ours(format!("nothing says that Corniche made its {name:?}"))
+        }
+        _ if has_header => Ok((FolderState::Store, found)),
+        _ => Ok((FolderState::Free, found)),
     }
+}
+
+/// Whether the file `store` begins as the header of a store does, of any version.
+fn is_header(files: &Arc<Files>, folder: &Path) -> Result<bool, StoreError> {
+    let file = files.open(&folder.join(layout::STORE), OpenMode::Read)?;
+    let mut bytes = vec![0; file.length()?.min(HEADER_BYTES) as usize];
+    file.read_exact_at(&mut bytes, 0)?;
+    Ok(header::begins_as(FileKind::Store, &bytes))
 }
 
 /// The content of a store's header, the file `store`.

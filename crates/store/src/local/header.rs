@@ -58,6 +58,11 @@ pub(crate) fn encode(kind: FileKind, plan: &PlanHash) -> [u8; HEADER_BYTES as us
     bytes
 }
 
+/// Whether bytes are a header of this kind of file, of any version.
+pub(crate) fn begins_as(kind: FileKind, bytes: &[u8]) -> bool {
+    bytes.len() as u64 >= HEADER_BYTES && bytes.starts_with(kind.magic())
+}
+
 /// The plan's hash in a header.
 ///
 /// # Errors

@@ -16,6 +16,12 @@ use crate::{
 
 /// How often one tries again where another process came in between. That happens once at most, unless the file system gives wrong answers.
 const TRIES: u32 = 100;
+/// What a lock begins with; random digits follow, and the end of the line.
+const MARK: &str = "corniche store ";
+/// What the line begins with that says who holds it.
+const OWNER: &str = "process ";
+/// So much of a lock is read at most.
+const MOST_BYTES: u64 = 300;
 
 /// Takes the lock of the store in `folder`. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
 ///
@@ -34,9 +40,7 @@ pub(crate) fn lock_store(
         }
         // The last owner may have removed the file after we opened it: then it guards nothing any more.
         if file.is_in_place()? {
-            let owner = format!("process {} on {}\n", process::id(), host());
-            file.set_length(0)?;
-            file.write_all_at(owner.as_bytes(), 0)?;
+            sign(&file)?;
             return Ok(file);
         }
     }
@@ -70,19 +74,89 @@ pub(crate) fn adopt(files: &Arc<Files>, path: &Path) -> Result<Option<OpenFile>,
     Ok((file.try_lock(Hold::Alone)? && file.is_in_place()?).then_some(file))
 }
 
+/// What a file says that has the name of a store's lock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Signature {
+    /// Nothing, or the owner alone, as older versions had it: nothing is lost when it is written.
+    None,
+    /// It says that a store is here, in so many bytes, which are written before anything else of the store and never changed.
+    Store(u64),
+    /// Something that is not ours.
+    Foreign,
+}
+
+/// What the lock in a folder says; [`Signature::None`] where it is not there.
+pub(crate) fn signature(files: &Arc<Files>, folder: &Path) -> Result<Signature, StoreError> {
+    match files.open(&folder.join(layout::LOCK), OpenMode::Read) {
+        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => Ok(Signature::None),
+        file => match signature_of(&file?) {
+            // Windows lets nobody read what is locked; who holds it has written into it before.
+            Err(_) if cfg!(windows) => Ok(Signature::Store(0)),
+            signature => signature,
+        },
+    }
+}
+
+fn signature_of(file: &OpenFile) -> Result<Signature, StoreError> {
+    let text = read_text(file)?;
+    let mark = text.strip_prefix(MARK).and_then(|rest| rest.split_once('\n'));
+    Ok(match mark {
+        Some((id, _)) if id.len() == random_digits().len() => {
+            Signature::Store((MARK.len() + id.len() + 1) as u64)
+        }
+        None if text.is_empty() || text.starts_with(OWNER) => Signature::None,
+        _ => Signature::Foreign,
+    })
+}
+
+/// Writes into a lock that is held: that a store is here, unless it says so, and who works here.
+fn sign(file: &OpenFile) -> Result<(), StoreError> {
+    let length = match signature_of(file)? {
+        Signature::Store(length) => length,
+        Signature::None => {
+            let mark = format!("{MARK}{}\n", random_digits());
+            file.write_all_at(mark.as_bytes(), 0)?;
+            file.set_length(mark.len() as u64)?;
+            // Durable before what it speaks for.
+            file.sync()?;
+            file.files().sync_folder(file.path().parent().unwrap_or(file.path()))?;
+            mark.len() as u64
+        }
+        Signature::Foreign => {
+            return Err(StoreError::NotAStore {
+                path: file.path().parent().unwrap_or(file.path()).to_owned(),
+                what: format!("its {:?} was not written by Corniche", layout::LOCK),
+            });
+        }
+    };
+    let owner = format!("{OWNER}{} on {}\n", process::id(), host());
+    file.set_length(length)?;
+    file.write_all_at(owner.as_bytes(), length)
+}
+
 /// Process id and random digits: two processes, of one machine or of two, never choose the same.
 pub(crate) fn suffix() -> String {
+    format!("{}-{}", process::id(), random_digits())
+}
+
+/// Sixteen digits that nobody has had before.
+pub(crate) fn random_digits() -> String {
     // Each `RandomState` has new keys from the system.
-    let digits = RandomState::new().build_hasher().finish();
-    format!("{}-{digits:016x}", process::id())
+    format!("{:016x}", RandomState::new().build_hasher().finish())
+}
+
+/// The beginning of a lock, which is short.
+fn read_text(file: &OpenFile) -> Result<String, StoreError> {
+    let mut bytes = vec![0; file.length()?.min(MOST_BYTES) as usize];
+    file.read_exact_at(&mut bytes, 0)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// What the lock's owner wrote into it. It is for people only, so that not being able to read it is no error.
 fn read_owner(file: &OpenFile) -> String {
-    let mut bytes = vec![0; file.length().unwrap_or(0).min(200) as usize];
-    let read = file.read_exact_at(&mut bytes, 0);
-    let owner = String::from_utf8_lossy(&bytes).trim().to_owned();
-    if read.is_err() || owner.is_empty() { "another process".to_owned() } else { owner }
+    let text = read_text(file).unwrap_or_default();
+    let owner = text.lines().find(|line| line.starts_with(OWNER));
+    owner.unwrap_or("another process").to_owned()
 }
 
 fn host() -> String {

@@ -3,4 +3,5 @@
 mod common;
 mod faults;
 mod local_store;
+mod own_files;
 mod parts;

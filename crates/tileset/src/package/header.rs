@@ -1,5 +1,7 @@
 //! The fixed header of a PMTiles file.
 
+use std::ops::Range;
+
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
 use crate::package::error::OpenError;
 
@@ -13,6 +15,16 @@ pub(crate) const INITIAL_BYTES: usize = 16_384;
 pub(crate) struct Span {
     pub(crate) offset: u64,
     pub(crate) length: u64,
+}
+
+/// The bytes of a file that tell which package it is: header, root directory, manifest and leaf directories, of which `start` has the first and
+/// `file_length` says how long the file is. `None` if it is no package.
+#[must_use]
+pub fn telling_ranges(start: &[u8], file_length: u64) -> Option<[Range<u64>; 4]> {
+    let Header { root, metadata, leaves, .. } = Header::parse(start, file_length).ok()?;
+    let header = Span { offset: 0, length: HEADER_BYTES as u64 };
+    // The header was checked: no sum is too large.
+    Some([header, root, metadata, leaves].map(|Span { offset, length }| offset..offset + length))
 }
 
 /// What a reader needs of the header.

@@ -92,7 +92,15 @@ impl Writer<Arc<File>> {
     /// # Errors
     /// As [`Writer::create`]; when there are more, [`Writer::finish`] may fail.
     pub fn create_for(path: &Path, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
-        let file = Arc::new(File::create(path)?);
+        Self::of_file(File::create(path)?, manifest, tiles)
+    }
+
+    /// The same in a file that was made for it, and is open.
+    ///
+    /// # Errors
+    /// As [`Writer::create_for`].
+    pub fn of_file(file: File, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
+        let file = Arc::new(file);
         let mut writer = Self::new_for(Arc::clone(&file), manifest, tiles)?;
         writer.file = Some(file);
         Ok(writer)

@@ -1,0 +1,118 @@
+//! Files on disk that may change: which version an open one is.
+
+use std::{
+    fmt::{self, Write as _},
+    fs::{File, Metadata},
+    io::{self, Read as _, Seek as _, SeekFrom},
+    ops::Range,
+    sync::{Mutex, PoisonError},
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use sha2::{Digest as _, Sha256};
+
+/// So much of one range is hashed at most.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// A file on disk, as whoever starts a server knows it.
+pub trait OnDisk: fmt::Debug + Send + Sync {
+    /// Opens it as it is now.
+    ///
+    /// # Errors
+    /// Of kind `NotFound` where it is gone, or is none that may be sent; what else is said is sent to whoever asks.
+    fn open(&self) -> io::Result<File>;
+
+    /// Which bytes of the open file tell its versions apart; they are hashed once for each version.
+    ///
+    /// # Errors
+    /// As [`OnDisk::open`].
+    fn telling(&self, file: &File) -> io::Result<Vec<Range<u64>>>;
+}
+
+/// A version that was hashed.
+#[derive(Debug)]
+pub(crate) struct Known {
+    state: State,
+    tag: String,
+}
+
+/// What the file system says of a version. That alone could be the same for two.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct State {
+    length_bytes: u64,
+    modified: SystemTime,
+    /// Device, number, and when the system noted the last change, which no program can set.
+    #[cfg(unix)]
+    identity: [i64; 4],
+}
+
+impl State {
+    fn of(found: &Metadata) -> io::Result<Self> {
+        #[cfg(unix)]
+        use std::os::unix::fs::MetadataExt as _;
+        Ok(Self {
+            length_bytes: found.len(),
+            modified: found.modified()?,
+            #[cfg(unix)]
+            identity: [
+                found.dev().cast_signed(),
+                found.ino().cast_signed(),
+                found.ctime(),
+                found.ctime_nsec(),
+            ],
+        })
+    }
+}
+
+/// An open file, its length and its `ETag`, all of one version.
+pub(crate) struct OpenedFile {
+    pub(crate) file: File,
+    pub(crate) length_bytes: u64,
+    pub(crate) tag: String,
+}
+
+/// Opens a file; length and tag are those of what was opened, whatever is at its path by then.
+pub(crate) fn open(on_disk: &dyn OnDisk, known: &Mutex<Option<Known>>) -> io::Result<OpenedFile> {
+    let file = on_disk.open()?;
+    let state = State::of(&file.metadata()?)?;
+    let length_bytes = state.length_bytes;
+    let of_known = |known: &Known| (known.state == state).then(|| known.tag.clone());
+    let tag = known.lock().unwrap_or_else(PoisonError::into_inner).as_ref().and_then(of_known);
+    if let Some(tag) = tag {
+        return Ok(OpenedFile { file, length_bytes, tag });
+    }
+    let tag = tag_of(on_disk, &file, &state)?;
+    let now = Known { state, tag: tag.clone() };
+    *known.lock().unwrap_or_else(PoisonError::into_inner) = Some(now);
+    Ok(OpenedFile { file, length_bytes, tag })
+}
+
+/// Length, time and half of a hash of the bytes that tell versions apart, in quotes.
+fn tag_of(on_disk: &dyn OnDisk, file: &File, state: &State) -> io::Result<String> {
+    let mut digest = Sha256::new();
+    let mut chunk = vec![0; 1 << 16];
+    for range in on_disk.telling(file)? {
+        let mut reader = file;
+        reader.seek(SeekFrom::Start(range.start))?;
+        let mut part = reader.take((range.end - range.start).min(MOST_BYTES));
+        digest.update(range.start.to_le_bytes());
+        digest.update(range.end.to_le_bytes());
+        loop {
+            match part.read(&mut chunk)? {
+                0 => break,
+                length => digest.update(&chunk[..length]),
+            }
+        }
+    }
+    // Times before 1970 are told apart, too.
+    let (sign, since) = match state.modified.duration_since(UNIX_EPOCH) {
+        Ok(since) => ("", since),
+        Err(before) => ("-", before.duration()),
+    };
+    let mut tag = format!("\"{:x}-{sign}{:x}-", state.length_bytes, since.as_nanos());
+    for byte in &digest.finalize()[..16] {
+        let _ = write!(tag, "{byte:02x}");
+    }
+    tag.push('"');
+    Ok(tag)
+}

@@ -1,0 +1,106 @@
+//! A connection that ends when its client does not read what it asked for.
+
+use std::{
+    future::Future as _,
+    io,
+    pin::Pin,
+    task::{Context, Poll, ready},
+    time::{Duration, Instant},
+};
+
+use tokio::{
+    io::{AsyncRead, AsyncWrite, ReadBuf},
+    time::{Sleep, sleep},
+};
+
+/// A client that takes fewer bytes a second, on average, is not waited for.
+const LEAST_BYTES_PER_SECOND: u64 = 4096;
+/// For a client that reads it is waited so many times as long: the system asks for more only when much room is free.
+const MOST_TIMES: u32 = 4;
+
+/// A stream whose writing waits for its reader only so long in all: some time, and more for what was taken.
+pub(crate) struct Patient<S> {
+    stream: S,
+    /// How much longer is waited, and how long at most.
+    left: Duration,
+    most: Duration,
+    /// Before the first time it had to wait, it filled the buffers of the system alone.
+    has_waited: bool,
+    /// Since when is waited, and what ends it.
+    waits: Option<(Instant, Pin<Box<Sleep>>)>,
+}
+
+impl<S> Patient<S> {
+    pub(crate) fn new(stream: S, patience: Duration) -> Self {
+        let most = patience * MOST_TIMES;
+        Self { stream, left: patience, most, has_waited: false, waits: None }
+    }
+
+    /// Counts what a call did that may have to wait.
+    fn count(
+        &mut self,
+        context: &mut Context<'_>,
+        done: Poll<io::Result<usize>>,
+    ) -> Poll<io::Result<usize>> {
+        if let Poll::Ready(done) = done {
+            if let Some((since, _)) = self.waits.take() {
+                self.left = self.left.saturating_sub(since.elapsed());
+            }
+            if self.has_waited {
+                let taken = *done.as_ref().unwrap_or(&0) as u64;
+                let earned = Duration::from_micros(taken * 1_000_000 / LEAST_BYTES_PER_SECOND);
+                self.left = (self.left + earned).min(self.most);
+            }
+            return Poll::Ready(done);
+        }
+        self.has_waited = true;
+        let left = self.left;
+        let (_, end) = self.waits.get_or_insert_with(|| (Instant::now(), Box::pin(sleep(left))));
+        ready!(end.as_mut().poll(context));
+        Poll::Ready(Err(io::ErrorKind::TimedOut.into()))
+    }
+}
+
+impl<S: AsyncRead + Unpin> AsyncRead for Patient<S> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_read(context, buffer)
+    }
+}
+
+impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        let done = Pin::new(&mut self.stream).poll_write(context, bytes);
+        self.count(context, done)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        slices: &[io::IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        let done = Pin::new(&mut self.stream).poll_write_vectored(context, slices);
+        self.count(context, done)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.stream.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        let done = Pin::new(&mut self.stream).poll_flush(context).map_ok(|()| 0);
+        self.count(context, done).map_ok(|_| ())
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        let done = Pin::new(&mut self.stream).poll_shutdown(context).map_ok(|()| 0);
+        self.count(context, done).map_ok(|_| ())
+    }
+}

@@ -1,0 +1,232 @@
+//! What is written beside its target until it is complete, and how a later run knows it for ours.
+//!
+//! ```text
+//!   .NAME.unfinished          the claim: a line with a random id, written before anything else; its lock tells whether someone writes
+//!   .NAME.ID.unfinished       what is made, a file or a folder
+//!   .NAME.ID.replaced         a folder that was there, for as long as the new one takes its place
+//! ```
+//!
+//! A killed run leaves its claim, and with it the id: what has that id in its name is ours, and nothing else is. The next run takes the
+//! claim over. Whatever else has the name of the claim is left alone, and told.
+
+use std::{
+    fs::{self, File, TryLockError},
+    io::{self, Read as _, Write as _},
+    path::{Path, PathBuf},
+};
+
+use tempfile::{NamedTempFile, TempPath};
+
+use crate::{
+    OpenMode,
+    local::random_digits,
+    own_files::{folder_of, in_the_way, is_there, open_own, sync_folder, system::is_at},
+};
+
+/// How often it is tried again when another program ends at the same moment, and removes its claim.
+const TRIES: usize = 5;
+/// What a claim begins with; the id follows, and the end of the line.
+const MARK: &str = "corniche unfinished ";
+/// Longer is no claim.
+const MOST_BYTES: u64 = 100;
+/// The ending of what is made.
+const UNFINISHED: &str = "unfinished";
+/// The ending of what was there.
+const REPLACED: &str = "replaced";
+
+/// What to do with what exists at a target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays, and nothing is written.
+    Keep,
+    /// It is replaced.
+    Replace,
+}
+
+/// The right to write at a target, for as long as this lives: a file beside it, which is locked.
+#[derive(Debug)]
+pub struct Claim {
+    target: PathBuf,
+    path: PathBuf,
+    file: File,
+    id: String,
+}
+
+impl Claim {
+    /// Claims a target, which need not exist. What a killed run left beside it is neither used nor removed by that.
+    ///
+    /// # Errors
+    /// Of kind `ResourceBusy` if another program writes there; else where the folder cannot be written, or something that is not ours has the
+    /// name of the claim.
+    pub fn take(target: &Path) -> io::Result<Self> {
+        let name = target.file_name().unwrap_or_default().to_string_lossy();
+        let path = target.with_file_name(format!(".{name}.{UNFINISHED}"));
+        for _ in 0..TRIES {
+            let file = open_own(&path, OpenMode::ChangeOrNew)?;
+            lock(&file)?;
+            if !is_at(&file, &path)? {
+                continue;
+            }
+            let mut claim = Self { target: target.to_path_buf(), path, file, id: String::new() };
+            match claim.read()? {
+                Said::Nothing => {
+                    claim.id = random_digits();
+                    claim.file.write_all(format!("{MARK}{}\n", claim.id).as_bytes())?;
+                }
+                Said::Id(id) => claim.id = id,
+                Said::Other => {
+                    let what = "it was not made by this version of Corniche";
+                    let error = in_the_way(&claim.path, what);
+                    // It stays.
+                    claim.path = PathBuf::new();
+                    return Err(error);
+                }
+            }
+            return Ok(claim);
+        }
+        Err(busy())
+    }
+
+    /// The file that is locked.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Where what becomes the target is made.
+    #[must_use]
+    pub fn unfinished(&self) -> PathBuf {
+        self.beside(UNFINISHED)
+    }
+
+    /// Where what was at the target is put for as long as the new takes its place.
+    #[must_use]
+    pub fn replaced(&self) -> PathBuf {
+        self.beside(REPLACED)
+    }
+
+    fn beside(&self, end: &str) -> PathBuf {
+        let name = self.target.file_name().unwrap_or_default().to_string_lossy();
+        self.target.with_file_name(format!(".{name}.{}.{end}", self.id))
+    }
+
+    /// Begins the file that becomes the target; it is removed when it is dropped. What a killed run left of it is removed.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub fn begin_file(&self) -> io::Result<NamedTempFile> {
+        let path = self.unfinished();
+        remove_left(&path)?;
+        let file = open_own(&path, OpenMode::New)?;
+        Ok(NamedTempFile::from_parts(file, TempPath::try_from_path(path)?))
+    }
+
+    /// Begins the folder that becomes the target, or holds what does. What killed runs left of this target is removed.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub fn begin_folder(&self) -> io::Result<PathBuf> {
+        let path = self.unfinished();
+        for left in [&path, &self.replaced()] {
+            remove_left(left)?;
+        }
+        fs::create_dir(&path)?;
+        Ok(path)
+    }
+
+    /// Makes durable that this claim is there, so that what has its id is ours also after the machine failed.
+    ///
+    /// # Errors
+    /// Where the disk fails.
+    pub fn sync(&self) -> io::Result<()> {
+        self.file.sync_all()?;
+        sync_folder(folder_of(&self.path))
+    }
+
+    fn read(&self) -> io::Result<Said> {
+        let mut bytes = Vec::new();
+        (&self.file).take(MOST_BYTES).read_to_end(&mut bytes)?;
+        if bytes.is_empty() {
+            return Ok(Said::Nothing);
+        }
+        let text = String::from_utf8_lossy(&bytes);
+        let id = text.strip_prefix(MARK).and_then(|rest| rest.strip_suffix('\n'));
+        let is_id = |id: &&str| {
+            id.len() == random_digits().len() && id.bytes().all(|c| c.is_ascii_hexdigit())
+        };
+        Ok(id.filter(is_id).map_or(Said::Other, |id| Said::Id(id.to_owned())))
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // What is still there is known by the claim alone, and a later run removes both.
+        let is_needed = !self.id.is_empty()
+            && [UNFINISHED, REPLACED].map(|end| self.beside(end)).iter().any(|path| is_there(path));
+        if !is_needed && is_at(&self.file, &self.path).unwrap_or(false) {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// What a file says that has the name of a claim.
+enum Said {
+    /// It is empty, so that nothing is lost when it becomes the claim.
+    Nothing,
+    /// It is a claim with this id.
+    Id(String),
+    /// It says something else.
+    Other,
+}
+
+/// Writes the bytes of a finished file to the disk, moves it to its target, and makes its name durable. Returns its size.
+///
+/// # Errors
+/// Of kind `AlreadyExists` if there is something at the target that is to be kept; else when the disk does not take it.
+pub fn place_finished(path: TempPath, target: &Path, existing: Existing) -> io::Result<u64> {
+    let file = open_own(&path, OpenMode::Read)?;
+    file.sync_all()?;
+    let bytes = file.metadata()?.len();
+    let placed = match existing {
+        Existing::Replace => path.persist(target),
+        // This fails where the other would replace what someone put there in the meantime.
+        Existing::Keep => match path.persist_noclobber(target) {
+            // Not every file system can do that. Without it only the check at the start protects an existing file.
+            Err(refused) if refused.error.kind() != io::ErrorKind::AlreadyExists => {
+                refused.path.persist(target)
+            }
+            placed => placed,
+        },
+    };
+    placed.map_err(|refused| refused.error)?;
+    sync_folder(folder_of(target))?;
+    Ok(bytes)
+}
+
+fn busy() -> io::Error {
+    io::Error::new(io::ErrorKind::ResourceBusy, "another program is writing it")
+}
+
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(busy()),
+        // Some network file systems have no locks. There the last one to finish wins.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// Removes what a killed run left under a name with the id of its claim.
+fn remove_left(path: &Path) -> io::Result<()> {
+    match path.symlink_metadata() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+        Ok(found) if found.is_dir() => fs::remove_dir_all(path),
+        Ok(_) => fs::remove_file(path),
+    }
+}
+
+#[cfg(test)]
+#[path = "claim_tests.rs"]
+mod tests;
