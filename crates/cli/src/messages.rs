@@ -1,8 +1,10 @@
-//! What the program says on standard error: notes, warnings and errors, as lines for people or as records for programs.
+//! What the program says: its answers on standard output, and on standard error notes, warnings and errors, as lines for people or as records for
+//! programs.
 //!
 //! All of them are events of `tracing`; [`begin`] says which are shown and how. Standard error may be closed (`2>&1 | head`): then
 //! nothing is said, and the work goes on.
 
+mod escaped;
 mod lines;
 
 use std::{
@@ -16,6 +18,7 @@ use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
 };
 
+pub(crate) use self::escaped::{for_people, in_json};
 use self::lines::Lines;
 use crate::{
     args::{LogFormat, Voice},
@@ -119,7 +122,19 @@ pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
 
 /// A line that is complete as it is.
 pub(crate) fn write_line(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", for_people(line));
+}
+
+/// Writes an answer for people, or a list, to standard output.
+pub(crate) fn answer(text: &str) -> io::Result<()> {
+    answer_as_it_is(for_people(text).as_bytes())
+}
+
+/// Writes what programs read as it is, such as a script that we made.
+pub(crate) fn answer_as_it_is(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes)?;
+    out.flush()
 }
 
 /// Standard error, where it does not matter if nobody reads any more.
@@ -127,7 +142,13 @@ struct Tolerant;
 
 impl Write for Tolerant {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = io::stderr().write_all(bytes);
+        // The library writes an event at once, so no character comes in two pieces.
+        let text = String::from_utf8_lossy(bytes);
+        let text = match voice().format {
+            LogFormat::Text => for_people(&text),
+            LogFormat::Json => in_json(&text),
+        };
+        let _ = io::stderr().write_all(text.as_bytes());
         Ok(bytes.len())
     }
 

@@ -1,10 +1,6 @@
 //! `corniche plan`: what a build will make and what it will take.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{fmt::Write as _, io, path::Path};
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
 
@@ -14,7 +10,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::datum_operation,
-    interrupt, jobs,
+    interrupt, jobs, messages,
     output::{Output, existing_of},
     settings,
     table::{Digits, Table, bytes},
@@ -37,7 +33,7 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         if let Some(file) = written {
             write_plan(file, &plan)?;
         }
-        io::stdout().lock().write_all(subtrees.as_bytes())?;
+        messages::answer(&subtrees)?;
         return Ok(ExitCode::Done);
     }
     if let Some(slots) = args.jobs {
@@ -52,11 +48,10 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         write_plan(file, &plan)?;
     }
     let digits = Digits::on(&io::stdout());
-    let mut out = io::stdout().lock();
     if args.json {
-        writeln!(out, "{}", to_line(&PlanDocument::new(&plan, estimate)))?;
+        messages::answer(&format!("{}\n", to_line(&PlanDocument::new(&plan, estimate))))?;
     } else {
-        out.write_all(to_text(&plan, &estimate, work.resources, digits).as_bytes())?;
+        messages::answer(&to_text(&plan, &estimate, work.resources, digits))?;
     }
     Ok(ExitCode::Done)
 }

@@ -209,7 +209,7 @@ fn styled_bar(
     if let Ok(style) = ProgressStyle::with_template(&format!("{{prefix:22}} {drawing} {figures}")) {
         bar.set_style(style);
     }
-    bar.with_prefix(title)
+    bar.with_prefix(messages::for_people(&title.into()).into_owned())
 }
 
 impl Shared {

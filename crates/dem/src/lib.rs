@@ -31,6 +31,7 @@ mod vector_file;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use crs::datum_operation::{BetterOperation, DatumOperation};
+pub use crs::place_limit::PlaceLimit;
 pub use crs::projection::DemProjection;
 pub use crs::recorded::RecordedCrs;
 pub use crs::recorded_heights::RecordedHeights;
@@ -40,7 +41,7 @@ pub use files::file_blocks::FileBlocks;
 pub use files::named_files::{expand_extract_name, expand_name, expand_photo_name, unpack_name};
 pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
-pub use files::vsi::VirtualFile;
+pub use files::vsi::{VirtualFile, stored_text};
 pub use library_error::{LibraryError, failure, forget, quiet};
 pub use placed_raster::{PlacedRaster, RasterOnGrid};
 pub use plan::grid_plan::{Clip, GridPlan, PlanOptions, PlanScale, Resampling};

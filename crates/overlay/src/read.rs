@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use corniche_dem::{NotOpened, failure, forget, open_vectors};
+use corniche_dem::{NotOpened, PlaceLimit, failure, forget, open_vectors};
 use gdal::{
     spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef},
     vector::{Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten},
@@ -186,12 +186,15 @@ impl Reading<'_> {
     }
 }
 
-fn to_wgs84(mut from: SpatialRef) -> Result<CoordTransform, gdal::errors::GdalError> {
+/// What carries positions of a system to WGS84, and the largest of them that it may get.
+type ToWgs84 = (PlaceLimit, CoordTransform);
+
+fn to_wgs84(mut from: SpatialRef) -> Result<ToWgs84, gdal::errors::GdalError> {
     let mut to = SpatialRef::from_epsg(4326)?;
     for reference in [&mut from, &mut to] {
         reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
     }
-    CoordTransform::new(&from, &to)
+    Ok((PlaceLimit::of(&from), CoordTransform::new(&from, &to)?))
 }
 
 fn label_of(feature: &Feature<'_>) -> Option<String> {
@@ -220,7 +223,8 @@ fn take(geometry: &Geometry, parts: &mut Vec<Vec<[f64; 2]>>) {
 }
 
 /// Longitudes and latitudes; NaN where there is none.
-fn carried(points: &[[f64; 2]], to_wgs84: &CoordTransform) -> Vec<[f64; 2]> {
+fn carried(points: &[[f64; 2]], (limit, to_wgs84): &ToWgs84) -> Vec<[f64; 2]> {
+    let points: Vec<[f64; 2]> = points.iter().map(|point| limit.limited(*point)).collect();
     let carry = |points: &[[f64; 2]]| -> Option<Vec<[f64; 2]>> {
         let mut x: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let mut y: Vec<f64> = points.iter().map(|point| point[1]).collect();
@@ -229,7 +233,7 @@ fn carried(points: &[[f64; 2]], to_wgs84: &CoordTransform) -> Vec<[f64; 2]> {
         Some(x.into_iter().zip(y).map(|(x, y)| [finite(x), finite(y)]).collect())
     };
     // Where one point fails, GDAL fails them all.
-    carry(points).unwrap_or_else(|| {
+    carry(&points).unwrap_or_else(|| {
         let one = |point: &[f64; 2]| carry(&[*point]).map_or([f64::NAN; 2], |carried| carried[0]);
         points.iter().map(one).collect()
     })

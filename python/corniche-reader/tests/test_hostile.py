@@ -6,7 +6,9 @@ import functools
 import gzip
 import io
 import json
+import os
 import signal
+import time
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -129,3 +131,21 @@ def test_metadata_that_are_no_text_are_refused():
     for text in (b"", b"\xff\xfe\x00", b"[" * 200_000, b"\xef\xbb\xbf{}", b"nul"):
         with pytest.raises(ReadError):
             Package(io.BytesIO(with_metadata(text)))
+
+
+@pytest.mark.skipif("CORNICHE_HOSTILE" not in os.environ, reason="CORNICHE_HOSTILE names no folder of hostile packages")
+def test_hostile_packages_are_read_or_refused():
+    """`cargo run --example write_hostile --features hostile -p corniche-testing FOLDER` writes them."""
+    paths = sorted(Path(os.environ["CORNICHE_HOSTILE"]).glob("*.pmtiles"))
+    assert len(paths) > 150
+    for path in paths:
+        begun = time.process_time()
+        try:
+            with Package.open(path) as package:
+                for name in package.tiles():
+                    package.tile(*name)
+        except ReadError as error:
+            assert str(error)
+        except Exception as error:
+            raise AssertionError(f"{path.name}: {type(error).__name__}: {error}") from error
+        print(path.name, f"{time.process_time() - begun:.1f} s")

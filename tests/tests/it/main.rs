@@ -22,6 +22,7 @@ mod extracts_without_roads;
 mod fly;
 mod fly_window;
 mod growth;
+mod hostile_packages;
 mod jobs;
 mod kills;
 mod matching;
