@@ -1,9 +1,9 @@
-//! Settings files, FRC tables and styles of any bytes are read or refused.
+//! Settings files, tables of roads and of areas, and styles of any bytes are read or refused.
 
-use corniche_presets::{Config, class_filter, parse_frc_table};
+use corniche_presets::{Config, class_filter, parse_area_table, parse_frc_table};
 use corniche_styles::parse_style;
 
-/// A settings file, an FRC table and a style of these bytes are read or refused; what is read keeps its own promises.
+/// A settings file, a table of roads or areas and a style of these bytes are read or refused; what is read keeps its own promises.
 ///
 /// # Panics
 /// When a promise is broken.
@@ -28,6 +28,9 @@ pub fn config(data: &[u8]) {
             assert!(!table.name().is_empty() && !table.canonical_text().is_empty());
         }
         Err(error) => assert!(!error.to_string().is_empty()),
+    }
+    if let Err(error) = parse_area_table(text) {
+        assert!(!error.to_string().is_empty());
     }
     match parse_style(text) {
         Ok(style) => {

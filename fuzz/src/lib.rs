@@ -13,9 +13,11 @@ mod drape;
 mod osm;
 mod package;
 mod payload;
+mod vectors;
 
 pub use config::config;
 pub use drape::drape;
 pub use osm::osm;
 pub use package::{package, package_of};
 pub use payload::payload;
+pub use vectors::{overlay, polygon};

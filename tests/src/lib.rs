@@ -103,6 +103,25 @@ pub fn ended(child: &mut Child) -> Ran {
     Ran { code: status.code().unwrap_or(-1), out: String::new(), err }
 }
 
+/// Waits for the end of a program, and tells its largest resident size, bytes, as the kernel tells it while it runs.
+///
+/// # Panics
+/// As [`ended`] does.
+#[cfg(target_os = "linux")]
+#[must_use]
+pub fn ended_with_peak(child: &mut Child) -> (Ran, u64) {
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while matches!(child.try_wait(), Ok(None)) {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
+        peak = kib.map_or(peak, |kib| kib * 1024).max(peak);
+        thread::sleep(Duration::from_millis(2));
+    }
+    (ended(child), peak)
+}
+
 /// The cells of each line of a flight's list, without milliseconds, which come last.
 ///
 /// # Panics

@@ -37,6 +37,40 @@ export function tests({ sources }) {
     assert.equal(hashWith("#a=8,46;roads=sv&9,47", "a", place), `#9,47&a=${textOf(place)}`);
   });
 
+  // Small in tests; CORNICHE_FUZZ_SECONDS=600 makes it a fuzz run.
+  test("no address makes the page throw, and what it reads it writes", async () => {
+    const { placeOf, textOf, partInHash, placeBefore, changesAfter, hashWith } = await load("hash.js");
+    const { changesIn } = await load("hand_made.js");
+    const [classes, widths] = [Array(9).fill(true), Array(9).fill(1)];
+    const usual = { roads: "geo", classes, widths, style: "road-atlas", photo: 0.5, areas: true, exaggeration: 1, divider: 0.5 };
+    const words = "# & = ; , a= 9.52 47.14 -180 1e9 % %25 %zz above NaN roads=sv + . map-style= exaggeration= photo= areas=off classes= widths= 0: none 0";
+    const pieces = [...words.split(" "), " ", "\u202e", "\ud800", "9".repeat(400)];
+    let state = 38;
+    const next = (most) => (state = (state * 48271) % 2147483647) % most;
+    const end = Date.now() + 1000 * Number(process.env.CORNICHE_FUZZ_SECONDS ?? 0);
+    for (let done = 0; done < 20_000 || Date.now() < end; done++) {
+      const begin = ["", "9.52,47.14,", "a=9.52,47.14;"][next(3)];
+      const hash = begin + Array.from({ length: next(12) }, () => pieces[next(pieces.length)]).join("");
+      const name = ["", "a", "b="][next(3)];
+      const part = partInHash(hash, name);
+      const place = placeBefore(part);
+      if (part !== null) {
+        const { changes, unknown } = changesIn(changesAfter(part), usual);
+        const values = changes.flatMap(([, change]) => Object.values(change)).flat();
+        assert.ok(values.every((value) => typeof value !== "number" || Number.isFinite(value)), hash);
+        assert.ok(unknown.every((text) => typeof text === "string"), hash);
+      }
+      if (!place) continue;
+      assert.ok(Math.abs(place.lon) <= 180 && Math.abs(place.lat) <= 90, hash);
+      const { above, ...numbers } = place;
+      assert.ok((above === undefined || above === true) && Object.values(numbers).every(Number.isFinite), hash);
+      // Numbers are rounded once.
+      const text = textOf(place);
+      if (placeOf(text)) assert.equal(textOf(placeOf(text)), text, hash);
+      assert.ok(hashWith(hash, name, place).startsWith("#"), hash);
+    }
+  });
+
   test("lengths of the scale are round and no longer than asked", async () => {
     const { roundLength, lengthText } = await load("scalebar.js");
     for (const [most, length] of [

@@ -121,7 +121,17 @@ pub(crate) fn draw_below_each_other(drawings: &[(&Axes, &[Curve])]) -> Result<St
         }
         whole.present()?;
     }
-    Ok(svg)
+    Ok(in_xml(&svg))
+}
+
+/// The text without the characters that XML 1.0 (section 2.2) has no place for, not even escaped.
+pub(crate) fn in_xml(text: &str) -> String {
+    let has_place = |character: &char| match character {
+        '\t' | '\n' | '\r' => true,
+        '\u{fffe}' | '\u{ffff}' => false,
+        other => *other >= ' ',
+    };
+    text.chars().filter(has_place).collect()
 }
 
 /// The curves between their axes.
@@ -237,3 +247,7 @@ impl Curve {
         Some((outline, if is_filled { self.color.filled() } else { WHITE.filled() }))
     }
 }
+
+#[cfg(test)]
+#[path = "chart_tests.rs"]
+mod tests;

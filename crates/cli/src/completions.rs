@@ -1,13 +1,12 @@
 //! `corniche completions`: a script for a shell.
 
-use std::io::{self, Write as _};
-
 use clap::CommandFactory as _;
 
 use crate::{
     args::{Arguments, CompletionsArgs},
     exit::ExitCode,
     failure::Failure,
+    messages,
 };
 
 pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitCode, Failure> {
@@ -16,6 +15,6 @@ pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitCode, Failure> {
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();
     clap_complete::generate(args.shell, &mut command, name, &mut script);
-    io::stdout().lock().write_all(&script)?;
+    messages::answer_as_it_is(&script)?;
     Ok(ExitCode::Done)
 }

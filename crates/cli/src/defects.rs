@@ -7,6 +7,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use corniche_export::cell_text;
 use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
@@ -70,8 +71,9 @@ fn line(defect: &Defect) -> String {
     line
 }
 
-/// A field as CSV wants it (RFC 4180, section 2): quoted where it holds a comma, a quote or a line break.
+/// A text as CSV wants it (RFC 4180, section 2): quoted where it holds a comma, a quote or a line break. Spreadsheets do not take it for a formula.
 pub(crate) fn quoted(text: &str) -> String {
+    let text = &*cell_text(text);
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

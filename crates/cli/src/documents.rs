@@ -14,10 +14,13 @@ pub(crate) mod verify;
 
 use serde::Serialize;
 
+use crate::messages::in_json;
+
 /// As one line.
 pub(crate) fn to_line(document: &impl Serialize) -> String {
     // Texts, numbers, lists and fields have a JSON form, so there is no error.
-    serde_json::to_string(document).unwrap_or_default()
+    let document = serde_json::to_string(document).unwrap_or_default();
+    in_json(&document).into_owned()
 }
 
 #[cfg(test)]

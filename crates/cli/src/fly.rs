@@ -8,9 +8,7 @@ mod pictures;
 mod summary;
 
 use std::{
-    fs,
-    io::{self, Write as _},
-    panic,
+    fs, io, panic,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -58,7 +56,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
     let point_scale = package.manifest().point_scale;
     let digits = Digits::on(&io::stdout());
-    io::stdout().lock().write_all(summary::to_text(&runs, point_scale, digits).as_bytes())?;
+    messages::answer(&summary::to_text(&runs, point_scale, digits))?;
     Ok(ExitCode::Done)
 }
 

@@ -8,10 +8,7 @@ mod factors;
 mod per_way;
 mod text;
 
-use std::{
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{io, path::Path};
 
 use corniche_remote::PackagePlace;
 use corniche_tileset::FilePackage;
@@ -39,7 +36,6 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     let compared = Compared::all(&packages);
     // Files are written first, because the reader of the table may close the pipe before its end.
     write_files(args, &packages, &compared)?;
-    let mut out = io::stdout().lock();
     let answer = match &compared[..] {
         [one] if args.json => format!("{}\n", to_line(&document::document(one.manifest))),
         [one] if args.csv => csv::to_csv(one.manifest),
@@ -54,7 +50,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
         }
         several => compare::to_text(several, Digits::on(&io::stdout())),
     };
-    out.write_all(answer.as_bytes())?;
+    messages::answer(&answer)?;
     Ok(ExitCode::Done)
 }
 

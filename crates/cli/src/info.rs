@@ -1,9 +1,6 @@
 //! `corniche info`: what a package holds and what became of its inputs.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-};
+use std::{fmt::Write as _, io};
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
@@ -17,7 +14,7 @@ use crate::{
     documents::{info::InfoDocument, to_line},
     exit::ExitCode,
     failure::Failure,
-    packages,
+    messages, packages,
     table::{Digits, Table, bytes, length, wrapped},
 };
 
@@ -26,14 +23,13 @@ const NAMES: usize = 13;
 
 pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.from.package)?;
-    let mut out = io::stdout().lock();
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
         let document = InfoDocument { manifest: package.manifest().into(), tiles };
-        writeln!(out, "{}", to_line(&document))?;
+        messages::answer(&format!("{}\n", to_line(&document)))?;
     } else {
         let size = package.bytes()?;
-        out.write_all(to_text(package.manifest(), size, Digits::on(&io::stdout())).as_bytes())?;
+        messages::answer(&to_text(package.manifest(), size, Digits::on(&io::stdout())))?;
     }
     Ok(ExitCode::Done)
 }

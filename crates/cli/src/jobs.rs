@@ -1,7 +1,5 @@
 //! `corniche jobs`: the parts of a planned build, for a scheduler.
 
-use std::io::{self, Write as _};
-
 use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
@@ -9,6 +7,7 @@ use crate::{
     documents::{plan::JobDocument, to_line},
     exit::ExitCode,
     failure::Failure,
+    messages,
     part::read_plan,
     settings,
 };
@@ -32,9 +31,8 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
 
 /// Prints one JSON object per line.
 pub(crate) fn print(jobs: &[Job]) -> Result<ExitCode, Failure> {
-    let mut out = io::stdout().lock();
     for job in jobs {
-        writeln!(out, "{}", to_line(&JobDocument::from(job)))?;
+        messages::answer(&format!("{}\n", to_line(&JobDocument::from(job))))?;
     }
     Ok(ExitCode::Done)
 }

@@ -93,7 +93,14 @@ fn answer(error: &clap::Error) -> ExitCode {
     if error.kind() == ErrorKind::DisplayVersion && version::is_long_asked_for() {
         let _ = version::print_long();
     } else {
-        let _ = error.print();
+        let said = error.render().to_string();
+        if messages::for_people(&said) == said {
+            let _ = error.print();
+        } else if error.use_stderr() {
+            messages::write_line(said.trim_end());
+        } else {
+            let _ = messages::answer(&said);
+        }
     }
     if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done }
 }

@@ -5,10 +5,7 @@ mod map;
 mod sure;
 mod text;
 
-use std::{
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{io, path::Path};
 
 use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
@@ -54,6 +51,6 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         output.write_whole(map::to_svg(&report, manifest).as_bytes())?;
     }
     let text = text::to_text(&report, manifest, Digits::on(&io::stdout()));
-    io::stdout().lock().write_all(text.as_bytes())?;
+    messages::answer(&text)?;
     Ok(ExitCode::Done)
 }

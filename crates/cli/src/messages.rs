@@ -1,8 +1,10 @@
-//! What the program says on standard error: notes, warnings and errors, as lines for people or as records for programs.
+//! What the program says: its answers on standard output, and on standard error notes, warnings and errors, as lines for people or as records for
+//! programs.
 //!
 //! All of them are events of `tracing`; [`begin`] says which are shown and how. Standard error may be closed (`2>&1 | head`): then
 //! nothing is said, and the work goes on.
 
+mod escaped;
 mod lines;
 
 use std::{
@@ -17,6 +19,7 @@ use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
 };
 
+pub(crate) use self::escaped::{for_people, in_json};
 use self::lines::Lines;
 use crate::{
     args::{LogFormat, Voice},
@@ -126,7 +129,19 @@ pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
 
 /// A line that is complete as it is, but for the secrets of addresses.
 pub(crate) fn write_line(line: &str) {
-    let _ = writeln!(io::stderr(), "{}", without_secrets(line));
+    let _ = writeln!(io::stderr(), "{}", for_people(&without_secrets(line)));
+}
+
+/// Writes an answer for people, or a list, to standard output.
+pub(crate) fn answer(text: &str) -> io::Result<()> {
+    answer_as_it_is(for_people(text).as_bytes())
+}
+
+/// Writes what programs read as it is, such as a script that we made.
+pub(crate) fn answer_as_it_is(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes)?;
+    out.flush()
 }
 
 /// Standard error, where it does not matter if nobody reads any more.
@@ -134,9 +149,14 @@ struct Tolerant;
 
 impl Write for Tolerant {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // Whoever wrote it, a library or a server that redirects: an event comes as a whole.
+        // The library writes an event at once, so no character comes in two pieces. Whoever wrote the text, a library or a server that redirects.
         let text = String::from_utf8_lossy(bytes);
-        let _ = io::stderr().write_all(without_secrets(&text).as_bytes());
+        let text = without_secrets(&text);
+        let text = match voice().format {
+            LogFormat::Text => for_people(&text),
+            LogFormat::Json => in_json(&text),
+        };
+        let _ = io::stderr().write_all(text.as_bytes());
         Ok(bytes.len())
     }
 

@@ -1,10 +1,6 @@
 //! `corniche part`: one step of a planned build, for one subtree.
 
-use std::{
-    fs,
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{fs, path::Path};
 
 use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
@@ -33,7 +29,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let progress = Progress::new();
     let made = corniche_pipeline::make_part(&part, &progress)?;
     match made.sealed {
-        Some(path) => writeln!(io::stdout(), "{}", path.display())?,
+        Some(path) => messages::answer(&format!("{}\n", path.display()))?,
         None => messages::note(
             "nothing to do: there is no data in this part, or it is in the stores already",
         ),

@@ -1,10 +1,6 @@
 //! `corniche plan`: what a build will make and what it will take.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{fmt::Write as _, io, path::Path};
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
 use corniche_remote::without_secrets;
@@ -15,7 +11,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::datum_operation,
-    interrupt, jobs,
+    interrupt, jobs, messages,
     output::{Output, existing_of},
     settings,
     table::{Digits, Table, bytes},
@@ -38,7 +34,7 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         if let Some(file) = written {
             write_plan(file, &plan)?;
         }
-        io::stdout().lock().write_all(subtrees.as_bytes())?;
+        messages::answer(&subtrees)?;
         return Ok(ExitCode::Done);
     }
     if let Some(slots) = args.jobs {
@@ -53,13 +49,13 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         write_plan(file, &plan)?;
     }
     let digits = Digits::on(&io::stdout());
-    let mut out = io::stdout().lock();
     if args.json {
         let line = to_line(&PlanDocument::new(&plan, estimate));
-        writeln!(out, "{}", without_secrets(&line))?;
+        messages::answer(&format!("{}
+", without_secrets(&line)))?;
     } else {
         let text = to_text(&plan, &estimate, work.resources, digits);
-        out.write_all(without_secrets(&text).as_bytes())?;
+        messages::answer(&without_secrets(&text))?;
     }
     Ok(ExitCode::Done)
 }

@@ -1,10 +1,6 @@
 //! `corniche profile`: height and grade along roads and other lines.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{fmt::Write as _, path::Path};
 
 use corniche_export::{Profile, ProfilePoint, profile, profile_of_lines};
 use corniche_geom::LatticePoint;
@@ -16,6 +12,7 @@ use crate::{
     chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other},
     exit::ExitCode,
     failure::Failure,
+    messages,
     output::existing_of,
     overlays, packages,
     progress::Progress,
@@ -57,7 +54,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }
-    io::stdout().lock().write_all(to_text(&found).as_bytes())?;
+    messages::answer(&to_text(&found))?;
     Ok(ExitCode::Done)
 }
 

@@ -8,7 +8,6 @@ mod site;
 
 use std::{
     borrow::Cow,
-    io::{self, Write as _},
     net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr},
     path::Path,
     sync::Arc,
@@ -88,11 +87,7 @@ fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<Ex
     }
     let server = Server::bind(&args.address, args.port)?;
     let address = server.address();
-    {
-        let mut out = io::stdout().lock();
-        writeln!(out, "{}", url(&args.address, address))?;
-        out.flush()?;
-    }
+    messages::answer(&format!("{}\n", url(&args.address, address)))?;
     messages::note(&format!("serves {}; Ctrl-C ends it", counted(packages.len(), "package")));
     if !address.ip().is_loopback() {
         messages::note(&format!(

@@ -1,6 +1,6 @@
 //! `corniche tile`: one decoded tile, for other tools to check packages with.
 
-use std::io::{self, BufWriter, Write as _};
+use std::io;
 
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
@@ -13,6 +13,7 @@ use crate::{
     documents::{
         areas::TileAreaDocument,
         tile::{GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal},
+        to_line,
     },
     exit::ExitCode,
     failure::Failure,
@@ -29,15 +30,12 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
     };
     let areas = areas(&package, payload.id)?;
-    let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
         let document = document(package.manifest(), &payload, areas, args.coordinates)?;
-        serde_json::to_writer(&mut out, &document).map_err(io::Error::from)?;
-        writeln!(out)?;
+        messages::answer(&format!("{}\n", to_line(&document)))?;
     } else {
-        out.write_all(to_text(&payload, &areas, Digits::on(&io::stdout())).as_bytes())?;
+        messages::answer(&to_text(&payload, &areas, Digits::on(&io::stdout())))?;
     }
-    out.flush()?;
     Ok(ExitCode::Done)
 }
 

@@ -1,10 +1,6 @@
 //! `corniche verify`: whether a package keeps its promises.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-    path::PathBuf,
-};
+use std::{fmt::Write as _, io, path::PathBuf};
 
 use corniche_areas::AreaTable;
 use corniche_pipeline::{
@@ -48,7 +44,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
             to_text(&report, &missing, digits)
         }
     };
-    let written = io::stdout().lock().write_all(text.as_bytes());
+    let written = messages::answer(&text);
     if report.holds() {
         written?;
         Ok(ExitCode::Done)

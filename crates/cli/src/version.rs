@@ -1,9 +1,8 @@
 //! What the program is made of.
 
-use std::{
-    env,
-    io::{self, Write as _},
-};
+use std::{env, io};
+
+use crate::messages;
 
 /// GDAL and PROJ, as they were found when the program was started.
 pub(crate) fn libraries() -> String {
@@ -24,5 +23,5 @@ pub(crate) fn print_long() -> io::Result<()> {
         libraries(),
         if backends.is_empty() { "none".to_owned() } else { backends.join(", ") },
     );
-    io::stdout().lock().write_all(text.as_bytes())
+    messages::answer(&text)
 }

@@ -9,6 +9,7 @@ pub(crate) mod compound;
 pub(crate) mod working;
 
 pub(crate) mod operation;
+pub(crate) mod place_limit;
 pub(crate) mod proj_operations;
 
 pub(crate) mod datum_operation;

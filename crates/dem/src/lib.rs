@@ -41,7 +41,7 @@ pub use files::named_files::{expand_extract_name, expand_name, expand_photo_name
 pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::stand_in::stand_in;
-pub use files::vsi::VirtualFile;
+pub use files::vsi::{VirtualFile, stored_text};
 pub use library_error::{LibraryError, failure, forget, quiet};
 pub use placed_raster::{PlacedRaster, RasterOnGrid};
 pub use plan::datum_operations::{FileDatums, ToWgs84};

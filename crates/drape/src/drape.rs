@@ -1,6 +1,6 @@
 //! A line is laid on a TIN, with a vertex at each edge that it crosses.
 
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TooMuchWork, Work, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
 use crate::{
@@ -8,6 +8,10 @@ use crate::{
     fraction::Fraction,
     ray::{Next, PlaceOnTin, Ray},
 };
+
+/// Steps of [`Work`] that a vertex of a draped line counts for; looking at an edge is one. A vertex is placed, gets a bed and is drawn
+/// later on.
+const STEPS_OF_VERTEX: usize = 32;
 
 /// A line laid on the ground.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -39,18 +43,28 @@ pub struct Gap {
 /// section 6.1. Its barycentric coordinates are exact whole numbers here (`Barycentric`).
 #[must_use]
 pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
+    drape_within(line, surface, &Work::unlimited()).unwrap_or_default()
+}
+
+/// The same within a limit of work, for lines that somebody else made: the vertices follow from the triangles that a line crosses, not
+/// from its own points.
+///
+/// # Errors
+/// When the limit is passed.
+pub fn drape_within(line: &Polyline, surface: &Surface, work: &Work) -> Result<Drape, TooMuchWork> {
     let points = line.points();
     let room = 2 * points.len();
     let drape = Drape::default();
-    let mut walk = Walk { surface, drape, segment: 0, part: None, room, near: Vec::new() };
+    let mut walk = Walk { surface, drape, segment: 0, part: None, room, near: Vec::new(), work };
     let mut place = PlaceOnTin::of(points[0], surface);
     walk.arrive(points[0], place);
     for (segment, pair) in points.windows(2).enumerate() {
         walk.segment = segment;
         place = walk.follow([pair[0], pair[1]], place);
+        work.check()?;
     }
     walk.close(None);
-    walk.drape
+    Ok(walk.drape)
 }
 
 struct Walk<'a> {
@@ -60,10 +74,11 @@ struct Walk<'a> {
     segment: usize,
     /// The part being laid, while on ground.
     part: Option<DrapedLine>,
-    /// Vertices that a part is made for; it may get more.
+    /// Vertices that the first part is made for; it may get more.
     room: usize,
     /// Half-edges found near a gap; a field so that its memory is reused.
     near: Vec<u32>,
+    work: &'a Work,
 }
 
 /// Where a segment comes onto the ground.
@@ -140,6 +155,9 @@ impl Walk<'_> {
         let Ray { p, q, .. } = *ray;
         let bounds = LatticeBounds::of(&[p, q])?;
         self.surface.boundary_near(bounds, &mut self.near);
+        self.work.add(self.near.len());
+        // The caller learns of it; nothing is looked for any more.
+        self.work.check().ok()?;
         let mut first: Option<(Fraction, Entry)> = None;
         for &half_edge in &self.near {
             let [a, b] = self.surface.ends(half_edge);
@@ -179,10 +197,11 @@ impl Walk<'_> {
 
     #[inline]
     fn push(&mut self, vertex: DrapedVertex) {
+        self.work.add(STEPS_OF_VERTEX);
         self.part
             .get_or_insert_with(|| DrapedLine {
                 lead_in: None,
-                vertices: Vec::with_capacity(self.room),
+                vertices: Vec::with_capacity(std::mem::take(&mut self.room)),
                 lead_out: None,
             })
             .vertices

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TooMuchWork, Work};
 use corniche_tin::Surface;
 
 use crate::{SvLine, height_range::padded, segment_rectangle::SegmentRectangle};
@@ -18,14 +18,28 @@ use crate::{SvLine, height_range::padded, segment_rectangle::SegmentRectangle};
 /// segment in place of the tile's is ours (Vaaraniemi, Treib & Westermann 2011, section 5, take the tile's).
 #[must_use]
 pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvLine> {
+    extrude_within(line, surface, margin_steps, &Work::unlimited()).unwrap_or_default()
+}
+
+/// The same within a limit of work, for lines that somebody else made: looking at a triangle is a step.
+///
+/// # Errors
+/// When the limit is passed.
+pub fn extrude_within(
+    line: &Polyline,
+    surface: &Surface,
+    margin_steps: i64,
+    work: &Work,
+) -> Result<Vec<SvLine>, TooMuchWork> {
     // One step more than asked: rounding to f64 must not lose ground at the rim.
     let margin = margin_steps.max(0) + 1;
     let mut lines = Vec::new();
     let mut current = SvLine { points: Vec::new(), ground_range_m: Vec::new() };
-    let mut near = Near { surface, lowest_first: Vec::new(), highest_first: Vec::new() };
+    let mut near = Near { surface, lowest_first: Vec::new(), highest_first: Vec::new(), work };
     let points = line.points();
     let mut searched = 0..0;
     for (index, pair) in points.windows(2).enumerate() {
+        work.check()?;
         if !searched.contains(&index) {
             searched = near.search(points, index, margin);
         }
@@ -45,7 +59,7 @@ pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvL
     if !current.points.is_empty() {
         lines.push(current);
     }
-    lines
+    Ok(lines)
 }
 
 /// The triangles near some segments of a line, sorted so that only a few are examined for each segment.
@@ -64,6 +78,7 @@ struct Near<'a> {
     lowest_first: Vec<(f64, u32)>,
     /// Each triangle with its highest corner.
     highest_first: Vec<(f64, u32)>,
+    work: &'a Work,
 }
 
 impl Near<'_> {
@@ -87,6 +102,7 @@ impl Near<'_> {
         let around = bounds.expanded(margin + margin / 2 + 1);
         let mut triangles = Vec::new();
         self.surface.visit_triangles_near(around, |triangle| triangles.push(triangle));
+        self.work.add(triangles.len());
         triangles.sort_unstable();
         triangles.dedup();
         let surface = self.surface;
@@ -108,6 +124,7 @@ impl Near<'_> {
         let around = SegmentRectangle::new([p, q].map(LatticePoint::in_steps), margin as f64);
         let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
         let look = |triangle: u32, [lowest_m, highest_m]: [&mut f64; 2]| {
+            self.work.add(1);
             for &[.., height_m] in around.part_of(triangle, self.surface).corners() {
                 *lowest_m = lowest_m.min(height_m);
                 *highest_m = highest_m.max(height_m);

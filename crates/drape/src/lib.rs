@@ -71,10 +71,10 @@ mod segment_rectangle;
 
 pub use clip::{ClippedPart, clip, clip_closed, clip_parts, clip_parts_within};
 pub use clip_region::clip_region;
-pub use drape::{Drape, Gap, drape};
+pub use drape::{Drape, Gap, drape, drape_within};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use draped_line_check::check;
-pub use extrude::extrude;
+pub use extrude::{extrude, extrude_within};
 pub use line_positions::{BadLine, positions, source_segments};
 pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};

@@ -1,6 +1,6 @@
 //! Bounds on the heights of the ground near a segment, which grow with the distance from it.
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticeBounds, LatticePoint, Work};
 use corniche_tin::Surface;
 
 use crate::height_range::padded;
@@ -33,13 +33,19 @@ pub struct NearGround {
 /// Bounds on the ground within `reach` of a segment; `None` without any there.
 ///
 /// The ends and the reach are in lattice steps. *Within* is as for [`extrude`](crate::extrude): a rectangle, which holds
-/// the caps.
+/// the caps. Looking at a triangle is a step of `work`.
 #[must_use]
-pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option<NearGround> {
+pub fn near_ground(
+    ends: [[f64; 2]; 2],
+    surface: &Surface,
+    reach: f64,
+    work: &Work,
+) -> Option<NearGround> {
     let (near, beneath) =
         (SegmentRectangle::new(ends, reach), SegmentRectangle::new(ends, reach.min(1.0)));
     let mut triangles = Vec::new();
     surface.triangles_near(bounds(ends, reach), &mut triangles);
+    work.add(triangles.len());
     triangles.sort_unstable();
     triangles.dedup();
     let (mut near_range_m, mut beneath_range_m) = (NOTHING, NOTHING);

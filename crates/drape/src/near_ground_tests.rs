@@ -25,7 +25,7 @@ proptest! {
         let rough = |column: i32, row: i32| steep * (column * 7919 + row * 104_729 + seed * 31).rem_euclid(97);
         let surface = ground(rough, |column, row| (column * 5 + row * 3) % holes == 1);
         let ends = [[p.0 as f64, p.1 as f64], [(p.0 + by.0) as f64, (p.1 + by.1) as f64]];
-        let found = near_ground(ends, &surface, reach as f64);
+        let found = near_ground(ends, &surface, reach as f64, &Work::unlimited());
         for (share, east, north) in samples {
             // Anywhere around the segment, most of it near.
             let at = [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
@@ -44,7 +44,9 @@ proptest! {
 #[test]
 fn on_a_plane_the_bounds_are_those_of_the_plane() {
     let surface = ground(|column, _| 1500 * column, |_, _| false);
-    let found = near_ground([[4000.0, 8000.0], [6000.0, 8000.0]], &surface, 1000.0).unwrap();
+    let found =
+        near_ground([[4000.0, 8000.0], [6000.0, 8000.0]], &surface, 1000.0, &Work::unlimited())
+            .unwrap();
     let [low_m, high_m] = found.range_m;
     // One step beyond either end, and the padding.
     assert!((low_m - 3000.0).abs() < 1.0 && low_m <= 3000.0, "{found:?}");
@@ -55,7 +57,9 @@ fn on_a_plane_the_bounds_are_those_of_the_plane() {
 #[test]
 fn beside_a_hole_it_is_the_range_within_the_reach() {
     let surface = ground(|column, _| 100 * column, |column, row| column == 9 && row == 8);
-    let near = |x: f64| near_ground([[x, 7500.0], [x, 7600.0]], &surface, 1000.0).unwrap();
+    let near = |x: f64| {
+        near_ground([[x, 7500.0], [x, 7600.0]], &surface, 1000.0, &Work::unlimited()).unwrap()
+    };
     assert!(near(5000.0).rise_m > 0.0, "far from it");
     let beside = near(8500.0);
     assert!(beside.rise_m.abs() < 1e-12, "{beside:?}");
@@ -66,6 +70,12 @@ fn beside_a_hole_it_is_the_range_within_the_reach() {
 #[test]
 fn far_from_all_ground_there_is_nothing() {
     let surface = ground(|_, _| 10, |_, _| false);
-    assert_eq!(near_ground([[-9000.0, 0.0], [-8000.0, 0.0]], &surface, 1000.0), None);
-    assert!(near_ground([[-900.0, 500.0], [-900.0, 500.0]], &surface, 1000.0).is_some());
+    assert_eq!(
+        near_ground([[-9000.0, 0.0], [-8000.0, 0.0]], &surface, 1000.0, &Work::unlimited()),
+        None
+    );
+    assert!(
+        near_ground([[-900.0, 500.0], [-900.0, 500.0]], &surface, 1000.0, &Work::unlimited())
+            .is_some()
+    );
 }

@@ -1,6 +1,6 @@
 //! A plane through a piece of a road, and how far the ground beside the piece departs from it.
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticeBounds, LatticePoint, Work};
 use corniche_tin::Surface;
 
 use crate::height_range::padded;
@@ -51,9 +51,9 @@ pub struct RoadBed {
     pub most_m: [f64; 2],
 }
 
-/// The bed of a piece, for ground within `reach` lattice steps of it.
+/// The bed of a piece, for ground within `reach` lattice steps of it. Looking at a triangle is a step of `work`.
 #[must_use]
-pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
+pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64, work: &Work) -> RoadBed {
     let RoadPiece { start, direction, length, heights_m, has_caps } = *piece;
     let beyond = has_caps.map(|has_cap| if has_cap { reach } else { 0.0 });
     // A piece may be shorter than rounding errors: it is made a little longer, so that the rectangle has an area.
@@ -67,6 +67,7 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
     );
     let mut triangles = Vec::new();
     surface.triangles_near(bounds(piece, reach), &mut triangles);
+    work.add(triangles.len());
     let parts: Vec<_> = triangles
         .into_iter()
         .filter_map(|triangle| {

@@ -44,7 +44,7 @@ proptest! {
         let triangle = (triangle % surface.triangles().len()) as u32;
         let Some(piece) = piece_in(&surface, triangle, places, has_caps) else { return Ok(()) };
         let reach = reach as f64;
-        let bed = road_bed(&piece, &surface, reach);
+        let bed = road_bed(&piece, &surface, reach, &Work::unlimited());
         let ([east, north], along_rise_m) =
             (piece.direction, (piece.heights_m[1] - piece.heights_m[0]) / piece.length);
         for (share, forward, left) in samples {
@@ -88,7 +88,7 @@ fn on_a_plane_the_bed_is_the_plane() {
         heights_m: [0.75 * 4100.0, 0.75 * (4100.0 + 300.0 * half)],
         has_caps: [true, false],
     };
-    let bed = road_bed(&piece, &surface, 1000.0);
+    let bed = road_bed(&piece, &surface, 1000.0, &Work::unlimited());
     assert!((bed.cross_rise_m - -0.75 * half).abs() < 1e-9, "{bed:?}");
     assert!(bed.most_m.iter().chain(&bed.rises_m).all(|m| (-1e-9..0.01).contains(m)), "{bed:?}");
 }
@@ -106,7 +106,7 @@ fn beside_a_hole_only_what_is_there_bounds_the_bed() {
             heights_m,
             has_caps: [false; 2],
         };
-        road_bed(&piece, &surface, 1000.0)
+        road_bed(&piece, &surface, 1000.0, &Work::unlimited())
     };
     assert!(near(5200.0).rises_m.iter().all(|rise_m| rise_m.is_finite()), "far from it");
     let beside = near(8800.0);

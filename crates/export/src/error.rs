@@ -60,6 +60,15 @@ pub enum ExportError {
     BeyondGrid { lat: f64, north: f64 },
     #[error("level {level} would have more than {most} tiles; give a coarser one with --max-level")]
     TooManyTiles { level: u8, most: i64 },
+    #[error(
+        "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
+         with ground with --bounds"
+    )]
+    MostlyNothing { columns: usize, rows: usize, level: u8, within: u64 },
+    #[error(
+        "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
+    )]
+    TooManyCrossings(#[from] corniche_geom::TooMuchWork),
     #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
     GlbAxis,
     #[error("cannot write {path:?} (disk full?)")]

@@ -1,7 +1,7 @@
 //! Lines that are no roads of the package, on the ground of a level.
 
 use corniche_drape::OwnedBorders;
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId, Work};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
 
@@ -11,6 +11,9 @@ use crate::{
     piece::Vertex,
     read,
 };
+
+/// Steps that laying lines may take, of which a vertex counts for 32: eight million vertices.
+const MOST_STEPS: u64 = 1 << 28;
 
 /// What lies on one tile.
 struct Laid {
@@ -30,10 +33,11 @@ pub(crate) fn laid_lines(
     let paths: Vec<Option<Polyline>> = lines.iter().map(|line| path_of(line)).collect();
     let tiles = read::tiles(package, level, None)?;
     let mut laid = Vec::new();
+    let work = Work::new(MOST_STEPS);
     for (done, &id) in (0..).zip(&tiles) {
         stop_if_asked(observer)?;
         observer.done(Stage::Tiles, done, tiles.len() as u64);
-        lay_on(package, id, &paths, &mut laid)?;
+        lay_on(package, id, &paths, &work, &mut laid)?;
     }
     observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
     laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
@@ -65,6 +69,7 @@ fn lay_on(
     package: &FilePackage,
     id: TileId,
     paths: &[Option<Polyline>],
+    work: &Work,
     laid: &mut Vec<Laid>,
 ) -> Result<(), ExportError> {
     let manifest = package.manifest();
@@ -83,7 +88,7 @@ fn lay_on(
         let Some(path) = path else { continue };
         let starts = starts_of(path);
         for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
-            for draped in corniche_drape::drape(&part.line, &surface).lines {
+            for draped in corniche_drape::drape_within(&part.line, &surface, work)?.lines {
                 let failed = |source| ExportError::Line { tile: id, source };
                 let positions = corniche_drape::positions(&draped, &surface).map_err(failed)?;
                 let vertices: Vec<Vertex> = positions

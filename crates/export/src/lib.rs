@@ -80,4 +80,4 @@ pub use quantized_mesh::{
 };
 pub use roads::{ExportSummary, export_roads};
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
-pub use vector::{Field, FieldKind, VectorFormat};
+pub use vector::{Field, FieldKind, VectorFormat, cell_text};

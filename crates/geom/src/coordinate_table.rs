@@ -107,6 +107,12 @@ impl CoordinateTable {
         }
     }
 
+    /// Longitude and latitude of each sample, degrees.
+    #[must_use]
+    pub fn samples_deg(&self) -> &[[f64; 2]] {
+        &self.samples_deg
+    }
+
     fn of_size(
         projection: &dyn Projection,
         bounds: Bounds,

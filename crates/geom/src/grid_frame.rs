@@ -11,6 +11,9 @@ const MAX_INDEX: i64 = 1 << 32;
 /// Lattice coordinates stay below this, some 500 million km: an f64 is then still exact to an eighth of a step, which the
 /// positions of crossings need, and products of two differences are far below the limit of 128 bits.
 pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
+/// No position in working metres is farther from zero: lattice points are within [`MAX_LATTICE_STEPS`] steps of at most a millimetre of
+/// the grid's origin, and that is within a cell of zero. It is twice that.
+pub const MAX_COORDINATE_M: f64 = 2.0 * (MAX_LATTICE_STEPS as f64) * 0.001;
 
 /// Why numbers do not make a [`GridFrame`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

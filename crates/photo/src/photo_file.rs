@@ -4,7 +4,6 @@ use std::path::Path;
 
 use corniche_dem::{GridPlan, PlacedRaster, RasterOnGrid};
 use corniche_geom::Bounds;
-use gdal::Metadata;
 
 use crate::PhotoError;
 use crate::bands::Bands;
@@ -39,7 +38,7 @@ impl PhotoFile {
             return Err(PhotoError::NoBand { path: path.to_path_buf() });
         }
         let bands = Bands::of(path, &dataset)?;
-        let credit = dataset.metadata_item("TIFFTAG_COPYRIGHT", "");
+        let credit = corniche_dem::stored_text(&dataset, "TIFFTAG_COPYRIGHT");
         let credit = credit.map(|text| text.trim().to_owned()).filter(|text| !text.is_empty());
         Ok(Self { raster, bands, credit })
     }

@@ -22,6 +22,8 @@ mod colour_image;
 mod data;
 #[cfg(feature = "disks")]
 pub mod disks;
+#[cfg(feature = "hostile")]
+pub mod hostile;
 #[cfg(feature = "packages")]
 pub mod package;
 pub mod payload;

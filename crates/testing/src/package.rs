@@ -217,3 +217,14 @@ pub fn written_with(
     writer.finish().unwrap();
     bytes.into_inner()
 }
+
+/// A TIN with a vertex at each node, as rough ground has that nothing simplifies.
+#[must_use]
+pub fn full_tin() -> Tin {
+    let node = |row, column| TinVertex { row, column, height_q: i32::from(row % 7 * (column % 5)) };
+    let nodes = (0..257_u16).flat_map(|row| (0..257_u16).map(move |column| node(row, column)));
+    let cells = (0..256_u32).flat_map(|row| (0..256_u32).map(move |column| 257 * row + column));
+    let triangles: Vec<[u32; 3]> =
+        cells.flat_map(|nw| [[nw, nw + 257, nw + 258], [nw, nw + 258, nw + 1]]).collect();
+    Tin::new(nodes.collect(), &triangles).unwrap()
+}

@@ -52,7 +52,7 @@ pub mod for_tests {
         scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,
-            roads::{BadRoad, GroundLine, PlanLine},
+            roads::{BadRoads, GroundLine, PlanLine},
         },
     };
 }

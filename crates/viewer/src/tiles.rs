@@ -21,6 +21,7 @@ pub(crate) mod plan_scale;
 mod relief;
 pub(crate) mod roads;
 mod shading_slopes;
+mod shares_in;
 mod slopes;
 mod source;
 mod store;
@@ -30,7 +31,7 @@ mod triangle_grid;
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
 pub use self::{
-    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, BadAreas, ClassVolumes},
     decoder::TileDecoder,
     drawn_area::DrawnArea,
     geometry::{TileGeometry, TransferError},
@@ -50,6 +51,8 @@ pub(crate) use self::{
     geometry::{WideWay, plan_around},
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoad, Bed, GroundLine, NearHeights, OPEN_M, RoadEnd, dash_of_segment_m},
+    roads::{BadRoads, Bed, GroundLine, NearHeights, OPEN_M, RoadEnd, dash_of_segment_m},
 };
-pub(crate) use self::{shading_slopes::ShadingSlopes, store::MOST_SLOPES_ABOVE};
+pub(crate) use self::{
+    shading_slopes::ShadingSlopes, shares_in::shares_in, store::MOST_SLOPES_ABOVE,
+};

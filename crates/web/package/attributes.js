@@ -1,6 +1,6 @@
 // The attributes of the element that are settings of the view.
 
-const number = (/** @type {string} */ text) => (text.trim() === "" || Number.isNaN(Number(text)) ? undefined : Number(text));
+const number = (/** @type {string} */ text) => (text.trim() === "" || !Number.isFinite(Number(text)) ? undefined : Number(text));
 const flag = (/** @type {string} */ text) => !/^(off|false|no|none)$/i.test(text);
 const word = (/** @type {string} */ text) => text;
 

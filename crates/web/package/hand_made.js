@@ -31,7 +31,7 @@ const LISTS = [
       const widths = settings.widths.map(() => 1);
       for (const part of text === "none" ? [] : text.split(",")) {
         const [, k, factor] = /^(\d):(\d+(?:\.\d+)?)$/.exec(part) ?? [];
-        if (!factor || !(Number(k) in widths)) return undefined;
+        if (!factor || !(Number(k) in widths) || !Number.isFinite(Number(factor))) return undefined;
         widths[Number(k)] = Number(factor);
       }
       return widths;

@@ -13,7 +13,7 @@ export function placeOf(text) {
   const parts = (text ?? "").split(",").map((part) => part.trim());
   const above = parts.length === 6 && parts[5] === "above";
   if (above) parts.pop();
-  if (parts.length < 2 || parts.length > 5 || !parts.every((part) => NUMBER.test(part))) return null;
+  if (parts.length < 2 || parts.length > 5 || !parts.every((part) => NUMBER.test(part) && Number.isFinite(Number(part)))) return null;
   const [lon, lat, distance, heading, pitch] = parts.map(Number);
   if (Math.abs(lon) > 180 || Math.abs(lat) > 90) return null;
   /** @type {any} */

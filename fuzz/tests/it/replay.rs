@@ -1,4 +1,4 @@
-//! Every input in `corpus/` and `regressions/`, through the function that its folder is named after.
+//! Every input in `corpus/` and `regressions/`, and what becomes of it when some bytes change, through the function that its folder is named after.
 
 #![allow(
     clippy::unwrap_used,
@@ -6,7 +6,13 @@
     reason = "a test may unwrap, and says what it replays"
 )]
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use corniche_testing::{Random, cases};
 
 fn replay(target: &str, run: fn(&[u8])) {
     let mut inputs = 0;
@@ -47,6 +53,65 @@ fn every_settings_file_table_and_style_is_read_or_refused() {
 }
 
 #[test]
+fn every_vector_file_is_read_as_lines_or_refused() {
+    replay("overlay", corniche_fuzz::overlay);
+}
+
+#[test]
+fn every_vector_file_is_read_as_polygons_or_refused() {
+    replay("polygon", corniche_fuzz::polygon);
+}
+
+#[test]
 fn every_line_is_laid_in_order_on_its_ground() {
     replay("drape", corniche_fuzz::drape);
+}
+
+/// Inputs of a target with some bytes changed, left out or repeated. `CORNICHE_FUZZ_SECONDS` makes it go on for so long.
+fn change(target: &str, run: fn(&[u8])) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target);
+    let mut paths: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let inputs: Vec<Vec<u8>> = paths.iter().map(|path| fs::read(path).unwrap()).collect();
+    let given = std::env::var("CORNICHE_FUZZ_SECONDS").ok().and_then(|text| text.parse().ok());
+    let seconds = Duration::from_secs(given.unwrap_or(0));
+    let (begun, mut random) = (Instant::now(), Random::new(38));
+    let least = cases(40, 200, 5000);
+    for number in 0.. {
+        if number >= least && begun.elapsed() > seconds {
+            break;
+        }
+        let mut data = inputs[random.below(inputs.len() as i64) as usize].clone();
+        for _ in 0..=random.below(6) {
+            let at = random.below(data.len().max(1) as i64) as usize;
+            let end = data.len().min(at + random.below(12) as usize);
+            match random.below(4) {
+                0 => drop(data.drain(at.min(end)..end)),
+                1 => data.splice(at..at, data[at.min(end)..end].to_vec()).for_each(drop),
+                2 => data.splice(at..at, *b"1e308").for_each(drop),
+                _ => data.iter_mut().skip(at).take(1).for_each(|byte| *byte = random.bits() as u8),
+            }
+        }
+        // What is written here is what a failing run began with.
+        if let Err(panic) = std::panic::catch_unwind(|| run(&data)) {
+            eprintln!("{target}: {}", data.escape_ascii());
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+#[test]
+fn changed_overlays_are_read_or_refused() {
+    change("overlay", corniche_fuzz::overlay);
+}
+
+#[test]
+fn changed_polygons_are_read_or_refused() {
+    change("polygon", corniche_fuzz::polygon);
+}
+
+#[test]
+fn changed_settings_tables_and_styles_are_read_or_refused() {
+    change("config", corniche_fuzz::config);
 }

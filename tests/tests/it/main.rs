@@ -23,6 +23,7 @@ mod fly;
 mod fly_window;
 mod folders_of_others;
 mod growth;
+mod hostile_packages;
 mod jobs;
 mod kills;
 mod matching;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::{fs, path::PathBuf, time::Duration};
+use std::path::PathBuf;
 
 use corniche_testing::{ColourImage, Raster};
 use e2e::{Job, real_data, text};
@@ -43,16 +43,7 @@ fn threads_and_memory_change_no_byte() {
 #[cfg(target_os = "linux")]
 fn peak_bytes(job: &Job, more: &[&str]) -> u64 {
     let mut child = job.start(&[&["--quiet"], more].concat());
-    let status = format!("/proc/{}/status", child.id());
-    let mut peak = 0;
-    while child.try_wait().unwrap().is_none() {
-        let text = fs::read_to_string(&status).unwrap_or_default();
-        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
-        peak = kib.map_or(peak, |kib| kib * 1024).max(peak);
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    let ran = e2e::ended(&mut child);
+    let (ran, peak) = e2e::ended_with_peak(&mut child);
     assert_eq!(ran.code, 0, "{}", ran.err);
     peak
 }

@@ -7,6 +7,7 @@ use corniche_matching::{MatchReport, MatchedRoad};
 use corniche_tileset::Manifest;
 
 use super::sure::{is_sure, sure_across};
+use crate::chart::in_xml;
 
 /// Longer side of the map, pixels; beside it is the legend.
 const SIDE_PX: f64 = 900.0;
@@ -91,7 +92,7 @@ pub(crate) fn to_svg(report: &MatchReport, manifest: &Manifest) -> String {
     svg.push_str("</svg>\n");
     legend(&mut svg, width - LEGEND_PX + MARGIN_PX / 2.0, manifest, height);
     svg.push_str("</svg>\n");
-    svg
+    in_xml(&svg)
 }
 
 fn colour_of(across_m: f64) -> &'static str {

@@ -9,6 +9,7 @@ use gdal::errors::GdalError;
 use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
 
 use crate::crs::horizontal::Crs;
+use crate::crs::place_limit::PlaceLimit;
 use crate::crs::working::Working;
 use crate::{DemError, library_error};
 
@@ -101,6 +102,8 @@ impl Operation {
         heights: &mut [f64],
     ) -> Result<(), DemError> {
         let transform = self.transform().map_err(|source| self.failed(source))?;
+        let limit = PlaceLimit::of_crs(&self.from);
+        let points: Vec<[f64; 2]> = points.iter().map(|&point| limit.limited(point)).collect();
         let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
         let _some_failed = transform.transform_coords(&mut xs, &mut ys, heights);
@@ -132,6 +135,10 @@ impl Operation {
         // Between equal systems PROJ is not called: it would only wrap or round the coordinates.
         if !self.is_identity() {
             let transform = self.transform().map_err(|source| self.failed(source))?;
+            let limit = PlaceLimit::of_crs(&self.from);
+            for (x, y) in xs.iter_mut().zip(&mut ys) {
+                [*x, *y] = limit.limited([*x, *y]);
+            }
             // An error here means that some positions have no image; those come out as infinite.
             let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
         }

@@ -1,6 +1,9 @@
-//! Two things of GDAL's that the `gdal` crate does not hand out: the files of a raster, and GDAL's virtual files.
+//! What the `gdal` crate does not hand out of GDAL: the files of a raster, texts as they are stored, and GDAL's virtual files.
 
-#![expect(unsafe_code, reason = "GDALGetFileList and VSI*L have no safe wrapper in the gdal crate")]
+#![expect(
+    unsafe_code,
+    reason = "GDALGetFileList, bytes of metadata and VSI*L have no safe wrapper in the gdal crate"
+)]
 
 use std::{
     ffi::{CStr, CString, OsStr},
@@ -13,6 +16,23 @@ use std::{
 use gdal::Dataset;
 
 use crate::library_error::{forget, last_words, quiet};
+
+/// A text that a file stores under a key. TIFF has ASCII alone there, and programs write UTF-8 or Latin-1: what is no UTF-8 is taken for Latin-1, in
+/// which every byte is a character.
+#[must_use]
+pub fn stored_text(dataset: &Dataset, key: &str) -> Option<String> {
+    let key = CString::new(key).ok()?;
+    // SAFETY: the handle is that of an open dataset, and the arguments are C strings that outlive the call. What comes back is null or a C
+    // string of the dataset's, which is copied at once.
+    let bytes = unsafe {
+        let text = gdal_sys::GDALGetMetadataItem(dataset.c_dataset(), key.as_ptr(), c"".as_ptr());
+        (!text.is_null()).then(|| CStr::from_ptr(text).to_bytes().to_vec())
+    };
+    bytes.map(|bytes| {
+        String::from_utf8(bytes)
+            .unwrap_or_else(|error| error.as_bytes().iter().copied().map(char::from).collect())
+    })
+}
 
 /// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the files it refers to.
 pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {

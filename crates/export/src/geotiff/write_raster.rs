@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use corniche_geom::TILE_CELLS;
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};
 
 use super::{
@@ -21,6 +22,11 @@ use crate::{
 
 /// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
 const BLOCKS_AT_ONCE: usize = 64;
+/// A raster may have so many nodes whatever the package holds, 256 MiB in f32 before compression.
+const FREE_NODES: u64 = 1 << 26;
+/// A larger raster may have so many times the nodes that tiles have. Its rectangle is the package's own word, and each block of it is written,
+/// with ground or without.
+const MOST_NOTHING: u64 = 256;
 /// The share of a height quantum that a pixel may lose by its type.
 const LOST_QUANTA: f64 = 0.1;
 
@@ -61,6 +67,7 @@ pub fn export_geotiff(
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
     let grid = RasterGrid::of(package, request.bounds.as_ref())?;
+    check_size(package, level, request, &grid)?;
     let places = Places::new(manifest, Coordinates::Package)?;
     let facts = facts(package, level, request, &places, &grid);
     let writing = Writing { package, level, request, grid, observer };
@@ -80,6 +87,27 @@ pub fn export_geotiff(
         heights: places.heights().to_owned(),
         has_same_crs: written.has_same_crs,
     })
+}
+
+/// An error where a raster would be nearly all without ground: its rectangle may be a lie.
+fn check_size(
+    package: &FilePackage,
+    level: u8,
+    request: &GeoTiffRequest<'_>,
+    grid: &RasterGrid,
+) -> Result<(), ExportError> {
+    let RasterGrid { columns, rows, .. } = *grid;
+    let nodes = (columns as u64).saturating_mul(rows as u64);
+    if nodes <= FREE_NODES {
+        return Ok(());
+    }
+    let side = (TILE_CELLS * package.manifest().frame.stride(level)).unsigned_abs();
+    let tiles = read::tiles(package, level, request.bounds.as_ref())?.len() as u64;
+    let within = tiles.saturating_mul(side.saturating_mul(side));
+    if nodes / MOST_NOTHING > within {
+        return Err(ExportError::MostlyNothing { columns, rows, level, within });
+    }
+    Ok(())
 }
 
 /// Whether f32 keeps all heights of a package to a tenth of its quantum.

@@ -16,6 +16,7 @@ use crate::{
     error::ExportError,
     gdal_settings::GdalSettings,
     vector::{
+        cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
         format::VectorFormat,
         whole::{self, Contents},
@@ -83,7 +84,14 @@ impl VectorFile {
     }
 
     /// Adds a feature.
-    pub(crate) fn push(&mut self, record: Record) -> Result<(), ExportError> {
+    pub(crate) fn push(&mut self, mut record: Record) -> Result<(), ExportError> {
+        if self.format == VectorFormat::Csv {
+            for value in &mut record.values {
+                if let Value::Text(text) = value {
+                    *text = cell_text(text).into_owned();
+                }
+            }
+        }
         self.waiting_vertices += record.shape.vertices();
         self.waiting.push(record);
         if self.waiting_vertices >= VERTICES_AT_ONCE { self.write() } else { Ok(()) }

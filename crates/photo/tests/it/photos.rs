@@ -373,3 +373,17 @@ fn credits_come_from_the_files_each_once() {
     let files = [write("a.tif", "© A"), write("b.tif", "© B"), write("c.tif", "© A")];
     assert_eq!(Photos::open(&files).unwrap().credits(), ["© A", "© B"]);
 }
+
+/// Programs write Latin-1 into TIFF, where © is one byte.
+#[test]
+fn credits_in_latin_1_are_read_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = on_cells(&|_| vec![1, 2, 3], &RGB).write(folder.path(), "a.tif", |dataset| {
+        dataset.set_metadata_item("TIFFTAG_COPYRIGHT", "#2020 G#od#sie", "").unwrap();
+    });
+    let mut bytes = std::fs::read(&file).unwrap();
+    let at = bytes.windows(14).position(|text| text == b"#2020 G#od#sie").unwrap();
+    bytes[at..at + 14].copy_from_slice(b"\xa92020 G\xe9od\xe9sie");
+    std::fs::write(&file, bytes).unwrap();
+    assert_eq!(Photos::open(&[file]).unwrap().credits(), ["©2020 Géodésie"]);
+}

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::LatticePoint;
+use corniche_geom::{LatticePoint, Work};
 use corniche_tileset::TilePayload;
 
 use super::{
@@ -21,6 +21,10 @@ const LEAST_STEPS: f64 = 8.0;
 const RANGE_PAD: f64 = 1e-6;
 /// … to this part of it: two ways of computing the same heights.
 const PAD_ROUNDING: f64 = 1e-3;
+
+/// Steps that comparing a tile's lines with each other may take, and looking for the ground along them: a pair of segments or a triangle is one.
+/// Real tiles take a few million.
+const MOST_STEPS: u64 = 1 << 28;
 
 /// A segment in local steps.
 pub(crate) type Segment = [[f64; 2]; 2];
@@ -54,7 +58,15 @@ pub(crate) fn verify_lines(
     findings: &mut Findings,
 ) {
     let id = view.payload.id;
+    let work = Work::new(MOST_STEPS);
     for ((class, way_id), way) in ways(view, positions) {
+        work.add(way.sv.len().saturating_mul(way.geo.len().max(way.points.len())));
+        if let Err(error) = work.check() {
+            let found =
+                || format!("its ways have so many segments that no writer has made them: {error}");
+            findings.look(CheckId::Methods, false, || format!("tile {id}: {}", found()));
+            return;
+        }
         let name = || format!("way {way_id} of class {class} in tile {id}");
         for &point in &way.points {
             let holds = way.sv_points.contains(&point)
@@ -192,11 +204,18 @@ pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
     let id = view.payload.id;
     // One step more than the margin, because ground exactly at the margin counts.
     let margin = view.margin_steps as f64 + 1.0;
+    let work = Work::new(MOST_STEPS);
     for road in &view.payload.roads_sv {
         let lines = segments(&road.line.points, view.place).zip(&road.line.ground_range_m);
         for (segment, &[low_m, high_m]) in lines {
             let ends = segment.map(|point| view.place.cells(point));
-            let found = view.ground.range_near(ends, margin);
+            if let Err(error) = work.check() {
+                findings.look(CheckId::SvRange, false, || {
+                    format!("tile {id}: its segments lie over so much ground that no writer has made them: {error}")
+                });
+                return;
+            }
+            let found = view.ground.range_near(ends, margin, &work);
             let holds = found.is_some_and(|[lowest_m, highest_m]| {
                 let size_m = lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
                 let steps = |height_m: f64| height_m / view.quantum_m;

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use corniche_geom::Work;
 use corniche_tin::Tin;
 
 /// Buckets along one side of a tile.
@@ -118,8 +119,13 @@ impl TriangleSoup {
     }
 
     /// Lowest and highest ground in the rectangle along a segment that reaches `margin` lattice steps beyond it on
-    /// every side. `None` without ground there.
-    pub(crate) fn range_near(&self, [a, b]: [[f64; 2]; 2], margin: f64) -> Option<[f64; 2]> {
+    /// every side. `None` without ground there. Looking at a triangle is a step of `work`.
+    pub(crate) fn range_near(
+        &self,
+        [a, b]: [[f64; 2]; 2],
+        margin: f64,
+        work: &Work,
+    ) -> Option<[f64; 2]> {
         let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
         let (p, q) = (in_steps(a), in_steps(b));
         let length = (q[0] - p[0]).hypot(q[1] - p[1]);
@@ -134,6 +140,7 @@ impl TriangleSoup {
         let high = [0, 1].map(|axis| a[axis].max(b[axis]) + reach[axis]);
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         for corners in self.near([low, high]) {
+            work.add(1);
             let heights = corners.map(|corner| corner[2]);
             // A triangle whose heights are all within the range cannot widen it.
             if heights.iter().all(|height| (lowest..=highest).contains(height)) {

@@ -46,10 +46,10 @@ fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
     let ground = TriangleSoup::placed(&roof, 0.5, [3.0, 2.0]);
     let along = [[100.0, 10.0], [100.0, 40.0]];
     // 20 cells east: 60 steps.
-    let [low_m, high_m] = ground.range_near(along, 60.0).unwrap();
+    let [low_m, high_m] = ground.range_near(along, 60.0, &Work::unlimited()).unwrap();
     assert!((low_m - 80.0 / 32.0).abs() < 1e-9 && (high_m - 120.0 / 32.0).abs() < 1e-9);
-    assert_eq!(ground.range_near(along, 90.0).unwrap()[1], 4.0);
-    assert!(ground.range_near([[300.0, 0.0], [310.0, 0.0]], 100.0).is_none());
+    assert_eq!(ground.range_near(along, 90.0, &Work::unlimited()).unwrap()[1], 4.0);
+    assert!(ground.range_near([[300.0, 0.0], [310.0, 0.0]], 100.0, &Work::unlimited()).is_none());
 }
 
 #[test]

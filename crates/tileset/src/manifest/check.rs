@@ -4,7 +4,7 @@
 //! the first product, and comparisons with NaN would give wrong answers.
 
 use corniche_areas::{AreaClass, BoundaryClass};
-use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
+use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex, TileId};
 use corniche_roads::FrcTable;
 
 use crate::limits::MAX_PHOTO_LEVELS;
@@ -16,6 +16,11 @@ use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;
+/// How far beyond a tile its roads reach at most: so many cells of its level and so many metres more. Writers take eight cells, or 40 true metres
+/// at a scale of 1000 at most where that is more, rounded up to whole finest cells.
+const MARGIN: (f64, f64) = (9.0, 4e4);
+/// Longitudes of the table go on for some turns at most: writers carry each to its neighbour's, half a turn away at most, over 128 of them.
+const MOST_DEG: f64 = 65.0 * 360.0;
 /// Heights are 32-bit steps of the quantum, so they stay below 2^(31 + 27) metres and within [`MAX_MEASURE_M`].
 const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
 /// No single count and no sum of a list of counts is larger: as many nodes as a grid of 2^22 tiles a side has, with
@@ -41,12 +46,14 @@ impl Manifest {
     /// What is wrong with it, if anything.
     pub(crate) fn check(&self) -> Result<(), String> {
         let frame = &self.frame;
-        all_measures("frame.origin_m", &frame.origin_m())?;
-        bounds("data_bounds", &self.data_bounds, [MAX_MEASURE_M; 2])?;
+        let is_near = frame.origin_m().iter().all(|value| value.abs() <= MAX_COORDINATE_M);
+        that(is_near, "frame.origin_m", frame.origin_m())?;
+        bounds("data_bounds", &self.data_bounds, [MAX_COORDINATE_M; 2])?;
+        self.check_data_in_root()?;
         // Longitudes go on beyond 180° where the data crosses the antimeridian, and half a pixel may lie beyond a pole.
         bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
         if let Some(clip) = &self.clip {
-            bounds("clip.whole_data_bounds", &clip.whole_data_bounds, [MAX_MEASURE_M; 2])?;
+            bounds("clip.whole_data_bounds", &clip.whole_data_bounds, [MAX_COORDINATE_M; 2])?;
             bounds("clip.whole_wgs84_bounds", &clip.whole_wgs84_bounds, [720.0, 91.0])?;
             let [most_i, most_j] =
                 frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
@@ -57,7 +64,10 @@ impl Manifest {
             let are_corners = clip.nodes.iter().all(is_node) && low.i < high.i && low.j < high.j;
             that(are_corners, "clip.nodes", clip.nodes)?;
         }
-        bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
+        bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_COORDINATE_M; 2])?;
+        let samples_deg = self.coordinates.samples_deg().as_flattened();
+        let farthest_deg = samples_deg.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        that(farthest_deg <= MOST_DEG, "coordinates.samples_deg", farthest_deg)?;
         that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
         let scale = &self.scale;
         for (name, values) in [
@@ -82,6 +92,8 @@ impl Manifest {
         that(self.levels.len() == levels, "the number of levels", self.levels.len())?;
         for (level, record) in self.levels.iter().enumerate() {
             check_level(level, record)?;
+            let most_m = MARGIN.0 * frame.level_cell(record.level).shorter_m() + MARGIN.1;
+            that(record.width_margin_m <= most_m, "levels.width_margin_m", record.width_margin_m)?;
         }
         check_sum("levels", self.levels.iter().flat_map(level_counts))?;
         check_counts(&self.counts)?;
@@ -101,6 +113,18 @@ impl Manifest {
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
         all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
+    }
+
+    /// The data's rectangle is one of nodes of the root tile, whose positions are rounded.
+    fn check_data_in_root(&self) -> Result<(), String> {
+        let root = self.frame.tile_bounds(TileId::ROOT);
+        let Cell { east_m, north_m } = self.frame.cell();
+        let [min_x, min_y, max_x, max_y] = self.data_bounds.to_array();
+        let is_inside = min_x >= root.min_x - east_m
+            && max_x <= root.max_x + east_m
+            && min_y >= root.min_y - north_m
+            && max_y <= root.max_y + north_m;
+        that(is_inside, "data_bounds", self.data_bounds.to_array())
     }
 
     fn check_photos(&self) -> Result<(), String> {

@@ -110,7 +110,7 @@ impl<'a> Route<'a> {
             }
             DrapedVertex::Vertex { vertex } => RoutePlace::Vertex(vertex),
         };
-        self.work.check()
+        Ok(self.work.check()?)
     }
 
     /// The half-edge between a and b over which the line comes in: it starts to the left of p ► q.

@@ -7,42 +7,15 @@
     clippy::print_stdout,
     reason = "a test may unwrap, and this one prints figures"
 )]
-#![allow(clippy::too_many_lines, reason = "tables of cases are as long as they are")]
-
-mod file_cases;
-mod metadata_cases;
-mod parts;
-mod road_cases;
-mod tile_cases;
 
 use std::time::Instant;
 
+use corniche_testing::hostile::{Case, FAMILIES, Outcome};
 use corniche_tileset::{MemorySource, Package, Sections};
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
-
-/// The expected result for a package.
-pub(crate) enum Outcome {
-    /// An error whose text has this in it.
-    Refused(&'static str),
-    /// It is read to its end.
-    Read,
-}
-
-/// A package, the expected result, and the memory that reading it may take beyond its own bytes.
-pub(crate) struct Case {
-    pub(crate) name: &'static str,
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) outcome: Outcome,
-    pub(crate) limit_mib: usize,
-}
-
-/// Most cases: an error long before anything large.
-pub(crate) fn refused(name: &'static str, bytes: Vec<u8>, reason: &'static str) -> Case {
-    Case { name, bytes, outcome: Outcome::Refused(reason), limit_mib: 4 }
-}
 
 /// Opens a package, lists its tiles and reads all of them; gives their number, or the text of the error.
 fn read(bytes: Vec<u8>) -> Result<usize, String> {
@@ -59,17 +32,10 @@ fn read(bytes: Vec<u8>) -> Result<usize, String> {
 
 #[test]
 fn hostile_packages_are_refused_within_the_limits() {
-    type Family = (&'static str, fn() -> Vec<Case>);
-    let families: [Family; 4] = [
-        ("file", file_cases::all),
-        ("metadata", metadata_cases::all),
-        ("tile", tile_cases::all),
-        ("roads", road_cases::all),
-    ];
     println!("| package | outcome | peak MiB | limit MiB | ms |\n|---|---|---|---|---|");
     let mut broken = Vec::new();
     let mut number = 0;
-    for (family, cases) in families {
+    for (family, cases) in FAMILIES {
         for Case { name, bytes, outcome, limit_mib } in cases() {
             let before = MEMORY.current_usage();
             MEMORY.reset_peak_usage();

@@ -19,14 +19,14 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use corniche_areas::{AreaClass, AreaObject};
-use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId, TooMuchWork, Work};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
 };
-use super::{GroundMesh, blocks, ground_mesh::relative};
+use super::{GroundMesh, blocks, ground_mesh::relative, line_layers::MOST_STEPS};
 
 /// How far volumes reach beyond the ground in them, below and above, as a share of a cell of the tile's level. The ground's heights
 /// are rounded when they are drawn; this is far more.
@@ -44,6 +44,17 @@ pub struct BadArea {
     pub object: AreaObject,
     /// What it is.
     pub class: AreaClass,
+}
+
+/// Why the areas of a tile cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum BadAreas {
+    /// One of them.
+    #[error(transparent)]
+    Area(#[from] BadArea),
+    /// They lie over so many triangles that no writer can have meant it.
+    #[error("its areas cannot be laid on its ground")]
+    TooMuch(#[from] TooMuchWork),
 }
 
 /// A wall of a volume: upright over a segment of the outline, with the inside on the left.
@@ -109,8 +120,9 @@ impl AreaVolumes {
         frame: &GridFrame,
         ground: &GroundMesh,
         reference_m: [f64; 3],
-    ) -> Result<Self, BadArea> {
+    ) -> Result<Self, BadAreas> {
         let mut volumes = Self::default();
+        let work = Work::new(MOST_STEPS);
         let site = Site::new(id, frame, ground, reference_m);
         for class in AreaClass::ALL {
             let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
@@ -120,7 +132,8 @@ impl AreaVolumes {
                 for rings in &area.polygons {
                     let bad = || BadArea { object: area.object, class };
                     let mesh = site.mesh(rings).ok_or_else(bad)?;
-                    let Some(heights) = site.heights_in_tile(&mesh.points) else { continue };
+                    work.check()?;
+                    let Some(heights) = site.heights_in_tile(&mesh.points, &work) else { continue };
                     volumes.add(&site, &mesh, heights, &mut around);
                     polygons += 1;
                 }
@@ -267,13 +280,13 @@ impl<'a> Site<'a> {
     }
 
     /// Bottom and top of a volume over these points; `None` without ground near them.
-    fn heights_in_tile(&self, points: &[LatticePoint]) -> Option<[f32; 2]> {
+    fn heights_in_tile(&self, points: &[LatticePoint], work: &Work) -> Option<[f32; 2]> {
         let places = points.iter().map(|point| self.place_in_tile(*point).map(f64::from));
         let [low, high] = places.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |box_m, at| {
             let [low, high] = box_m;
             [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
         });
-        let [lowest_m, highest_m] = self.ground.height_range_within(low, high)?;
+        let [lowest_m, highest_m] = self.ground.height_range_within(low, high, work)?;
         Some([(lowest_m - self.pad_m) as f32, (highest_m + self.pad_m) as f32])
     }
 }

@@ -175,3 +175,19 @@ fn an_outline_that_crosses_itself_is_named() {
     let nowhere = AreaVolumes::new(&areas[..0], TileId::ROOT, &frame, &ground, reference_m);
     assert_eq!(nowhere, Ok(AreaVolumes::default()));
 }
+
+/// Forty thousand areas as large as the tile over a hundred thousand triangles: the bytes are few, the pairs are not.
+#[test]
+#[ignore = "slow: a thousand million triangles are looked at before the limit is reached"]
+fn too_many_areas_over_too_many_triangles_are_refused() {
+    let (frame, reference_m) = (frame(), [1280.0, 1280.0, 100.0]);
+    let square = [[0.0, 0.0], [2560.0, 0.0], [2560.0, 2560.0], [0.0, 2560.0]];
+    let areas = vec![area(AreaClass::Park, &frame, &square); 40_000];
+    let tin = corniche_testing::package::full_tin();
+    let normals = vec![[0, 0]; tin.vertices().len()];
+    let full = GroundMesh::new(TileId::ROOT, &tin, &normals, &frame, 1.0, reference_m);
+    let laid =
+        |count: usize| AreaVolumes::new(&areas[..count], TileId::ROOT, &frame, &full, reference_m);
+    assert!(laid(20).is_ok());
+    assert_eq!(laid(40_000), Err(BadAreas::TooMuch(TooMuchWork { limit: MOST_STEPS })));
+}

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::TileId;
+use corniche_geom::{TileId, TooMuchWork};
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, Sections, decode, decode_areas, decode_boundaries, decode_photo};
 use serde::{Deserialize, Serialize};
@@ -12,6 +12,14 @@ use super::{
     TileGeometry, TileLines, geometry::LineGround,
 };
 use crate::options::RoadMethod;
+
+/// The lines of people's own files take too much work on a tile.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the lines of the files given as overlays cannot all be laid on its ground; simplify them (ogr2ogr -simplify), or cut them to what is shown \
+     (ogr2ogr -clipsrc)"
+)]
+struct TooManyOverlays(#[source] TooMuchWork);
 
 /// What every picture needs of a tile.
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
@@ -143,10 +151,11 @@ impl TileDecoder {
             Layer::LeftOut => Vec::new(),
         };
         let boundaries: Vec<LayerLine> = boundaries.into_iter().map(LayerLine::from).collect();
-        let tile = tile.with_lines(LineLayer::Boundaries, &boundaries, &on, methods);
+        let tile = tile.with_lines(LineLayer::Boundaries, &boundaries, &on, methods)?;
         let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
         let overlays = self.overlays.near(id, frame, margin);
         let tile = tile.with_lines(LineLayer::Overlays, &overlays, &on, methods);
+        let tile = tile.map_err(TooManyOverlays)?;
         let areas = match self.areas {
             Layer::Read => decode_areas(payload, id, frame)?,
             Layer::LeftOut => Vec::new(),

@@ -1,6 +1,6 @@
 //! A decoded tile that is ready for the graphics card.
 
-use corniche_geom::{Bounds, GridFrame, TileId, barycentric};
+use corniche_geom::{Bounds, GridFrame, TileId, TooMuchWork, Work, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, Terrain, TilePayload};
@@ -8,9 +8,9 @@ use corniche_tin::{Placement, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AreaVolumes, BadArea, BadRoad, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
+    AreaVolumes, BadAreas, BadRoads, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
     PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
-    line_layers::{TileGround, lay},
+    line_layers::{MOST_STEPS, TileGround, lay},
     relief::Relief,
 };
 use crate::lod::GroundSummary;
@@ -97,17 +97,23 @@ impl TileGeometry {
     ) -> Self {
         let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
-        Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
+        Self::on_surface(
+            (id, terrain, surface.as_ref()),
+            lines,
+            frame,
+            quantum_m,
+            &Work::unlimited(),
+        )
     }
 
-    /// Does the same as [`TileGeometry::assemble`] on the `surface` of the terrain, which is needed only if there are roads.
+    /// Does the same as [`TileGeometry::assemble`] on the `surface` of the terrain, which is needed only if there are roads. The caller looks in the
+    /// end whether it was too much work.
     fn on_surface(
-        id: TileId,
-        terrain: Option<&Terrain>,
-        surface: Option<&Surface>,
+        (id, terrain, surface): (TileId, Option<&Terrain>, Option<&Surface>),
         lines: &TileLines,
         frame: &GridFrame,
         quantum_m: f64,
+        work: &Work,
     ) -> Self {
         let bounds = frame.tile_bounds(id);
         let [x, y] = bounds.center();
@@ -120,7 +126,7 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        let relief = Relief::new(id, surface, frame, lines.width_margin_m);
+        let relief = Relief::new(id, surface, frame, lines.width_margin_m, work);
         let wide = relief.wide(&lines.ground);
         let scale = &lines.scale;
         let sources = lines.ground.iter().flat_map(|line| line.sources_m.iter().copied());
@@ -161,14 +167,14 @@ impl TileGeometry {
     /// tile's level, `scale` that of the tile.
     ///
     /// # Errors
-    /// When a road does not fit the ground.
+    /// When a road does not fit the ground, or placing them takes too much work.
     pub fn from_payload(
         payload: &TilePayload,
         frame: &GridFrame,
         quantum_m: f64,
         width_margin_m: f64,
         scale: PlanScale,
-    ) -> Result<Self, BadRoad> {
+    ) -> Result<Self, BadRoads> {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
@@ -176,31 +182,33 @@ impl TileGeometry {
         let lines = TileLines { scale, ..lines };
         let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
         let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
-        let tile = Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m);
+        let work = Work::new(MOST_STEPS);
+        let ground = (id, terrain, surface.as_ref());
+        let tile = Self::on_surface(ground, &lines, frame, quantum_m, &work);
+        work.check()?;
         Ok(Self { shading, ..tile })
     }
 
     /// The same tile with these areas of it.
     ///
     /// # Errors
-    /// When an outline crosses itself.
-    pub fn with_areas(self, areas: &[AreaRecord], frame: &GridFrame) -> Result<Self, BadArea> {
+    /// When an outline crosses itself, or laying them on the ground takes too much work.
+    pub fn with_areas(self, areas: &[AreaRecord], frame: &GridFrame) -> Result<Self, BadAreas> {
         let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
         Ok(Self { areas, ..self })
     }
 
-    /// The same tile with these lines of a layer, laid on the ground that it was made of.
-    #[must_use]
+    /// The same tile with these lines of a layer, laid on the ground that it was made of; an error when that takes too much work.
     pub(crate) fn with_lines(
         mut self,
         layer: LineLayer,
         lines: &[LayerLine],
         on: &LineGround<'_>,
         methods: LineMethods,
-    ) -> Self {
+    ) -> Result<Self, TooMuchWork> {
         let LineGround { terrain, frame, quantum_m, scale, vertical_scale } = *on;
         if lines.is_empty() {
-            return self;
+            return Ok(self);
         }
         if let Some(surface) = surface(self.id, terrain, frame, quantum_m) {
             let ground = TileGround {
@@ -211,10 +219,11 @@ impl TileGeometry {
                 width_margin_m: self.width_margin_m,
                 scale,
                 vertical_scale,
+                most_steps: MOST_STEPS,
             };
-            self.lines.set(layer, lay(lines, &ground, methods));
+            self.lines.set(layer, lay(lines, &ground, methods)?);
         }
-        self
+        Ok(self)
     }
 
     /// The tile as bytes for another instance of this program, of the same version: a worker of a page decodes tiles, and the page draws

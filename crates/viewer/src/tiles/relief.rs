@@ -1,7 +1,7 @@
 //! What the roads of a tile ask of its ground when they are placed.
 
 use corniche_drape::{RoadPiece, near_ground, road_bed};
-use corniche_geom::{Bounds, GridFrame, TileId};
+use corniche_geom::{Bounds, GridFrame, TileId, Work};
 use corniche_tin::Surface;
 
 use super::{
@@ -21,6 +21,8 @@ pub(crate) struct Relief<'a> {
     tile: Bounds,
     /// The distances within which the bounds of a bed hold; see [`Bed::reaches_m`].
     reaches_m: [f64; 3],
+    /// When too much was done, answers are made up: whoever counts must look at it in the end.
+    work: &'a Work,
 }
 
 impl<'a> Relief<'a> {
@@ -30,18 +32,21 @@ impl<'a> Relief<'a> {
         surface: Option<&'a Surface>,
         frame: &'a GridFrame,
         width_margin_m: f64,
+        work: &'a Work,
     ) -> Self {
         let tile = frame.tile_bounds(id);
         let reaches_m = Bed::reaches_m([tile.width(), tile.height()], width_margin_m);
-        Self { frame, surface, tile, reaches_m }
+        Self { frame, surface, tile, reaches_m, work }
     }
 
     /// The range of true heights of the ground beneath a segment in plan, and how many metres it grows per metre away from it;
     /// `None` when there is no ground within [`NearHeights::reach_m`].
     pub(crate) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
+        self.work.check().ok()?;
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
         let [reach_m, ..] = self.reaches_m;
-        let found = near_ground(ends, self.surface?, reach_m / self.frame.lattice_step_m())?;
+        let reach = reach_m / self.frame.lattice_step_m();
+        let found = near_ground(ends, self.surface?, reach, self.work)?;
         Some((found.range_m, found.rise_m / self.frame.lattice_step_m()))
     }
 
@@ -53,7 +58,9 @@ impl<'a> Relief<'a> {
 
     /// The ground beside a piece of a road; `wide` is the same ground for wide roads. Without ground the bed is level.
     pub(crate) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
-        let (Some(surface), Some(wide)) = (self.surface, wide) else { return Bed::default() };
+        let (Some(surface), Some(wide), Ok(())) = (self.surface, wide, self.work.check()) else {
+            return Bed::default();
+        };
         let step_m = self.frame.lattice_step_m();
         let [[x, y, height_m], [_, _, end_height_m]] = piece.ends_m;
         let (direction, length_m) = (piece.direction(), piece.length_m());
@@ -64,7 +71,7 @@ impl<'a> Relief<'a> {
             heights_m: [height_m, end_height_m],
             has_caps: piece.has_caps,
         };
-        let near = road_bed(&road_piece, surface, self.reaches_m[0] / step_m);
+        let near = road_bed(&road_piece, surface, self.reaches_m[0] / step_m, self.work);
         let along = if length_m > 0.0 { (end_height_m - height_m) / length_m } else { 0.0 };
         let across = near.cross_rise_m / step_m;
         let [east, north] = direction;

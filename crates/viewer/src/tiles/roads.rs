@@ -14,7 +14,7 @@ mod volumes;
 
 pub use self::{
     dashes::DashPlace,
-    lines::{BadRoad, GroundLine, PlanLine, TileLines},
+    lines::{BadRoads, GroundLine, PlanLine, TileLines},
     list::RoadList,
     look::RoadLook,
     segments::{RoadSegment, RoadSegments},

@@ -1,12 +1,12 @@
 //! The ground of a tile that is shown, on which lines can be laid later.
 
-use corniche_geom::{GridFrame, LatticePoint, TileId};
+use corniche_geom::{GridFrame, LatticePoint, TileId, TooMuchWork};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use super::{
     LayerLine, LineMethods, PlanScale, TileGeometry, TileLayer,
-    line_layers::{TileGround, lay},
+    line_layers::{MOST_STEPS, TileGround, lay},
 };
 
 /// The ground of a tile that is shown, on which lines can be laid at any time.
@@ -52,8 +52,15 @@ impl TileSurface {
     }
 
     /// Lines on this ground.
-    #[must_use]
-    pub fn lay(&self, lines: &[LayerLine], frame: &GridFrame, methods: LineMethods) -> TileLayer {
+    ///
+    /// # Errors
+    /// When they cross so many triangles that it would take too long.
+    pub fn lay(
+        &self,
+        lines: &[LayerLine],
+        frame: &GridFrame,
+        methods: LineMethods,
+    ) -> Result<TileLayer, TooMuchWork> {
         let on = TileGround {
             id: self.id,
             surface: &self.surface,
@@ -62,6 +69,7 @@ impl TileSurface {
             width_margin_m: self.width_margin_m,
             scale: &self.scale,
             vertical_scale: self.vertical_scale,
+            most_steps: MOST_STEPS,
         };
         lay(lines, &on, methods)
     }

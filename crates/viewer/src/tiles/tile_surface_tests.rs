@@ -48,7 +48,7 @@ fn a_drawn_line_lies_on_the_ground_of_every_level() {
     for id in package.tile_ids().unwrap() {
         let tile = source.load(id).unwrap().without_roads();
         let Some(surface) = TileSurface::of(&tile, manifest) else { continue };
-        let laid = surface.lay(&lines, &manifest.frame, LineMethods::Geometry);
+        let laid = surface.lay(&lines, &manifest.frame, LineMethods::Geometry).unwrap();
         for segment in laid.segments.all() {
             let along = |axis: usize| {
                 let [from, to] = [segment.start_in_tile[axis], segment.end_in_tile[axis]];

@@ -144,7 +144,10 @@ impl LaidTile {
                 self.surface = TileSurface::of(tile, manifest);
             }
             let outline = match &self.surface {
-                Some(surface) if !near.is_empty() => surface.lay(&near, frame, LineMethods::Both),
+                // A line drawn by hand is never so long that it cannot be laid.
+                Some(surface) if !near.is_empty() => {
+                    surface.lay(&near, frame, LineMethods::Both).unwrap_or_default()
+                }
                 _ => TileLayer::default(),
             };
             let inside = prepared

@@ -114,8 +114,8 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
     text = unzip(read_at(file, metadata[0], metadata[1], "the metadata"), 16 * MIB, "the metadata")
     try:
         content = json.loads(text)
-    except ValueError as cause:
-        raise ContainerError(f"the metadata are no JSON: {cause}") from cause
+    except (ValueError, RecursionError) as cause:
+        raise ContainerError(f"the metadata are no JSON, or nested too deep: {cause}") from cause
     return content, {tile_of(n): Place(tiles[0] + p.offset, p.length) for n, p in found.items()}
 
 

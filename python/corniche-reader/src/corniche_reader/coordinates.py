@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ContainerError
+from .grid import FARTHEST_M
 
 Array = NDArray[np.float64]
 #: A place is found when it moves by less than this.
 CLOSE_M = 1e-6
+#: Longitudes run on for so many degrees at most: 65 turns (section 11 of the format).
+MOST_DEGREES = 65 * 360
 
 
 class Coordinates:
@@ -24,9 +27,11 @@ class Coordinates:
             self._span = np.array([float(table["bounds"][name]) for name in ("max_x", "max_y")]) - self._low
             size = int(table["size"])
             self._samples = np.array(table["samples_deg"], np.float64)
-        except (KeyError, TypeError, ValueError) as cause:
+        except (KeyError, TypeError, ValueError, OverflowError) as cause:
             raise ContainerError(f"the manifest's table of coordinates lacks something: {cause}") from cause
-        if not (4 <= size <= 129 and self._samples.shape == (size * size, 2) and np.isfinite(self._samples).all() and (self._span > 0).all()):
+        # No comparison is true for what is no number.
+        is_near = (np.abs(self._low) <= FARTHEST_M).all() and (self._span <= 2 * FARTHEST_M).all() and (np.abs(self._samples) <= MOST_DEGREES).all()
+        if not (4 <= size <= 129 and self._samples.shape == (size * size, 2) and is_near and (self._span > 0).all()):
             raise ContainerError("the manifest's table of coordinates is damaged")
         self._samples = self._samples.reshape(size, size, 2)
         self._last = size - 1

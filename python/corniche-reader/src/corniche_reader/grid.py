@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from .codes import round_half_away
 from .errors import ContainerError, PayloadError
+
+
+#: No position in working metres is farther from zero (section 11 of the format).
+FARTHEST_M = 2**51 / 1000
+#: Lattice points are within so many steps of node (0, 0), and indices of nodes below the other.
+MOST_STEPS, MOST_NODES = 1 << 50, 1 << 32
+#: Levels that a package can have at most below its root.
+MOST_LEVELS = 22
 
 
 @dataclass(frozen=True)
@@ -30,16 +39,24 @@ class Grid:
             east, north, quantum = float(cell[0]), float(cell[1]), float(manifest["vertical"]["quantum_m"])
             place = (float(origin[0]), float(origin[1])), (int(corner["i"]), int(corner["j"]))
             level = int(frame["max_level"])
-        except (KeyError, TypeError, ValueError, IndexError) as cause:
+        except (KeyError, TypeError, ValueError, IndexError, OverflowError) as cause:
             raise ContainerError(f"the manifest lacks a number that a reader needs: {cause}") from cause
-        if not (0 < north < 1e18 and 0 < east < 1e18 and quantum > 0 and 0 <= level <= 31):
-            raise ContainerError("the manifest's cells, quantum or levels are beyond their limits")
+        # No comparison is true for what is no number.
+        if not (0.001 <= north <= 1e6 and 0.001 <= east <= 1e6 and 0 <= level <= MOST_LEVELS):
+            raise ContainerError("the manifest's cells or levels are beyond their limits")
+        if not all(abs(metres) <= FARTHEST_M for metres in place[0]):
+            raise ContainerError("the manifest's grid has its origin beyond all places")
+        if not (2.0**-64 <= quantum <= 2.0**27 and math.frexp(quantum)[0] == 0.5):
+            raise ContainerError("the manifest's height quantum is no power of two from 2^-64 to 2^27")
         b = 0
         while north / 2**b > 0.001:
             b += 1
         a = east / (north / 2**b)
         if a != int(a) or a < 1:
             raise ContainerError("the east side of a cell is not a whole number of lattice steps")
+        reach = max(map(abs, place[1])) + (256 << level)
+        if reach > MOST_NODES or reach * max(int(a), 2**b) > MOST_STEPS:
+            raise ContainerError("the manifest's grid reaches beyond its limits")
         return cls(place[0], (east, north), place[1], level, (int(a), 2**b), quantum)
 
     def level_cell_m(self, level: int) -> tuple[float, float]:
@@ -61,7 +78,7 @@ class Grid:
         u = (x - self.origin_m[0]) / self.cell_m[0] * self.steps[0]
         v = (y - self.origin_m[1]) / self.cell_m[1] * self.steps[1]
         # No comparison is true for what is no number.
-        if not (abs(u) < 1 << 50 and abs(v) < 1 << 50):
+        if not (abs(u) < MOST_STEPS and abs(v) < MOST_STEPS):
             raise PayloadError("a point of a road lies beyond the lattice")
         return round_half_away(u), round_half_away(v)
 

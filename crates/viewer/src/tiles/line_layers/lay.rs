@@ -1,7 +1,7 @@
 //! Lines of people's files are laid on the ground of a tile.
 
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{GridFrame, LatticePoint, Polyline, TileId, TooMuchWork, Work};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tin::Surface;
 
@@ -11,11 +11,17 @@ use super::{
 };
 use crate::tiles::{
     DashPlace, GroundLine, PlanScale, RoadLook, RoadSegments, RoadVolumes, relief::Relief,
-    roads::PlanLine,
+    roads::PlanLine, shares_in,
 };
 
 /// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
 const LONGEST_CELLS: f64 = 8.0;
+
+/// Steps that laying lines on one tile, or placing its roads, may take: looking at a triangle is one, and a vertex where a line crosses an edge
+/// of the ground counts for 32.
+///
+/// Real tiles take some hundred thousand. The limit is two million vertices, some 500 MiB of them, and a few seconds.
+pub(crate) const MOST_STEPS: u64 = 1 << 26;
 
 /// The ground of a tile as lines need it.
 pub(crate) struct TileGround<'a> {
@@ -29,25 +35,33 @@ pub(crate) struct TileGround<'a> {
     pub(crate) scale: &'a PlanScale,
     /// World height of a metre of true height without exaggeration.
     pub(crate) vertical_scale: f64,
+    /// Steps that laying lines may take.
+    pub(crate) most_steps: u64,
 }
 
-/// Lays lines on a tile's ground. Lines that are not near it give nothing.
-pub(crate) fn lay(lines: &[LayerLine], on: &TileGround<'_>, methods: LineMethods) -> TileLayer {
+/// Lays lines on a tile's ground. Lines that are not near it give nothing. An error when that takes too much work: it follows from the triangles
+/// that lines cross.
+pub(crate) fn lay(
+    lines: &[LayerLine],
+    on: &TileGround<'_>,
+    methods: LineMethods,
+) -> Result<TileLayer, TooMuchWork> {
+    let work = &Work::new(on.most_steps);
     let mut ground = Vec::new();
     let mut plan = Vec::new();
     for line in lines {
         let Some(class) = FunctionalRoadClass::new(line.style) else { continue };
-        let Ok(path) = Polyline::new(divided(&line.points, on)) else { continue };
-        let laid = on_ground(&path, line.id, class, on);
+        let Ok(path) = Polyline::new(divided(&line.points, on, work)?) else { continue };
+        let laid = on_ground(&path, line.id, class, on, work)?;
         if methods != LineMethods::Geometry {
-            plan.extend(in_plan(&path, line.id, class, &laid.places, on));
+            plan.extend(in_plan(&path, line.id, class, &laid.places, (on, work))?);
         }
         if methods != LineMethods::ShadowVolumes {
             ground.extend(laid.lines);
         }
     }
     let bounds = on.frame.tile_bounds(on.id);
-    let relief = Relief::new(on.id, Some(on.surface), on.frame, on.width_margin_m);
+    let relief = Relief::new(on.id, Some(on.surface), on.frame, on.width_margin_m, work);
     let wide = relief.wide(&ground);
     let segments = RoadSegments::of_lines(&ground, bounds, on.reference_m, on.scale, |piece| {
         relief.bed(piece, wide.as_ref())
@@ -56,23 +70,32 @@ pub(crate) fn lay(lines: &[LayerLine], on: &TileGround<'_>, methods: LineMethods
         RoadVolumes::new(&plan, (bounds, on.width_margin_m), on.reference_m, on.scale, |ends_m| {
             relief.near(ends_m)
         });
-    TileLayer { segments, volumes }
+    work.check()?;
+    Ok(TileLayer { segments, volumes })
 }
 
 /// The points of a line, with points between those that are far from each other, on the lattice, as far as they lie near the tile. Each lies
 /// within half a step of it beside the line.
-fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
+fn divided(
+    points: &[LatticePoint],
+    on: &TileGround<'_>,
+    work: &Work,
+) -> Result<Vec<LatticePoint>, TooMuchWork> {
     let [east, north] = on.frame.node_steps(on.id.z());
     let longest = LONGEST_CELLS * east.min(north) as f64;
     let margin = (on.width_margin_m / on.frame.lattice_step_m()).ceil() as i64;
     let around = on.frame.tile_lattice_bounds(on.id).expanded(margin + longest.ceil() as i64);
+    let around = [[around.min.u, around.max.u], [around.min.v, around.max.v]]
+        .map(|of| of.map(|at| at as f64));
     let mut divided: Vec<LatticePoint> = points.first().copied().into_iter().collect();
     for [from, to] in points.array_windows::<2>() {
         let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
         let parts = (libm::hypot(du, dv) / longest).ceil().max(1.0);
         // A segment may go all around the earth: only what is near is divided.
-        let [first, last] = shares_in(*from, [du, dv], &around);
+        let [first, last] = shares_in(from.in_steps(), [du, dv], around);
         let numbers = (first * parts).floor().max(1.0) as u64..=(last * parts).ceil() as u64;
+        work.add(((last - first) * parts).max(0.0) as usize);
+        work.check()?;
         for part in numbers.take_while(|part| (*part as f64) < parts) {
             let share = part as f64 / parts;
             divided.push(LatticePoint::new(
@@ -83,26 +106,7 @@ fn divided(points: &[LatticePoint], on: &TileGround<'_>) -> Vec<LatticePoint> {
         divided.push(*to);
     }
     divided.dedup();
-    divided
-}
-
-/// Between which shares of its length a segment may lie in a rectangle; the second is below the first if nowhere.
-fn shares_in(from: LatticePoint, way: [f64; 2], around: &LatticeBounds) -> [f64; 2] {
-    let mut shares = [0.0_f64, 1.0];
-    let axes = [(from.u, around.min.u, around.max.u), (from.v, around.min.v, around.max.v)];
-    for ((start, low, high), step) in axes.into_iter().zip(way) {
-        let [to_low, to_high] = [low, high].map(|side| (side - start) as f64);
-        if step == 0.0 {
-            if to_low > 0.0 || to_high < 0.0 {
-                return [1.0, 0.0];
-            }
-            continue;
-        }
-        let (enters, leaves) = (to_low / step, to_high / step);
-        shares[0] = shares[0].max(enters.min(leaves));
-        shares[1] = shares[1].min(enters.max(leaves));
-    }
-    shares
+    Ok(divided)
 }
 
 /// What lies on the ground, and where its dashes are.
@@ -111,7 +115,13 @@ struct Laid {
     places: DashPlaces,
 }
 
-fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGround<'_>) -> Laid {
+fn on_ground(
+    path: &Polyline,
+    id: i64,
+    class: FunctionalRoadClass,
+    on: &TileGround<'_>,
+    work: &Work,
+) -> Result<Laid, TooMuchWork> {
     let frame = on.frame;
     let tile = frame.tile_lattice_bounds(on.id);
     let points_m = path.points().iter().map(|&point| frame.position_m(point)).collect();
@@ -119,7 +129,7 @@ fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGrou
     // With each line the segments of `path` that its source segments are parts of.
     let mut found: Vec<(GroundLine, Vec<usize>)> = Vec::new();
     for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
-        for draped in corniche_drape::drape(&part.line, on.surface).lines {
+        for draped in corniche_drape::drape_within(&part.line, on.surface, work)?.lines {
             let Ok(positions) = corniche_drape::positions(&draped, on.surface) else { continue };
             let points_m: Vec<[f64; 3]> = positions
                 .into_iter()
@@ -160,7 +170,7 @@ fn on_ground(path: &Polyline, id: i64, class: FunctionalRoadClass, on: &TileGrou
         GroundLine { dashes: Some(dashes), ..line }
     };
     let lines = found.into_iter().map(with_dashes).collect();
-    Laid { lines, places }
+    Ok(Laid { lines, places })
 }
 
 /// The number of the path's segment that each piece of a draped line is a piece of. `sources` are segments of `part`, in order.
@@ -181,14 +191,14 @@ fn in_plan(
     id: i64,
     class: FunctionalRoadClass,
     places: &DashPlaces,
-    on: &TileGround<'_>,
-) -> Vec<PlanLine> {
+    (on, work): (&TileGround<'_>, &Work),
+) -> Result<Vec<PlanLine>, TooMuchWork> {
     let frame = on.frame;
     let margin = (on.width_margin_m / frame.lattice_step_m()).floor() as i64;
     let around = frame.tile_lattice_bounds(on.id).expanded(margin);
     let mut lines = Vec::new();
     for part in corniche_drape::clip_parts(path, &around, OwnedBorders::ALL) {
-        for line in corniche_drape::extrude(&part.line, on.surface, margin) {
+        for line in corniche_drape::extrude_within(&part.line, on.surface, margin, work)? {
             let points_m: Vec<[f64; 2]> =
                 line.points.iter().map(|&point| frame.position_m(point)).collect();
             let sources: Vec<[LatticePoint; 2]> = line.points.array_windows().copied().collect();
@@ -206,7 +216,7 @@ fn in_plan(
             });
         }
     }
-    lines
+    Ok(lines)
 }
 
 #[cfg(test)]

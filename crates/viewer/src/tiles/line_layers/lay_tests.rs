@@ -6,6 +6,8 @@ use corniche_tin::{Placement, Tin, TinVertex};
 use super::*;
 
 const CELL_M: f64 = 10.0;
+/// As many steps as some hundred diagonals take, so that the test is quick.
+const FEW_STEPS: u64 = 1 << 22;
 /// The ground rises by so many metres for each metre to the east.
 const RISE: f64 = 0.75;
 
@@ -24,21 +26,30 @@ fn surface(frame: &GridFrame) -> Surface {
 }
 
 fn laid(points_m: &[[f64; 2]]) -> TileLayer {
+    laid_on(&surface(&frame()), &[points_m]).unwrap()
+}
+
+fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooMuchWork> {
     let frame = frame();
     let tile = frame.tile_bounds(TileId::ROOT);
     let place =
         |&[east, south]: &[f64; 2]| frame.snap([tile.min_x + east, tile.max_y - south]).unwrap();
-    let points = points_m.iter().map(place).collect();
     let on = TileGround {
         id: TileId::ROOT,
-        surface: &surface(&frame),
+        surface,
         frame: &frame,
         reference_m: [tile.min_x, tile.max_y, 0.0],
         width_margin_m: 40.0,
         scale: &PlanScale::uniform([1.0; 2]),
         vertical_scale: 1.0,
+        most_steps: FEW_STEPS,
     };
-    lay(&[LayerLine { id: 7, style: 2, points }], &on, LineMethods::Both)
+    let line = |points_m: &&[[f64; 2]]| LayerLine {
+        id: 7,
+        style: 2,
+        points: points_m.iter().map(place).collect(),
+    };
+    lay(&lines_m.iter().map(line).collect::<Vec<_>>(), &on, LineMethods::Both)
 }
 
 fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {
@@ -115,4 +126,19 @@ fn a_segment_all_around_the_earth_is_divided_near_the_tile_alone() {
     let most = (side_m + 2.0 * 40.0) / (LONGEST_CELLS * 2.0 * CELL_M) + 6.0;
     assert!(parts > 20.0 && parts <= most, "{parts} parts");
     assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
+}
+
+/// Twenty thousand lines of two points that cross five hundred triangles each: a small file, and ten million vertices.
+#[test]
+fn lines_that_cross_too_many_triangles_are_refused() {
+    let tin = corniche_testing::package::full_tin();
+    let surface = Surface::new(&tin, Placement::of_tile(&frame(), TileId::ROOT, 1.0));
+    let side_m = 256.0 * 2.0 * CELL_M;
+    let diagonal: &[[f64; 2]] = &[[10.0, side_m - 20.0], [side_m - 30.0, 10.0]];
+    assert!(laid_on(&surface, &[diagonal; 4]).is_ok());
+    let error = laid_on(&surface, &vec![diagonal; 20_000]).unwrap_err();
+    assert_eq!(error, TooMuchWork { limit: FEW_STEPS });
+    // One line of many long segments is no other case.
+    let back: Vec<[f64; 2]> = (0..20_000).map(|k| diagonal[k % 2]).collect();
+    assert!(laid_on(&surface, &[&back]).is_err());
 }

@@ -53,13 +53,12 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
     }
     let mut flat = vec![[false; 2]; lines.len()];
     for ends in at_point.values() {
-        for end in ends {
-            let others = || {
-                ends.iter().filter(|other| (other.number, other.which) != (end.number, end.which))
-            };
-            let is_highest = others().all(|other| other.height < end.height);
-            flat[end.number][end.which] = is_highest && others().any(|other| end.goes_on_in(other));
-        }
+        // Of many ends at one point at most one is above all others: only that one is compared with each.
+        let Some(end) = ends.iter().max_by_key(|end| end.height) else { continue };
+        let others =
+            || ends.iter().filter(|other| (other.number, other.which) != (end.number, end.which));
+        let is_highest = others().all(|other| other.height < end.height);
+        flat[end.number][end.which] = is_highest && others().any(|other| end.goes_on_in(other));
     }
     flat
 }

@@ -50,3 +50,15 @@ fn ends_stay_round_where_the_road_turns_forks_or_leaves_the_tile() {
     check(&[(2, PLAIN, vec![a, border]), (3, PLAIN, vec![border, [150.0, 50.0]])], &[neither; 2]);
     check(&[(2, PLAIN, vec![a, b]), (3, PLAIN, vec![b, b])], &[neither, neither]);
 }
+
+/// Of a hundred thousand ends at one point, each is compared with the most important one alone.
+#[test]
+fn many_ends_at_one_point_take_no_longer_than_elsewhere() {
+    let middle = [50.0, 50.0];
+    let mut lines = vec![(2, PLAIN, vec![[10.0, 50.0], middle])];
+    lines.extend((0..100_000).map(|k| (3, PLAIN, vec![middle, [90.0, 45.0 + f64::from(k) / 1e4]])));
+    let ends: Vec<LineEnds> = lines.iter().map(line).collect();
+    let flat = flat_ends(&ends, TILE);
+    assert_eq!(flat[0], [false, true]);
+    assert!(flat[1..].iter().all(|flat| *flat == [false; 2]));
+}

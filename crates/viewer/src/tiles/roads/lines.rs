@@ -1,7 +1,7 @@
 //! The roads of a decoded tile as lines: on the ground for GEO, in plan for SV.
 
 use corniche_drape::BadLine;
-use corniche_geom::GridFrame;
+use corniche_geom::{GridFrame, TooMuchWork};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
@@ -88,6 +88,17 @@ pub struct BadRoad {
     pub part: u32,
     /// What is wrong.
     pub source: BadLine,
+}
+
+/// Why the roads of a tile cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum BadRoads {
+    /// A road does not fit the ground.
+    #[error(transparent)]
+    Road(#[from] BadRoad),
+    /// Their segments lie beside so many triangles that no writer can have meant it.
+    #[error("its roads cannot be placed on its ground")]
+    TooMuch(#[from] TooMuchWork),
 }
 
 impl TileLines {

@@ -5,10 +5,14 @@ use std::collections::BTreeMap;
 use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
 
-use super::{NearHeights, RoadLook};
+use super::{super::shares_in, NearHeights, RoadLook};
 
 /// The length of a part of which not all is known, working metres; larger than any other.
 pub(crate) const OPEN_M: f32 = 1e15;
+
+/// Squares that the lines of a tile may come through, all together: ten times as many as the fullest tile of a large city has. Where there
+/// are more, nothing is known of any part.
+const MOST_SQUARES: usize = 1 << 22;
 
 /// A line of the road network.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,10 +49,13 @@ pub(crate) struct KnownNet {
 pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
     let mut order: Vec<usize> = (0..lines.len()).collect();
     order.sort_by_key(|number| (rank(&lines[*number]), *number));
-    let mut net = Net { parts: Vec::new(), at: BTreeMap::new(), near_m: known.near_m };
+    let mut net = Net { parts: Vec::new(), at: BTreeMap::new(), known, left: MOST_SQUARES };
     let mut lengths_m = vec![OPEN_M; lines.len()];
     for run in order.chunk_by(|a, b| rank(&lines[*a]) == rank(&lines[*b])) {
-        let parts: Vec<usize> = run.iter().map(|&n| net.add(&lines[n], known)).collect();
+        let parts: Vec<usize> = run.iter().map(|&n| net.add(&lines[n])).collect();
+        if net.left == 0 {
+            return vec![OPEN_M; lines.len()];
+        }
         for (&number, part) in run.iter().zip(parts) {
             let part = net.root(part);
             lengths_m[number] = net.parts[part].length_m as f32;
@@ -88,6 +95,43 @@ impl KnownNet {
         vertices_m.iter().all(inside(0.0))
             || beyond_one_side && vertices_m.iter().all(inside(margin_m - near_m))
     }
+
+    /// Visits the squares of points along a line, no farther from each other than a square is wide, until `visit` says false. Where two
+    /// lines cross, they have points in the same square or in squares side by side.
+    ///
+    /// Only squares near the tile are visited, wherever a line goes: what lines meet beyond them is open anyway, because there not all
+    /// is known.
+    fn squares(&self, vertices_m: &[[f64; 2]], mut visit: impl FnMut([i64; 2]) -> bool) {
+        let Self { tile, margin_m, near_m } = *self;
+        // A line all of which is known ends one square before the margin does; what belongs to it has points up to two squares farther.
+        let grown_m = margin_m.max(0.0) + 3.0 * near_m;
+        let around = [
+            [tile.min_x - grown_m, tile.max_x + grown_m],
+            [tile.min_y - grown_m, tile.max_y + grown_m],
+        ];
+        let mut last = None;
+        let mut goes_on = |[x, y]: [f64; 2]| {
+            let square = [x, y].map(|value| (value / near_m).floor() as i64);
+            last.replace(square) == Some(square) || visit(square)
+        };
+        for pair in vertices_m.windows(2) {
+            let way = [0, 1].map(|k| pair[1][k] - pair[0][k]);
+            let steps = (distance(pair[0], pair[1]) / near_m).ceil().max(1.0);
+            let [first, end] = shares_in(pair[0], way, around);
+            if first > end {
+                continue;
+            }
+            let numbers =
+                (first * steps - 1.0).max(0.0) as u64..(end * steps + 2.0).min(steps) as u64;
+            for step in numbers {
+                let share = step as f64 / steps;
+                if !goes_on([0, 1].map(|k| pair[0][k] + share * way[k])) {
+                    return;
+                }
+            }
+        }
+        vertices_m.last().map(|last| goes_on(*last));
+    }
 }
 
 /// Parts of the network, as a forest of lines that belong together.
@@ -95,7 +139,9 @@ struct Net {
     parts: Vec<ForestLine>,
     /// A line that comes through a square.
     at: BTreeMap<[i64; 2], usize>,
-    near_m: f64,
+    known: KnownNet,
+    /// Squares that may still be visited.
+    left: usize,
 }
 
 struct ForestLine {
@@ -107,42 +153,28 @@ struct ForestLine {
 
 impl Net {
     /// Adds a line and returns its number.
-    fn add(&mut self, line: &NetLine, known: KnownNet) -> usize {
+    fn add(&mut self, line: &NetLine) -> usize {
         let vertices_m = &line.vertices_m;
         let length_m = vertices_m.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-        let length_m = if known.holds(vertices_m) { length_m } else { f64::from(OPEN_M) };
+        let length_m = if self.known.holds(vertices_m) { length_m } else { f64::from(OPEN_M) };
         let number = self.parts.len();
         self.parts.push(ForestLine { parent: number, length_m });
-        for square in self.squares(vertices_m) {
-            for [dx, dy] in [-1, 0, 1].into_iter().flat_map(|dx| [-1, 0, 1].map(|dy| [dx, dy])) {
-                if let Some(&other) = self.at.get(&[square[0] + dx, square[1] + dy]) {
-                    self.join(number, other);
+        let known = self.known;
+        known.squares(vertices_m, |square| {
+            self.left = self.left.saturating_sub(1);
+            // What is beside a square where this line was before it has met already.
+            if self.at.get(&square) != Some(&number) {
+                let around = [-1, 0, 1].into_iter().flat_map(|dx| [-1, 0, 1].map(|dy| [dx, dy]));
+                for [dx, dy] in around {
+                    if let Some(&other) = self.at.get(&[square[0] + dx, square[1] + dy]) {
+                        self.join(number, other);
+                    }
                 }
+                self.at.insert(square, number);
             }
-            self.at.insert(square, number);
-        }
+            self.left > 0
+        });
         number
-    }
-
-    /// The squares of points along a line, no farther from each other than a square is wide. Where two lines cross, they have points
-    /// in the same square or in squares side by side.
-    fn squares(&self, vertices_m: &[[f64; 2]]) -> Vec<[i64; 2]> {
-        let mut squares = Vec::new();
-        let mut push = |[x, y]: [f64; 2]| {
-            let square = [x, y].map(|value| (value / self.near_m).floor() as i64);
-            if squares.last() != Some(&square) {
-                squares.push(square);
-            }
-        };
-        for pair in vertices_m.windows(2) {
-            let steps = (distance(pair[0], pair[1]) / self.near_m).ceil().max(1.0);
-            for step in 0..steps as u32 {
-                let share = f64::from(step) / steps;
-                push([0, 1].map(|k| pair[0][k] + share * (pair[1][k] - pair[0][k])));
-            }
-        }
-        vertices_m.last().into_iter().for_each(|last| push(*last));
-        squares
     }
 
     fn root(&mut self, mut number: usize) -> usize {

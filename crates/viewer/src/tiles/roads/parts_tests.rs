@@ -89,3 +89,27 @@ fn service_roads_come_after_the_rest_of_their_class() {
     let lines = [line(RoadLook::Service, 100.0, 200.0), line(RoadLook::Plain, 200.0, 250.0)];
     assert_eq!(part_lengths_m(&lines, KNOWN), [150.0, 50.0]);
 }
+
+/// A line may lead all around the earth and much farther: only what is near the tile is walked, and it meets what it meets there.
+#[test]
+fn a_line_from_beyond_the_stars_is_walked_near_the_tile_alone() {
+    let far: &[_] = &[[-1e15, 500.0], [1e15, 500.0]];
+    let mut squares = 0;
+    KNOWN.squares(far, |_| {
+        squares += 1;
+        true
+    });
+    let across = (1000.0 + 2.0 * (100.0 + 3.0 * 4.0)) / 4.0;
+    assert!((0.0..6.0).contains(&(f64::from(squares) - across)), "{squares} squares");
+    let meets: &[_] = &[[300.0, 400.0], [300.0, 501.0]];
+    let apart: &[_] = &[[700.0, 400.0], [700.0, 450.0]];
+    assert_eq!(lengths(&[(2, far), (2, meets), (2, apart)]), [None, None, Some(50.0)]);
+}
+
+/// Lines that come through more squares than all roads of a city count as open, and are not walked to their ends.
+#[test]
+fn too_many_lines_are_not_walked() {
+    let back: Vec<[f64; 2]> =
+        (0..20_000).map(|k| [f64::from(k % 2) * 1000.0, f64::from(k) / 20.0]).collect();
+    assert_eq!(lengths(&[(2, &[[100.0, 100.0], [150.0, 100.0]]), (3, &back)]), [None, None]);
+}

@@ -2,12 +2,12 @@
 
 use corniche_tileset::limits::MAX_DIRECTORY_ENTRIES;
 
-use corniche_testing::{
+use crate::{
     package,
     pmtiles::{Entry, directory, gzip, put_varint},
 };
 
-use crate::{Case, Outcome, parts::Parts, refused};
+use super::{Case, Outcome, parts::Parts, refused};
 
 /// A directory of one entry at most, and the tiles of the good package after it.
 fn with_root(entries: &[Entry]) -> Vec<u8> {
@@ -30,7 +30,7 @@ fn leaf_to(offset: u64, length: u64) -> Vec<u8> {
     gzip(&directory(&[Entry { step: 0, run: 0, length, offset: offset + 1 }]))
 }
 
-pub(crate) fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     let good = Parts::good;
     let number = |value: u64| value.to_le_bytes();
     let mut cases = vec![

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use corniche_testing::pmtiles::gzip;
+use crate::pmtiles::gzip;
 
-use crate::{
+use super::{
     Case, Outcome,
     parts::{Parts, metadata},
     refused,
@@ -40,7 +40,7 @@ fn with_attribution(text: &str) -> Vec<u8> {
     with_metadata(metadata.to_string().replace("\"HERE\"", text).as_bytes())
 }
 
-pub(crate) fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     let huge = u64::MAX;
     let growth = |key: &str, value: u64| {
         let mut row = metadata()["corniche"]["growth"][0].clone();

@@ -1,16 +1,16 @@
 //! Hostile packages with wrong road sections or road attributes.
 
-use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
-use corniche_roads::FunctionalRoadClass;
-use corniche_testing::{
+use crate::{
     package::{QUANTUM_M, context, frame},
     payload::Section,
     pmtiles::put_varint,
 };
+use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
+use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{GeoRoad, PayloadContext, SvRoad, Terrain, TilePayload, encode};
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
-use crate::{
+use super::{
     Case, Outcome,
     parts::{payload, raw_sections, zstd_section},
     refused,
@@ -320,7 +320,7 @@ fn varint_length(bytes: &[u8]) -> usize {
     1 + bytes.iter().take_while(|&&byte| byte >= 0x80).count()
 }
 
-pub(crate) fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
     let raws = raw_sections();

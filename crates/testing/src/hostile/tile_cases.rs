@@ -1,19 +1,19 @@
 //! Hostile packages with a wrong envelope of a payload or wrong terrain.
 
-use corniche_testing::{package, payload::Section, pmtiles::put_varint};
+use crate::{package, payload::Section, pmtiles::put_varint};
 
-use crate::{
+use super::{
     Case, Outcome,
     parts::{Parts, payload, raw_sections, resealed, zstd_section},
     refused,
 };
 
 /// A package whose tile 0/0/0 has these bytes.
-pub(crate) fn with_tile(tile: Vec<u8>) -> Vec<u8> {
+pub(super) fn with_tile(tile: Vec<u8>) -> Vec<u8> {
     Parts::of_tiles(&[tile]).assemble()
 }
 
-pub(crate) fn with_sections(sections: &[Section]) -> Vec<u8> {
+pub(super) fn with_sections(sections: &[Section]) -> Vec<u8> {
     with_tile(payload(sections))
 }
 
@@ -72,7 +72,7 @@ fn frame_of(raw_length: u32, stored: Vec<u8>) -> Vec<u8> {
     with_sections(&[Section { kind: 1, compression: 1, raw_length, stored }])
 }
 
-pub(crate) fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let raws = raw_sections();
     let terrain = || zstd_section(1, &raws[0]);

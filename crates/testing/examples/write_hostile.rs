@@ -1,0 +1,16 @@
+//! Writes every package that is made to do harm into a folder, for programs that are no tests of ours: `write_hostile FOLDER`.
+#![allow(clippy::unwrap_used, reason = "a tool of developers")]
+
+use std::{fs, path::PathBuf};
+
+use corniche_testing::hostile::{Case, FAMILIES};
+
+fn main() {
+    let folder = PathBuf::from(std::env::args_os().nth(1).unwrap());
+    fs::create_dir_all(&folder).unwrap();
+    for (family, cases) in FAMILIES {
+        for (number, Case { bytes, .. }) in cases().into_iter().enumerate() {
+            fs::write(folder.join(format!("{family}-{number:03}.pmtiles")), bytes).unwrap();
+        }
+    }
+}

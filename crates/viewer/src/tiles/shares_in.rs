@@ -1,0 +1,20 @@
+//! Which part of a segment lies in a rectangle along the axes, so that only that part is walked.
+
+/// Between which shares of its length a segment may lie in a rectangle, lowest and highest along each axis; the second is below the first
+/// if nowhere.
+pub(crate) fn shares_in(from: [f64; 2], way: [f64; 2], around: [[f64; 2]; 2]) -> [f64; 2] {
+    let mut shares = [0.0_f64, 1.0];
+    for ((start, [low, high]), step) in from.into_iter().zip(around).zip(way) {
+        let [to_low, to_high] = [low - start, high - start];
+        if step == 0.0 {
+            if to_low > 0.0 || to_high < 0.0 {
+                return [1.0, 0.0];
+            }
+            continue;
+        }
+        let (enters, leaves) = (to_low / step, to_high / step);
+        shares[0] = shares[0].max(enters.min(leaves));
+        shares[1] = shares[1].min(enters.max(leaves));
+    }
+    shares
+}
