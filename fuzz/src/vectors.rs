@@ -34,7 +34,7 @@ fn file(data: &[u8]) -> Option<PathBuf> {
 /// When a promise is broken.
 pub fn overlay(data: &[u8]) {
     let Some(path) = file(data) else { return };
-    match read(&path) {
+    match read(&path, true) {
         Ok(found) => {
             assert!(!found.lines.is_empty() && found.notices().iter().all(|said| !said.is_empty()));
             let positions = found.lines.iter().flat_map(|line| &line.positions_deg);

@@ -204,7 +204,7 @@ fn bar(title: &'static str, total: Option<u64>) -> ProgressBar {
     {
         bar.set_style(style);
     }
-    bar.with_prefix(messages::for_people(&title.into()).into_owned())
+    bar.with_prefix(title)
 }
 
 impl Shared {
