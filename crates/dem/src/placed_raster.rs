@@ -10,7 +10,7 @@ use crate::crs::operation::Operation;
 use crate::files::file_blocks::{self, FileBlocks};
 use crate::files::georeference::{crs_of, geo_transform, refuse_off_globe};
 use crate::files::open::open_dataset;
-use crate::{DemError, GridPlan, OpenOptions, library_error};
+use crate::{DemError, FileDatums, GridPlan, OpenOptions, library_error};
 
 /// Where any raster lies, also one without heights, such as an image; described but not held open.
 #[derive(Debug, Clone)]
@@ -68,10 +68,6 @@ impl PlacedRaster {
         &self.path
     }
 
-    pub(crate) fn crs(&self) -> &Crs {
-        &self.crs
-    }
-
     /// Columns and rows.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
@@ -90,6 +86,16 @@ impl PlacedRaster {
             working_from_crs: Operation::into_working(&self.crs, &grid.working, area_deg),
             crs_from_pixel: self.crs_from_pixel,
         }
+    }
+}
+
+impl GridPlan {
+    /// How rasters such as photos come to the datum of the grid.
+    pub fn datums_of_rasters<'a>(
+        &self,
+        rasters: impl Iterator<Item = &'a PlacedRaster>,
+    ) -> FileDatums {
+        self.datums_of(rasters.map(|raster| (&raster.crs, raster.path())))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::data_extent;
-use crate::{Dem, DemError, GridPlan, PlacedRaster, Polygon};
+use crate::{Dem, DemError, GridPlan, Polygon};
 
 /// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data` is the rectangle of all nodes. None
 /// where all datums are that of WGS84.
@@ -135,15 +135,11 @@ impl GridPlan {
         self.datums_of(polygon.parts().iter().map(|part| (&part.crs, polygon.path())))
     }
 
-    /// How rasters such as photos come to the datum of the grid.
-    pub fn datums_of_rasters<'a>(
+    /// How files come to the datum of the grid.
+    pub(crate) fn datums_of<'a>(
         &self,
-        rasters: impl Iterator<Item = &'a PlacedRaster>,
+        files: impl Iterator<Item = (&'a Crs, &'a Path)>,
     ) -> FileDatums {
-        self.datums_of(rasters.map(|raster| (raster.crs(), raster.path())))
-    }
-
-    fn datums_of<'a>(&self, files: impl Iterator<Item = (&'a Crs, &'a Path)>) -> FileDatums {
         let area_deg = self.area_deg();
         let operation = |crs: &Crs| Operation::into_working(crs, &self.working, Some(area_deg));
         FileDatums::of(files, operation, &[area_deg.center()])
