@@ -23,8 +23,8 @@ const RANGE_PAD: f64 = 1e-6;
 const PAD_ROUNDING: f64 = 1e-3;
 
 /// Steps that comparing a tile's lines with each other may take, and looking for the ground along them: a pair of segments or a triangle is one.
-/// Real tiles take a few million.
-const MOST_STEPS: u64 = 1 << 28;
+/// Real tiles take a few million, and those with the finest cells and the most roads a hundred times as many: a margin there holds all triangles.
+const MOST_STEPS: u64 = 1 << 30;
 
 /// A segment in local steps.
 pub(crate) type Segment = [[f64; 2]; 2];
