@@ -51,8 +51,11 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     let digits = Digits::on(&io::stdout());
     if args.json {
         let line = to_line(&PlanDocument::new(&plan, estimate));
-        messages::answer(&format!("{}
-", without_secrets(&line)))?;
+        messages::answer(&format!(
+            "{}
+",
+            without_secrets(&line)
+        ))?;
     } else {
         let text = to_text(&plan, &estimate, work.resources, digits);
         messages::answer(&without_secrets(&text))?;

@@ -34,8 +34,11 @@ fn refused(name: &'static str, bytes: Vec<u8>, reason: &'static str) -> Case {
     Case { name, bytes, outcome: Outcome::Refused(reason), limit_mib: 4 }
 }
 
+/// A name, and how its cases are made.
+type Family = (&'static str, fn() -> Vec<Case>);
+
 /// The cases by what is wrong, each family made when it is asked for: some are large.
-pub const FAMILIES: [(&str, fn() -> Vec<Case>); 5] = [
+pub const FAMILIES: [Family; 5] = [
     ("file", file_cases::all),
     ("metadata", metadata_cases::all),
     ("tile", tile_cases::all),
