@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// The small package, in a system that PROJ knows.
 static MANIFEST: LazyLock<Manifest> = LazyLock::new(|| {
     let mut manifest = package::manifest();
-    manifest.crs_wkt = "EPSG:32632".to_owned();
+    "EPSG:32632".clone_into(&mut manifest.crs_wkt);
     manifest
 });
 

@@ -105,6 +105,9 @@ fn real_regions_are_the_package_s_ground() {
     }
 }
 
+/// Makes a terrain wrong, or what it is compared with.
+type Change = fn(&mut Terrain, &mut Region);
+
 /// The checks see what is wrong.
 #[test]
 #[ignore = "slow: an export of all levels"]
@@ -121,7 +124,7 @@ fn wrong_terrain_is_seen() {
             .any(|(level, found)| found.places > 0 && found.check(told(level)).is_err())
     };
     assert!(!is_wrong(&Terrain::read(&right), &pass()));
-    let changes: [(&str, fn(&mut Terrain, &mut Region)); 3] = [
+    let changes: [(&str, Change); 3] = [
         ("v flipped", |terrain, _| {
             for tile in terrain.tiles.values_mut() {
                 tile.uv.iter_mut().for_each(|[_, v]| *v = LAST - *v);
