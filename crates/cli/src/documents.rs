@@ -14,7 +14,7 @@ pub(crate) mod verify;
 
 use serde::Serialize;
 
-use crate::messages::in_json;
+use crate::escaped::in_json;
 
 /// As one line.
 pub(crate) fn to_line(document: &impl Serialize) -> String {

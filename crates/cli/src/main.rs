@@ -9,6 +9,7 @@ mod completions;
 mod defects;
 mod documents;
 mod drawing;
+mod escaped;
 mod exit;
 mod export;
 mod failure;
@@ -94,7 +95,7 @@ fn answer(error: &clap::Error) -> ExitCode {
         let _ = version::print_long();
     } else {
         let said = error.render().to_string();
-        if messages::for_people(&said) == said {
+        if escaped::for_people(&said) == said {
             let _ = error.print();
         } else if error.use_stderr() {
             messages::write_line(said.trim_end());

@@ -4,7 +4,6 @@
 //! All of them are events of `tracing`; [`begin`] says which are shown and how. Standard error may be closed (`2>&1 | head`): then
 //! nothing is said, and the work goes on.
 
-mod escaped;
 mod lines;
 
 use std::{
@@ -19,7 +18,6 @@ use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
 };
 
-pub(crate) use self::escaped::{for_people, in_json};
 use self::lines::Lines;
 use crate::{
     args::{LogFormat, Voice},
@@ -27,6 +25,7 @@ use crate::{
         progress::{EndRecord, ProgressRecord},
         to_line,
     },
+    escaped::{for_people, in_json},
     exit::ExitCode,
     failure::Failure,
 };

@@ -71,7 +71,11 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     let lost = counts.roads_lost.iter().filter(|loss| loss.length_um > 0).map(|loss| LeftOut {
         number: loss.roads,
         length_um: loss.length_um,
-        what: format!("whole roads {}", plain(&loss.reason)),
+        what: format!(
+            "{} {}",
+            if loss.roads > 0 { "whole roads" } else { "parts of roads" },
+            plain(&loss.reason)
+        ),
         remedy: remedy(&loss.reason),
     });
     let ways = counts.highways_left_out.iter().map(|(reason, number)| {
@@ -100,7 +104,9 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
         let LeftOut { number, length_um, what, remedy } = one;
         let remedy = remedy.map(|remedy| format!(": {remedy}")).unwrap_or_default();
         let long = if *length_um > 0 { format!(", {}", length(*length_um)) } else { String::new() };
-        format!("{} {what}{long}{remedy}", digits.count(*number))
+        // Of roads that are kept parts may be lost; they are not counted.
+        let number = (*number > 0).then(|| digits.count(*number) + " ").unwrap_or_default();
+        format!("{number}{what}{long}{remedy}")
     };
     let mut lines: Vec<String> = all[..told].iter().map(line).collect();
     if let rest @ [_, ..] = &all[told..] {

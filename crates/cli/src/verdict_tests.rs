@@ -87,6 +87,14 @@ fn what_can_be_had_comes_first_with_its_option() {
     assert!(!text.contains("defects"), "an outline of a surface is no defect: {text}");
 }
 
+#[test]
+fn parts_of_roads_are_told_without_a_number() {
+    let mut manifest = full();
+    manifest.counts.roads_lost[0].roads = 0;
+    let text = told(&manifest);
+    assert!(text.contains(" parts of roads outside the elevation data, 25.0 km: give"), "{text}");
+}
+
 /// Without an extract, with a datum, and with nothing lost there is little to say.
 #[test]
 fn a_whole_build_has_four_lines() {

@@ -124,11 +124,14 @@ fn a_single_sample_far_beyond_its_neighbours_is_told_and_kept() {
 fn islands_on_coarse_grids_are_no_single_samples() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("out.pmtiles");
-    for (degrees, is_told) in [(0.5, false), (0.01, true)] {
+    // Of the last one, a mountain is higher than the earth has any.
+    for (degrees, peak_m, is_told) in
+        [(0.5, 4205.0, false), (0.01, 4205.0, true), (0.5, 5500.0, true)]
+    {
         let dem = folder.path().join("islands.asc");
         let place = format!("xllcorner -160\nyllcorner 0\ncellsize {degrees}");
         write_ascii_grid(&dem, [60, 60], &place, |column, row| match [column, row] {
-            [9, 18] => 4205.0,
+            [9, 18] => peak_m,
             [50, 45] => 3715.0,
             [column, _] if column < 30 => -4500.0 - (column as f64),
             [column, row] => -3500.0 - (row as f64) - (column as f64) / 8.0,

@@ -154,10 +154,10 @@ pub(crate) struct LookArgs {
     /// How strongly photos are seen, where the package has some: off, or 0 to 1 [default: as the style says]
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
-    /// Areas (water, forest …), where the package has some: as the style draws them, or none
+    /// Areas (water, forest …), where the package has some: as the style draws them, or off
     #[arg(long, value_enum, default_value_t = OnOff::On)]
     pub(crate) areas: OnOff,
-    /// Boundaries, where the package has some: as the style draws them, or none
+    /// Boundaries, where the package has some: as the style draws them, or off
     #[arg(long, value_enum, default_value_t = OnOff::On)]
     pub(crate) boundaries: OnOff,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 const LEAST_M: f64 = 2000.0;
 /// … unless samples are kilometres apart. On grids of half a degree islands stand alone in the ocean, but not on slopes as steep as this.
 const STEEPNESS: f64 = 2.0 / 3.0;
+/// No summit of the earth stands as far above all that surrounds it, be it the bottom of the sea (Mauna Kea: some 9200 m).
+const MOST_M: f64 = 9500.0;
 /// With fewer neighbours nothing is known of a sample.
 const FEWEST_NEIGHBOURS: usize = 3;
 /// Spikes that are kept with their places.
@@ -13,7 +15,7 @@ const KEPT_SPIKES: usize = 3;
 
 /// How far beyond all of its neighbours a sample stands alone, where neighbours are so far apart.
 pub(crate) fn limit_m(spacing_m: f64) -> f64 {
-    (spacing_m * STEEPNESS).max(LEAST_M)
+    (spacing_m * STEEPNESS).clamp(LEAST_M, MOST_M)
 }
 
 /// A sample that stands alone.

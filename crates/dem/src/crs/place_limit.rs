@@ -15,7 +15,7 @@ pub(crate) struct PlaceLimit {
 }
 
 impl PlaceLimit {
-    /// That of a system.
+    /// The limit of a system.
     pub(crate) fn of_crs(crs: &Crs) -> Self {
         let most = crs.turn_angle().map_or(MOST_METRES / crs.unit_m, |turn| MOST_TURNS * turn);
         Self { most }

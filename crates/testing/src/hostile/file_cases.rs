@@ -7,7 +7,10 @@ use crate::{
     pmtiles::{Entry, directory, gzip, put_varint},
 };
 
-use super::{Case, Outcome, parts::Parts, refused};
+use super::{
+    case::{Case, Outcome, refused},
+    parts::Parts,
+};
 
 /// A directory of one entry at most, and the tiles of the good package after it.
 fn with_root(entries: &[Entry]) -> Vec<u8> {
@@ -30,7 +33,7 @@ fn leaf_to(offset: u64, length: u64) -> Vec<u8> {
     gzip(&directory(&[Entry { step: 0, run: 0, length, offset: offset + 1 }]))
 }
 
-pub(super) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case> {
     let good = Parts::good;
     let number = |value: u64| value.to_le_bytes();
     let mut cases = vec![

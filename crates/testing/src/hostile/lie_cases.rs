@@ -7,9 +7,8 @@ use corniche_tileset::{PayloadContext, SvRoad, TilePayload, encode};
 use serde_json::{Value, json};
 
 use super::{
-    Case, Outcome,
+    case::{Case, Outcome, refused},
     parts::{Parts, metadata},
-    refused,
 };
 use crate::{package, pmtiles::gzip};
 
@@ -108,7 +107,7 @@ pub fn commanding_texts() -> Vec<u8> {
     ])
 }
 
-pub(super) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case> {
     let bounds = package::frame().tile_lattice_bounds(TileId::ROOT);
     let from = LatticePoint::new(bounds.min.u + 5000, bounds.min.v + 5000);
     let far = |steps: i64| LatticePoint::new(from.u + steps, from.v + steps / 3);

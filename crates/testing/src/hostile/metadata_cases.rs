@@ -5,9 +5,8 @@ use serde_json::{Value, json};
 use crate::pmtiles::gzip;
 
 use super::{
-    Case, Outcome,
+    case::{Case, Outcome, refused},
     parts::{Parts, metadata},
-    refused,
 };
 
 fn with_metadata(text: &[u8]) -> Vec<u8> {
@@ -40,7 +39,7 @@ fn with_attribution(text: &str) -> Vec<u8> {
     with_metadata(metadata.to_string().replace("\"HERE\"", text).as_bytes())
 }
 
-pub(super) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case> {
     let huge = u64::MAX;
     let growth = |key: &str, value: u64| {
         let mut row = metadata()["corniche"]["growth"][0].clone();

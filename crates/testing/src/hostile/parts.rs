@@ -7,24 +7,24 @@ use crate::{
 };
 
 /// The pieces of a file, as they are stored.
-pub(super) struct Parts {
-    pub(super) root: Vec<u8>,
-    pub(super) metadata: Vec<u8>,
-    pub(super) leaves: Vec<u8>,
-    pub(super) data: Vec<u8>,
+pub(crate) struct Parts {
+    pub(crate) root: Vec<u8>,
+    pub(crate) metadata: Vec<u8>,
+    pub(crate) leaves: Vec<u8>,
+    pub(crate) data: Vec<u8>,
     /// How many tiles the header counts.
-    pub(super) tiles: u64,
+    pub(crate) tiles: u64,
 }
 
 impl Parts {
     /// The sound package: four tiles, no leaf directories.
-    pub(super) fn good() -> Self {
+    pub(crate) fn good() -> Self {
         let tiles: Vec<Vec<u8>> = package::ids().into_iter().map(package::encoded).collect();
         Self::of_tiles(&tiles)
     }
 
     /// Payloads in the places of the sound package's first tiles.
-    pub(super) fn of_tiles(tiles: &[Vec<u8>]) -> Self {
+    pub(crate) fn of_tiles(tiles: &[Vec<u8>]) -> Self {
         let mut entries = Vec::new();
         let (mut last, mut offset) = (0, 1);
         for (id, tile) in package::ids().into_iter().zip(tiles) {
@@ -43,12 +43,12 @@ impl Parts {
     }
 
     /// The file.
-    pub(super) fn assemble(&self) -> Vec<u8> {
+    pub(crate) fn assemble(&self) -> Vec<u8> {
         pmtiles::file([&self.root, &self.metadata, &self.leaves, &self.data], self.tiles)
     }
 
     /// The file with other bytes at a place of its header.
-    pub(super) fn with_header(&self, at: usize, bytes: &[u8]) -> Vec<u8> {
+    pub(crate) fn with_header(&self, at: usize, bytes: &[u8]) -> Vec<u8> {
         let mut file = self.assemble();
         file[at..at + bytes.len()].copy_from_slice(bytes);
         file
@@ -56,29 +56,29 @@ impl Parts {
 }
 
 /// The sound package's metadata.
-pub(super) fn metadata() -> serde_json::Value {
+pub(crate) fn metadata() -> serde_json::Value {
     package::metadata(&package::manifest())
 }
 
 /// A section as one zstd frame.
-pub(super) fn zstd_section(kind: u16, raw: &[u8]) -> Section {
+pub(crate) fn zstd_section(kind: u16, raw: &[u8]) -> Section {
     let stored = zstd::bulk::compress(raw, 3).unwrap();
     Section { kind, compression: 1, raw_length: raw.len() as u32, stored }
 }
 
 /// A payload of tile 0/0/0 with right offsets and checksums.
-pub(super) fn payload(sections: &[Section]) -> Vec<u8> {
+pub(crate) fn payload(sections: &[Section]) -> Vec<u8> {
     crate::payload::payload(corniche_geom::TileId::ROOT, sections)
 }
 
 /// A payload with other bytes at a place of its header or section table, and a checksum that fits.
-pub(super) fn resealed(mut payload: Vec<u8>, at: usize, bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn resealed(mut payload: Vec<u8>, at: usize, bytes: &[u8]) -> Vec<u8> {
     payload[at..at + bytes.len()].copy_from_slice(bytes);
     with_right_table_checksum(payload)
 }
 
 /// The sections of the sound package's tile 0/0/0, decompressed by zstd's own decoder, in the order of their kinds.
-pub(super) fn raw_sections() -> Vec<Vec<u8>> {
+pub(crate) fn raw_sections() -> Vec<Vec<u8>> {
     let bytes = package::encoded("0/0/0".parse().unwrap());
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     (0..usize::from(bytes[6]))

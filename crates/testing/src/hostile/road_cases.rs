@@ -11,9 +11,8 @@ use corniche_tileset::{GeoRoad, PayloadContext, SvRoad, Terrain, TilePayload, en
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use super::{
-    Case, Outcome,
+    case::{Case, Outcome, refused},
     parts::{payload, raw_sections, zstd_section},
-    refused,
     tile_cases::{with_sections, with_tile},
 };
 
@@ -320,7 +319,7 @@ fn varint_length(bytes: &[u8]) -> usize {
     1 + bytes.iter().take_while(|&&byte| byte >= 0x80).count()
 }
 
-pub(super) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
     let raws = raw_sections();

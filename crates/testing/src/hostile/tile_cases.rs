@@ -3,17 +3,16 @@
 use crate::{package, payload::Section, pmtiles::put_varint};
 
 use super::{
-    Case, Outcome,
+    case::{Case, Outcome, refused},
     parts::{Parts, payload, raw_sections, resealed, zstd_section},
-    refused,
 };
 
 /// A package whose tile 0/0/0 has these bytes.
-pub(super) fn with_tile(tile: Vec<u8>) -> Vec<u8> {
+pub(crate) fn with_tile(tile: Vec<u8>) -> Vec<u8> {
     Parts::of_tiles(&[tile]).assemble()
 }
 
-pub(super) fn with_sections(sections: &[Section]) -> Vec<u8> {
+pub(crate) fn with_sections(sections: &[Section]) -> Vec<u8> {
     with_tile(payload(sections))
 }
 
@@ -72,7 +71,7 @@ fn frame_of(raw_length: u32, stored: Vec<u8>) -> Vec<u8> {
     with_sections(&[Section { kind: 1, compression: 1, raw_length, stored }])
 }
 
-pub(super) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let raws = raw_sections();
     let terrain = || zstd_section(1, &raws[0]);

@@ -96,7 +96,7 @@ pub enum BadRoads {
     /// A road does not fit the ground.
     #[error(transparent)]
     Road(#[from] BadRoad),
-    /// Their segments lie beside so many triangles that no writer can have meant it.
+    /// Segments lie beside more triangles than any writer can have meant.
     #[error("its roads cannot be placed on its ground")]
     TooMuch(#[from] TooMuchWork),
 }
