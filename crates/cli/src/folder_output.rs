@@ -88,9 +88,10 @@ impl FolderOutput {
             return Err(unusable(&format_args!("{} is in it", used.display())));
         }
         leftovers::tell(&target);
-        interrupt::remove_at_end(claim.path());
-        interrupt::remove_at_end(&claim.unfinished());
         let folder = claim.begin_folder().map_err(|error| unusable(&error))?;
+        // Not before: what a killed run left, perhaps an export that was replaced, is known by the claim alone until it is removed.
+        interrupt::remove_at_end(claim.path());
+        interrupt::remove_at_end(&folder);
         Ok(Self { target, existing, folder, claim })
     }
 
@@ -106,6 +107,8 @@ impl FolderOutput {
         let marker = format!("{what}{WRITTEN_BY}{version}. {IS_REPLACED}");
         fs::write(self.folder.join(MARKER), marker).map_err(not_written)?;
         let bytes = sync(&self.folder).map_err(not_written)?;
+        // What an early end removes while it takes its place would be half a new export, or the claim by which the old one is known.
+        interrupt::spare(&[self.claim.path(), &self.folder]);
         let replaced = self.claim.replaced();
         match kind_of(&self.target).map_err(not_written)? {
             Kind::Free => {}

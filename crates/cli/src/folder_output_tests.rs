@@ -1,11 +1,11 @@
 //! A folder of output appears when it is complete and is replaced as a whole, whatever is killed.
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, thread, time::Duration};
 
 use tempfile::TempDir;
 
 use super::{FolderOutput, MARKER};
-use crate::{exit::ExitCode, output::Existing};
+use crate::{exit::ExitCode, interrupt, output::Existing};
 
 fn write(target: &Path, existing: Existing, text: &str) {
     let output = FolderOutput::create(target, existing, &[]).unwrap();
@@ -119,6 +119,33 @@ fn what_a_kill_leaves_is_put_right() {
     write(&target, Existing::Replace, "three");
     assert_eq!(names(folder.path()), ["out"]);
     assert_eq!(fs::read(target.join("0/a")).unwrap(), b"three");
+}
+
+/// The program removes what is temporary half a second after a signal, while the run may be about to replace an export.
+#[test]
+fn an_early_end_removes_nothing_of_a_folder_that_takes_its_place() {
+    let folder = TempDir::new().unwrap();
+    let target = folder.path().join("out");
+    write(&target, Existing::Keep, "one");
+    let output = FolderOutput::create(&target, Existing::Replace, &[]).unwrap();
+    let claim = folder.path().canonicalize().unwrap().join(".out.unfinished");
+    let made = output.path().to_path_buf();
+    fs::write(made.join("a"), "two").unwrap();
+    let at_end = interrupt::temporary();
+    assert!(at_end.contains(&claim) && at_end.contains(&made), "{at_end:?}");
+    // It has begun to remove them: the run waits.
+    let placing = thread::spawn(move || output.place("a test"));
+    thread::sleep(Duration::from_millis(200));
+    assert!(!placing.is_finished(), "it was placed while it was removed");
+    assert_eq!(fs::read(target.join("0/a")).unwrap(), b"one");
+    assert!(claim.exists());
+    // It has not begun yet: it would find nothing of them any more.
+    drop(at_end);
+    placing.join().unwrap().unwrap();
+    let at_end = interrupt::temporary();
+    assert!(!at_end.contains(&claim) && !at_end.contains(&made), "{at_end:?}");
+    assert_eq!(fs::read(target.join("a")).unwrap(), b"two");
+    assert_eq!(names(folder.path()), ["out"]);
 }
 
 /// Folders are not taken for ours because of their names, nor because of a marker that is empty or a link.

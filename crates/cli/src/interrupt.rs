@@ -12,7 +12,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{
-        Mutex, OnceLock, PoisonError,
+        Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
         mpsc,
     },
@@ -37,7 +37,8 @@ static NOTED: AtomicBool = AtomicBool::new(false);
 static CAUSE: OnceLock<Cause> = OnceLock::new();
 /// The run knows of it.
 static SEEN: AtomicBool = AtomicBool::new(false);
-/// What is removed when the program ends early: temporary files and folders beside targets.
+/// What is removed when the program ends early: temporary files and folders beside targets. It is locked for as long as they are removed, so
+/// that who spares one before it is moved does so before that or never.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Where the intermediate results of the run are, which stay.
@@ -107,7 +108,17 @@ pub(crate) fn is_noted() -> bool {
 
 /// A temporary file or folder, which is removed when the program ends early. It may be gone already.
 pub(crate) fn remove_at_end(path: &Path) {
-    TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_path_buf());
+    temporary().push(path.to_path_buf());
+}
+
+/// These are not removed any more when the program ends early. Where it is about to end and removes them, this does not return.
+pub(crate) fn spare(paths: &[&Path]) {
+    temporary().retain(|path| !paths.contains(&&**path));
+}
+
+/// What is removed when the program ends early, for as long as no other thread may change that.
+pub(crate) fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
+    TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A folder of intermediate results, from which the same run can go on. It stays when the program ends early, and the user is told.
@@ -116,8 +127,8 @@ pub(crate) fn keep(path: &Path) {
 }
 
 fn end() -> ! {
-    let temporary =
-        TEMPORARY.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
+    // Held until the program is gone.
+    let temporary = temporary();
     // Other threads are still at work and may add files while a folder is emptied, so it is tried again.
     for _ in 0..3 {
         // What was begun first says whose the rest is, so it goes last.

@@ -15,7 +15,7 @@ use crate::{
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
-    scratch::{self, FileScratch},
+    scratch::FileScratch,
     vector::{Field, FieldKind, Layer, Record, Shape, ShapeKind, Value, VectorFile, VectorFormat},
 };
 
@@ -87,7 +87,7 @@ pub fn export_areas(
         return Err(ExportError::GeoJsonPlanCrs);
     }
     let places = Places::new(manifest, request.coordinates)?;
-    let folder = scratch::folder_of(path);
+    let folder = corniche_store::folder_of(path);
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
     let mut sorter = Sorter::new(&scratch, request.memory_bytes);

@@ -16,7 +16,7 @@ use crate::{
     piece::Piece,
     places::Places,
     read,
-    scratch::{self, FileScratch},
+    scratch::FileScratch,
     vector::{Layer, Record, Shape, ShapeKind, VectorFile, VectorFormat},
     ways::Ways,
 };
@@ -59,7 +59,7 @@ pub fn export_roads(
         return Err(ExportError::GeoJsonCrs);
     }
     let places = Places::new(manifest, request.coordinates)?;
-    let folder = scratch::folder_of(path);
+    let folder = corniche_store::folder_of(path);
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
     let tiles = read::tiles(package, level, request.bounds.as_ref())?;

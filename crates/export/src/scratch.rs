@@ -9,11 +9,6 @@ use std::{
 
 use corniche_store::{Scratch, Span};
 
-/// The folder of a file.
-pub(crate) fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
 /// Scratch space in a file without a name, which is gone when the program ends, however it ends.
 #[derive(Debug)]
 pub(crate) struct FileScratch {

@@ -2,14 +2,13 @@
 
 use std::{
     fs::{self, File},
-    hash::{BuildHasher as _, Hasher as _, RandomState},
     io::{self, Read, Write as _},
     path::{Path, PathBuf},
     sync::Arc,
     time::Duration,
 };
 
-use corniche_store::{OpenMode, open_own};
+use corniche_store::{OpenMode, open_own, random_digits};
 use object_store::{
     Error, ObjectStore, PutMode, PutMultipartOptions, PutOptions,
     aws::AmazonS3,
@@ -75,7 +74,7 @@ impl Bucket {
         }
         let explain = |error| self.explain(key, "write", error);
         let object = Self::path(key).map_err(explain)?;
-        let writer = format!("{:016x}", RandomState::new().build_hasher().finish());
+        let writer = random_digits();
         let note = Note::of(path);
         self.end_earlier(path)?;
         let sent = if length <= PART_BYTES {

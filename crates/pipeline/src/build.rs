@@ -71,7 +71,7 @@ pub fn build_on(
     let plan = BuildPlan::of(&settings.plan, &opened)?;
     let store_folder = work_store::folder_of(&destination.target, settings.tmp.as_deref());
     // Before the store is looked at: what another build is at work on is no leftover.
-    let claimed = Claimed::take(&destination)?;
+    let claimed = Claimed::take(&destination, observer)?;
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
         let folder = &*destination.folder;
@@ -82,7 +82,6 @@ pub fn build_on(
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
     let finished = claimed.begin()?;
-    finished.paths().into_iter().for_each(|path| observer.temporary(path));
     let finished_path = finished.path().to_path_buf();
     let context = Context::new(&settings.plan, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: &finished_path, named: &settings.output };

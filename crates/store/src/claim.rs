@@ -11,7 +11,7 @@
 
 use std::{
     fs::{self, File, TryLockError},
-    io::{self, Read as _, Write as _},
+    io::{self, Read as _, Seek as _, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -19,7 +19,7 @@ use tempfile::{NamedTempFile, TempPath};
 
 use crate::{
     OpenMode,
-    local::random_digits,
+    ids::{Marked, marked, random_digits},
     own_files::{folder_of, in_the_way, is_there, open_own, sync_folder, system::is_at},
 };
 
@@ -67,20 +67,19 @@ impl Claim {
             if !is_at(&file, &path)? {
                 continue;
             }
-            let mut claim = Self { target: target.to_path_buf(), path, file, id: String::new() };
-            match claim.read()? {
-                Said::Nothing => {
-                    claim.id = random_digits();
-                    claim.file.write_all(format!("{MARK}{}\n", claim.id).as_bytes())?;
+            // It becomes a claim, which is removed when it is dropped, only once it is known to be ours or to say nothing.
+            let text = read(&file)?;
+            let said = marked(&text, MARK);
+            let id = match said {
+                Marked::Id(id, "") => id.to_owned(),
+                Marked::Begun => random_digits(),
+                Marked::Id(..) | Marked::Other => {
+                    return Err(in_the_way(&path, "it was not made by this version of Corniche"));
                 }
-                Said::Id(id) => claim.id = id,
-                Said::Other => {
-                    let what = "it was not made by this version of Corniche";
-                    let error = in_the_way(&claim.path, what);
-                    // It stays.
-                    claim.path = PathBuf::new();
-                    return Err(error);
-                }
+            };
+            let mut claim = Self { target: target.to_path_buf(), path, file, id };
+            if said == Marked::Begun {
+                claim.sign()?;
             }
             return Ok(claim);
         }
@@ -143,26 +142,19 @@ impl Claim {
         sync_folder(folder_of(&self.path))
     }
 
-    fn read(&self) -> io::Result<Said> {
-        let mut bytes = Vec::new();
-        (&self.file).take(MOST_BYTES).read_to_end(&mut bytes)?;
-        if bytes.is_empty() {
-            return Ok(Said::Nothing);
-        }
-        let text = String::from_utf8_lossy(&bytes);
-        let id = text.strip_prefix(MARK).and_then(|rest| rest.strip_suffix('\n'));
-        let is_id = |id: &&str| {
-            id.len() == random_digits().len() && id.bytes().all(|c| c.is_ascii_hexdigit())
-        };
-        Ok(id.filter(is_id).map_or(Said::Other, |id| Said::Id(id.to_owned())))
+    /// Writes the claim, in the place of one that was begun.
+    fn sign(&mut self) -> io::Result<()> {
+        self.file.set_len(0)?;
+        self.file.rewind()?;
+        self.file.write_all(format!("{MARK}{}\n", self.id).as_bytes())
     }
 }
 
 impl Drop for Claim {
     fn drop(&mut self) {
         // What is still there is known by the claim alone, and a later run removes both.
-        let is_needed = !self.id.is_empty()
-            && [UNFINISHED, REPLACED].map(|end| self.beside(end)).iter().any(|path| is_there(path));
+        let is_needed =
+            [UNFINISHED, REPLACED].map(|end| self.beside(end)).iter().any(|path| is_there(path));
         if !is_needed && is_at(&self.file, &self.path).unwrap_or(false) {
             let _ = fs::remove_file(&self.path);
         }
@@ -170,13 +162,10 @@ impl Drop for Claim {
 }
 
 /// What a file says that has the name of a claim.
-enum Said {
-    /// It is empty, so that nothing is lost when it becomes the claim.
-    Nothing,
-    /// It is a claim with this id.
-    Id(String),
-    /// It says something else.
-    Other,
+fn read(file: &File) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    file.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Writes the bytes of a finished file to the disk, moves it to its target, and makes its name durable. Returns its size.

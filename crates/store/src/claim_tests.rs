@@ -78,16 +78,25 @@ fn of_two_programs_one_is_refused_and_the_other_goes_on() {
     assert_eq!(fs::read(&target).unwrap(), b"all of it");
 }
 
-/// A kill between making the claim and writing it.
+/// A kill between making the claim and the end of its line, as a full disk cuts it.
 #[test]
-fn an_empty_claim_proves_nothing_and_is_used() {
-    let folder = tempfile::tempdir().unwrap();
-    let target = folder.path().join("x.csv");
-    for name in [".x.csv.unfinished", ".x.csv..unfinished", ".x.csv..replaced"] {
-        fs::write(folder.path().join(name), "").unwrap();
+fn a_claim_that_was_only_begun_proves_nothing_and_is_used() {
+    let line = format!("{MARK}{ID}\n");
+    for end in [0, 1, "corniche unf".len(), MARK.len(), MARK.len() + 10, line.len() - 1] {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("x.csv");
+        let of_others = [".x.csv..replaced", ".x.csv..unfinished"];
+        for name in of_others {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let there = folder.path().join(".x.csv.unfinished");
+        fs::write(&there, &line[..end]).unwrap();
+        let claim = Claim::take(&target).unwrap();
+        assert_eq!(fs::read_to_string(&there).unwrap(), format!("{MARK}{}\n", claim.id));
+        drop(claim.begin_file().unwrap());
+        drop(claim);
+        assert_eq!(names(folder.path()), of_others, "{end}");
     }
-    drop(Claim::take(&target).unwrap().begin_file().unwrap());
-    assert_eq!(names(folder.path()), [".x.csv..replaced", ".x.csv..unfinished"]);
 }
 
 #[test]
@@ -97,7 +106,7 @@ fn what_others_have_put_there_is_refused_by_name_and_left() {
         "half of it",
         "corniche unfinished ../../victim\n",
         "corniche unfinished \n",
-        &claim[..30],
+        "corniche unfinished 0123 and more",
         &format!("{claim}more"),
     ];
     for text in texts {

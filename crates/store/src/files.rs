@@ -130,21 +130,27 @@ impl OpenFile {
         Ok(())
     }
 
-    pub(crate) fn read_exact_at(
-        &self,
-        mut bytes: &mut [u8],
-        mut offset: u64,
-    ) -> Result<(), StoreError> {
-        while !bytes.is_empty() {
-            let read = named(&self.path, "read", || match self.file.read_at(bytes, offset) {
-                Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
-                read => read,
-            })?;
-            self.files.read_bytes.fetch_add(read as u64, Ordering::Relaxed);
-            bytes = &mut bytes[read..];
-            offset += read as u64;
+    pub(crate) fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
+        if self.read_up_to(bytes, offset)? == bytes.len() {
+            return Ok(());
         }
-        Ok(())
+        named(&self.path, "read", || Err(io::ErrorKind::UnexpectedEof.into()))
+    }
+
+    /// Reads what is there, up to the end of `bytes` or of the file; returns how many bytes that are.
+    pub(crate) fn read_up_to(&self, bytes: &mut [u8], offset: u64) -> Result<usize, StoreError> {
+        let mut length = 0;
+        while length < bytes.len() {
+            let rest = &mut bytes[length..];
+            let read =
+                named(&self.path, "read", || self.file.read_at(rest, offset + length as u64))?;
+            if read == 0 {
+                break;
+            }
+            self.files.read_bytes.fetch_add(read as u64, Ordering::Relaxed);
+            length += read;
+        }
+        Ok(length)
     }
 
     pub(crate) fn length(&self) -> Result<u64, StoreError> {

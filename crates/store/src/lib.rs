@@ -35,6 +35,7 @@ mod disk;
 mod error;
 mod files;
 mod groups;
+mod ids;
 mod local;
 mod memory;
 mod own_files;
@@ -50,6 +51,7 @@ pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
 pub use groups::Groups;
+pub use ids::random_digits;
 pub use local::{
     Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME, SYNC_INTERVAL,
     SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,

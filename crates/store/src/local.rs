@@ -36,7 +36,6 @@ use std::{
 pub use binding::{plan_of_header, store_header};
 pub use folder::Folder;
 pub use layout::{PARTS as PARTS_NAME, PLAN as PLAN_NAME, STORE as STORE_NAME, part_of_sealed};
-pub(crate) use lock::random_digits;
 pub use scratch::LocalScratch;
 pub use sealed_part::check_sealed;
 

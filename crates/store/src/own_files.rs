@@ -1,8 +1,12 @@
 //! Files of ours in folders that others may have prepared: no link is followed, nothing is waited for, and what is there already is a regular
 //! file of this user.
 //!
-//! On Unix a file of a folder that is ours is opened by a handle of that folder, which is opened without following a link either. Elsewhere
-//! only the file's own name is protected: links of folders are followed, and who owns a file is not asked.
+//! On Unix a file of a folder that is ours is opened, renamed and removed by a handle of that folder, which is opened without following a link
+//! either. That holds for the last two names of a path and for one call. Each call opens the folder anew by its path: links further up are
+//! followed, and a folder that is exchanged for another between two calls is not noticed. Folders themselves are made, removed and made durable
+//! by their paths; the system follows no link where it makes or removes one.
+//!
+//! Elsewhere only the file's own name is protected: links of folders are followed, and who owns a file is not asked.
 
 use std::{
     fs::{File, FileType},
@@ -249,7 +253,9 @@ pub(crate) mod system {
 
         pub(crate) fn identity(&self, name: &OsStr) -> io::Result<FileId> {
             let found = statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW)?;
-            Ok(FileId(found.st_dev, found.st_ino))
+            // As the standard library does it: systems have these numbers in types of their own.
+            #[allow(clippy::unnecessary_cast, reason = "they are i32 on macOS, and u64 on Linux")]
+            Ok(FileId(found.st_dev as u64, found.st_ino as u64))
         }
     }
 

@@ -11,6 +11,9 @@ use crate::own_files::system::OwnFolder;
 use crate::{Disk, DiskFile, FileId, Hold, Listed, OpenMode, sync_folder};
 
 /// The file system of the machine.
+///
+/// On Unix each call about a file opens the folder around it anew, without following a link at the folder's name. No handle is kept from one
+/// call to the next: see the head of `own_files.rs` for what that does not protect from.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SystemDisk;
 

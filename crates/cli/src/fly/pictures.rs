@@ -59,6 +59,8 @@ impl Pictures {
 
     pub(crate) fn finish(self) -> Result<(), Failure> {
         let Self { target, folder } = self;
+        // An early end would leave half of them there.
+        interrupt::spare(&[folder.path()]);
         fs::rename(folder.path(), &target).map_err(|error| {
             Failure::new(
                 ExitCode::Failed,

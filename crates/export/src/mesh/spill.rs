@@ -15,7 +15,7 @@ pub(crate) struct Spill {
 impl Spill {
     /// A file without a name in the folder of another file.
     pub(crate) fn beside(path: &Path) -> io::Result<Self> {
-        let file = tempfile::tempfile_in(crate::scratch::folder_of(path))?;
+        let file = tempfile::tempfile_in(corniche_store::folder_of(path))?;
         Ok(Self { file: BufWriter::new(file), length: 0 })
     }
 

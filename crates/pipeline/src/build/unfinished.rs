@@ -6,7 +6,7 @@ use corniche_store::Claim;
 use tempfile::NamedTempFile;
 
 use super::destination::Destination;
-use crate::{BuildError, place_finished};
+use crate::{BuildError, Observer, place_finished};
 
 /// The right to write a package at its target: of two builds of one target one is refused.
 pub(crate) struct Claimed<'a> {
@@ -22,10 +22,19 @@ pub(crate) struct Unfinished<'a> {
 }
 
 impl<'a> Claimed<'a> {
-    pub(crate) fn take(destination: &'a Destination) -> Result<Self, BuildError> {
+    /// Tells the observer what lies beside the target from now on.
+    pub(crate) fn take(
+        destination: &'a Destination,
+        observer: &dyn Observer,
+    ) -> Result<Self, BuildError> {
         let Destination { target, folder, .. } = destination;
         match Claim::take(target) {
-            Ok(claim) => Ok(Self { destination, claim }),
+            Ok(claim) => {
+                // The claim first, as it says whose the rest is; the rest may be there already, from a killed build.
+                observer.temporary(claim.path());
+                observer.temporary(&claim.unfinished());
+                Ok(Self { destination, claim })
+            }
             Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
                 Err(BuildError::AtWork { path: target.clone() })
             }
@@ -44,11 +53,6 @@ impl<'a> Claimed<'a> {
 }
 
 impl Unfinished<'_> {
-    /// What a caller removes that ends the program early.
-    pub(crate) fn paths(&self) -> [&Path; 2] {
-        [self.claimed.claim.path(), self.path()]
-    }
-
     pub(crate) fn path(&self) -> &Path {
         self.file.path()
     }

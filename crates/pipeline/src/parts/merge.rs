@@ -71,8 +71,7 @@ pub fn merge(
     let stores = Stores::look(given, plan, access, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     place.refuse_inputs(&plan_settings, &settings.stores)?;
-    let finished = Claimed::take(destination)?.begin()?;
-    finished.paths().into_iter().for_each(|path| observer.temporary(path));
+    let finished = Claimed::take(destination, observer)?.begin()?;
     let open_stores = stores.open(OWN_PART, &is_merged)?;
     let store = &open_stores.store;
     let context = Context::new(&plan_settings, *resources, &opened, store, observer);

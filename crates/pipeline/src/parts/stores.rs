@@ -72,12 +72,7 @@ impl<'a> Stores<'a> {
         for (index, name) in given.names.iter().enumerate() {
             let store = match address(name)? {
                 Some(address) => OneStore::Objects(Box::new(access.place(&address)?)),
-                // What a person names may be a link to a folder; within it none is followed.
-                None if name.is_symlink() => {
-                    let led_to = fs::canonicalize(name).unwrap_or_else(|_| name.clone());
-                    OneStore::Folder(Folder::new(Arc::clone(&disk), &led_to))
-                }
-                None => OneStore::Folder(Folder::new(Arc::clone(&disk), name)),
+                None => OneStore::Folder(Folder::new(Arc::clone(&disk), &folder_of_store(name))),
             };
             match store.place().stored_plan()? {
                 Some(there) => refuse_other(name, plan, &wanted, &there)?,
@@ -188,6 +183,13 @@ impl<'a> Stores<'a> {
     }
 }
 
+/// The folder that a person names, which may be a link to one: within it no link is followed.
+fn folder_of_store(name: &Path) -> PathBuf {
+    // Shells complete a link to a folder with a slash, with which the system looks at the folder instead of the link.
+    let plain: PathBuf = name.components().collect();
+    if plain.is_symlink() { fs::canonicalize(name).unwrap_or(plain) } else { name.to_path_buf() }
+}
+
 impl OneStore {
     fn place(&self) -> &dyn PartsPlace {
         match self {
@@ -262,3 +264,7 @@ fn numbered(folder: &Path, number: u32) -> PathBuf {
     name.push(format!(".{number}"));
     name.into()
 }
+
+#[cfg(all(test, unix))]
+#[path = "stores_tests.rs"]
+mod tests;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{StoreError, files::Files};
+use crate::{StoreError, files::Files, ids::is_id};
 
 /// Header of the store; with it the folder is a store.
 pub const STORE: &str = "store";
@@ -130,9 +130,7 @@ fn role(name: &str, is_folder: bool) -> Option<Role> {
     let has_suffix = |stem: &str| {
         let suffix = stem.rsplit('.').next().unwrap_or_default();
         suffix.split_once('-').is_some_and(|(process, digits)| {
-            process.bytes().all(|c| c.is_ascii_digit())
-                && digits.len() == 16
-                && digits.bytes().all(|c| c.is_ascii_hexdigit())
+            process.bytes().all(|c| c.is_ascii_digit()) && is_id(digits)
         })
     };
     let endings =

@@ -2,7 +2,6 @@
 //! whose lock is free has no owner.
 
 use std::{
-    hash::{BuildHasher, Hasher, RandomState},
     path::{Path, PathBuf},
     process,
     sync::Arc,
@@ -11,6 +10,7 @@ use std::{
 use crate::{
     Hold, OpenMode, StoreError,
     files::{Files, OpenFile, is_kind},
+    ids::{Marked, marked, random_digits},
     local::layout,
 };
 
@@ -21,7 +21,7 @@ const MARK: &str = "corniche store ";
 /// What the line begins with that says who holds it.
 const OWNER: &str = "process ";
 /// So much of a lock is read at most.
-const MOST_BYTES: u64 = 300;
+const MOST_BYTES: usize = 300;
 
 /// Takes the lock of the store in `folder`. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
 ///
@@ -77,7 +77,7 @@ pub(crate) fn adopt(files: &Arc<Files>, path: &Path) -> Result<Option<OpenFile>,
 /// What a file says that has the name of a store's lock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Signature {
-    /// Nothing, or the owner alone, as older versions had it: nothing is lost when it is written.
+    /// Nothing, the beginning of our line, or the owner alone, as older versions had it: nothing is lost when it is written.
     None,
     /// It says that a store is here, in so many bytes, which are written before anything else of the store and never changed.
     Store(u64),
@@ -99,39 +99,38 @@ pub(crate) fn signature(files: &Arc<Files>, folder: &Path) -> Result<Signature, 
 
 fn signature_of(file: &OpenFile) -> Result<Signature, StoreError> {
     let text = read_text(file)?;
-    let mark = text.strip_prefix(MARK).and_then(|rest| rest.split_once('\n'));
-    Ok(match mark {
-        Some((id, _)) if id.len() == random_digits().len() => {
-            Signature::Store((MARK.len() + id.len() + 1) as u64)
-        }
-        None if text.is_empty() || text.starts_with(OWNER) => Signature::None,
-        _ => Signature::Foreign,
+    Ok(match marked(&text, MARK) {
+        Marked::Id(id, _) => Signature::Store((MARK.len() + id.len() + 1) as u64),
+        Marked::Begun => Signature::None,
+        Marked::Other if text.starts_with(OWNER) => Signature::None,
+        Marked::Other => Signature::Foreign,
     })
 }
 
 /// Writes into a lock that is held: that a store is here, unless it says so, and who works here.
+///
+/// Others that share it may read and sign it meanwhile. So the mark is never cut off, and the file gets shorter only once the new text is there.
 fn sign(file: &OpenFile) -> Result<(), StoreError> {
-    let length = match signature_of(file)? {
-        Signature::Store(length) => length,
+    let owner = format!("{OWNER}{} on {}\n", process::id(), host());
+    match signature_of(file)? {
+        Signature::Store(length) => write_to_end(file, &owner, length),
         Signature::None => {
-            let mark = format!("{MARK}{}\n", random_digits());
-            file.write_all_at(mark.as_bytes(), 0)?;
-            file.set_length(mark.len() as u64)?;
+            write_to_end(file, &format!("{MARK}{}\n{owner}", random_digits()), 0)?;
             // Durable before what it speaks for.
             file.sync()?;
-            file.files().sync_folder(file.path().parent().unwrap_or(file.path()))?;
-            mark.len() as u64
+            file.files().sync_folder(file.path().parent().unwrap_or(file.path()))
         }
-        Signature::Foreign => {
-            return Err(StoreError::NotAStore {
-                path: file.path().parent().unwrap_or(file.path()).to_owned(),
-                what: format!("its {:?} was not written by Corniche", layout::LOCK),
-            });
-        }
-    };
-    let owner = format!("{OWNER}{} on {}\n", process::id(), host());
-    file.set_length(length)?;
-    file.write_all_at(owner.as_bytes(), length)
+        Signature::Foreign => Err(StoreError::NotAStore {
+            path: file.path().parent().unwrap_or(file.path()).to_owned(),
+            what: format!("its {:?} was not written by Corniche", layout::LOCK),
+        }),
+    }
+}
+
+/// Writes a text that ends the file.
+fn write_to_end(file: &OpenFile, text: &str, offset: u64) -> Result<(), StoreError> {
+    file.write_all_at(text.as_bytes(), offset)?;
+    file.set_length(offset + text.len() as u64)
 }
 
 /// Process id and random digits: two processes, of one machine or of two, never choose the same.
@@ -139,16 +138,11 @@ pub(crate) fn suffix() -> String {
     format!("{}-{}", process::id(), random_digits())
 }
 
-/// Sixteen digits that nobody has had before.
-pub(crate) fn random_digits() -> String {
-    // Each `RandomState` has new keys from the system.
-    format!("{:016x}", RandomState::new().build_hasher().finish())
-}
-
-/// The beginning of a lock, which is short.
+/// The beginning of a lock, which is short. It can get longer or shorter meanwhile, so its length is not asked.
 fn read_text(file: &OpenFile) -> Result<String, StoreError> {
-    let mut bytes = vec![0; file.length()?.min(MOST_BYTES) as usize];
-    file.read_exact_at(&mut bytes, 0)?;
+    let mut bytes = vec![0; MOST_BYTES];
+    let length = file.read_up_to(&mut bytes, 0)?;
+    bytes.truncate(length);
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
@@ -165,3 +159,7 @@ fn host() -> String {
     let name = name.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_default();
     if name.trim().is_empty() { "this machine".to_owned() } else { name.trim().to_owned() }
 }
+
+#[cfg(test)]
+#[path = "lock_tests.rs"]
+mod tests;
