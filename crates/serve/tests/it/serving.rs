@@ -541,7 +541,7 @@ fn a_slow_client_that_reads_gets_all() {
         format!("GET {PACKAGE} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", server.address);
     stream.write_all(asked.as_bytes()).unwrap();
     let begun = Instant::now();
-    let (mut got, mut some) = (0, [0; 20_000]);
+    let (mut got, mut some) = (0, [0; 16_000]);
     while begun.elapsed() < PATIENCE * 2 {
         got += stream.read(&mut some).unwrap() as u64;
         thread::sleep(PATIENCE / 20);
