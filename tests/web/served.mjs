@@ -3,7 +3,9 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 import { test } from "node:test";
+import { PNG } from "pngjs";
 import { ask, openPage } from "./browser.mjs";
+import { FAILURES } from "./failing.mjs";
 
 /** The program serves the package and the page; what it printed is its address. */
 async function serve(corniche, site, file) {
@@ -47,6 +49,19 @@ export function tests({ browser, server, other, site, corniche, package: file })
     await opened(own);
     checkAllowed(own);
     await own.end();
+    served.end();
+  });
+
+  test("without WebGPU, the picture beside a package of another server is shown under the policy", async () => {
+    other.behave();
+    other.state.replaced.set("/packages/pass.png", { bytes: PNG.sync.write(new PNG({ width: 40, height: 30 })), type: "image/png" });
+    const served = await serve(corniche, site, file);
+    const address = `/?src=${encodeURIComponent(`${other.origin}/packages/pass.pmtiles`)}`;
+    const page = await openPage(browser, served, address, { width: 500, height: 400, before: FAILURES[0].before });
+    await page.locator("corniche-map img.still").waitFor({ state: "visible" });
+    checkAllowed(page);
+    other.behave();
+    await page.end();
     served.end();
   });
 

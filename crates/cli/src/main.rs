@@ -53,6 +53,7 @@ mod view_command;
 use std::{env, process};
 
 use clap::error::ErrorKind;
+use corniche_remote::without_secrets;
 
 use args::{Arguments, Command, LogFormat, Voice};
 use exit::ExitCode;
@@ -95,7 +96,9 @@ fn answer(error: &clap::Error) -> ExitCode {
         let _ = version::print_long();
     } else {
         let said = error.render().to_string();
-        if escaped::for_people(&said) == said {
+        let is_shown_as_it_is = escaped::for_people(&said) == said
+            && (!error.use_stderr() || without_secrets(&said) == said);
+        if is_shown_as_it_is {
             let _ = error.print();
         } else if error.use_stderr() {
             messages::write_line(said.trim_end());

@@ -29,7 +29,10 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let progress = Progress::new();
     let made = corniche_pipeline::make_part(&part, &progress)?;
     match made.sealed {
-        Some(path) => messages::answer(&format!("{}\n", path.display()))?,
+        // Programs read it (`path=$(corniche part …)`).
+        Some(path) => {
+            messages::answer_as_it_is(&[path.as_os_str().as_encoded_bytes(), b"\n"].concat())?;
+        }
         None => messages::note(
             "nothing to do: there is no data in this part, or it is in the stores already",
         ),

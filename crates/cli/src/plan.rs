@@ -1,6 +1,6 @@
 //! `corniche plan`: what a build will make and what it will take.
 
-use std::{fmt::Write as _, io, path::Path};
+use std::{borrow::Cow, fmt::Write as _, io, path::Path};
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
 use corniche_remote::without_secrets;
@@ -44,23 +44,25 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         }
         return jobs::print(&jobs);
     }
-    let (plan, estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
+    let (plan, mut estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
     if let Some(file) = written {
         write_plan(file, &plan)?;
     }
     let digits = Digits::on(&io::stdout());
     if args.json {
+        estimate.memory.block_file = shown(&estimate.memory.block_file).into_owned();
         let line = to_line(&PlanDocument::new(&plan, estimate));
-        messages::answer(&format!(
-            "{}
-",
-            without_secrets(&line)
-        ))?;
+        messages::answer(&format!("{line}\n"))?;
     } else {
-        let text = to_text(&plan, &estimate, work.resources, digits);
-        messages::answer(&without_secrets(&text))?;
+        messages::answer(&to_text(&plan, &estimate, work.resources, digits))?;
     }
     Ok(ExitCode::Done)
+}
+
+/// The path of an input without secrets, which only addresses have: names of files stay as they are.
+fn shown(path: &str) -> Cow<'_, str> {
+    let is_address = path.contains("://") || path.starts_with("/vsi");
+    if is_address { without_secrets(path) } else { Cow::Borrowed(path) }
 }
 
 fn write_plan(file: Output, plan: &BuildPlan) -> Result<(), Failure> {
@@ -113,7 +115,7 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: 
     }
     say("max error", &format!("{:.3} m on the finest level", plan.settings.max_error_m));
     for input in &plan.inputs {
-        say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));
+        say(&input.kind, &format!("{}, {}", shown(&input.path), bytes(input.bytes)));
     }
     say("nodes", &digits.count(estimate.nodes));
     let subtrees = |level| format!("{} on level {level}", plan.subtrees(level).len());

@@ -23,6 +23,21 @@ fn user_names_passwords_and_signatures_are_hidden() {
         ("https://h/x?tell-nobody#a and https://h?tell-nobody", "https://h/x?… and https://h?…"),
         (r#"{"a":"see \"http://h?tell-nobody\""}"#, r#"{"a":"see \"http://h?…\""}"#),
         ("[\"ftp://a:tell-nobody@h\", \"s3://tell:nobody@b\"]", "[\"ftp://…@h\", \"s3://…@b\"]"),
+        ("http://me:tell'nobody@h/x", "http://…@h/x"),
+        ("argument 'http://me:tell nobody@h/x' found", "argument 'http://…@h/x' found"),
+        ("http://me:tell\"no<bo>dy`@h and a@b", "http://…@h and a@b"),
+        ("http://me:tell/no body@h/x", "http://…@h/x"),
+        ("http://me:tell no@body@h/x", "http://…@h/x"),
+        ("http://me:tell:/nobody@h/x", "http://…@h/x"),
+        ("http://me:tell://nobody@h/x", "http://…@h/x"),
+        (r#"{"a":"http://me:tell\"nobody@h/x","b":"c@d"}"#, r#"{"a":"http://…@h/x","b":"c@d"}"#),
+        ("https://a/x,https://me:tell-nobody@b/y", "https://a/x,https://…@b/y"),
+        ("https://a:80,https://me:tell-nobody@b/y", "https://a:80,https://…@b/y"),
+        ("https://a/http://me:tell'nobody@h?x", "https://a/http://…@h?…"),
+        ("http://me:tell-nobody@a/http://b:c@d/e", "http://…@a/http://…@d/e"),
+        ("https://a/x?tell,http://me:nobody@b/y", "https://a/x?…"),
+        ("http/me:tell-nobody@h", "http/…@h"),
+        ("user01:2345@example.org and me:tell@[::1]", "…@example.org and …@[::1]"),
     ] {
         assert_eq!(without_secrets(text), shown);
         assert_eq!(without_secrets(shown), shown, "it changes again");
@@ -38,6 +53,15 @@ fn other_texts_stay_as_they_are() {
         "is it at https://h/x?",
         "me@h, at 12:30 @ noon, C: @a, / and : and ?a=b",
         "https://h:x/y: no port",
+        "/srv/http/me@site/x.pmtiles and http/me@site/x.pmtiles",
+        "2026-01-01T12:30@home.gpx, 12:30:05.5Z@home.gpx and walk_9:30@home.gpx",
+        "mailto:me@h.org",
+        "ubuntu:22.04@sha256:1c9e2a and ubuntu:22.04@sha256:12345678",
+        "http://h: ask me@h.org",
+        "(http://h:80), ask me@h.org",
+        r#"{"a":"http://h:x","b":"me@h.org"}"#,
+        "http://h:x\nme@h.org",
+        "https://proxy/https://h/a@b",
     ] {
         assert_eq!(without_secrets(text), text);
     }

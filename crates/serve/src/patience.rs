@@ -24,8 +24,9 @@ pub(crate) struct Patient<S> {
     /// How much longer is waited, and how long at most.
     left: Duration,
     most: Duration,
-    /// Before the first time it had to wait, it filled the buffers of the system alone.
-    has_waited: bool,
+    /// What taken bytes may still earn: so many times what was waited for them. What fills the buffers of both sides, whoever reads, is not waited
+    /// for long.
+    may_earn: Duration,
     /// Since when is waited, and what ends it.
     waits: Option<(Instant, Pin<Box<Sleep>>)>,
 }
@@ -33,7 +34,7 @@ pub(crate) struct Patient<S> {
 impl<S> Patient<S> {
     pub(crate) fn new(stream: S, patience: Duration) -> Self {
         let most = patience * MOST_TIMES;
-        Self { stream, left: patience, most, has_waited: false, waits: None }
+        Self { stream, left: patience, most, may_earn: Duration::ZERO, waits: None }
     }
 
     /// Counts what a call did that may have to wait.
@@ -44,16 +45,17 @@ impl<S> Patient<S> {
     ) -> Poll<io::Result<usize>> {
         if let Poll::Ready(done) = done {
             if let Some((since, _)) = self.waits.take() {
-                self.left = self.left.saturating_sub(since.elapsed());
+                let waited = since.elapsed();
+                self.left = self.left.saturating_sub(waited);
+                self.may_earn = waited * MOST_TIMES;
             }
-            if self.has_waited {
-                let taken = *done.as_ref().unwrap_or(&0) as u64;
-                let earned = Duration::from_micros(taken * 1_000_000 / LEAST_BYTES_PER_SECOND);
-                self.left = (self.left + earned).min(self.most);
-            }
+            let taken = *done.as_ref().unwrap_or(&0) as u64;
+            let earned = Duration::from_micros(taken * 1_000_000 / LEAST_BYTES_PER_SECOND);
+            let earned = earned.min(self.may_earn);
+            self.may_earn -= earned;
+            self.left = (self.left + earned).min(self.most);
             return Poll::Ready(done);
         }
-        self.has_waited = true;
         let left = self.left;
         let (_, end) = self.waits.get_or_insert_with(|| (Instant::now(), Box::pin(sleep(left))));
         ready!(end.as_mut().poll(context));

@@ -3,7 +3,7 @@
 use sha2::{Digest as _, Sha256};
 
 /// The policy of a page. It runs scripts of this server and its own, WebAssembly, and workers, also of an address that the element made itself; it
-/// reads packages of any server, and files that a person opens. Other pages may show it in a frame.
+/// reads packages of any server, the still pictures beside them, and files that a person opens. Other pages may show it in a frame.
 pub(crate) fn policy(page: &[u8]) -> String {
     let mut scripts = String::from("'self' 'wasm-unsafe-eval'");
     for script in own_scripts(&String::from_utf8_lossy(page)) {
@@ -11,7 +11,7 @@ pub(crate) fn policy(page: &[u8]) -> String {
     }
     format!(
         "default-src 'self'; script-src {scripts}; worker-src 'self' blob:; connect-src * data: blob:; style-src 'self' 'unsafe-inline'; \
-         img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; form-action 'none'"
+         img-src * data: blob:; object-src 'none'; base-uri 'none'; form-action 'none'"
     )
 }
 

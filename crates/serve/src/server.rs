@@ -14,7 +14,7 @@ use hyper_util::{
     server::graceful::GracefulShutdown,
 };
 use tokio::{
-    net::TcpStream,
+    net::{TcpSocket, TcpStream},
     runtime::Builder,
     sync::{OwnedSemaphorePermit, Semaphore},
     time::{sleep, timeout},
@@ -30,6 +30,9 @@ const ENDS_WITHIN: Duration = Duration::from_secs(2);
 const REQUEST_WITHIN: Duration = Duration::from_mins(1);
 /// How long is waited in all, on a connection, for a client that does not read what it asked for.
 const READS_WITHIN: Duration = Duration::from_secs(30);
+/// What the system keeps for a client that has not taken it yet. Linux takes twice as much, and asks for more when a third of that is free: a client
+/// of [`patience`](crate::patience)'s least rate gets so far in [`READS_WITHIN`].
+const SEND_BUFFER_BYTES: u32 = 128 << 10;
 /// Connections at once; more wait. A browser opens six.
 const MOST_CONNECTIONS: usize = 256;
 /// Threads that answer; files are read by others.
@@ -140,6 +143,7 @@ async fn accept(
             Ok(Ok((stream, _))) => {
                 // Without it small answers may wait for each other.
                 let _ = stream.set_nodelay(true);
+                let Ok(stream) = with_small_buffer(stream) else { continue };
                 begin(Patient::new(stream, patience), permit, site, watch, &graceful);
             }
             // Too many open files, or a client that is gone already: neither ends the server.
@@ -150,6 +154,14 @@ async fn accept(
     drop(listener);
     let _ = timeout(ENDS_WITHIN, graceful.shutdown()).await;
     Ok(())
+}
+
+/// The connection with a buffer that a slow client empties in time. A large one would be filled before its client is waited for at all.
+fn with_small_buffer(stream: TcpStream) -> io::Result<TcpStream> {
+    let stream = stream.into_std()?;
+    // The option is one of the connection, which both handles have. Without it only slow clients are worse off.
+    let _ = TcpSocket::from_std_stream(stream.try_clone()?).set_send_buffer_size(SEND_BUFFER_BYTES);
+    TcpStream::from_std(stream)
 }
 
 /// Answers what is asked on a connection.

@@ -345,6 +345,16 @@ fn a_missing_part_is_named_and_never_taken_for_a_void() {
     planned.check_merged(&stores);
 }
 
+/// Programs read the path: no character is written out.
+#[test]
+#[cfg(unix)]
+fn the_path_of_a_part_is_printed_as_it_is() {
+    let planned = Planned::new(&["--dem", text(&sample("pass/pass-dem.tif")), "--max-error", "10"]);
+    let store = planned.path("a\u{200f}b\u{7}c");
+    let made = succeed(planned.part(&[&store], "hashes", None));
+    assert_eq!(Path::new(made.out.trim_end_matches('\n')), sealed(&store, "hashes"));
+}
+
 #[test]
 fn stores_and_plans_that_do_not_fit_are_refused() {
     let folder = tempfile::tempdir().unwrap();

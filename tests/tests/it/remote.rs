@@ -302,8 +302,12 @@ fn no_secret_is_told_of_redirections_and_inputs() {
     let (there, output) = (format!("http://{host}/x"), folder.path().join("a.pmtiles"));
     let input = format!("http://me:{secret}@{host}/y.tif?{secret}");
     let dem = sample("pass/pass-dem.tif");
-    let lines: [&[&str]; 4] = [
+    // The parser refuses them.
+    let quoted = format!("http://me:it's {secret}@{host}/x");
+    let lines: [&[&str]; 6] = [
         &["info", &there],
+        &["info", "a.pmtiles", &input],
+        &["info", "a.pmtiles", &quoted],
         &["build", "--dem", &input, "-o", text(&output)],
         &["plan", "--dem", &format!(" {input}")],
         &["build", "--dem", text(&dem), "-o", &input],
