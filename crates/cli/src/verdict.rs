@@ -105,7 +105,7 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
         let remedy = remedy.map(|remedy| format!(": {remedy}")).unwrap_or_default();
         let long = if *length_um > 0 { format!(", {}", length(*length_um)) } else { String::new() };
         // Of roads that are kept parts may be lost; they are not counted.
-        let number = (*number > 0).then(|| digits.count(*number) + " ").unwrap_or_default();
+        let number = if *number > 0 { digits.count(*number) + " " } else { String::new() };
         format!("{number}{what}{long}{remedy}")
     };
     let mut lines: Vec<String> = all[..told].iter().map(line).collect();
