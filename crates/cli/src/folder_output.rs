@@ -19,7 +19,7 @@ use corniche_pipeline::{Claim, OpenMode, folder_of, open_own, sync_folder};
 use crate::{
     failure::Failure,
     interrupt, leftovers,
-    output::{Existing, exists, failed, is_same_file},
+    output::{Existing, exists, failed, is_same_file, not_begun},
 };
 
 /// The marker of a folder that an export wrote.
@@ -68,7 +68,7 @@ impl FolderOutput {
         if target.file_name().is_none() {
             return Err(unusable(&"that is no name"));
         }
-        let claim = Claim::take(&target).map_err(|error| unusable(&error))?;
+        let claim = Claim::take(&target).map_err(|error| not_begun(named, &error))?;
         put_back(&target, &claim.replaced()).map_err(|error| unusable(&error))?;
         match kind_of(&target).map_err(|error| unusable(&error))? {
             Kind::Export if existing == Existing::Keep => return Err(exists(named)),
@@ -88,7 +88,7 @@ impl FolderOutput {
             return Err(unusable(&format_args!("{} is in it", used.display())));
         }
         leftovers::tell(&target);
-        let folder = claim.begin_folder().map_err(|error| unusable(&error))?;
+        let folder = claim.begin_folder().map_err(|error| not_begun(named, &error))?;
         // Not before: what a killed run left, perhaps an export that was replaced, is known by the claim alone until it is removed.
         interrupt::remove_at_end(claim.path());
         interrupt::remove_at_end(&folder);

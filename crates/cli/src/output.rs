@@ -34,10 +34,19 @@ pub(crate) fn claim(
     if existing == Existing::Keep && named.symlink_metadata().is_ok() {
         return Err(exists(named));
     }
-    let claim = Claim::take(&target).map_err(|error| unusable(&error))?;
+    let claim = Claim::take(&target).map_err(|error| not_begun(named, &error))?;
     interrupt::remove_at_end(claim.path());
     interrupt::remove_at_end(&claim.unfinished());
     Ok((target, claim))
+}
+
+/// Why something cannot be begun: a disk that is full is no fault of what was asked for.
+pub(crate) fn not_begun(named: &Path, error: &io::Error) -> Failure {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    match error.kind() {
+        FileTooLarge | QuotaExceeded | StorageFull => failed(named, error),
+        _ => Failure::unusable(format!("cannot write {}: {error}", named.display())),
+    }
 }
 
 /// Puts a finished file in its place, durably; returns its size in bytes.
@@ -69,9 +78,7 @@ impl Output {
     ) -> Result<Self, Failure> {
         let named = target;
         let (target, claim) = claim(named, existing, others)?;
-        let file = claim.begin_file().map_err(|error| {
-            Failure::unusable(format!("cannot write {}: {error}", named.display()))
-        })?;
+        let file = claim.begin_file().map_err(|error| not_begun(named, &error))?;
         Ok(Self { target, existing, file: BufWriter::new(file), claim })
     }
 
