@@ -90,6 +90,8 @@ fn what_can_be_had_comes_first_with_its_option() {
 #[test]
 fn parts_of_roads_are_told_without_a_number() {
     let mut manifest = full();
+    manifest.areas = None;
+    manifest.counts.defects.truncate(1);
     manifest.counts.roads_lost[0].roads = 0;
     let text = told(&manifest);
     assert!(text.contains(" parts of roads outside the elevation data, 25.0 km: give"), "{text}");
