@@ -60,15 +60,16 @@ python_folder() {
     printf '%s\n' "$new" >"$folder/made-of"
 }
 
-# python_package FOLDER PACKAGE DEPENDENCY: a virtual environment with a Python package of ours in python/ and what its tests need. Says that its tests are
+# python_package FOLDER PACKAGE DEPENDENCY…: a virtual environment with a Python package of ours in python/ and what its tests need. Says that its tests are
 # skipped, and fails, where there are no packages to be had; in CI that ends the script if only ours cannot be installed.
 python_package() {
-    local folder=$1 package=python/$2
+    local folder=$1 name=$2 package=python/$2
+    shift 2
     if python_folder "$folder" "$package/lock.txt" -e "$package[test]"; then return 0; fi
     if [ "${CI:-}" = true ] && [ ! -x "$folder/bin/python" ]; then fail 1 "no virtual environment can be made; see above"; fi
-    if [ "${CI:-}" = true ] && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$3"; then
-        fail 1 "$2 cannot be installed, though its dependencies can; see above"
+    if [ "${CI:-}" = true ] && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; then
+        fail 1 "$name cannot be installed, though its dependencies can; see above"
     fi
-    skipped "Python packages cannot be installed here, so $2 is not tested"
+    skipped "Python packages cannot be installed here, so $name is not tested"
     return 1
 }

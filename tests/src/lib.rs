@@ -14,7 +14,7 @@ use std::{
     fs,
     io::Read as _,
     path::Path,
-    process::{Child, Command, Output},
+    process::{Child, Command, Output, Stdio},
     sync::{Arc, Mutex, OnceLock, PoisonError},
     thread,
     time::{Duration, Instant},
@@ -101,6 +101,36 @@ pub fn ended(child: &mut Child) -> Ran {
     let read = child.stderr.take().map(|mut said| said.read_to_string(&mut err));
     assert!(!matches!(read, Some(Err(_))), "its words are text");
     Ran { code: status.code().unwrap_or(-1), out: String::new(), err }
+}
+
+/// Starts the binary; nobody reads its standard output.
+///
+/// # Panics
+/// When it cannot be started.
+#[must_use]
+pub fn start(arguments: &[&str]) -> Child {
+    let mut command = Command::new(binary());
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().unwrap_or_else(|error| panic!("{arguments:?} cannot be started: {error}"))
+}
+
+/// Runs the binary to its end, which must come soon.
+///
+/// # Panics
+/// When it hangs.
+#[must_use]
+pub fn run_soon(arguments: &[&str]) -> Ran {
+    let mut child = start(arguments);
+    let begun = Instant::now();
+    while matches!(child.try_wait(), Ok(None)) {
+        if begun.elapsed() > Duration::from_secs(30) {
+            let _ = child.kill();
+            let _ = child.wait();
+            panic!("{arguments:?} hangs");
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    ended(&mut child)
 }
 
 /// Waits for the end of a program, and tells its largest resident size, bytes, as the kernel tells it while it runs.

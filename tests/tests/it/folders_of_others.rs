@@ -7,11 +7,10 @@ use std::{
     fs,
     os::unix::fs::symlink,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
-    time::{Duration, Instant},
+    process::Command,
 };
 
-use e2e::{Ran, copy_pass, names, sample, text};
+use e2e::{copy_pass, names, run_soon as run, sample, text};
 use tempfile::TempDir;
 
 /// A folder with a file that must stay as it is.
@@ -35,27 +34,6 @@ impl Shared {
         assert_eq!(fs::read(self.at("victim")).unwrap(), b"mine", "{case}");
         assert_eq!(names(&self.at("elsewhere")), [""; 0], "{case}");
     }
-}
-
-/// Runs the binary to its end, which must come soon.
-fn run(arguments: &[&str]) -> Ran {
-    let mut child = Command::new(e2e::binary())
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if begun.elapsed() > Duration::from_secs(30) {
-            child.kill().unwrap();
-            child.wait().unwrap();
-            panic!("{arguments:?} hangs");
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    e2e::ended(&mut child)
 }
 
 fn pipe(place: &Path) {

@@ -12,11 +12,11 @@ use std::{
         net::UnixListener,
     },
     path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
+    process::{Command, Stdio},
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, copy_pass, names, sample, skip, text};
+use e2e::{Ran, copy_pass, names, run_soon as run, sample, skip, start, text};
 
 /// One path for each kind of entry that is neither a file nor a folder.
 fn specials(folder: &Path) -> Vec<PathBuf> {
@@ -43,31 +43,6 @@ fn is_special(path: &Path) -> bool {
         let kind = found.file_type();
         kind.is_fifo() || kind.is_socket() || kind.is_char_device()
     })
-}
-
-fn start(arguments: &[&str]) -> Child {
-    Command::new(e2e::binary())
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-/// Runs the binary to its end, which must come soon.
-fn run(arguments: &[&str]) -> Ran {
-    let mut child = start(arguments);
-    let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if begun.elapsed() > Duration::from_secs(30) {
-            child.kill().unwrap();
-            child.wait().unwrap();
-            panic!("{arguments:?} hangs");
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    e2e::ended(&mut child)
 }
 
 #[test]
