@@ -520,6 +520,8 @@ fn remove_scratch(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
 /// Removes a store whose lock is held; returns what is left because no store makes it.
 fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let mut left = remove_own_files(files, folder)?;
+    // The lock says whose the rest is. After a crash none of the rest may be there without it.
+    files.sync_folder(folder)?;
     files.remove(&folder.join(layout::LOCK))?;
     if left.is_empty() {
         // Something may have come in between: then the folder is not empty, and stays.

@@ -113,18 +113,20 @@ fn signature_of(file: &OpenFile) -> Result<Signature, StoreError> {
 fn sign(file: &OpenFile) -> Result<(), StoreError> {
     let owner = format!("{OWNER}{} on {}\n", process::id(), host());
     match signature_of(file)? {
-        Signature::Store(length) => write_to_end(file, &owner, length),
+        Signature::Store(length) => write_to_end(file, &owner, length)?,
         Signature::None => {
             write_to_end(file, &format!("{MARK}{}\n{owner}", random_digits()), 0)?;
-            // Durable before what it speaks for.
-            file.sync()?;
-            file.files().sync_folder(file.path().parent().unwrap_or(file.path()))
         }
-        Signature::Foreign => Err(StoreError::NotAStore {
-            path: file.path().parent().unwrap_or(file.path()).to_owned(),
-            what: format!("its {:?} was not written by Corniche", layout::LOCK),
-        }),
+        Signature::Foreign => {
+            return Err(StoreError::NotAStore {
+                path: file.path().parent().unwrap_or(file.path()).to_owned(),
+                what: format!("its {:?} was not written by Corniche", layout::LOCK),
+            });
+        }
     }
+    // Durable before what it speaks for, also where it was signed by a process that died before it could see to that.
+    file.sync()?;
+    file.files().sync_folder(file.path().parent().unwrap_or(file.path()))
 }
 
 /// Writes a text that ends the file.

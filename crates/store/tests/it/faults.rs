@@ -315,6 +315,30 @@ fn removing_that_fails_at_any_call_can_be_done_again() {
     }
 }
 
+/// As by a loss of power at each call while a store is removed: what comes back is still known for ours, and a new store can be made there.
+#[test]
+fn a_crash_while_a_store_is_removed_leaves_nothing_that_nobody_knows() {
+    for call in 0.. {
+        let mut was_removed = false;
+        for seed in 0..20 {
+            let disk = empty_disk();
+            build_from_scratch(&disk, NEVER).unwrap();
+            let store = open(&disk, NEVER).unwrap();
+            disk.fail_after(call, Failure::Death);
+            let result = store.remove();
+            was_removed = disk.is_failure_to_come();
+            assert!(!was_removed || result.is_ok());
+            disk.fail_after(0, Failure::Death);
+            let disk = disk.after_crash(&mut Random::new(seed));
+            build_from_scratch(&disk, NEVER)
+                .unwrap_or_else(|error| panic!("call {call}, seed {seed}: {error}"));
+        }
+        if was_removed {
+            return;
+        }
+    }
+}
+
 /// After a sync that failed nothing may be built on what was put: the system may have dropped it.
 #[test]
 fn nothing_is_kept_any_more_after_a_failed_sync() {
