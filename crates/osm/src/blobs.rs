@@ -325,13 +325,13 @@ impl<R: Read + Seek> BlobFile<R> {
         Ok(blobs)
     }
 
-    /// Whether the data blob with this number seems to hold nodes and nothing else. It is not checked.
-    pub(crate) fn seems_all_nodes(&mut self, number: usize) -> bool {
+    /// Whether the data blob with this number seems to be such a block. It is not checked.
+    pub(crate) fn seems(&mut self, number: usize, is_such: impl Fn(&Block<'_>) -> bool) -> bool {
         let Some(&part) = self.data.get(number) else { return false };
         let blob = self.source.seek(SeekFrom::Start(part.blob_offset)).ok();
         let blob = blob.and_then(|_| self.read_part(part).ok());
         let block = blob.and_then(|blob| unpack(&blob, SIDE_BY_SIDE.unpacked_bytes).ok());
-        block.is_some_and(|block| !Block::new(&block).has_others_than_nodes())
+        block.is_some_and(|block| is_such(&Block::new(&block)))
     }
 
     fn check_end(&self, offset: u64, end: u64) -> Result<(), ReadOsmError> {
@@ -373,9 +373,8 @@ fn checked_block(blob: &[u8], limits: Limits) -> Result<Vec<u8>, BlobRefusal> {
 }
 
 /// Hands a block that was checked to the decoder.
-pub(crate) fn decode(block: Vec<u8>) -> Result<PrimitiveBlock, BlobRefusal> {
-    let blob = decoder_blob("OSMData", &block).map_err(of_decoder)?;
-    drop(block);
+pub(crate) fn decode(block: &[u8]) -> Result<PrimitiveBlock, BlobRefusal> {
+    let blob = decoder_blob("OSMData", block).map_err(of_decoder)?;
     blob.to_primitiveblock().map_err(of_decoder)
 }
 

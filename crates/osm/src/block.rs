@@ -65,6 +65,12 @@ impl<'a> Block<'a> {
         fields.any(|field| !matches!(field.number, 1 | 2))
     }
 
+    /// Whether there is a relation in it.
+    pub(crate) fn has_relations(&self) -> bool {
+        let mut fields = self.groups.iter().flat_map(|group| wire::fields(group)).flatten();
+        fields.any(|field| field.number == 4)
+    }
+
     /// How many nodes there are.
     pub(crate) fn nodes_count(&self) -> u64 {
         let of_group = |group: &&'a [u8]| {

@@ -19,7 +19,7 @@ fn nodes_of(block: &Block<'_>) -> Vec<(i64, i64, i64, i32)> {
 
 fn decoded(message: &[u8]) -> PrimitiveBlock {
     audit(message, u64::MAX).unwrap();
-    decode(message.to_vec()).unwrap()
+    decode(message).unwrap()
 }
 
 type MadeWay = (i64, Vec<i64>, Vec<(usize, usize)>);

@@ -1,9 +1,9 @@
 //! Boundaries of extracts: the ways that relations and their own tags make boundaries, each once.
 //!
 //! ```text
-//!  as for areas up to the located ways ──► members by way id ──┐
-//!                                                              ├──► Boundary by way id
-//!                                          class of each object ┘
+//!  objects and their located ways (`outlines`) ──► members by way id ──┐
+//!                                                                      ├──► Boundary by way id
+//!                                                  class of each object ┘
 //! ```
 
 mod boundary;
@@ -12,5 +12,6 @@ mod read_boundaries;
 mod summary;
 
 pub use boundary::Boundary;
+pub(crate) use read_boundaries::hand_out_boundaries;
 pub use read_boundaries::read_boundaries;
 pub use summary::BoundarySummary;

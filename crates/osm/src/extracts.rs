@@ -2,15 +2,15 @@
 
 use std::{
     io::{Read, Seek},
+    ops::Range,
     path::{Path, PathBuf},
 };
-
-use osmpbf::PrimitiveBlock;
 
 use crate::{
     ReadOsmError,
     blob::BlobRefusal,
-    blobs::{BlobFile, Decoding, Header, decode},
+    blobs::{BlobFile, Decoding, Header},
+    block::Block,
     open_file::{Extract, open_file},
     read_request::ReadRequest,
 };
@@ -119,41 +119,53 @@ impl<R: Read + Seek> Extracts<R> {
         Ok(())
     }
 
-    /// The same with what `look` makes of each block and `scan` of the decoded one.
-    pub(crate) fn for_each<L: Send, T: Send>(
-        &mut self,
-        numbers: &[usize],
-        decoding: &Decoding<'_>,
-        look: impl Fn(&[u8]) -> L + Sync,
-        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
-        mut take: impl FnMut([usize; 2], L, T) -> Result<(), ReadOsmError>,
-    ) -> Result<(), ReadOsmError> {
-        let scan = |block: Vec<u8>, most_bytes| {
-            let looked = look(&block);
-            let scanned = scan(&decode(block)?, most_bytes).ok_or(TOO_MUCH_FOUND)?;
-            Ok((looked, scanned))
-        };
-        self.for_each_block(numbers, decoding, scan, |place, (looked, scanned)| {
-            take(place, looked, scanned)
-        })
-    }
-
-    /// How many blobs, from the first on, seem to hold nodes alone, if the extract is sorted by kind: they are found by bisection, and not
-    /// checked. Of several extracts none.
-    pub(crate) fn leading_node_blobs(&mut self) -> usize {
-        let [file] = self.files.as_mut_slice() else { return 0 };
+    /// Where the kinds of objects lie, if the extract is sorted by kind: they are found by bisection, and not checked. Several extracts are in no
+    /// order.
+    pub(crate) fn seemingly_sorted(&mut self, has_outlines: bool) -> BlobOrder {
+        let [file] = self.files.as_mut_slice() else { return BlobOrder::NONE };
         // Where ways come first nothing is sought.
-        let (mut nodes, mut others) = (0, if file.seems_all_nodes(0) { file.len() } else { 0 });
-        while nodes < others {
-            let middle = nodes.midpoint(others);
-            if file.seems_all_nodes(middle) {
-                nodes = middle + 1;
-            } else {
-                others = middle;
-            }
-        }
-        nodes
+        let is_node = |block: &Block<'_>| !block.has_others_than_nodes();
+        let most = if file.seems(0, is_node) { file.len() } else { 0 };
+        let nodes = first(0..most, |number| !file.seems(number, is_node));
+        let relations = if has_outlines {
+            first(nodes..file.len(), |number| file.seems(number, |block| block.has_relations()))
+        } else {
+            0
+        };
+        BlobOrder { nodes, relations }
     }
+}
+
+/// In which order the blobs of an extract can be read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BlobOrder {
+    /// How many blobs, from the first on, seem to hold nodes alone.
+    pub(crate) nodes: usize,
+    /// The first blob with relations; 0 if nothing is known of their order.
+    pub(crate) relations: usize,
+}
+
+impl BlobOrder {
+    /// Anything may be anywhere.
+    pub(crate) const NONE: Self = Self { nodes: 0, relations: 0 };
+
+    pub(crate) fn is_none(self) -> bool {
+        self.nodes == 0 && self.relations == 0
+    }
+}
+
+/// The first number of a range that is such, if all behind it are; else its end.
+fn first(range: Range<usize>, mut is_such: impl FnMut(usize) -> bool) -> usize {
+    let (mut low, mut high) = (range.start, range.end);
+    while low < high {
+        let middle = low.midpoint(high);
+        if is_such(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
 }
 
 /// Why a block is refused in which a scan found more than it may.

@@ -2,14 +2,18 @@
 
 use std::ops::Range;
 
+use corniche_roads::Road;
 use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use crate::{
-    ReadOsmError,
+    Defect, ExtractSummary, ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
+    deferred::Deferred,
+    layers::LayerSink,
+    locate_nodes::LocatedNodes,
     read_request::Placing,
-    reading::{Reading, Step},
+    reading::Reading,
     records::Stop,
     spool::{SpoolReader, damaged},
     way_bytes::take_way,
@@ -21,19 +25,73 @@ const TASKS_PER_THREAD: usize = 4;
 /// An ordinary way has about ten nodes; with more, fewer ways are taken at a time.
 const STOPS_PER_THREAD: usize = 16 * WAYS_PER_TASK * TASKS_PER_THREAD;
 
+/// The ways of roads with the places of their nodes, and what is known of them.
+pub(crate) struct RoadWays<'a> {
+    pub(crate) ways: SpoolReader<'a>,
+    pub(crate) ways_count: u64,
+    pub(crate) stops: Sorted<'a, Stop>,
+    pub(crate) summary: ExtractSummary,
+    pub(crate) defects: Deferred<'a>,
+}
+
+impl<'a> RoadWays<'a> {
+    /// Ways, how many there are and how many more have the id of another one, with the places of their nodes.
+    pub(crate) fn of(
+        reading: &Reading<'_>,
+        (ways, ways_count, duplicates): (SpoolReader<'a>, u64, u64),
+        nodes: LocatedNodes<'a>,
+        mut summary: ExtractSummary,
+        defects: Deferred<'a>,
+    ) -> Result<Self, ReadOsmError> {
+        let LocatedNodes { stops, needed, missing } = nodes;
+        summary.left_out.duplicate = duplicates;
+        (summary.nodes_needed, summary.nodes_missing) = (needed, missing);
+        let stops = stops.finish().map_err(|error| reading.scratch_failed(error))?;
+        Ok(Self { ways, ways_count, stops, summary, defects })
+    }
+}
+
+/// Hands out roads and defects in the order of the ways, and counts what becomes of these.
+pub(crate) fn hand_out_roads(
+    reading: &Reading<'_>,
+    found: RoadWays<'_>,
+    sink: &mut dyn LayerSink<Road, ExtractSummary>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<(), ReadOsmError> {
+    let RoadWays { mut ways, ways_count, mut stops, mut summary, defects } = found;
+    sink.begin();
+    defects.tell(on_defect).map_err(|error| reading.scratch_failed(error))?;
+    let take = |assembled: Assembled, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
+        if let Some((reason, highway, length_um)) = assembled.left_out {
+            let own = summary.left_out_ways.entry((reason, highway)).or_default();
+            own.ways += 1;
+            own.length_um += length_um;
+            return;
+        }
+        let roads = assembled.roads.len() as u64;
+        summary.roads += roads;
+        *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;
+        assembled.defects.into_iter().for_each(&mut *on_defect);
+        assembled.roads.into_iter().for_each(|road| sink.take(road));
+    };
+    hand_out(reading, (&mut ways, ways_count), &mut stops, sink, take)?;
+    sink.end(summary);
+    Ok(())
+}
+
 /// Hands what becomes of each way to `take`, in the order of the ways. They are made a few thousand at a time, so that the
 /// roads of a country never lie in memory at once. While some are made, this thread hands out those before, and reads those that follow.
-pub(crate) fn hand_out(
+fn hand_out(
     reading: &Reading<'_>,
-    mut ways: SpoolReader<'_>,
-    ways_count: u64,
-    mut stops: Sorted<'_, Stop>,
-    take: &mut dyn FnMut(Assembled),
+    (ways, ways_count): (&mut SpoolReader<'_>, u64),
+    stops: &mut Sorted<'_, Stop>,
+    sink: &mut dyn LayerSink<Road, ExtractSummary>,
+    mut take: impl FnMut(Assembled, &mut dyn LayerSink<Road, ExtractSummary>),
 ) -> Result<(), ReadOsmError> {
     let pool = reading.request.pool;
     let placing = reading.request.placing();
     let mut done = 0;
-    let mut next = || Batch::read(reading, &mut ways, &mut stops, pool.current_num_threads());
+    let mut next = || Batch::read(reading, ways, stops, pool.current_num_threads());
     let mut batch = next()?;
     let mut before: Vec<Vec<Assembled>> = Vec::new();
     while !(batch.ways.is_empty() && before.is_empty()) {
@@ -45,16 +103,15 @@ pub(crate) fn hand_out(
                 assembled = tasks.map(|some| batch.assemble(some, placing)).collect();
             });
             let following = next();
-            before.drain(..).flatten().for_each(&mut *take);
+            before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
             following
         });
         let results: Result<Vec<_>, HandOutError> = assembled.into_iter().collect();
         before = results.map_err(|error| error.of(reading))?;
         done += batch.ways.len() as u64;
-        reading.tell(Step::Roads, done, ways_count);
+        sink.reached(done, ways_count);
         batch = following?;
     }
-    reading.tell(Step::Roads, 1, 1);
     Ok(())
 }
 

@@ -23,29 +23,27 @@ use crate::{
     wire::{push_varint, varint},
 };
 
-/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version.
-pub(crate) fn bytes_per_node(precedence: Precedence) -> u64 {
+/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version; for each further layer a mark.
+pub(crate) fn bytes_per_node(precedence: Precedence, layers: u64) -> u64 {
     match precedence {
-        Precedence::First => 8 + 8 + 1 + 1,
-        Precedence::Newest => 8 + 8 + 1 + 1 + 4,
+        Precedence::First => 8 + 8 + 1 + layers,
+        Precedence::Newest => 8 + 8 + 1 + layers + 4,
     }
 }
 
-/// The nodes of all roads, in the order of ways.
+/// The nodes of all ways of a layer, in the order of the ways.
 pub(crate) struct LocatedNodes<'a> {
     pub(crate) stops: Sorter<'a, Stop>,
-    /// Different nodes that roads name.
+    /// Different nodes that ways name which are not left out.
     pub(crate) needed: u64,
     /// How many of them have no place.
     pub(crate) missing: u64,
 }
 
-/// What is asked of the nodes.
-pub(crate) struct NodeQuestions<'a, L> {
+/// The nodes that a layer asks for.
+pub(crate) struct NodeQuestions<'a> {
     pub(crate) mentions: Sorted<'a, Mention>,
     pub(crate) mentions_count: u64,
-    /// Places that ways give, in order of node id.
-    pub(crate) located: L,
 }
 
 /// Where the places of nodes come from.
@@ -60,43 +58,43 @@ pub(crate) trait NodeSource {
     ) -> Result<(), ReadOsmError>;
 }
 
-/// Places of nodes from an extract.
-pub(crate) struct FileNodes<'a, R> {
-    pub(crate) file: &'a mut Extracts<R>,
-    pub(crate) node_blobs: &'a [NodeBlob],
-}
-
-/// Finds the places of all nodes that roads name. Nodes with several places go to `on_defect`, in order of id.
+/// Finds the places of all nodes that the layers name, and answers each of them. `located` are places that ways give, in order of node id.
+/// Nodes with several places go to `on_defect`, with the number of the layer, in order of id.
 pub(crate) fn locate_nodes<'a>(
     reading: &Reading<'a>,
     source: &mut dyn NodeSource,
-    questions: NodeQuestions<'a, impl Iterator<Item = io::Result<Located>>>,
-    on_defect: &mut dyn FnMut(Defect),
-) -> Result<LocatedNodes<'a>, ReadOsmError> {
-    let NodeQuestions { mentions, mentions_count, located } = questions;
-    let stops = reading.sorter(reading.shares().stops);
-    let mut nodes = LocatedNodes { stops, needed: 0, missing: 0 };
-    let mut mentions = Ahead::new(mentions);
+    questions: Vec<NodeQuestions<'a>>,
+    located: impl Iterator<Item = io::Result<Located>>,
+    on_defect: &mut dyn FnMut(usize, Defect),
+) -> Result<Vec<LocatedNodes<'a>>, ReadOsmError> {
+    let stops_bytes = reading.shares().stops;
+    let none = || LocatedNodes { stops: reading.sorter(stops_bytes), needed: 0, missing: 0 };
+    let mut nodes: Vec<LocatedNodes<'_>> = questions.iter().map(|_| none()).collect();
+    let all: u64 = questions.iter().map(|own| own.mentions_count).sum();
+    let mut mentions: Vec<_> = questions.into_iter().map(|own| Ahead::new(own.mentions)).collect();
     let mut located = Ahead::new(located);
     let mut done = 0;
-    while let Some(chunk) = Chunk::gather(reading, &mut mentions, mentions_count - done)? {
+    while let Some(chunk) = Chunk::gather(reading, &mut mentions, all - done)? {
         let mut places = NodePlaces::new(chunk.ids.ids().len(), reading.precedence());
-        let share = ShareOfNodes { before: done, own: chunk.mentions_count, all: mentions_count };
-        source.read(reading, &chunk.ids, &share, &mut places)?;
+        let own = chunk.mentions_count();
+        source.read(reading, &chunk.ids, &ShareOfNodes { before: done, own, all }, &mut places)?;
         chunk.take_located(reading, &mut located, &mut places)?;
-        // What only ways name that are left out is needed for their lengths alone.
-        let is_needed = |&number: &usize| chunk.named[number] != Named::Never;
-        let needed = (0..chunk.named.len()).filter(is_needed);
-        nodes.needed += needed.clone().count() as u64;
-        nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
-        for number in places.conflicts().filter(is_needed) {
-            on_defect(Defect::ConflictingNode { node_id: chunk.ids.ids()[number] });
+        done += own;
+        for (layer, (asked, nodes)) in chunk.layers.into_iter().zip(&mut nodes).enumerate() {
+            // What only ways name that are left out is needed for their lengths alone.
+            let is_needed = |&number: &usize| asked.named[number] > Named::LeftOut;
+            let needed = (0..asked.named.len()).filter(is_needed);
+            nodes.needed += needed.clone().count() as u64;
+            nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
+            for number in places.conflicts().filter(is_needed) {
+                let node_id = chunk.ids.ids()[number];
+                on_defect(layer, Defect::ConflictingNode { node_id });
+            }
+            asked.answer(reading, &places, &mut nodes.stops)?;
         }
-        done += chunk.mentions_count;
-        chunk.answer(reading, &places, &mut nodes.stops)?;
     }
     if done == 0 {
-        // Blobs that hold nodes are checked and counted, also if no road needs one.
+        // Blobs that hold nodes are checked and counted, also if no way needs one.
         let share = ShareOfNodes { before: 0, own: 0, all: 0 };
         let mut none = NodePlaces::new(0, reading.precedence());
         source.read(reading, &NodeIds::new(Vec::new()), &share, &mut none)?;
@@ -116,22 +114,6 @@ impl ShareOfNodes {
     /// Mentions up to the end of the chunk.
     pub(crate) fn done(&self) -> u64 {
         self.before + self.own
-    }
-}
-
-impl<R: Read + Seek> NodeSource for FileNodes<'_, R> {
-    /// Reads the blobs that may hold nodes of the chunk.
-    fn read(
-        &mut self,
-        reading: &Reading<'_>,
-        ids: &NodeIds,
-        share: &ShareOfNodes,
-        places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError> {
-        let on_bytes = |bytes: u64, all_bytes: u64| tell_nodes(reading, share, bytes, all_bytes);
-        let take = &mut |(number, location, version)| places.set(number, location, version);
-        read_places(reading, self.file, self.node_blobs, ids, &on_bytes, take)?;
-        Ok(())
     }
 }
 
@@ -172,10 +154,12 @@ pub(crate) fn read_places<R: Read + Seek>(
     Ok(all_bytes)
 }
 
-/// How often roads name a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How often the ways of a layer name a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Named {
     Never,
+    /// Only ways that are left out do.
+    LeftOut,
     Once,
     Often,
 }
@@ -183,59 +167,56 @@ enum Named {
 /// Some of the nodes that ways name, with neighbouring ids.
 struct Chunk<'a> {
     ids: NodeIds,
-    /// How often roads name it: not at all, once, or more often, by two roads or twice by one: a junction.
+    layers: Vec<Asked<'a>>,
+}
+
+/// The nodes of a chunk that a layer asks for.
+struct Asked<'a> {
+    /// How often its ways name a node: not at all, once, or more often, by two ways or twice by one: a junction.
     named: Vec<Named>,
     /// Numbers of the mentions, node by node.
     ///
     /// ```text
-    ///  │ number: 63 bits │ 1 if it is the first one of its node │
+    ///  │ number: 63 bits │ 1 if it is the first one of its node │   if it is: │ how many nodes after the one before │
     /// ```
     visits: Spool<'a>,
     mentions_count: u64,
+    /// The number of the node that was named last.
+    last: u64,
 }
 
 impl<'a> Chunk<'a> {
     /// Takes the mentions of as many nodes as fit; `None` if there are no more. `most` mentions are to come.
     fn gather(
         reading: &Reading<'a>,
-        mentions: &mut Ahead<Sorted<'a, Mention>>,
+        mentions: &mut [Ahead<Sorted<'a, Mention>>],
         most: u64,
     ) -> Result<Option<Self>, ReadOsmError> {
         let shares = reading.shares();
-        let failed = |error| reading.scratch_failed(error);
-        let most_ids =
-            (shares.ids / bytes_per_node(reading.precedence())).max(1).min(most) as usize;
+        let per_node = bytes_per_node(reading.precedence(), mentions.len() as u64);
+        let most_ids = (shares.ids / per_node).max(1).min(most) as usize;
         // Of this size at once: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
-        let mut named = Vec::with_capacity(most_ids);
-        let mut visits = Spool::new(reading.request.scratch, shares.visits);
-        let mut mentions_count = 0;
-        while let Some(mention) = mentions.peek().map_err(failed)? {
-            let is_first = ids.last() != Some(&mention.node_id);
-            if is_first {
-                if ids.len() == most_ids {
-                    break;
-                }
-                ids.push(mention.node_id);
-                named.push(Named::Never);
+        let mut layers: Vec<Asked<'_>> =
+            mentions.iter().map(|_| Asked::new(reading, most_ids)).collect();
+        let mut count = 0;
+        while ids.len() < most_ids {
+            let mut next: Option<i64> = None;
+            for own in &mut *mentions {
+                let own = own.peek().map_err(|error| reading.scratch_failed(error))?;
+                next = [next, own.map(|mention| mention.node_id)].into_iter().flatten().min();
             }
-            if !mention.is_left_out()
-                && let Some(named) = named.last_mut()
-            {
-                *named = match *named {
-                    Named::Never => Named::Once,
-                    Named::Once if mention.is_repeat() => Named::Once,
-                    Named::Once | Named::Often => Named::Often,
-                };
+            let Some(id) = next else { break };
+            for (asked, own) in layers.iter_mut().zip(&mut *mentions) {
+                asked.take(reading, id, ids.len() as u64, own, &mut count)?;
             }
-            let visit = (mention.number() << 1) | u64::from(is_first);
-            visits.push(|bytes| push_varint(bytes, visit)).map_err(failed)?;
-            mentions.take();
-            reading.check_stop_at(mentions_count)?;
-            mentions_count += 1;
+            ids.push(id);
         }
-        let chunk = Self { ids: NodeIds::new(ids), named, visits, mentions_count };
-        Ok((mentions_count > 0).then_some(chunk))
+        Ok((!ids.is_empty()).then(|| Self { ids: NodeIds::new(ids), layers }))
+    }
+
+    fn mentions_count(&self) -> u64 {
+        self.layers.iter().map(|asked| asked.mentions_count).sum()
     }
 
     /// Takes the places that ways give for nodes of the chunk, in the order of the file.
@@ -260,6 +241,53 @@ impl<'a> Chunk<'a> {
         }
         Ok(())
     }
+}
+
+impl<'a> Asked<'a> {
+    fn new(reading: &Reading<'a>, most_ids: usize) -> Self {
+        let visits = Spool::new(reading.request.scratch, reading.shares().visits);
+        Self { named: Vec::with_capacity(most_ids), visits, mentions_count: 0, last: 0 }
+    }
+
+    /// Takes the mentions of the node with this id, which is the chunk's next.
+    fn take(
+        &mut self,
+        reading: &Reading<'_>,
+        id: i64,
+        number: u64,
+        mentions: &mut Ahead<Sorted<'a, Mention>>,
+        count: &mut u64,
+    ) -> Result<(), ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let mut named = Named::Never;
+        while let Some(mention) = mentions.peek().map_err(failed)? {
+            if mention.node_id != id {
+                break;
+            }
+            let is_first = named == Named::Never;
+            named = match named {
+                _ if mention.is_left_out() => named.max(Named::LeftOut),
+                Named::Never | Named::LeftOut => Named::Once,
+                Named::Once if mention.is_repeat() => Named::Once,
+                Named::Once | Named::Often => Named::Often,
+            };
+            let visit = (mention.number() << 1) | u64::from(is_first);
+            let push = |bytes: &mut Vec<u8>| {
+                push_varint(bytes, visit);
+                if is_first {
+                    push_varint(bytes, number - self.last);
+                }
+            };
+            self.visits.push(push).map_err(failed)?;
+            self.last = number;
+            mentions.take();
+            self.mentions_count += 1;
+            reading.check_stop_at(*count)?;
+            *count += 1;
+        }
+        self.named.push(named);
+        Ok(())
+    }
 
     /// Gives each mention the place of its node.
     fn answer(
@@ -270,16 +298,19 @@ impl<'a> Chunk<'a> {
     ) -> Result<(), ReadOsmError> {
         let failed = |error| reading.scratch_failed(error);
         let mut visits = self.visits.read();
-        let mut nodes = 0;
+        let mut node = 0;
         for count in 0..self.mentions_count {
             reading.check_stop_at(count)?;
-            let visit = visits.next(|bytes| varint(bytes).ok()).map_err(failed)?;
-            let visit = visit.ok_or_else(damaged).map_err(failed)?;
-            nodes += (visit & 1) as usize;
-            let node = nodes.checked_sub(1).filter(|&node| node < self.named.len());
-            let node = node.ok_or_else(damaged).map_err(failed)?;
-            let stop =
-                Stop::new(visit >> 1, self.named[node] == Named::Often, places.location(node));
+            let visit = |bytes: &mut &[u8]| {
+                let visit = varint(bytes).ok()?;
+                let after = if visit & 1 == 1 { varint(bytes).ok()? } else { 0 };
+                Some((visit, usize::try_from(after).ok()?))
+            };
+            let visit = visits.next(visit).map_err(failed)?;
+            let (visit, after) = visit.ok_or_else(damaged).map_err(failed)?;
+            node += after;
+            let named = self.named.get(node).ok_or_else(damaged).map_err(failed)?;
+            let stop = Stop::new(visit >> 1, *named == Named::Often, places.location(node));
             stops.push(stop).map_err(failed)?;
         }
         Ok(())

@@ -2,8 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use crate::block::Block;
-use crate::location::{Location, MISSING, degrees, location_from_nano};
+use crate::{
+    block::Block,
+    location::{Location, MISSING, degrees, location_from_nano},
+    search::Search,
+};
 
 /// Ids in ascending order; a node's number is its index here.
 #[derive(Debug)]
@@ -68,7 +71,7 @@ impl NodeIds {
 
     /// Looks up the numbers of nodes that mostly ascend.
     pub(crate) fn search(&self) -> Search<'_> {
-        Search { ids: &self.ids, at: 0 }
+        Search::new(&self.ids)
     }
 }
 
@@ -136,34 +139,3 @@ impl NodePlaces {
         (0..self.is_conflicting.len()).filter(|&number| self.is_conflicting[number])
     }
 }
-
-/// Looks up ids that mostly ascend: from where the last one was found, in doubling steps.
-pub(crate) struct Search<'a> {
-    ids: &'a [i64],
-    at: usize,
-}
-
-impl Search<'_> {
-    pub(crate) fn find(&mut self, id: i64) -> Option<usize> {
-        let rest = &self.ids[self.at..];
-        let (mut low, mut step) = (0, 1);
-        if rest.first().is_none_or(|&first| id < first) {
-            // The id lies before the last one found, or after the end: search the whole list.
-            let found = self.ids.binary_search(&id);
-            self.at = found.unwrap_or_else(|before| before).min(self.ids.len().saturating_sub(1));
-            return found.ok();
-        }
-        while rest.get(low + step).is_some_and(|&next| next <= id) {
-            low += step;
-            step *= 2;
-        }
-        let high = (low + step).min(rest.len());
-        let found = rest[low..high].binary_search(&id);
-        self.at += low + found.unwrap_or_else(|before| before.saturating_sub(1));
-        found.ok().map(|_| self.at)
-    }
-}
-
-#[cfg(test)]
-#[path = "nodes_tests.rs"]
-mod tests;

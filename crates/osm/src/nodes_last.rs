@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Where the nodes end is found by bisection, which is right only if the extract is sorted by kind. Whether it is, is known when the nodes
-//! are read. Until then nothing is told, and if a way is among them, the extract is read once more in its own order.
+//! are read. Until then nothing is told, and if a way is among them, the extract is read once more in its own order. Relations are
+//! before the ways in the same way, if objects of them are wanted (`read_extract`).
 
 use std::io::{Read, Seek};
 
@@ -14,7 +15,6 @@ use crate::{
     ReadOsmError,
     blobs::Decoding,
     block::Block,
-    deferred::Deferred,
     extracts::{Extracts, TOO_MUCH_FOUND},
     find_ways::{NodeBlob, append_versions},
     id_range::IdRange,
@@ -33,8 +33,6 @@ pub(crate) struct NodesLast<'a, R> {
     pub(crate) node_blobs: Vec<NodeBlob>,
     /// What versions the objects of the blobs have that were read.
     pub(crate) versions: Versions,
-    /// What is told once it is known that the extract is in order.
-    pub(crate) defects: &'a Deferred<'a>,
     /// How many nodes were in the blobs that were not read before.
     pub(crate) nodes_seen: u64,
     /// Whether there was something else than nodes before the ways. Then the reading ends with an error that means nothing.
@@ -94,7 +92,7 @@ impl<R: Read + Seek> NodesLast<'_, R> {
         append_versions(reading, &mut versions, std::mem::take(&mut self.versions))?;
         first.append(node_blobs);
         *node_blobs = first;
-        self.defects.release().map_err(|error| reading.scratch_failed(error))
+        Ok(())
     }
 }
 

@@ -14,9 +14,8 @@ use corniche_store::Scratch;
 /// Called from several threads.
 pub type ToLattice<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
 
-/// Is told how much of the reading is done, of how much. Both are counted in bytes of the files, each of them three times:
-/// read for its ways, read for its nodes, handed out as roads. What is done never shrinks and ends at the whole, which does
-/// not change.
+/// Is told how much of the reading is done, of how much. Both are counted in bytes of the files, each of them twice: read for its relations
+/// and ways, read for its nodes. What is done never shrinks and ends at the whole, which does not change.
 pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
 
 /// What to read and how.

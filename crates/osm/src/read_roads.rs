@@ -1,22 +1,14 @@
-//! The roads of an extract are read and handed out in order of their ways.
+//! The roads of an extract, read without other layers.
 
-use std::{
-    cell::Cell,
-    io::{Read, Seek},
-};
+use std::io::{Read, Seek};
 
 use corniche_roads::Road;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
-    blobs::BlobFile,
-    deferred::Deferred,
-    extracts::Extracts,
-    find_ways::{FoundWays, find_ways},
-    make_roads::{WaysAndNodes, make_roads},
-    nodes_last::NodesLast,
+    layers::{Layers, Only},
+    read_extract::{read_extract, read_extract_from},
     read_request::ReadRequest,
-    reading::Reading,
 };
 
 /// Reads the roads of an extract and hands them to `sink`, in ascending order of way id.
@@ -82,7 +74,10 @@ pub fn read_roads(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    read_all(Extracts::open(request)?, request, sink, on_defect, should_stop)
+    let mut roads = Only::new(sink);
+    let layers = Layers { roads: Some(&mut roads), ..Layers::default() };
+    read_extract(request, layers, on_defect, should_stop)?;
+    Ok(roads.summary())
 }
 
 /// Reads the roads of one extract from any source of bytes, as [`read_roads`] does from a file. `request.path` only names it in
@@ -97,81 +92,8 @@ pub fn read_roads_from<R: Read + Seek>(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let request = ReadRequest { others: &[], ..*request };
-    let file = BlobFile::open(request.path, source)?;
-    read_all(Extracts::of(vec![file]), &request, sink, on_defect, should_stop)
-}
-
-fn read_all<R: Read + Seek>(
-    mut file: Extracts<R>,
-    request: &ReadRequest<'_>,
-    sink: &mut dyn FnMut(Road),
-    on_defect: &mut dyn FnMut(Defect),
-    should_stop: &(dyn Fn() -> bool + Sync),
-) -> Result<ExtractSummary, ReadOsmError> {
-    let most = Cell::new(0);
-    let told = |done: u64, all: u64| {
-        // What is read once more is told once.
-        most.set(done.max(most.get()));
-        if let Some(on_progress) = request.on_progress {
-            on_progress(most.get(), all);
-        }
-    };
-    let request = &ReadRequest { on_progress: Some(&told), ..*request };
-    let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
-    let leading = file.leading_node_blobs();
-    let read =
-        if leading > 0 { read_once(&reading, &mut file, leading, sink, on_defect)? } else { None };
-    let mut summary = match read {
-        Some(summary) => summary,
-        // Nothing comes before all ways, so nothing can be out of order.
-        None => read_once(&reading, &mut file, 0, sink, on_defect)?.unwrap_or_default(),
-    };
-    summary.blobs_passed_over = file.blobs_passed_over();
-    let header = file.take_header();
-    summary.header_bounds_deg = header.bounds_deg;
-    summary.generator = header.generator;
-    summary.timestamp_s = header.timestamp_s;
-    Ok(summary)
-}
-
-/// Reads so many first blobs, which seem to hold nodes alone, after all others. `None` if there is something else in them; then nothing
-/// was handed on.
-fn read_once<R: Read + Seek>(
-    reading: &Reading<'_>,
-    file: &mut Extracts<R>,
-    leading: usize,
-    sink: &mut dyn FnMut(Road),
-    on_defect: &mut dyn FnMut(Defect),
-) -> Result<Option<ExtractSummary>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
-    let defects = Deferred::new(reading.request.scratch, reading.shares().defects, on_defect);
-    if leading == 0 {
-        defects.release().map_err(failed)?;
-    }
-    let mut on_defect = |defect| defects.push(defect);
-    let others: Vec<usize> = (leading..file.len()).collect();
-    let FoundWays { ways, located, node_blobs, mut summary, versions, .. } =
-        find_ways(reading, file, &others, &mut on_defect)?;
-    let mut nodes = NodesLast {
-        file,
-        unread: leading,
-        node_blobs,
-        versions,
-        defects: &defects,
-        nodes_seen: 0,
-        is_out_of_order: false,
-    };
-    let found = WaysAndNodes {
-        ways: ways.finish().map_err(failed)?,
-        located: located.finish().map_err(failed)?,
-        nodes: &mut nodes,
-    };
-    let made = make_roads(reading, found, &mut summary, sink, &mut on_defect);
-    if nodes.is_out_of_order {
-        return Ok(None);
-    }
-    made?;
-    summary.nodes_seen += nodes.nodes_seen;
-    Ok(Some(summary))
+    let mut roads = Only::new(sink);
+    let layers = Layers { roads: Some(&mut roads), ..Layers::default() };
+    read_extract_from(source, request, layers, on_defect, should_stop)?;
+    Ok(roads.summary())
 }

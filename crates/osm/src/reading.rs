@@ -7,18 +7,25 @@ use rayon::prelude::*;
 
 use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
 
-/// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
+/// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths, or where there are objects that
+/// ways outline, in twentieths:
 ///
-/// | | ways | mentions | located | defects | spool | ids | visits | stops | all |
-/// |---|---|---|---|---|---|---|---|---|---|
-/// | ways are read | 8 | | ½ | ½ | | | | | 9 |
-/// | nodes are numbered | 8 | 4 | ½ | ½ | 1 | | | | 14 |
-/// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 16 |
-/// | roads are handed out | | | | | 1 | | | 4 | 5 |
+/// | | ways | mentions | located | defects | spool | ids | visits | stops | objects | all |
+/// |---|---|---|---|---|---|---|---|---|---|---|
+/// | ways are read | 8 | 4 or (ids of ways) 4 | ½ | ½ | | | | | 4 | 17 |
+/// | nodes are numbered | 8 | 4 | ½ | ½ | 1 | | | | 4 | 18 |
+/// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 4 | 20 |
+/// | a layer is handed out | (parts) 4 | (members) 4 | | | 1 | | | 4 | 4 | 17 |
+///
+/// What is there for each layer has its part of that, in equal parts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
     /// Road ways that are sorted by id, bytes; so are all of these.
     pub(crate) ways: u64,
+    /// Ways that objects name and that are looked for, and later whose they are.
+    pub(crate) way_ids: u64,
+    /// Objects that ways outline.
+    pub(crate) objects: u64,
     /// Nodes of ways that are sorted by id.
     pub(crate) mentions: u64,
     /// The same with the places that the ways give.
@@ -40,10 +47,9 @@ pub(crate) struct Shares {
 pub(crate) enum Step {
     Ways,
     Nodes,
-    Roads,
 }
 
-const STEPS: u64 = 3;
+const STEPS: u64 = 2;
 
 /// A request, what the steps ask of it, and the size of the file.
 #[derive(Clone, Copy)]
@@ -51,6 +57,19 @@ pub(crate) struct Reading<'a> {
     pub(crate) request: &'a ReadRequest<'a>,
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
     pub(crate) len_bytes: u64,
+    pub(crate) layers: LayerCount,
+}
+
+/// How many layers are read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LayerCount {
+    pub(crate) all: u64,
+    /// How many of them are of objects that ways outline.
+    pub(crate) outlines: u64,
+}
+
+impl LayerCount {
+    pub(crate) const ROADS: Self = Self { all: 1, outlines: 0 };
 }
 
 impl<'a> Reading<'a> {
@@ -62,16 +81,20 @@ impl<'a> Reading<'a> {
     }
 
     pub(crate) fn shares(&self) -> Shares {
-        let sixteenth = self.request.memory_bytes / 16;
+        let LayerCount { all, outlines } = self.layers;
+        let unit = self.request.memory_bytes / if outlines > 0 { 20 } else { 16 };
+        let (all, outlines) = (all.max(1), outlines.max(1));
         Shares {
-            ways: 8 * sixteenth,
-            mentions: 4 * sixteenth,
-            located: sixteenth / 2,
-            defects: sixteenth / 2,
-            spool: sixteenth,
-            ids: 4 * sixteenth,
-            visits: 2 * sixteenth,
-            stops: 4 * sixteenth,
+            ways: 8 * unit / all,
+            way_ids: 4 * unit / outlines,
+            objects: 4 * unit / outlines,
+            mentions: 4 * unit / all,
+            located: unit / 2,
+            defects: unit / 2 / all,
+            spool: unit / all,
+            ids: 4 * unit,
+            visits: 2 * unit / all,
+            stops: 4 * unit / all,
         }
     }
 

@@ -73,6 +73,20 @@ impl SortRecord for WayRecord {
     }
 }
 
+/// The id of a node or a way that is looked for.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct SoughtId(pub(crate) i64);
+
+impl SortRecord for SoughtId {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, to_zigzag(self.0));
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        Some(Self(zigzag(varint(bytes).ok()?)))
+    }
+}
+
 /// A node that a way names. The nodes of all ways are numbered through, in the order of the ways.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Mention {

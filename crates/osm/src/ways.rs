@@ -9,7 +9,7 @@ use corniche_roads::{
 
 use crate::{
     Defect, ExtractSummary, HighwayCount, LeftOutReason,
-    block::{Block, BlockWay},
+    block::BlockWay,
     location::{Location, location_from_nano},
     records::WayRecord,
     text::Text,
@@ -43,7 +43,7 @@ pub(crate) struct Ways {
 }
 
 /// What the ways of a block are judged by.
-struct Judge<'a> {
+pub(crate) struct Judge<'a> {
     /// Keys and values of the block's tags.
     texts: &'a [&'a [u8]],
     /// Which of them are the key `highway`; usually one.
@@ -51,39 +51,31 @@ struct Judge<'a> {
     table: &'a FrcTable,
 }
 
+impl<'a> Judge<'a> {
+    /// `texts` are the keys and values of the block's tags.
+    pub(crate) fn new(texts: &'a [&'a [u8]], table: &'a FrcTable) -> Self {
+        let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
+        Self { texts, highway, table }
+    }
+}
+
 /// What counts for each way, besides its nodes and texts.
 const WAY_BYTES: usize = 240;
 
 impl Ways {
-    /// Finds the roads of a block; `None` if they take more than `most_bytes`.
-    pub(crate) fn scan(
-        block: &Block<'_>,
-        table: &FrcTable,
-        counted: Counted,
-        most_bytes: u64,
-    ) -> Option<Self> {
-        let mut ways = Self::default();
-        ways.summary.nodes_seen = block.nodes_count();
-        let texts = block.texts();
-        let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
-        let judge = Judge { texts: &texts, highway, table };
-        for way in block.ways() {
-            ways.summary.ways_seen += 1;
-            match counted {
-                Counted::ByBlock => ways.look_at(&way, &judge),
-                Counted::ByWay => ways.look_at_alone(&way, &judge),
-            }
-            if ways.held_bytes > most_bytes {
-                return None;
-            }
+    /// Looks whether a way is a road.
+    pub(crate) fn look_at(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>, counted: Counted) {
+        self.summary.ways_seen += 1;
+        match counted {
+            Counted::ByBlock => self.look_at_tags(way, judge),
+            Counted::ByWay => self.look_at_alone(way, judge),
         }
-        Some(ways)
     }
 
     /// The same, with counts and defects in the way's record: it counts only if no other extract has it, too.
     fn look_at_alone(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
         let mut own = Self { node_ids: std::mem::take(&mut self.node_ids), ..Self::default() };
-        own.look_at(way, judge);
+        own.look_at_tags(way, judge);
         let Self { roads, located, defects, summary, held_bytes, node_ids } = own;
         self.node_ids = node_ids;
         self.located.extend(located);
@@ -96,7 +88,7 @@ impl Ways {
         }
     }
 
-    fn look_at(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
+    fn look_at_tags(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
         // Most ways are buildings and land cover; their tags need no decoding.
         if !way.keys().any(|key| judge.highway.contains(&key)) {
             return;

@@ -1,25 +1,28 @@
 //! Gives each object the ways of its outline, with their places.
 
-use corniche_store::{SortRecord as _, Sorter};
+use corniche_store::{Sorted, Sorter};
 
-use super::{
-    located_ways::{LocatedWay, LocatedWays},
-    records::{MemberRecord, OutlineLine, OutlineWayRecord},
+use crate::{
+    ReadOsmError,
+    outlines::{
+        located_ways::{LocatedWay, LocatedWays},
+        records::{MemberRecord, OutlineLine, OutlineWayRecord},
+    },
+    reading::Reading,
 };
-use crate::{ReadOsmError, reading::Reading, spool::SpoolReader};
 
 /// Members and ways come in order of way ids. A member whose way is not in the file gets a part that says so.
 pub(crate) fn hand_parts<'a>(
     reading: &Reading<'a>,
-    mut members: SpoolReader<'a>,
+    members: Sorted<'a, MemberRecord>,
     mut located: LocatedWays<'a>,
 ) -> Result<Sorter<'a, OutlineWayRecord>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let mut parts = Sorter::new(reading.request.scratch, reading.shares().ways);
+    let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
     let mut way: Option<LocatedWay> = None;
     let mut count = 0;
-    while let Some(record) = members.next(MemberRecord::decode).map_err(failed)? {
-        let MemberRecord { member, object_number } = record;
+    for record in members {
+        let MemberRecord { member, object_number } = record.map_err(failed)?;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;
         count += 1;

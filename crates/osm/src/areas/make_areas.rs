@@ -9,17 +9,15 @@ use corniche_geom::{LatticePoint, split_at_seam, wgs84};
 use corniche_store::Sorted;
 use rayon::prelude::*;
 
-use super::{
-    over_seam,
-    records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
-    summary::AreaSummary,
-};
+use super::{over_seam, summary::AreaSummary};
 use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
     find_ways::check_held,
+    layers::LayerSink,
+    outlines::records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
-    reading::{Reading, Step},
+    reading::Reading,
     spool::SpoolReader,
 };
 
@@ -35,7 +33,7 @@ pub(crate) fn make_areas(
     parts: Sorted<'_, OutlineWayRecord>,
     mut held_bytes: u64,
     summary: &mut AreaSummary,
-    sink: &mut dyn FnMut(Area),
+    sink: &mut dyn LayerSink<Area, AreaSummary>,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<(), ReadOsmError> {
     let pool = reading.request.pool;
@@ -55,7 +53,6 @@ pub(crate) fn make_areas(
             number += 1;
         }
         if batch.is_empty() {
-            reading.tell(Step::Roads, 1, 1);
             return Ok(());
         }
         let placing = reading.request.placing();
@@ -72,14 +69,14 @@ pub(crate) fn make_areas(
             match made.area {
                 Ok(Some(area)) => {
                     count(summary, &area);
-                    sink(area);
+                    sink.take(area);
                 }
                 // A coastline alone is no area.
                 Ok(None) => summary.objects -= 1,
                 Err(loss) => *summary.lost.entry(loss).or_default() += 1,
             }
         }
-        reading.tell(Step::Roads, number, objects_count);
+        sink.reached(number, objects_count);
     }
 }
 

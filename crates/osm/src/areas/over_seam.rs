@@ -3,8 +3,7 @@
 use corniche_areas::{Polygon, Ring, split_polygon, unroll_rings};
 use corniche_geom::{LatticePoint, OnSeamedMap as _, Seam};
 
-use super::records::degrees_of;
-use crate::{AreaLoss, read_request::Placing};
+use crate::{AreaLoss, outlines::records::degrees_of, read_request::Placing};
 
 /// Steps of a degree on the lattice of outlines.
 const STEPS: f64 = 1e7;

@@ -1,20 +1,15 @@
-//! The areas of an extract are read and handed out in order of their objects.
-
-use std::io::{Read, Seek};
+//! The areas of an extract are handed out in order of their objects.
 
 use corniche_areas::{Area, AreaTable};
 
-use super::{
-    find_objects::find_objects,
-    find_outlines::number_objects,
-    hand_parts::hand_parts,
-    make_areas::make_areas,
-    outline_ways::{OutlineWays, read_outline_ways},
-    summary::AreaSummary,
-    wanted::Wanted,
-};
+use super::{hand_parts::hand_parts, make_areas::make_areas, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect, ReadOsmError, extracts::Extracts, read_request::ReadRequest, reading::Reading,
+    AreaLoss, Defect, ReadOsmError,
+    layers::{LayerSink, Layers, Only},
+    outlines::{found::Outlines, located_ways::LocatedWays, number_objects::number_objects},
+    read_extract::read_extract,
+    read_request::ReadRequest,
+    reading::Reading,
 };
 
 /// Reads the areas of an extract and hands them to `sink`: first those of ways, then those of relations, in ascending order of
@@ -28,9 +23,9 @@ use crate::{
 /// - Coastlines (`natural=coastline`) are no areas. If the table wants the sea, they are in the summary, to be closed by
 ///   [`corniche_areas::close_sea`]; they are kept in memory, 16 bytes a point.
 ///
-/// Memory, limits, several extracts and what the file may be are as for [`crate::read_roads`]; `request.table` is not used. The
-/// file is read three times: for objects, for the ways of their outlines (more often where these do not fit in memory), for
-/// nodes.
+/// Memory, limits, several extracts and what the file may be are as for [`crate::read_roads`]; `request.table` is not used. An extract that
+/// is sorted by kind is read once: relations, ways, nodes. One that is not is read three times: for objects, for ways, for nodes. Where the ids
+/// of the ways that relations name do not fit in memory, blobs with ways are read once more for each part that fits.
 ///
 /// # Errors
 /// As for [`crate::read_roads`].
@@ -41,38 +36,36 @@ pub fn read_areas(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<AreaSummary, ReadOsmError> {
-    let mut file = Extracts::open(request)?;
-    let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
-    read_all(&reading, &mut file, table, sink, on_defect)
+    let mut areas = Only::new(sink);
+    let layers = Layers { areas: Some((table, &mut areas)), ..Layers::default() };
+    read_extract(request, layers, on_defect, should_stop)?;
+    Ok(areas.summary())
 }
 
-fn read_all<R: Read + Seek>(
-    reading: &Reading<'_>,
-    file: &mut Extracts<R>,
-    table: &AreaTable,
-    sink: &mut dyn FnMut(Area),
+/// Hands out areas, and what is wrong with them.
+pub(crate) fn hand_out_areas<'a>(
+    reading: &Reading<'a>,
+    (outlines, located): (Outlines<'a>, LocatedWays<'a>),
+    sink: &mut dyn LayerSink<Area, AreaSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<AreaSummary, ReadOsmError> {
+) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let mut summary = AreaSummary::default();
-    let found = find_objects(reading, file, Wanted::Areas(table), on_defect)?;
-    let mut held_bytes = found.held_bytes;
-    if found.open_ways > 0 {
-        summary.objects += found.open_ways;
-        summary.lost.insert(AreaLoss::OpenWay, found.open_ways);
+    let Outlines { objects, open_ways, defects, held_bytes, .. } = outlines;
+    sink.begin();
+    defects.tell(on_defect).map_err(failed)?;
+    let objects = number_objects(reading, objects, on_defect)?;
+    let all = open_ways + objects.duplicates + objects.count;
+    let mut summary = AreaSummary { objects: all, ..AreaSummary::default() };
+    for (loss, count) in [(AreaLoss::OpenWay, open_ways), (AreaLoss::Duplicate, objects.duplicates)]
+    {
+        if count > 0 {
+            summary.lost.insert(loss, count);
+        }
     }
-    let objects = number_objects(reading, found.objects, &mut summary, on_defect)?;
-    let OutlineWays { members, located } = read_outline_ways(
-        reading,
-        file,
-        (&found.way_blobs, &found.node_blobs),
-        objects.members,
-        &mut held_bytes,
-        on_defect,
-    )?;
-    let parts = hand_parts(reading, members.read(), located)?;
-    let parts = parts.finish().map_err(failed)?;
-    let objects = (objects.known.read(), objects.count);
-    make_areas(reading, objects, parts, held_bytes, &mut summary, sink, on_defect)?;
-    Ok(summary)
+    let members = objects.members.finish().map_err(failed)?;
+    let parts = hand_parts(reading, members, located)?.finish().map_err(failed)?;
+    let known = (objects.known.read(), objects.count);
+    make_areas(reading, known, parts, held_bytes, &mut summary, sink, on_defect)?;
+    sink.end(summary);
+    Ok(())
 }

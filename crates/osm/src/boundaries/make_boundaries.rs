@@ -2,36 +2,31 @@
 
 use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, split_at_seam};
-use corniche_store::SortRecord as _;
+use corniche_store::Sorted;
 
 use super::{boundary::Boundary, summary::BoundarySummary};
 use crate::{
     Defect, ReadOsmError,
-    areas::{
+    ahead::Ahead,
+    boundary_loss::BoundaryLoss,
+    layers::LayerSink,
+    location,
+    outlines::{
         located_ways::{LocatedWay, LocatedWays},
         records::{MemberRecord, degrees_of, to_point},
     },
-    boundary_loss::BoundaryLoss,
-    location,
-    reading::{Reading, Step},
-    spool::SpoolReader,
+    reading::Reading,
 };
-
-/// Who is told what is found.
-pub(crate) struct Sinks<'a> {
-    pub(crate) sink: &'a mut dyn FnMut(Boundary),
-    pub(crate) on_defect: &'a mut dyn FnMut(Defect),
-}
 
 /// Members and ways come in order of way ids; `classes` are those of objects by their numbers.
 pub(crate) fn make_boundaries(
     reading: &Reading<'_>,
-    (members, classes): (SpoolReader<'_>, &[Option<BoundaryClass>]),
+    (members, classes): (Sorted<'_, MemberRecord>, &[Option<BoundaryClass>]),
     mut located: LocatedWays<'_>,
     summary: &mut BoundarySummary,
-    sinks: &mut Sinks<'_>,
+    (sink, on_defect): (&mut dyn LayerSink<Boundary, BoundarySummary>, &mut dyn FnMut(Defect)),
 ) -> Result<(), ReadOsmError> {
-    let mut members = Members { next: None, members };
+    let mut members = Members(Ahead::new(members));
     let mut way: Option<LocatedWay> = None;
     let mut count = 0;
     while let Some((way_id, class)) = members.next_way(reading, classes)? {
@@ -47,30 +42,26 @@ pub(crate) fn make_boundaries(
         }
         let made = match &way {
             Some(way) if way.way_id == way_id => {
-                parts_of(reading, way, class).inspect(|_| tell_gaps(way, sinks.on_defect))
+                parts_of(reading, way, class).inspect(|_| tell_gaps(way, on_defect))
             }
             _ => Err(BoundaryLoss::MissingWay),
         };
         match made {
             Ok(parts) => {
                 *summary.kept.entry(class).or_default() += 1;
-                parts.into_iter().for_each(&mut *sinks.sink);
+                parts.into_iter().for_each(|part| sink.take(part));
             }
             Err(loss) => {
                 *summary.lost.entry(loss).or_default() += 1;
-                (sinks.on_defect)(Defect::LostBoundary { way_id, loss });
+                on_defect(Defect::LostBoundary { way_id, loss });
             }
         }
     }
-    reading.tell(Step::Roads, 1, 1);
     Ok(())
 }
 
 /// The members of all objects by way.
-struct Members<'a> {
-    next: Option<MemberRecord>,
-    members: SpoolReader<'a>,
-}
+struct Members<'a>(Ahead<Sorted<'a, MemberRecord>>);
 
 impl Members<'_> {
     /// The next way and the most important of the classes that objects give it.
@@ -79,24 +70,18 @@ impl Members<'_> {
         reading: &Reading<'_>,
         classes: &[Option<BoundaryClass>],
     ) -> Result<Option<(i64, Option<BoundaryClass>)>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
-        let class_of =
-            |record: &MemberRecord| classes.get(record.object_number as usize).copied().flatten();
-        let first = match self.next.take() {
-            Some(first) => Some(first),
-            None => self.members.next(MemberRecord::decode).map_err(failed)?,
-        };
-        let Some(first) = first else { return Ok(None) };
-        let way_id = first.member.way_id;
-        let mut class = class_of(&first);
-        while let Some(record) = self.members.next(MemberRecord::decode).map_err(failed)? {
-            if record.member.way_id != way_id {
-                self.next = Some(record);
+        let mut way: Option<(i64, Option<BoundaryClass>)> = None;
+        while let Some(record) = self.0.peek().map_err(|error| reading.scratch_failed(error))? {
+            let own = classes.get(record.object_number as usize).copied().flatten();
+            let way_id = record.member.way_id;
+            let (id, class) = way.get_or_insert((way_id, None));
+            if *id != way_id {
                 break;
             }
-            class = [class, class_of(&record)].into_iter().flatten().min();
+            *class = [*class, own].into_iter().flatten().min();
+            self.0.take();
         }
-        Ok(Some((way_id, class)))
+        Ok(way)
     }
 }
 

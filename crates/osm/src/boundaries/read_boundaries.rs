@@ -1,26 +1,16 @@
-//! The boundaries of an extract are read and handed out in order of their ways.
-
-use std::io::{Read, Seek};
+//! The boundaries of an extract are handed out in order of their ways.
 
 use corniche_areas::BoundaryClass;
 
-use super::{
-    boundary::Boundary,
-    make_boundaries::{Sinks, make_boundaries},
-    summary::BoundarySummary,
-};
+use super::{boundary::Boundary, make_boundaries::make_boundaries, summary::BoundarySummary};
 use crate::{
     Defect, ReadOsmError,
-    areas::{
-        AreaSummary,
-        find_objects::find_objects,
-        find_outlines::number_objects,
-        outline_ways::{OutlineWays, read_outline_ways},
-        records::Known,
-        wanted::Wanted,
-    },
-    extracts::Extracts,
     find_ways::check_held,
+    layers::{LayerSink, Layers, Only},
+    outlines::{
+        found::Outlines, located_ways::LocatedWays, number_objects::number_objects, records::Known,
+    },
+    read_extract::read_extract,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -44,38 +34,34 @@ pub fn read_boundaries(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<BoundarySummary, ReadOsmError> {
-    let mut file = Extracts::open(request)?;
-    let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
-    read_all(&reading, &mut file, Sinks { sink, on_defect })
+    let mut boundaries = Only::new(sink);
+    let layers = Layers { boundaries: Some(&mut boundaries), ..Layers::default() };
+    read_extract(request, layers, on_defect, should_stop)?;
+    Ok(boundaries.summary())
 }
 
-fn read_all<R: Read + Seek>(
-    reading: &Reading<'_>,
-    file: &mut Extracts<R>,
-    mut sinks: Sinks<'_>,
-) -> Result<BoundarySummary, ReadOsmError> {
+/// Hands out boundaries, and what is wrong with them.
+pub(crate) fn hand_out_boundaries<'a>(
+    reading: &Reading<'a>,
+    (outlines, located): (Outlines<'a>, LocatedWays<'a>),
+    sink: &mut dyn LayerSink<Boundary, BoundarySummary>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let found = find_objects(reading, file, Wanted::Boundaries, sinks.on_defect)?;
-    let mut held_bytes = found.held_bytes;
+    let Outlines { objects, defects, held_bytes, .. } = outlines;
+    sink.begin();
+    defects.tell(on_defect).map_err(failed)?;
     // Of objects with one id the first stays, which is told as for areas.
-    let mut of_areas = AreaSummary::default();
-    let objects = number_objects(reading, found.objects, &mut of_areas, sinks.on_defect)?;
-    held_bytes += objects.count;
-    check_held(reading, held_bytes)?;
+    let objects = number_objects(reading, objects, on_defect)?;
+    check_held(reading, held_bytes + objects.count)?;
     let mut classes = Vec::with_capacity(objects.count as usize);
     let mut known = objects.known.read();
     while let Some(object) = known.next(Known::decode).map_err(failed)? {
         classes.push(object.class.and_then(BoundaryClass::from_number));
     }
-    let OutlineWays { members, located } = read_outline_ways(
-        reading,
-        file,
-        (&found.way_blobs, &found.node_blobs),
-        objects.members,
-        &mut held_bytes,
-        sinks.on_defect,
-    )?;
+    let members = objects.members.finish().map_err(failed)?;
     let mut summary = BoundarySummary { objects: objects.count, ..BoundarySummary::default() };
-    make_boundaries(reading, (members.read(), &classes), located, &mut summary, &mut sinks)?;
-    Ok(summary)
+    make_boundaries(reading, (members, &classes), located, &mut summary, (sink, on_defect))?;
+    sink.end(summary);
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Step *nodes*: pass 2 over a share of the blobs with nodes.
 
-use corniche_store::{SortRecord, Sorter};
+use corniche_store::Sorter;
 
 use super::{
     blocks::{BlockReader, BlockWriter},
@@ -18,11 +18,10 @@ use crate::{
     locate_nodes::{bytes_per_node, read_places},
     nodes::{FoundNode, NodeIds, NodePlaces},
     read_request::ReadRequest,
-    reading::{Reading, Step},
-    records::WayRecord,
+    reading::{LayerCount, Reading, Step},
+    records::{SoughtId, WayRecord},
     share::Share,
     way_bytes::take_node_ids,
-    wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
 /// Reads a share of the blobs that have nodes and keeps the places of those nodes that a road way names. All ways must be kept already, in
@@ -47,7 +46,7 @@ pub fn keep_nodes(
         }
     };
     let request = ReadRequest { on_progress: Some(&told), ..*request };
-    let reading = Reading { request: &request, should_stop, len_bytes };
+    let reading = Reading { request: &request, should_stop, len_bytes, layers: LayerCount::ROADS };
     let kept_failed = |source| reading.kept_failed(source);
 
     let records: Vec<WaysRecord> = Share::all(share.of())
@@ -89,7 +88,7 @@ fn needed_nodes<'a>(
     kept: Kept<'_>,
     way_blocks: &[u32],
     range: IdRange,
-) -> Result<Sorter<'a, NeededNode>, ReadOsmError> {
+) -> Result<Sorter<'a, SoughtId>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     let shares = reading.shares();
     let mut needed = Sorter::new(reading.request.scratch, shares.ways + shares.mentions);
@@ -102,7 +101,7 @@ fn needed_nodes<'a>(
             let mut last = None;
             take_node_ids(&mut &*way.bytes, |id| {
                 let is_repeat = last.replace(id) == Some(id);
-                if is_repeat || !range.contains(id) { Ok(()) } else { needed.push(NeededNode(id)) }
+                if is_repeat || !range.contains(id) { Ok(()) } else { needed.push(SoughtId(id)) }
             })
             .map_err(failed)?;
         }
@@ -115,18 +114,19 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
     reading: &Reading<'_>,
     file: &mut Extracts<R>,
     own: &[NodeBlob],
-    needed: Sorter<'_, NeededNode>,
+    needed: Sorter<'_, SoughtId>,
     blocks: &mut BlockWriter<'_, PlaceRecord>,
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let most = (reading.shares().ids / (bytes_per_node(reading.precedence()) + 1)).max(1) as usize;
+    let most =
+        (reading.shares().ids / (bytes_per_node(reading.precedence(), 1) + 1)).max(1) as usize;
     let all_bytes: u64 = own.iter().map(|blob| file.size(blob.number)).sum();
     let mut needed = Ahead::new(needed.finish().map_err(failed)?);
     let mut done_bytes = 0;
     loop {
         let mut ids: Vec<i64> = Vec::new();
         let mut count = 0;
-        while let Some(&NeededNode(id)) = needed.peek().map_err(failed)? {
+        while let Some(&SoughtId(id)) = needed.peek().map_err(failed)? {
             if ids.last() != Some(&id) {
                 if ids.len() == most {
                     break;
@@ -163,19 +163,5 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
             let record = PlaceRecord { node_id, location, is_conflicting, version };
             blocks.push(&record).map_err(|source| reading.kept_failed(source))?;
         }
-    }
-}
-
-/// A node that a road way names.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct NeededNode(i64);
-
-impl SortRecord for NeededNode {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.0));
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        Some(Self(zigzag(varint(bytes).ok()?)))
     }
 }

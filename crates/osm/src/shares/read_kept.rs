@@ -13,13 +13,16 @@ use super::{
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
+    deferred::Deferred,
     find_ways::{append_versions, check_held},
+    hand_out::{RoadWays, hand_out_roads},
     kept_error::KeptError,
-    locate_nodes::{NodeSource, ShareOfNodes},
-    make_roads::{WaysAndNodes, make_roads},
+    layers::LayerSink,
+    locate_nodes::{NodeQuestions, NodeSource, ShareOfNodes, locate_nodes},
     nodes::{NodeIds, NodePlaces},
+    number_nodes::{NumberedNodes, number_nodes},
     read_request::ReadRequest,
-    reading::{Reading, Step},
+    reading::{LayerCount, Reading, Step},
     share::Share,
     versions::Versions,
     ways::add_summary,
@@ -34,10 +37,10 @@ pub fn read_kept_roads(
     request: &ReadRequest<'_>,
     of: u16,
     kept: Kept<'_>,
-    sink: &mut dyn FnMut(Road),
+    sink: &mut dyn LayerSink<Road, ExtractSummary>,
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
-) -> Result<ExtractSummary, ReadOsmError> {
+) -> Result<(), ReadOsmError> {
     let failed = |source| ReadOsmError::Kept { path: request.path.to_path_buf(), source };
     let shares: Vec<Share> = Share::all(of).collect();
     let records: Result<Vec<_>, KeptError> =
@@ -51,7 +54,8 @@ pub fn read_kept_roads(
     let sorted_bytes = request.memory_bytes.saturating_sub(blocks_bytes);
     let memory_bytes = sorted_bytes.max(request.memory_bytes / 2);
     let request = &ReadRequest { memory_bytes, ..*request };
-    let reading = Reading { request, should_stop, len_bytes: first.len_bytes };
+    let reading =
+        Reading { request, should_stop, len_bytes: first.len_bytes, layers: LayerCount::ROADS };
     let mut summary = ExtractSummary {
         blobs_passed_over: first.blobs_passed_over,
         header_bounds_deg: first.header.bounds_deg,
@@ -62,6 +66,7 @@ pub fn read_kept_roads(
     let blocks: Vec<[u32; 2]> =
         records.iter().map(|record| [record.way_blocks, record.located_blocks]).collect();
     let (mut versions, mut held_bytes) = (Versions::default(), 0);
+    let mut defects = Deferred::new(request.scratch, reading.shares().defects);
     for (&share, record) in shares.iter().zip(records) {
         reading.check_stop()?;
         append_versions(&reading, &mut versions, record.versions)?;
@@ -69,7 +74,7 @@ pub fn read_kept_roads(
         check_held(&reading, held_bytes)?;
         let kind = kept.kinds.defects;
         for defect in BlockReader::new(kept, kind, share, record.defect_blocks) {
-            on_defect(defect.map_err(|error| reading.scratch_failed(error))?);
+            defects.push(&defect.map_err(|error| reading.scratch_failed(error))?);
         }
         add_summary(&mut summary, record.counts.into());
     }
@@ -83,13 +88,21 @@ pub fn read_kept_roads(
         .iter()
         .map(|&share| Ok(BlockReader::new(kept, kept.kinds.places, share, blocks_of(kept, share)?)))
         .collect();
-    let found = WaysAndNodes {
-        ways: Merged::new(ways.collect()),
-        located: Merged::new(located.collect()),
-        nodes: &mut KeptNodes { places: Ahead::new(Merged::new(places.map_err(failed)?)) },
-    };
-    make_roads(&reading, found, &mut summary, sink, on_defect)?;
-    Ok(summary)
+    let mut nodes = KeptNodes { places: Ahead::new(Merged::new(places.map_err(failed)?)) };
+    let ways = Merged::new(ways.collect());
+    let numbered = number_nodes(&reading, ways, &mut summary, &mut |defect| defects.push(&defect))?;
+    let NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } = numbered;
+    let mentions = mentions.finish().map_err(|error| reading.scratch_failed(error))?;
+    let questions = vec![NodeQuestions { mentions, mentions_count }];
+    let located = Merged::new(located.collect());
+    let on_conflict = &mut |_, defect| defects.push(&defect);
+    let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)?;
+    for nodes in answers {
+        let (ways, summary) = ((ways.read(), ways_count, duplicates), summary);
+        let found = RoadWays::of(&reading, ways, nodes, summary, defects)?;
+        return hand_out_roads(&reading, found, sink, on_defect);
+    }
+    Ok(())
 }
 
 /// The places that all shares of nodes found.

@@ -4,9 +4,10 @@ use super::{blocks::BlockWriter, kept::Kept, ways_record::WaysRecord};
 use crate::{
     Defect, ReadOsmError,
     extracts::Extracts,
-    find_ways::{FoundWays, find_ways},
+    find_ways::{FoundWays, WaysWanted},
+    outlines::judge::OwnTags,
     read_request::ReadRequest,
-    reading::Reading,
+    reading::{LayerCount, Reading},
     records::{Located, WayRecord},
     share::Share,
 };
@@ -35,7 +36,7 @@ pub fn keep_ways(
         }
     };
     let request = ReadRequest { on_progress: Some(&told), ..*request };
-    let reading = Reading { request: &request, should_stop, len_bytes };
+    let reading = Reading { request: &request, should_stop, len_bytes, layers: LayerCount::ROADS };
     let failed = |error| reading.scratch_failed(error);
     let kept_failed = |source| reading.kept_failed(source);
 
@@ -43,13 +44,21 @@ pub fn keep_ways(
     let mut defects = BlockWriter::<Defect>::new(kept, kept.kinds.defects, share);
     // Who finds defects cannot fail; the first failure is kept.
     let mut not_kept = None;
-    let found = find_ways(&reading, &mut file, &own, &mut |defect| {
+    let wanted = WaysWanted {
+        roads: Some(request.table),
+        own_tags: OwnTags::Ignored,
+        way_ids: Vec::new(),
+        is_first: true,
+        bytes: [0, file.bytes_of(&own)],
+    };
+    let mut found = FoundWays::new(&reading);
+    found.read(&reading, &mut file, &own, &wanted, &mut [], &mut |defect| {
         if not_kept.is_none() {
             not_kept = defects.push(&defect).err();
         }
     })?;
     not_kept.map_or(Ok(()), Err).map_err(kept_failed)?;
-    let FoundWays { ways, located, node_blobs, summary, versions, held_bytes } = found;
+    let FoundWays { ways, located, summary, looked_at, held_bytes, .. } = found;
 
     let mut blocks = BlockWriter::<WayRecord>::new(kept, kept.kinds.ways, share);
     for (count, way) in (0..).zip(ways.finish().map_err(failed)?) {
@@ -67,8 +76,8 @@ pub fn keep_ways(
         header: file.take_header(),
         blobs_passed_over: file.blobs_passed_over(),
         len_bytes,
-        node_blobs,
-        versions,
+        node_blobs: looked_at.node_blobs,
+        versions: looked_at.versions,
         held_bytes,
         way_blocks,
         located_blocks: blocks.finish().map_err(kept_failed)?,

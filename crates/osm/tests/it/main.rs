@@ -10,6 +10,7 @@ mod formats;
 mod history;
 mod hostile;
 mod losses;
+mod one_reading;
 mod real_data;
 mod seeds;
 mod several;

@@ -7,10 +7,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::common::{Extract, POOL, gather, kept, read_bytes, request, to_lattice};
+use crate::common::{Extract, POOL, gather, gather_kept, kept, read_bytes, request, to_lattice};
 use corniche_osm::{
-    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
-    read_kept_roads, read_roads,
+    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways, read_roads,
 };
 use corniche_store::{MemoryScratch, MemoryStore};
 use corniche_testing::pbf::{Block, field, number, plain_header, raw, zigzag};
@@ -102,7 +101,7 @@ fn read_shares(paths: &[PathBuf], of: u16, memory_bytes: u64) -> Result<Extract,
         for &share in shares.iter().rev() {
             keep_nodes(request, share, kept, &|| false)?;
         }
-        gather(|sink, on_defect| read_kept_roads(request, of, kept, sink, on_defect, &|| false))
+        gather_kept(request, of, &store)
     })
 }
 

@@ -5,13 +5,11 @@
 use std::{fs, path::Path};
 
 use crate::common::{
-    Extract, POOL, fixture, gather, kept,
+    Extract, POOL, fixture, gather_kept, kept,
     made::{MadeExtract, made_extract},
     read, request, to_lattice, written,
 };
-use corniche_osm::{
-    KeptError, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways, read_kept_roads,
-};
+use corniche_osm::{KeptError, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
 use corniche_store::{Artifacts, Key, MemoryScratch, MemoryStore, Scratch};
 use corniche_testing::{
     pbf::{Block, field, number, plain_header, raw},
@@ -52,7 +50,7 @@ fn read_kept(
 ) -> Result<Extract, ReadOsmError> {
     let scratch = MemoryScratch::default();
     let request = request_within(path, memory_bytes, &scratch);
-    gather(|sink, on_defect| read_kept_roads(&request, of, kept(store), sink, on_defect, &|| false))
+    gather_kept(&request, of, store)
 }
 
 fn read_in_shares(path: &Path, of: u16, memory_bytes: u64) -> Result<Extract, ReadOsmError> {

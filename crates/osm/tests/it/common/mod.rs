@@ -6,17 +6,18 @@
 pub(crate) mod made;
 
 use std::{
+    cell::Cell,
     collections::{BTreeMap, BTreeSet},
     fs,
-    io::Cursor,
+    io::{self, Cursor, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
     sync::LazyLock,
 };
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{
-    Defect, ExtractSummary, Kept, KeptKinds, ReadOsmError, ReadRequest, ToLattice, read_roads,
-    read_roads_from,
+    Defect, ExtractSummary, Kept, KeptKinds, LayerSink, ReadOsmError, ReadRequest, ToLattice,
+    read_kept_roads, read_roads, read_roads_from,
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
@@ -177,6 +178,72 @@ pub(crate) fn gather(
     let extract = Extract { roads, defects, summary };
     extract.check_invariants();
     Ok(extract)
+}
+
+/// A layer's objects and their counts, as they are handed out.
+pub(crate) struct Gathered<T, S> {
+    pub(crate) objects: Vec<T>,
+    pub(crate) summary: Option<S>,
+}
+
+impl<T, S> Default for Gathered<T, S> {
+    fn default() -> Self {
+        Self { objects: Vec::new(), summary: None }
+    }
+}
+
+impl<T, S> LayerSink<T, S> for Gathered<T, S> {
+    fn take(&mut self, object: T) {
+        self.objects.push(object);
+    }
+
+    fn end(&mut self, summary: S) {
+        assert!(self.summary.replace(summary).is_none(), "a layer ends once");
+    }
+}
+
+/// Gathers roads from shares that were kept.
+pub(crate) fn gather_kept(
+    request: &ReadRequest<'_>,
+    of: u16,
+    store: &MemoryStore,
+) -> Result<Extract, ReadOsmError> {
+    let mut roads = Gathered::default();
+    let mut defects = Vec::new();
+    let on_defect = &mut |defect| defects.push(defect);
+    read_kept_roads(request, of, kept(store), &mut roads, on_defect, &|| false)?;
+    let Gathered { objects: roads, summary } = roads;
+    let extract = Extract { roads, defects, summary: summary.unwrap() };
+    extract.check_invariants();
+    Ok(extract)
+}
+
+/// A file that counts how often a blob of it is read.
+pub(crate) struct CountedBlobs<'a> {
+    source: Cursor<&'a [u8]>,
+    blobs: &'a Cell<u64>,
+}
+
+impl<'a> CountedBlobs<'a> {
+    pub(crate) fn new(bytes: &'a [u8], blobs: &'a Cell<u64>) -> Self {
+        Self { source: Cursor::new(bytes), blobs }
+    }
+}
+
+impl Read for CountedBlobs<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.source.read(buffer)
+    }
+}
+
+impl Seek for CountedBlobs<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        // A blob is read from its place; the listing of blobs only goes on from where it is, after the start.
+        if matches!(to, SeekFrom::Start(offset) if offset > 0) {
+            self.blobs.set(self.blobs.get() + 1);
+        }
+        self.source.seek(to)
+    }
 }
 
 pub(crate) fn fixture(name: &str) -> PathBuf {

@@ -1,4 +1,4 @@
-//! What is sorted on the way from objects to areas.
+//! What is sorted on the way from objects to areas and boundaries.
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;

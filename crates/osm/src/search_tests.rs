@@ -15,7 +15,7 @@ fn search_finds_what_plain_search_finds_in_any_order() {
         let mut ids: Vec<i64> = (0..count).map(|_| next(300) as i64 - 150).collect();
         ids.sort_unstable();
         ids.dedup();
-        let mut search = Search { ids: &ids, at: 0 };
+        let mut search = Search::new(&ids);
         let mut ascending: Vec<i64> = (0..400).map(|_| next(310) as i64 - 155).collect();
         let unordered = ascending.clone();
         ascending.sort_unstable();

@@ -1,0 +1,17 @@
+//! Objects that ways outline: those of areas, and those of boundaries.
+//!
+//! ```text
+//!  blobs with relations ──► find_objects ──► ObjectRecord by id ──────────────► numbered ──► MemberRecord by way id
+//!                                │ ids of ways                                                       │
+//!  blobs with ways ─────────► find_ways ──► ObjectRecord of ways, WayRecord ──► LocatedWays ─────────┴──► areas, boundaries
+//! ```
+//!
+//! Everything is sorted and joined within the memory that the caller allows, as for roads.
+
+pub(crate) mod find_objects;
+pub(crate) mod found;
+pub(crate) mod judge;
+pub(crate) mod located_ways;
+pub(crate) mod number_objects;
+pub(crate) mod records;
+pub(crate) mod wanted;

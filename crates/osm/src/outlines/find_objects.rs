@@ -1,0 +1,69 @@
+//! The objects of blobs that are read before those with ways: relations, and ways where the extract is not sorted.
+
+use std::io::{Read, Seek};
+
+use super::{
+    found::Outlines,
+    judge::{Judge, OfBlock},
+};
+use crate::{
+    ReadOsmError,
+    blobs::{Decoding, decode},
+    block::Block,
+    extracts::{Extracts, TOO_MUCH_FOUND},
+    find_ways::{Looked, LookedAt},
+    reading::{Reading, Step},
+};
+
+/// Reads the blobs with these numbers, and says what else is in them. `with_ways`: ways that are objects by their own tags, too.
+/// `later_bytes` are the bytes of the blobs with ways that are read afterwards, for the progress.
+pub(crate) fn find_objects<R: Read + Seek>(
+    reading: &Reading<'_>,
+    file: &mut Extracts<R>,
+    numbers: &[usize],
+    outlines: &mut [Outlines<'_>],
+    with_ways: bool,
+    later_bytes: u64,
+) -> Result<LookedAt, ReadOsmError> {
+    let mut looked_at = LookedAt::default();
+    let all_bytes = file.bytes_of(numbers) + later_bytes;
+    let decoding = Decoding {
+        pool: reading.request.pool,
+        should_stop: reading.should_stop,
+        on_bytes: &|bytes| reading.tell(Step::Ways, bytes, all_bytes),
+    };
+    let wanted: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
+    let scan = |message: Vec<u8>, most_bytes| {
+        let block = Block::new(&message);
+        let texts = block.texts();
+        let judges: Vec<Judge<'_>> =
+            wanted.iter().map(|&wanted| Judge::new(&texts, wanted)).collect();
+        let mut found: Vec<OfBlock> = judges.iter().map(|_| OfBlock::default()).collect();
+        let looked = Looked::scan(&message, &block);
+        if with_ways {
+            for way in block.ways() {
+                for (found, judge) in found.iter_mut().zip(&judges) {
+                    found.look_at_object(&way, judge);
+                }
+            }
+        }
+        if looked.has_relations {
+            let decoded = decode(&message)?;
+            for (found, judge) in found.iter_mut().zip(&judges) {
+                found.look_at_relations(&decoded, judge);
+            }
+        }
+        if found.iter().map(|found| found.held_bytes).sum::<u64>() > most_bytes {
+            return Err(TOO_MUCH_FOUND.into());
+        }
+        Ok((looked, found))
+    };
+    file.for_each_block(numbers, &decoding, scan, |[file, number], (looked, found)| {
+        looked_at.take(reading, [file, number], looked)?;
+        for (outlines, of_block) in outlines.iter_mut().zip(found) {
+            outlines.take(reading, file as u32, of_block, true)?;
+        }
+        Ok(())
+    })?;
+    Ok(looked_at)
+}

@@ -1,0 +1,137 @@
+//! What is found of one kind of outlined objects while an extract is read.
+
+use corniche_store::{Sorted, Sorter};
+
+use super::{judge::OfBlock, records::ObjectRecord, wanted::Wanted};
+use crate::{
+    AreaLoss, Defect, ExtractSummary, ReadOsmError,
+    ahead::Ahead,
+    deferred::Deferred,
+    find_ways::check_held,
+    reading::Reading,
+    records::{SoughtId, WayRecord, age},
+    way_facts::WayFacts,
+};
+
+/// The objects and ways of one kind that were found so far.
+pub(crate) struct Outlines<'a> {
+    pub(crate) wanted: Wanted<'a>,
+    pub(crate) objects: Sorter<'a, ObjectRecord>,
+    objects_count: u64,
+    ways: Sorter<'a, WayRecord>,
+    ways_count: u64,
+    /// The ways that are still to be looked for, by the objects that were found before them.
+    way_ids: Sorter<'a, SoughtId>,
+    /// Ways with the tags of an area that are not closed.
+    pub(crate) open_ways: u64,
+    pub(crate) defects: Deferred<'a>,
+    /// What all this takes, by an estimate that is not too low.
+    pub(crate) held_bytes: u64,
+    /// What goes with each way where it may be in several extracts: of those that have it, the newest version counts.
+    facts: Box<[u8]>,
+}
+
+impl<'a> Outlines<'a> {
+    pub(crate) fn new(reading: &Reading<'a>, wanted: Wanted<'a>) -> Self {
+        let (shares, scratch) = (reading.shares(), reading.request.scratch);
+        let mut facts: Box<[u8]> = Box::default();
+        if reading.is_of_several() {
+            facts = WayFacts::of(ExtractSummary::default(), Vec::new()).to_bytes();
+        }
+        Self {
+            wanted,
+            objects: reading.sorter(shares.objects),
+            objects_count: 0,
+            ways: reading.sorter(shares.ways),
+            ways_count: 0,
+            way_ids: reading.sorter(shares.mentions),
+            open_ways: 0,
+            defects: Deferred::new(scratch, shares.defects),
+            held_bytes: 0,
+            facts,
+        }
+    }
+
+    /// Takes what is in a block of one of the extracts. `is_before_ways`: the ways of its objects are looked for later.
+    pub(crate) fn take(
+        &mut self,
+        reading: &Reading<'_>,
+        file: u32,
+        of_block: OfBlock,
+        is_before_ways: bool,
+    ) -> Result<(), ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let age = |version| if reading.is_of_several() { age(version) } else { 0 };
+        self.held_bytes += of_block.held_bytes;
+        check_held(reading, self.held_bytes)?;
+        for id in of_block.open_ways {
+            self.open_ways += 1;
+            let (is_relation, loss) = (false, AreaLoss::OpenWay);
+            self.defects.push(&Defect::LostArea { is_relation, id, loss });
+        }
+        for mut object in of_block.objects {
+            object.order = self.objects_count;
+            self.objects_count += 1;
+            object.file = file;
+            object.age = age(object.version);
+            if is_before_ways {
+                for way in &object.ways {
+                    self.way_ids.push(SoughtId(way.way_id)).map_err(failed)?;
+                }
+            }
+            self.objects.push(object).map_err(failed)?;
+        }
+        for mut way in of_block.ways {
+            way.order = self.ways_count;
+            self.ways_count += 1;
+            way.file = file;
+            way.age = age(way.version);
+            way.facts.clone_from(&self.facts);
+            self.ways.push(way).map_err(failed)?;
+        }
+        Ok(())
+    }
+
+    /// The ways that were found, in order of their ids; from now on none is added.
+    pub(crate) fn take_ways(
+        &mut self,
+        reading: &Reading<'a>,
+    ) -> Result<Sorted<'a, WayRecord>, ReadOsmError> {
+        let ways = std::mem::replace(&mut self.ways, reading.sorter(0));
+        ways.finish().map_err(|error| reading.scratch_failed(error))
+    }
+
+    /// The ways that are to be looked for; from now on none is added.
+    pub(crate) fn take_way_ids(
+        &mut self,
+        reading: &Reading<'a>,
+    ) -> Result<WayIds<'a>, ReadOsmError> {
+        let ids = std::mem::replace(&mut self.way_ids, reading.sorter(0));
+        Ok(WayIds(Ahead::new(ids.finish().map_err(|error| reading.scratch_failed(error))?)))
+    }
+}
+
+/// Ids of ways that are looked for, as many at a time as fit in memory.
+pub(crate) struct WayIds<'a>(Ahead<Sorted<'a, SoughtId>>);
+
+impl WayIds<'_> {
+    /// The next different ids, ascending; empty after the last.
+    pub(crate) fn next(&mut self, reading: &Reading<'_>) -> Result<Vec<i64>, ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let most = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
+        let mut ids = Vec::new();
+        let mut count = 0;
+        while let Some(&SoughtId(id)) = self.0.peek().map_err(failed)? {
+            if ids.last() != Some(&id) {
+                if ids.len() == most {
+                    break;
+                }
+                ids.push(id);
+            }
+            self.0.take();
+            reading.check_stop_at(count)?;
+            count += 1;
+        }
+        Ok(ids)
+    }
+}

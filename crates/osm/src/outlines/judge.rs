@@ -1,0 +1,234 @@
+//! The objects and the outline ways of a block.
+
+use corniche_areas::AreaObject;
+use osmpbf::{PrimitiveBlock, RelMemberType, Relation};
+
+use super::{
+    records::{Member, ObjectRecord},
+    wanted::Wanted,
+};
+use crate::{
+    block::BlockWay,
+    location::{Location, location_from_nano},
+    records::WayRecord,
+    search::Search,
+    text::Text,
+    versions::known_version,
+    way_bytes::node_bytes,
+};
+
+/// What the ways and relations of a block are judged by.
+pub(crate) struct Judge<'a> {
+    wanted: Wanted<'a>,
+    /// Keys and values of the block's tags.
+    texts: &'a [&'a [u8]],
+    /// Which of them are keys of such an object.
+    is_key: Vec<bool>,
+}
+
+/// What a block holds of one kind of objects, in its order.
+#[derive(Default)]
+pub(crate) struct OfBlock {
+    pub(crate) objects: Vec<ObjectRecord>,
+    /// Ways with the tags of an area that are not closed.
+    pub(crate) open_ways: Vec<i64>,
+    /// The ways of outlines.
+    pub(crate) ways: Vec<WayRecord>,
+    /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
+    pub(crate) located: Vec<(i64, Location)>,
+    /// What all this takes, by an estimate that is not too low.
+    pub(crate) held_bytes: u64,
+    /// The nodes of the way that is being looked at.
+    node_ids: Vec<i64>,
+}
+
+/// What counts for each object, besides its texts and lists.
+const OBJECT_BYTES: usize = 200;
+/// What counts for each way, besides its nodes.
+const WAY_BYTES: usize = 160;
+
+/// A ring has three different points, and the first again.
+const LEAST_REFS: usize = 4;
+
+impl<'a> Judge<'a> {
+    pub(crate) fn new(texts: &'a [&'a [u8]], wanted: Wanted<'a>) -> Self {
+        let is_key = texts.iter().map(|text| wanted.is_key(text)).collect();
+        Self { wanted, texts, is_key }
+    }
+
+    /// Whether one of the keys is that of an object: most ways and relations have none, and their tags need no decoding.
+    fn is_any_key(&self, mut keys: impl Iterator<Item = usize>) -> bool {
+        keys.any(|key| self.is_key.get(key) == Some(&true))
+    }
+
+    /// The tags of an object, given as the numbers of their texts.
+    fn tags(&self, pairs: impl Iterator<Item = [usize; 2]>) -> Tags<'a> {
+        // The block was checked: no tag is outside its table.
+        let text = |index: usize| Text::new(self.texts.get(index).copied().unwrap_or_default());
+        let texts: Vec<[Text<'_>; 2]> = pairs.map(|pair| pair.map(text)).collect();
+        let plain: Vec<(&str, &str)> =
+            texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
+        let class = self.wanted.classify(&plain);
+        Tags { texts, class }
+    }
+}
+
+impl OfBlock {
+    /// Looks whether a way is an object by its own tags.
+    pub(crate) fn look_at_object(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) -> bool {
+        if !judge.is_any_key(way.keys()) {
+            return false;
+        }
+        let tags = judge.tags(way.keys().zip(way.values()).map(|(key, value)| [key, value]));
+        let wanted = judge.wanted;
+        // Closed ways may be lines, such as hedges around a field; the tags of the table are those of areas.
+        let mut class = tags.class.filter(|_| wanted.has_open_ways() || !tags.is("area", "no"));
+        let is_open = || way.refs().count() < LEAST_REFS || way.refs().next() != way.refs().last();
+        if class.is_some() && !wanted.has_open_ways() && is_open() {
+            self.open_ways.push(way.id);
+            self.held_bytes += 16;
+            class = None;
+        }
+        let is_coastline = wanted.has_sea() && tags.is("natural", "coastline");
+        if class.is_none() && !is_coastline {
+            return false;
+        }
+        let member = Member { way_id: way.id, is_inner: false };
+        let what = (AreaObject::Way(way.id), way.version);
+        self.push(what, (class, is_coastline), &tags, Box::new([member]));
+        true
+    }
+
+    /// Keeps a way of an outline.
+    pub(crate) fn keep(&mut self, way: &BlockWay<'_, '_>) {
+        self.node_ids.clear();
+        self.node_ids.extend(way.refs());
+        // The block was checked: one for each node, or none at all.
+        let locations = way.places_nano_deg().map(|[lon, lat]| location_from_nano(lon, lat));
+        self.located.extend(self.node_ids.iter().copied().zip(locations));
+        // Ids and places, each sorted twice.
+        self.held_bytes += (WAY_BYTES + 48 * self.node_ids.len()) as u64;
+        self.ways.push(WayRecord {
+            way_id: way.id,
+            age: 0,
+            order: 0,
+            version: known_version(way.version).unwrap_or_default(),
+            file: 0,
+            bytes: node_bytes(&self.node_ids),
+            facts: Box::default(),
+        });
+    }
+
+    /// Looks at the relations of a block.
+    pub(crate) fn look_at_relations(&mut self, block: &PrimitiveBlock, judge: &Judge<'_>) {
+        for relation in block.groups().flat_map(|group| group.relations()) {
+            self.look_at_relation(&relation, judge);
+        }
+    }
+
+    fn look_at_relation(&mut self, relation: &Relation<'_>, judge: &Judge<'_>) {
+        let pairs = relation.raw_tags().map(|(key, value)| [key as usize, value as usize]);
+        if !judge.is_any_key(pairs.clone().map(|[key, _]| key)) {
+            return;
+        }
+        let tags = judge.tags(pairs);
+        if !tags.is("type", "multipolygon") && !tags.is("type", "boundary") {
+            return;
+        }
+        let Some(class) = tags.class else { return };
+        let role = |role: i32| {
+            let role = usize::try_from(role).ok().and_then(|role| judge.texts.get(role));
+            role.copied().unwrap_or_default()
+        };
+        let ways = relation.members().filter(|member| member.member_type == RelMemberType::Way);
+        let mut ways: Vec<Member> = ways
+            .map(|way| (way.member_id, role(way.role_sid)))
+            .filter(|(_, role)| judge.wanted.is_outline(role))
+            .map(|(way_id, role)| Member { way_id, is_inner: role == b"inner" })
+            .collect();
+        // A way that is named twice counts once, as in libosmium.
+        ways.sort_unstable();
+        ways.dedup_by_key(|way| way.way_id);
+        let version = relation.info().version().unwrap_or_default();
+        let what = (AreaObject::Relation(relation.id()), version);
+        self.push(what, (Some(class), false), &tags, ways.into());
+    }
+
+    fn push(
+        &mut self,
+        (object, version): (AreaObject, i32),
+        (class, is_coastline): (Option<u8>, bool),
+        tags: &Tags<'_>,
+        ways: Box<[Member]>,
+    ) {
+        let name: Box<str> = tags.value("name").unwrap_or_default().into();
+        // Each way is sorted twice more.
+        self.held_bytes += (OBJECT_BYTES + name.len() + 80 * ways.len()) as u64;
+        self.objects.push(ObjectRecord {
+            object,
+            age: 0,
+            order: 0,
+            version: known_version(version).unwrap_or_default(),
+            file: 0,
+            class,
+            is_coastline,
+            name,
+            ways,
+        });
+    }
+}
+
+/// What is done with ways that are objects by their own tags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum OwnTags {
+    /// All objects were found before.
+    Ignored,
+    /// Objects are found, and their ways kept.
+    Kept,
+    /// They were, and are not kept once more.
+    KeptBefore,
+}
+
+/// Which ways of a block are looked for: by their own tags, or by their ids.
+pub(crate) struct WantedWays<'a> {
+    pub(crate) own_tags: OwnTags,
+    pub(crate) ids: Search<'a>,
+}
+
+impl WantedWays<'_> {
+    /// Looks at a way.
+    pub(crate) fn look_at(
+        &mut self,
+        way: &BlockWay<'_, '_>,
+        judge: &Judge<'_>,
+        found: &mut OfBlock,
+    ) {
+        let is_kept = match self.own_tags {
+            OwnTags::Ignored => self.ids.find(way.id).is_some(),
+            OwnTags::Kept => found.look_at_object(way, judge) || self.ids.find(way.id).is_some(),
+            OwnTags::KeptBefore => {
+                self.ids.find(way.id).is_some() && !OfBlock::default().look_at_object(way, judge)
+            }
+        };
+        if is_kept {
+            found.keep(way);
+        }
+    }
+}
+
+/// The tags of an object that has one of the keys.
+struct Tags<'a> {
+    texts: Vec<[Text<'a>; 2]>,
+    /// The number of its class.
+    class: Option<u8>,
+}
+
+impl Tags<'_> {
+    fn value(&self, key: &str) -> Option<&str> {
+        self.texts.iter().find(|[own, _]| own.text == key).map(|[_, value]| &*value.text)
+    }
+
+    fn is(&self, key: &str, value: &str) -> bool {
+        self.value(key) == Some(value)
+    }
+}

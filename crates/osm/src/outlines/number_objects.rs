@@ -1,0 +1,74 @@
+//! Numbers objects that ways outline.
+
+use corniche_areas::AreaObject;
+use corniche_store::Sorter;
+
+use super::records::{MemberRecord, ObjectRecord};
+use crate::{
+    AreaLoss, Defect, ReadOsmError,
+    reading::Reading,
+    spool::Spool,
+    versions::{known_version, two_versions},
+};
+
+/// Objects in the order of their numbers, and the ways that they need.
+pub(crate) struct NumberedObjects<'a> {
+    /// [`super::records::Known`] of each object.
+    pub(crate) known: Spool<'a>,
+    pub(crate) count: u64,
+    /// How many more have the id of another one.
+    pub(crate) duplicates: u64,
+    pub(crate) members: Sorter<'a, MemberRecord>,
+}
+
+/// Numbers the objects through. Of objects with one id the newest stays, or the first.
+///
+/// Fails if one extract has an object in two versions.
+pub(crate) fn number_objects<'a>(
+    reading: &Reading<'a>,
+    objects: Sorter<'a, ObjectRecord>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<NumberedObjects<'a>, ReadOsmError> {
+    let (request, shares) = (reading.request, reading.shares());
+    let failed = |error| reading.scratch_failed(error);
+    let mut numbered = NumberedObjects {
+        known: Spool::new(request.scratch, shares.spool),
+        count: 0,
+        duplicates: 0,
+        members: Sorter::new(request.scratch, shares.way_ids),
+    };
+    let mut last: Option<(AreaObject, u32, Option<i32>)> = None;
+    for (count, object) in (0..).zip(objects.finish().map_err(failed)?) {
+        reading.check_stop_at(count)?;
+        let object = object.map_err(failed)?;
+        let version = known_version(object.version);
+        if let Some((before, file, first)) = last
+            && before == object.object
+        {
+            if file != object.file {
+                // That of another extract, which is older or the same.
+                continue;
+            }
+            let (kind, id) = object.object.parts();
+            if let (Some(first), Some(second)) = (first, version)
+                && first != second
+            {
+                let reason = two_versions(kind, id, [first, second]);
+                return Err(ReadOsmError::History { path: request.extract(file), reason });
+            }
+            numbered.duplicates += 1;
+            let (is_relation, loss) = (kind == "relation", AreaLoss::Duplicate);
+            on_defect(Defect::LostArea { is_relation, id, loss });
+            continue;
+        }
+        last = Some((object.object, object.file, version));
+        let (known, ways) = object.into_known();
+        numbered.known.push(|bytes| known.encode(bytes)).map_err(failed)?;
+        for &member in &ways {
+            let record = MemberRecord { member, object_number: numbered.count };
+            numbered.members.push(record).map_err(failed)?;
+        }
+        numbered.count += 1;
+    }
+    Ok(numbered)
+}

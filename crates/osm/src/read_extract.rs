@@ -1,0 +1,273 @@
+//! The one reading of an extract: relations, ways and nodes once for all layers that are wanted.
+//!
+//! ```text
+//!  │ nodes … nodes │ nodes and ways │ ways … │ relations … │     an extract that is sorted by kind
+//!  └─── third ─────┴─────── second ──────────┴─── first ───┘     when what is read
+//! ```
+//!
+//! Relations name ways, and ways name nodes, so what is read later is known to be wanted or not. Where the kinds begin is found by bisection,
+//! which is right only if the extract is sorted by kind. Whether it is, is known when its nodes are read. Until then nothing is told, and if
+//! it is not, it is read once more: all blobs for relations and objects, those with ways, those with nodes. Several extracts are read so
+//! from the beginning. Without objects that ways outline, relations are read with the ways, and looked at for their versions alone.
+
+use std::{
+    cell::Cell,
+    io::{Read, Seek},
+};
+
+use corniche_roads::FrcTable;
+
+use crate::{
+    Defect, ExtractSummary, ReadOsmError,
+    areas::hand_out_areas,
+    blobs::BlobFile,
+    boundaries::hand_out_boundaries,
+    deferred::Deferred,
+    extracts::{BlobOrder, Extracts},
+    find_ways::{FoundWays, WaysWanted},
+    hand_out::{RoadWays, hand_out_roads},
+    layers::Layers,
+    locate_nodes::{NodeQuestions, locate_nodes},
+    nodes_last::NodesLast,
+    number_nodes::{NumberedNodes, number_nodes},
+    outlines::{
+        find_objects::find_objects,
+        found::{Outlines, WayIds},
+        judge::OwnTags,
+        located_ways::LocatedWays,
+        wanted::Wanted,
+    },
+    read_request::ReadRequest,
+    reading::{LayerCount, Reading},
+};
+
+/// Reads an extract once, and hands out all layers that are wanted, one after the other.
+///
+/// Each layer is handed out as [`read_areas`], [`read_boundaries`] and [`read_roads`] do it, whatever other layers are wanted. `on_defect` is
+/// told what is wrong with a layer between its beginning and its end.
+///
+/// # Memory and limits
+/// As for [`read_roads`], all layers together. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
+/// each object that makes ways boundaries, and 16 bytes for each point of coastlines.
+///
+/// # Errors
+/// As for [`read_roads`]. What was handed out before is to be forgotten then.
+pub fn read_extract(
+    request: &ReadRequest<'_>,
+    layers: Layers<'_>,
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<(), ReadOsmError> {
+    read_all(Extracts::open(request)?, request, layers, on_defect, should_stop)
+}
+
+/// Reads the layers of one extract from any source of bytes, as [`read_extract`] does from a file. `request.path` only names it in
+/// messages, and `request.others` are not read.
+///
+/// # Errors
+/// As for [`read_extract`].
+pub fn read_extract_from<R: Read + Seek>(
+    source: R,
+    request: &ReadRequest<'_>,
+    layers: Layers<'_>,
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<(), ReadOsmError> {
+    let request = ReadRequest { others: &[], ..*request };
+    let file = BlobFile::open(request.path, source)?;
+    read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop)
+}
+
+fn read_all<R: Read + Seek>(
+    mut file: Extracts<R>,
+    request: &ReadRequest<'_>,
+    layers: Layers<'_>,
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<(), ReadOsmError> {
+    let most = Cell::new(0);
+    let told = |done: u64, all: u64| {
+        // What is read once more is told once.
+        most.set(done.max(most.get()));
+        if let Some(on_progress) = request.on_progress {
+            on_progress(most.get(), all);
+        }
+    };
+    let request = &ReadRequest { on_progress: Some(&told), ..*request };
+    let of_areas = layers.areas.as_ref().map(|&(table, _)| Wanted::Areas(table));
+    let of_boundaries = layers.boundaries.as_ref().map(|_| Wanted::Boundaries);
+    let wanted = LayersWanted {
+        outlines: of_areas.into_iter().chain(of_boundaries).collect(),
+        roads: layers.roads.is_some().then_some(request.table),
+    };
+    let reading =
+        Reading { request, should_stop, len_bytes: file.len_bytes(), layers: wanted.count() };
+    let order = file.seemingly_sorted(!wanted.outlines.is_empty());
+    let in_order =
+        if order.is_none() { None } else { Found::read(&reading, &mut file, order, &wanted)? };
+    let found = match in_order {
+        Some(found) => Some(found),
+        None => Found::read(&reading, &mut file, BlobOrder::NONE, &wanted)?,
+    };
+    // Where nothing is taken for sorted, nothing can be out of order.
+    let Some(Found { outlines, roads }) = found else { return Ok(()) };
+    let mut outlines = outlines.into_iter();
+    if let (Some((_, sink)), Some(found)) = (layers.areas, of_areas.and_then(|_| outlines.next())) {
+        hand_out_areas(&reading, found, sink, on_defect)?;
+    }
+    if let (Some(sink), Some(found)) = (layers.boundaries, outlines.next()) {
+        hand_out_boundaries(&reading, found, sink, on_defect)?;
+    }
+    if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
+        let header = file.take_header();
+        let summary = &mut found.summary;
+        summary.blobs_passed_over = file.blobs_passed_over();
+        summary.header_bounds_deg = header.bounds_deg;
+        summary.generator = header.generator;
+        summary.timestamp_s = header.timestamp_s;
+        hand_out_roads(&reading, found, sink, on_defect)?;
+    }
+    Ok(())
+}
+
+/// What is looked for.
+struct LayersWanted<'w> {
+    outlines: Vec<Wanted<'w>>,
+    roads: Option<&'w FrcTable>,
+}
+
+impl LayersWanted<'_> {
+    fn count(&self) -> LayerCount {
+        let outlines = self.outlines.len() as u64;
+        LayerCount { all: outlines + u64::from(self.roads.is_some()), outlines }
+    }
+}
+
+/// All that an extract holds of some layers, with the places of nodes, to be handed out.
+struct Found<'a> {
+    outlines: Vec<(Outlines<'a>, LocatedWays<'a>)>,
+    roads: Option<RoadWays<'a>>,
+}
+
+impl<'a> Found<'a> {
+    /// Reads the extract in this order; `None` if it is not in this order.
+    fn read<R: Read + Seek>(
+        reading: &Reading<'a>,
+        file: &mut Extracts<R>,
+        order: BlobOrder,
+        wanted: &LayersWanted<'a>,
+    ) -> Result<Option<Self>, ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let mut outlines: Vec<Outlines<'_>> =
+            wanted.outlines.iter().map(|&wanted| Outlines::new(reading, wanted)).collect();
+        let mut of_roads = Deferred::new(reading.request.scratch, reading.shares().defects);
+        let on_defect = &mut |defect| of_roads.push(&defect);
+        let Some(found) = read_ways(reading, file, order, wanted, &mut outlines, on_defect)? else {
+            return Ok(None);
+        };
+        let FoundWays { ways, located, mut summary, looked_at, .. } = found;
+
+        let (mut numbered, mut questions) = (Vec::new(), Vec::new());
+        for own in &mut outlines {
+            let ways = own.take_ways(reading)?;
+            // What these count is of roads.
+            let none = &mut ExtractSummary::default();
+            let ways = number_nodes(reading, ways, none, &mut |defect| own.defects.push(&defect))?;
+            numbered.push(ways);
+        }
+        if wanted.roads.is_some() {
+            let ways = ways.finish().map_err(failed)?;
+            let on_defect = &mut |defect| of_roads.push(&defect);
+            numbered.push(number_nodes(reading, ways, &mut summary, on_defect)?);
+        }
+        let mut layers = Vec::new();
+        for NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } in numbered {
+            let mentions = mentions.finish().map_err(failed)?;
+            questions.push(NodeQuestions { mentions, mentions_count });
+            layers.push((ways.read(), ways_count, duplicates));
+        }
+        let mut nodes = NodesLast {
+            file,
+            unread: order.nodes,
+            node_blobs: looked_at.node_blobs,
+            versions: looked_at.versions,
+            nodes_seen: 0,
+            is_out_of_order: false,
+        };
+        let located = located.finish().map_err(failed)?;
+        let answers =
+            locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
+                outlines.get_mut(layer).map_or(&mut of_roads, |own| &mut own.defects).push(&defect);
+            });
+        if nodes.is_out_of_order {
+            return Ok(None);
+        }
+        let nodes_seen = nodes.nodes_seen;
+        let mut layers = layers.into_iter().zip(answers?);
+        let mut found = Self { outlines: Vec::new(), roads: None };
+        for own in outlines {
+            let Some(((ways, ..), nodes)) = layers.next() else { break };
+            let stops = nodes.stops.finish().map_err(failed)?;
+            found.outlines.push((own, LocatedWays { ways, stops }));
+        }
+        if let Some((ways, nodes)) = layers.next() {
+            summary.nodes_seen += nodes_seen;
+            found.roads = Some(RoadWays::of(reading, ways, nodes, summary, of_roads)?);
+        }
+        Ok(Some(found))
+    }
+}
+
+/// Reads relations and ways; `None` if they are not in this order.
+fn read_ways<'a, R: Read + Seek>(
+    reading: &Reading<'a>,
+    file: &mut Extracts<R>,
+    order: BlobOrder,
+    wanted: &LayersWanted<'_>,
+    outlines: &mut [Outlines<'a>],
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<Option<FoundWays<'a>>, ReadOsmError> {
+    let mut found = FoundWays::new(reading);
+    let end = if outlines.is_empty() { file.len() } else { order.relations };
+    let [relations, ways]: [Vec<usize>; 2] =
+        [(end..file.len()).collect(), (order.nodes..end).collect()];
+    // Where relations come last, objects are found with the ways that they name; else all objects come before all ways.
+    let is_sorted = end > 0;
+    let [relations_bytes, ways_bytes] =
+        [&relations, if is_sorted { &ways } else { &relations }].map(|blobs| file.bytes_of(blobs));
+    let before = find_objects(reading, file, &relations, outlines, !is_sorted, ways_bytes)?;
+    let mut way_ids: Vec<WayIds<'_>> =
+        outlines.iter_mut().map(|own| own.take_way_ids(reading)).collect::<Result<_, _>>()?;
+    let mut next_ids = || -> Result<Vec<Vec<i64>>, ReadOsmError> {
+        way_ids.iter_mut().map(|ids| ids.next(reading)).collect()
+    };
+    let rest_bytes = file.bytes_of(&before.with_others_than_relations);
+    let all_bytes = relations_bytes + file.bytes_of(&ways) + rest_bytes;
+    let mut wanted = WaysWanted {
+        roads: wanted.roads,
+        own_tags: if is_sorted { OwnTags::Kept } else { OwnTags::Ignored },
+        way_ids: next_ids()?,
+        is_first: true,
+        bytes: [relations_bytes, all_bytes],
+    };
+    found.read(reading, file, &ways, &wanted, outlines, on_defect)?;
+    if !outlines.is_empty() && found.looked_at.has_relations {
+        return Ok(None);
+    }
+    wanted = WaysWanted { is_first: false, bytes: [all_bytes - rest_bytes, all_bytes], ..wanted };
+    let rest = &before.with_others_than_relations;
+    found.read(reading, file, rest, &wanted, outlines, on_defect)?;
+    // Ways that relations name, where their ids did not fit in memory together.
+    loop {
+        let way_ids = next_ids()?;
+        if way_ids.iter().all(Vec::is_empty) {
+            break;
+        }
+        let own_tags = if is_sorted { OwnTags::KeptBefore } else { OwnTags::Ignored };
+        wanted = WaysWanted { roads: None, own_tags, way_ids, bytes: [all_bytes; 2], ..wanted };
+        let blobs = found.way_blobs.clone();
+        found.read(reading, file, &blobs, &wanted, outlines, on_defect)?;
+    }
+    found.looked_at.append(reading, before)?;
+    Ok(Some(found))
+}

@@ -1,0 +1,38 @@
+//! The search in a list of ids for others that mostly ascend.
+
+/// Looks up ids that mostly ascend: from where the last one was found, in doubling steps.
+pub(crate) struct Search<'a> {
+    ids: &'a [i64],
+    at: usize,
+}
+
+impl<'a> Search<'a> {
+    /// `ids` ascend, each of them once.
+    pub(crate) fn new(ids: &'a [i64]) -> Self {
+        Self { ids, at: 0 }
+    }
+
+    /// The index of an id.
+    pub(crate) fn find(&mut self, id: i64) -> Option<usize> {
+        let rest = &self.ids[self.at..];
+        let (mut low, mut step) = (0, 1);
+        if rest.first().is_none_or(|&first| id < first) {
+            // The id lies before the last one found, or after the end: search the whole list.
+            let found = self.ids.binary_search(&id);
+            self.at = found.unwrap_or_else(|before| before).min(self.ids.len().saturating_sub(1));
+            return found.ok();
+        }
+        while rest.get(low + step).is_some_and(|&next| next <= id) {
+            low += step;
+            step *= 2;
+        }
+        let high = (low + step).min(rest.len());
+        let found = rest[low..high].binary_search(&id);
+        self.at += low + found.unwrap_or_else(|before| before.saturating_sub(1));
+        found.ok().map(|_| self.at)
+    }
+}
+
+#[cfg(test)]
+#[path = "search_tests.rs"]
+mod tests;

@@ -1,0 +1,53 @@
+//! What is known of all objects of a layer together.
+
+use std::collections::BTreeMap;
+
+use corniche_store::Artifacts;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use super::SectionLayer;
+use crate::{BuildError, artifacts};
+
+/// Counts of a layer of the extract: `objects = kept + lost`. They are kept after all sections. `M` is what its objects are measured in.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct LayerTotals<M> {
+    /// Objects of the layer in the extract.
+    pub(crate) objects: u64,
+    /// Number and measure of those of each class, by the class's number.
+    pub(crate) kept: BTreeMap<u8, (u64, M)>,
+    /// How many were lost, by reason.
+    pub(crate) lost: BTreeMap<String, u64>,
+}
+
+/// Areas, in square metres.
+pub(crate) type AreaTotals = LayerTotals<f64>;
+/// Ways that are boundaries, in micrometres.
+pub(crate) type BoundaryTotals = LayerTotals<u64>;
+
+impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
+    pub(crate) fn put(
+        &self,
+        layer: SectionLayer,
+        store: &dyn Artifacts,
+    ) -> Result<(), BuildError> {
+        artifacts::put(store, layer.totals().item(0), self)
+    }
+
+    /// `None` in a build without the layer.
+    pub(crate) fn get(
+        layer: SectionLayer,
+        store: &dyn Artifacts,
+    ) -> Result<Option<Self>, BuildError> {
+        artifacts::get(store, layer.totals().item(0))
+    }
+
+    /// Whether the extract has an object that was taken.
+    pub(crate) fn has_any(&self) -> bool {
+        self.kept.values().any(|&(objects, _)| objects > 0)
+    }
+
+    /// How many objects were lost, by reason.
+    pub(crate) fn lost(&self) -> Vec<(String, u64)> {
+        self.lost.iter().map(|(reason, &objects)| (reason.clone(), objects)).collect()
+    }
+}

@@ -1,0 +1,65 @@
+//! The section of a layer of each tile in the store.
+
+use corniche_geom::TileId;
+use corniche_store::Artifacts;
+use serde::{Deserialize, Serialize};
+
+use super::SectionLayer;
+use crate::{BuildError, artifacts};
+
+/// The encoded section of a tile, and how much is in it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct TileSection {
+    pub(crate) section: Vec<u8>,
+    /// The number of its objects, or of their parts.
+    pub(crate) parts: u64,
+    /// The number of the points of all of them.
+    pub(crate) points: u64,
+}
+
+impl TileSection {
+    pub(crate) fn put(
+        &self,
+        layer: SectionLayer,
+        store: &dyn Artifacts,
+        id: TileId,
+    ) -> Result<(), BuildError> {
+        artifacts::put(store, layer.section().of_tile(id), self)
+    }
+
+    /// The section of a tile; `None` if it has none of the layer.
+    pub(crate) fn get(
+        layer: SectionLayer,
+        store: &dyn Artifacts,
+        id: TileId,
+    ) -> Result<Option<Self>, BuildError> {
+        artifacts::get(store, layer.section().of_tile(id))
+    }
+}
+
+/// What the section of a tile takes; all 0 without one.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct SectionOfTile {
+    pub(crate) parts: u64,
+    pub(crate) points: u64,
+    /// The size of the section as it is stored.
+    pub(crate) bytes: u64,
+}
+
+/// Sums over the sections of a level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct SectionSums {
+    pub(crate) tiles: u64,
+    pub(crate) parts: u64,
+    pub(crate) points: u64,
+    pub(crate) bytes: u64,
+}
+
+impl SectionSums {
+    pub(crate) fn add(&mut self, of_tile: SectionOfTile) {
+        self.tiles += u64::from(of_tile.parts > 0);
+        self.parts += of_tile.parts;
+        self.points += of_tile.points;
+        self.bytes += of_tile.bytes;
+    }
+}
