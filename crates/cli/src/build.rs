@@ -9,11 +9,12 @@ use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Leftovers};
 
 use crate::{
     args::BuildArgs,
-    defects::{DefectList, Watch},
+    defects::DefectList,
     exit::ExitCode,
     failure::Failure,
     info, messages, output,
     part::make_tmp,
+    progress::Progress,
     settings::{self, Work},
     table::Digits,
     verdict,
@@ -35,17 +36,17 @@ pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     }
     let mut others: Vec<&Path> = args.work.files().collect();
     others.push(&output);
-    let watch = Watch::new(defects.as_deref(), args.overwrite, &others)?;
+    let progress = Progress::of_build(defects.as_deref(), args.overwrite, &others)?;
     let settings = settings(*args, output)?;
     make_tmp(settings.tmp.as_deref())?;
-    let built = corniche_pipeline::build(&settings, &watch);
-    finish(built, watch, &settings.output)
+    let built = corniche_pipeline::build(&settings, &progress);
+    finish(built, progress, &settings.output)
 }
 
 /// Tells what became of a build, and puts the list of defects in its place.
 pub(crate) fn finish(
     built: Result<BuildSummary, BuildError>,
-    watch: Watch,
+    mut progress: Progress,
     output: &Path,
 ) -> Result<ExitCode, Failure> {
     // A list is put in its place only if it is complete. That is so after a run that failed because no road was kept: all
@@ -54,7 +55,7 @@ pub(crate) fn finish(
         Ok(_) | Err(BuildError::NoRoads { .. } | BuildError::NoGround { .. }) => true,
         Err(_) => false,
     };
-    let listed = watch.defects.filter(|_| is_complete).map_or(Ok(()), DefectList::finish);
+    let listed = progress.defects.take().filter(|_| is_complete).map_or(Ok(()), DefectList::finish);
     let summary = built?;
     listed?;
     let BuildSummary { manifest, package_bytes } = summary;
@@ -72,7 +73,7 @@ pub(crate) fn finish(
     } else {
         messages::note(&format!("wrote {}", output.display()));
     }
-    watch.progress.tell_costs();
+    progress.tell_costs();
     Ok(ExitCode::Done)
 }
 

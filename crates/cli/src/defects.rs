@@ -8,12 +8,11 @@ use std::{
 };
 
 use corniche_export::cell_text;
-use corniche_pipeline::{Defect, Observer, Stage};
+use corniche_pipeline::Defect;
 
 use crate::{
     failure::Failure,
-    output::{self, Existing, Output, existing_of},
-    progress::Progress,
+    output::{self, Existing, Output},
 };
 
 /// The columns. `count` is the number of points, pieces or crossings concerned; `detail` holds further facts, if there are any.
@@ -38,7 +37,8 @@ impl DefectList {
         Ok(Self { target: target.to_path_buf(), file: Mutex::new(begun) })
     }
 
-    fn add(&self, defect: &Defect) {
+    /// Adds a line.
+    pub(crate) fn add(&self, defect: &Defect) {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(output) = &mut *file
             && let Err(error) = output.write_all(line(defect).as_bytes())
@@ -78,69 +78,6 @@ pub(crate) fn quoted(text: &str) -> String {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
-    }
-}
-
-/// Watches a build: progress, and the list if one is wanted.
-pub(crate) struct Watch {
-    pub(crate) progress: Progress,
-    pub(crate) defects: Option<DefectList>,
-}
-
-impl Watch {
-    /// Begins the list if one is asked for; it must be none of `others`.
-    pub(crate) fn new(
-        list: Option<&Path>,
-        overwrite: bool,
-        others: &[&Path],
-    ) -> Result<Self, Failure> {
-        let existing = existing_of(overwrite);
-        let defects = list.map(|target| DefectList::create(target, existing, others));
-        Ok(Self { progress: Progress::new(), defects: defects.transpose()? })
-    }
-}
-
-impl Observer for Watch {
-    fn begin(&self, stage: Stage, total: Option<u64>) {
-        self.progress.begin(stage, total);
-    }
-
-    fn already(&self, stage: Stage, steps: u64) {
-        self.progress.already(stage, steps);
-    }
-
-    fn advance(&self, stage: Stage, steps: u64) {
-        self.progress.advance(stage, steps);
-    }
-
-    fn reached(&self, stage: Stage, done: u64, total: u64) {
-        self.progress.reached(stage, done, total);
-    }
-
-    fn end(&self, stage: Stage) {
-        self.progress.end(stage);
-    }
-
-    fn defect(&self, defect: &Defect) {
-        if let Some(defects) = &self.defects {
-            defects.add(defect);
-        }
-    }
-
-    fn temporary(&self, folder: &Path) {
-        self.progress.temporary(folder);
-    }
-
-    fn keeps(&self, folder: &Path) {
-        self.progress.keeps(folder);
-    }
-
-    fn warning(&self, text: &str) {
-        self.progress.warning(text);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.progress.is_cancelled()
     }
 }
 

@@ -37,6 +37,7 @@ use corniche_viewer::{
     tiles::{BlockingPackage, MapPackage as _, Overlays},
 };
 use corniche_window::{Watched, watch};
+use corniche_work::{Observer as _, Stage};
 
 /// Longest file of keyframes that is read; a hundred thousand keyframes are shorter.
 const MAX_PATH_BYTES: u64 = 32 << 20;
@@ -216,6 +217,7 @@ impl Plan<'_> {
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         messages::note(&format!("flying {}", run.name()));
         let progress = Progress::new();
+        progress.begin(Stage::Fly, Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
             let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
             self.outputs.add_picture(&name, &replay)?;
@@ -223,7 +225,7 @@ impl Plan<'_> {
                 watcher.show(&replay)?;
             }
             run.frames.push(record);
-            progress.frames(run.frames.len() as u64, options.frames.into());
+            progress.advance(Stage::Fly, 1);
         }
         progress.finish();
         if let Some(doubt) = run.doubt() {

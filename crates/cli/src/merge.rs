@@ -7,11 +7,11 @@ use corniche_pipeline::{MergeSettings, is_in_object_storage};
 use crate::{
     args::MergeArgs,
     build,
-    defects::Watch,
     exit::ExitCode,
     failure::Failure,
     messages, names, output, parent,
     part::{make_tmp, read_plan, told},
+    progress::Progress,
     settings,
 };
 
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let plan = read_plan(&plan_file)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
     others.extend([args.output.as_path(), plan_file.as_path()]);
-    let watch = Watch::new(args.defects.as_deref(), args.overwrite, &others)?;
+    let progress = Progress::of_build(args.defects.as_deref(), args.overwrite, &others)?;
     let merge = MergeSettings {
         plan,
         stores,
@@ -39,12 +39,12 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         resources: settings::resources(planned.cpu.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
-    let merged = corniche_pipeline::merge(&merge, &watch);
+    let merged = corniche_pipeline::merge(&merge, &progress);
     let (package, requests) = match merged {
         Ok(merged) => (Ok(merged.package), merged.requests),
         Err(error) => (Err(error), None),
     };
-    let code = build::finish(package, watch, &args.output)?;
+    let code = build::finish(package, progress, &args.output)?;
     if let Some(requests) = requests {
         messages::note(&told(&requests));
     }

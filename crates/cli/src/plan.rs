@@ -2,8 +2,9 @@
 
 use std::{borrow::Cow, fmt::Write as _, io, path::Path};
 
-use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
+use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Resources};
 use corniche_remote::without_secrets;
+use corniche_work::Observer;
 
 use crate::{
     args::PlanArgs,
@@ -89,13 +90,12 @@ fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
 struct Signals;
 
 impl Observer for Signals {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
     fn is_cancelled(&self) -> bool {
         interrupt::is_noted()
     }
 }
+
+impl corniche_pipeline::Observer for Signals {}
 
 /// Plan and estimates for people.
 fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: Digits) -> String {

@@ -6,7 +6,6 @@
 
 mod costs;
 mod pace;
-mod task;
 mod texts;
 mod usage;
 
@@ -18,22 +17,25 @@ use std::{
     time::{Duration, Instant},
 };
 
-use corniche_pipeline::{Observer, Stage};
+use corniche_pipeline::Defect;
+use corniche_work::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 use tracing::Span;
 
 use self::{
     costs::{Cost, Costs},
     pace::Pace,
-    task::Task,
     texts::Reading,
     usage::Usage,
 };
 use crate::{
     args::{LogFormat, Voice},
+    defects::DefectList,
     documents::to_line,
+    failure::Failure,
     interrupt, messages,
     messages::write_line,
+    output::existing_of,
     table::Digits,
 };
 
@@ -77,6 +79,8 @@ impl Manner {
 pub(crate) struct Progress {
     shared: Arc<Shared>,
     ticker: Option<JoinHandle<()>>,
+    /// The list of defects, if one is wanted.
+    pub(crate) defects: Option<DefectList>,
 }
 
 struct Shared {
@@ -94,7 +98,7 @@ struct State {
 }
 
 struct Running {
-    task: Task,
+    stage: Stage,
     span: Span,
     total: Option<u64>,
     done: u64,
@@ -119,6 +123,18 @@ impl Progress {
         Self::in_manner(Manner::of(messages::voice()))
     }
 
+    /// Tells of a build, and lists its defects if a list is asked for; it must be none of `others`.
+    pub(crate) fn of_build(
+        list: Option<&Path>,
+        overwrite: bool,
+        others: &[&Path],
+    ) -> Result<Self, Failure> {
+        let create = |target| DefectList::create(target, existing_of(overwrite), others);
+        let mut progress = Self::new();
+        progress.defects = list.map(create).transpose()?;
+        Ok(progress)
+    }
+
     fn in_manner(manner: Manner) -> Self {
         let state = State {
             begun: Instant::now(),
@@ -133,22 +149,7 @@ impl Progress {
         let ticker = (manner != Manner::Quiet)
             .then(|| thread::Builder::new().name("progress".into()).spawn(move || ticking.tick()))
             .and_then(Result::ok);
-        Self { shared, ticker }
-    }
-
-    /// A flight has drawn so many of its frames.
-    pub(crate) fn frames(&self, done: u64, total: u64) {
-        self.count(Task::FLY, done, total);
-    }
-
-    /// The stage that runs has done `done` of `total`. It begins with its first step that is told.
-    fn count(&self, task: Task, done: u64, total: u64) {
-        let mut state = self.shared.state();
-        if state.running.as_ref().is_none_or(|running| running.task != task) {
-            state.begin(task, Some(total), self.shared.manner);
-        }
-        drop(state);
-        self.shared.with(task, |running| running.reach_of(done, total));
+        Self { shared, ticker, defects: None }
     }
 
     /// The stage that runs is over.
@@ -224,9 +225,9 @@ impl Shared {
     }
 
     /// Does something to a stage that is running.
-    fn with(&self, task: Task, act: impl FnOnce(&mut Running)) {
+    fn with(&self, stage: Stage, act: impl FnOnce(&mut Running)) {
         let mut state = self.state();
-        if let Some(running) = state.running.as_mut().filter(|running| running.task == task) {
+        if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
             act(running);
             running.tell_if_due(self.manner);
         }
@@ -235,9 +236,9 @@ impl Shared {
 
 impl State {
     /// A stage begins, and the one that ran is over.
-    fn begin(&mut self, task: Task, total: Option<u64>, manner: Manner) {
+    fn begin(&mut self, stage: Stage, total: Option<u64>, manner: Manner) {
         self.end_running(manner);
-        let running = Running::new(task, total, manner);
+        let running = Running::new(stage, total, manner);
         if manner == Manner::Json {
             write_line(&to_line(&running.read().record("begin")));
         }
@@ -254,7 +255,7 @@ impl State {
             Manner::Quiet => {}
             Manner::Json => write_line(&to_line(&reading.record("end"))),
             Manner::Bars | Manner::Lines => {
-                write_line(&format!("{:22} {}", reading.task.title, reading.ended(digits())));
+                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended(digits())));
             }
             Manner::Events => tracing::info!(
                 parent: &running.span,
@@ -262,14 +263,14 @@ impl State {
                 already = reading.already,
                 seconds = reading.elapsed.as_secs_f64(),
                 cpu_seconds = reading.used.cpu.map(|cpu| cpu.as_secs_f64()),
-                "{}: {}", reading.task.title, reading.ended(Digits::Plain)
+                "{}: {}", reading.stage.title(), reading.ended(Digits::Plain)
             ),
         }
         tracing::debug!(
             parent: &running.span, done = reading.done, seconds = reading.elapsed.as_secs_f64(), "ended"
         );
         self.costs.add(Cost {
-            task: reading.task,
+            stage: reading.stage,
             done: reading.done,
             already: reading.already,
             wall: reading.elapsed,
@@ -279,12 +280,12 @@ impl State {
 }
 
 impl Running {
-    fn new(task: Task, total: Option<u64>, manner: Manner) -> Self {
+    fn new(stage: Stage, total: Option<u64>, manner: Manner) -> Self {
         let now = Instant::now();
-        let span = tracing::info_span!("stage", id = task.id);
-        tracing::debug!(parent: &span, total, unit = task.counts.plural(), "begins");
+        let span = tracing::info_span!("stage", id = stage.id());
+        tracing::debug!(parent: &span, total, unit = stage.unit().plural(), "begins");
         Self {
-            task,
+            stage,
             span,
             total,
             done: 0,
@@ -294,7 +295,7 @@ impl Running {
             used_before: Usage::now(),
             told: now,
             told_done: 0,
-            bar: (manner == Manner::Bars).then(|| bar(task.title, total)),
+            bar: (manner == Manner::Bars).then(|| bar(stage.title(), total)),
         }
     }
 
@@ -315,7 +316,7 @@ impl Running {
         let elapsed = self.begun.elapsed();
         let remaining = self.total.map(|total| total.saturating_sub(self.done));
         Reading {
-            task: self.task,
+            stage: self.stage,
             done: self.done,
             already: self.already,
             total: self.total,
@@ -346,10 +347,10 @@ impl Running {
                 done = reading.done,
                 total = reading.total,
                 seconds = reading.elapsed.as_secs_f64(),
-                "{}: {}", self.task.title, reading.running(Digits::Plain)
+                "{}: {}", self.stage.title(), reading.running(Digits::Plain)
             ),
             (_, None) => {
-                write_line(&format!("{:22} {}", self.task.title, reading.running(digits())));
+                write_line(&format!("{:22} {}", self.stage.title(), reading.running(digits())));
             }
         }
     }
@@ -357,22 +358,22 @@ impl Running {
 
 impl Observer for Progress {
     fn begin(&self, stage: Stage, total: Option<u64>) {
-        self.shared.state().begin(stage.into(), total, self.shared.manner);
+        self.shared.state().begin(stage, total, self.shared.manner);
     }
 
     fn already(&self, stage: Stage, steps: u64) {
-        self.shared.with(stage.into(), |running| {
+        self.shared.with(stage, |running| {
             running.already += steps;
             running.done += steps;
         });
     }
 
     fn advance(&self, stage: Stage, steps: u64) {
-        self.shared.with(stage.into(), |running| running.reach(running.done + steps));
+        self.shared.with(stage, |running| running.reach(running.done + steps));
     }
 
     fn reached(&self, stage: Stage, done: u64, total: u64) {
-        self.shared.with(stage.into(), |running| running.reach_of(done, total));
+        self.shared.with(stage, |running| running.reach_of(done, total));
     }
 
     fn end(&self, _: Stage) {
@@ -402,23 +403,11 @@ impl Observer for Progress {
     }
 }
 
-impl corniche_export::Observer for Progress {
-    fn done(&self, stage: corniche_export::Stage, done: u64, total: u64) {
-        self.count(stage.into(), done, total);
-    }
-
-    fn should_stop(&self) -> bool {
-        interrupt::is_noted()
-    }
-}
-
-impl corniche_matching::MatchObserver for Progress {
-    fn done(&self, tiles: u64, total: u64) {
-        self.count(Task::MATCH, tiles, total);
-    }
-
-    fn should_stop(&self) -> bool {
-        interrupt::is_noted()
+impl corniche_pipeline::Observer for Progress {
+    fn defect(&self, defect: &Defect) {
+        if let Some(defects) = &self.defects {
+            defects.add(defect);
+        }
     }
 }
 

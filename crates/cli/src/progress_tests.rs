@@ -27,6 +27,18 @@ fn json_lines_are_rare_while_nothing_moves() {
     assert!(due(5000, false) && !due(4999, false));
 }
 
+/// Programs rely on the names of stages and of what they count: the page has them all.
+#[test]
+fn the_page_names_every_stage_and_every_unit() {
+    let page = std::fs::read_to_string(corniche_testing::root().join("docs/progress.md")).unwrap();
+    let row = |start: &str| page.lines().find(|line| line.starts_with(start)).unwrap();
+    for stage in Stage::ALL {
+        assert!(row("| `stage` |").contains(&format!("`{}`", stage.id())), "{stage:?}");
+        let unit = stage.unit().plural();
+        assert!(row("| `unit` |").contains(&format!("`{unit}`")), "{unit}");
+    }
+}
+
 /// Nothing calls for it: the thread alone tells.
 #[test]
 fn a_stage_that_counts_nothing_is_told_of() {

@@ -6,13 +6,13 @@ use corniche_areas::{AreaClass, Polygon};
 use corniche_geom::{LatticePoint, TileId, wgs84};
 use corniche_store::{Groups, Sorter};
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
+use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
     area_piece::AreaPiece,
     cut::polygons_of,
     error::ExportError,
     feature_request::{AreasRequest, Coordinates},
-    observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
     scratch::FileScratch,
@@ -94,29 +94,26 @@ pub fn export_areas(
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() == level);
     let mut count = 0;
-    for (done, &id) in ids.iter().enumerate() {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done as u64, ids.len() as u64);
+    one_by_one((observer, Stage::ExportTiles), &ids, |&id| {
         for piece in pieces(package, id, &request.classes)? {
             count += 1;
             sorter.push(piece).map_err(sort)?;
         }
-    }
-    observer.done(Stage::Tiles, ids.len() as u64, ids.len() as u64);
+        Ok::<(), ExportError>(())
+    })?;
     let mut sorted = Groups::of(sorter.finish().map_err(sort)?);
     let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
     let mut summary =
         AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
     let rounding_m = rounding_m(package, level);
-    let mut done = 0;
+    observer.begin(Stage::ExportFeatures, Some(count));
     while let Some(pieces) = sorted.next_by(|piece| piece.object).map_err(sort)? {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Pieces, done, count);
-        done += pieces.len() as u64;
+        observer.check()?;
         file.push(feature(&pieces, (&places, rounding_m), &mut summary)?)?;
+        observer.advance(Stage::ExportFeatures, pieces.len() as u64);
     }
     file.finish()?;
-    observer.done(Stage::Pieces, count, count);
+    observer.end(Stage::ExportFeatures);
     Ok(summary)
 }
 

@@ -7,6 +7,7 @@ use corniche_dem::{DemError, LibraryError};
 use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId};
 use corniche_tileset::{OpenError, ReadError};
+use corniche_work::Interrupted;
 
 /// The outlines of a tile's roads make no triangulation with its ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -148,6 +149,12 @@ pub enum ExportError {
     Sort { folder: PathBuf, source: io::Error },
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Interrupted> for ExportError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 impl ExportError {

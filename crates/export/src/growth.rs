@@ -6,13 +6,13 @@ use corniche_geom::LatticeBounds;
 use corniche_roads::FunctionalRoadClass;
 use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, Manifest, tile_of_order};
+use corniche_work::{Observer, Stage};
 
 use crate::{
     error::ExportError,
     feature_request::Coordinates,
     join::lines,
     measures::Measures,
-    observer::{Observer, Stage},
     piece::{Piece, Vertex},
     places::Places,
     scratch::FileScratch,
@@ -58,11 +58,10 @@ pub fn growth_by_way<E: From<ExportError>>(
     let sorter = (Sorter::new(&scratch, memory_bytes), folder);
     let ways = Ways::read(package, &tiles, &classes, sorter, observer, |piece| vec![piece])?;
     let places = Places::new(manifest, Coordinates::Package)?;
-    let count = ways.count();
     ways.for_each(observer, |pieces| {
         growth_of(pieces, manifest, &places)?.map_or(Ok(()), |way| each(&way))
     })?;
-    observer.done(Stage::Pieces, count, count);
+    observer.end(Stage::ExportFeatures);
     Ok(())
 }
 

@@ -4,13 +4,9 @@ use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId, Work};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
+use corniche_work::{Observer, Stage, workers::one_by_one};
 
-use crate::{
-    error::ExportError,
-    observer::{Observer, Stage, stop_if_asked},
-    piece::Vertex,
-    read,
-};
+use crate::{error::ExportError, piece::Vertex, read};
 
 /// Steps that laying lines may take, of which a vertex counts for 32: eight million vertices.
 const MOST_STEPS: u64 = 1 << 28;
@@ -34,12 +30,9 @@ pub(crate) fn laid_lines(
     let tiles = read::tiles(package, level, None)?;
     let mut laid = Vec::new();
     let work = Work::new(MOST_STEPS);
-    for (done, &id) in (0..).zip(&tiles) {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done, tiles.len() as u64);
-        lay_on(package, id, &paths, &work, &mut laid)?;
-    }
-    observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
+    one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
+        lay_on(package, id, &paths, &work, &mut laid)
+    })?;
     laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
     // What runs along a border lies on both of its tiles.
     let end = |laid: &Laid| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));

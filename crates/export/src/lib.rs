@@ -47,7 +47,6 @@ mod join;
 mod laid_lines;
 mod measures;
 mod mesh;
-mod observer;
 mod piece;
 mod places;
 mod profile;
@@ -61,7 +60,6 @@ mod texture;
 mod tiles3d;
 mod vector;
 mod ways;
-mod workers;
 
 pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
@@ -72,7 +70,6 @@ pub use feature_request::{AreasRequest, Coordinates, RoadsRequest};
 pub use geotiff::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
-pub use observer::{Observer, Silent, Stage};
 pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use quantized_mesh::{
     Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,

@@ -3,6 +3,7 @@
 use corniche_geom::LatticePoint;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::FilePackage;
+use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
     error::ExportError,
@@ -10,7 +11,6 @@ use crate::{
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures},
-    observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, Vertex},
     places::Places,
     read,
@@ -156,13 +156,11 @@ fn pieces(
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = read::tiles(package, level, None)?;
     let mut pieces = Vec::new();
-    for (done, &id) in (0..).zip(&tiles) {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done, tiles.len() as u64);
+    one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
         let own = read::pieces(package, id, &classes)?;
         pieces.extend(own.into_iter().filter(|piece| way_ids.contains(&piece.key.way_id)));
-    }
-    observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
+        Ok::<(), ExportError>(())
+    })?;
     Ok(pieces)
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, tile_of_order};
+use corniche_work::{Observer, Stage};
 
 use crate::{
     cut::cut_at_bounds,
@@ -12,7 +13,6 @@ use crate::{
     feature_request::{Coordinates, RoadsRequest},
     join::{Line, lines},
     measures::Measures,
-    observer::{Observer, Stage},
     piece::Piece,
     places::Places,
     read,
@@ -83,11 +83,10 @@ pub fn export_roads(
             heights: places.heights().to_owned(),
         },
     };
-    let count = ways.count();
     ways.for_each(observer, |pieces| writing.way(&pieces))?;
     let Writing { file, summary, .. } = writing;
     file.finish()?;
-    observer.done(Stage::Pieces, count, count);
+    observer.end(Stage::ExportFeatures);
     Ok(summary)
 }
 

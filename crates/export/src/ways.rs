@@ -6,10 +6,10 @@ use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 use corniche_store::{Groups, Sorter};
 use corniche_tileset::FilePackage;
+use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
     error::ExportError,
-    observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, SortedPiece},
     read,
 };
@@ -35,24 +35,17 @@ impl<'a> Ways<'a> {
     ) -> Result<Self, ExportError> {
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
         let mut count = 0;
-        for (done, &id) in tiles.iter().enumerate() {
-            stop_if_asked(observer)?;
-            observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
+        one_by_one((observer, Stage::ExportTiles), tiles, |&id| {
             for piece in read::pieces(package, id, classes)?.into_iter().flat_map(&keep) {
                 count += 1;
                 sorter.push(SortedPiece(piece)).map_err(failed)?;
             }
-        }
-        observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
+            Ok::<(), ExportError>(())
+        })?;
         Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, folder })
     }
 
-    /// How many pieces there are.
-    pub(crate) fn count(&self) -> u64 {
-        self.count
-    }
-
-    /// Hands all pieces of each way to `each`, in ascending order of ids.
+    /// Hands all pieces of each way to `each`, in ascending order of ids. The stage is begun; who calls ends it.
     pub(crate) fn for_each<E: From<ExportError>>(
         mut self,
         observer: &dyn Observer,
@@ -60,14 +53,14 @@ impl<'a> Ways<'a> {
     ) -> Result<(), E> {
         let folder = self.folder;
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
-        let mut done = 0;
+        observer.begin(Stage::ExportFeatures, Some(self.count));
         while let Some(pieces) =
             self.sorted.next_by(|SortedPiece(piece)| piece.key.way_id).map_err(failed)?
         {
-            stop_if_asked(observer)?;
-            observer.done(Stage::Pieces, done, self.count);
-            done += pieces.len() as u64;
+            observer.check().map_err(ExportError::from)?;
+            let count = pieces.len() as u64;
             each(pieces.into_iter().map(|SortedPiece(piece)| piece).collect())?;
+            observer.advance(Stage::ExportFeatures, count);
         }
         Ok(())
     }

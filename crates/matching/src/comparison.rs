@@ -7,6 +7,7 @@ use corniche_photo::TexelWindow;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
+use corniche_work::{Observer, Stage, workers::one_by_one};
 use geo::{Euclidean, Length as _, LineString};
 
 use crate::{
@@ -34,15 +35,6 @@ pub struct MatchRequest {
     pub region_m: f64,
 }
 
-/// Is told how far a comparison is, and may end it.
-pub trait MatchObserver {
-    /// How many tiles are done, of how many.
-    fn done(&self, tiles: u64, total: u64);
-
-    /// Whether it is to end. It is asked for each tile.
-    fn should_stop(&self) -> bool;
-}
-
 /// Measures how far the roads of the finest level lie beside what `target` shows.
 ///
 /// At each place on a road, and for each shift of it, the image is asked whether there is a line: whether the middle is darker, or
@@ -55,7 +47,7 @@ pub fn match_roads(
     package: &FilePackage,
     target: &Target<'_>,
     request: &MatchRequest,
-    observer: &dyn MatchObserver,
+    observer: &dyn Observer,
 ) -> Result<MatchReport, MatchError> {
     let photos = photos_of(target)?;
     let images = Images::new(package, photos.as_ref());
@@ -64,14 +56,7 @@ pub fn match_roads(
     let mut matching = Matching { images, search, request, texel_m, found: Found::default() };
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() == package.manifest().frame.max_level());
-    for (done, &id) in (0..).zip(&ids) {
-        if observer.should_stop() {
-            return Err(MatchError::Interrupted);
-        }
-        observer.done(done, ids.len() as u64);
-        matching.tile(package, id)?;
-    }
-    observer.done(ids.len() as u64, ids.len() as u64);
+    one_by_one((observer, Stage::Match), &ids, |&id| matching.tile(package, id))?;
     if matching.found.roads.is_empty() {
         return Err(MatchError::NoRoads);
     }

@@ -4,6 +4,7 @@ use corniche_drape::BadLine;
 use corniche_geom::TileId;
 use corniche_photo::PhotoError;
 use corniche_tileset::{OpenError, ReadError};
+use corniche_work::Interrupted;
 
 /// Why roads could not be compared with an image.
 #[derive(Debug, thiserror::Error)]
@@ -26,4 +27,10 @@ pub enum MatchError {
     NoRelief,
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Interrupted> for MatchError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }

@@ -22,7 +22,7 @@ mod response;
 mod samples;
 mod votes;
 
-pub use comparison::{MatchObserver, MatchRequest, match_roads};
+pub use comparison::{MatchRequest, match_roads};
 pub use error::MatchError;
 pub use images::Target;
 pub use report::{MatchReport, MatchedRegion, MatchedRoad};

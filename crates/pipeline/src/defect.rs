@@ -1,5 +1,6 @@
 //! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
 
+use corniche_work::Silent;
 use serde::{Deserialize, Serialize};
 
 /// Bad input that was skipped and counted, or what was lost by it.
@@ -56,6 +57,14 @@ impl Defect {
         }
     }
 }
+
+/// What a build or a check reports to its caller: its stages, as all work does, and the defects of its inputs.
+pub trait Observer: corniche_work::Observer {
+    /// A defect of the input was skipped and counted. The order of reports depends on the inputs alone.
+    fn defect(&self, _: &Defect) {}
+}
+
+impl Observer for Silent {}
 
 impl From<corniche_osm::Defect> for Defect {
     fn from(defect: corniche_osm::Defect) -> Self {

@@ -2,7 +2,9 @@
 
 use std::{io, path::PathBuf};
 
-use crate::{TargetError, plan_error::PlanError, workers::Interrupted};
+use corniche_work::Interrupted;
+
+use crate::{TargetError, plan_error::PlanError};
 
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]

@@ -26,7 +26,7 @@ fn every_kind_of_input_of_a_manifest_is_listed_once() {
 #[derive(Default)]
 struct Counted(Mutex<(Option<u64>, u64)>);
 
-impl Observer for Counted {
+impl corniche_work::Observer for Counted {
     fn begin(&self, stage: Stage, total: Option<u64>) {
         assert_eq!(stage, Stage::Hash);
         *self.0.lock().unwrap() = (total, 0);
@@ -35,9 +35,9 @@ impl Observer for Counted {
     fn advance(&self, _: Stage, steps: u64) {
         self.0.lock().unwrap().1 += steps;
     }
-
-    fn end(&self, _: Stage) {}
 }
+
+impl Observer for Counted {}
 
 /// Hashing counts bytes, and knows their number before it begins; of a part of an archive it does not.
 #[test]

@@ -1,6 +1,6 @@
 //! Builds and verifies packages: the order of the stages, their threads, memory, defects and progress.
 //!
-//! This crate never parses arguments and never prints. Its worker threads are spawned in one module, `workers`; which other crates start
+//! This crate never parses arguments and never prints. Its threads are those of `corniche-work`; which crates start
 //! threads stands in `tidy/tests/it/invariants.rs`.
 
 mod areas;
@@ -19,7 +19,6 @@ mod machine;
 mod manifest_texts;
 mod memory_shares;
 mod objects;
-mod observer;
 mod open_package;
 mod parts;
 mod photos;
@@ -36,7 +35,8 @@ mod tile;
 mod tiles_near;
 mod true_lengths;
 mod verify;
-mod workers;
+
+use corniche_work::workers;
 
 pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
@@ -45,13 +45,13 @@ pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use corniche_store::{
     Claim, Existing, OpenMode, folder_of, open_own, place_finished, sync_folder,
 };
-pub use defect::{Defect, Loss};
+pub use corniche_work::{Silent, Stage};
+pub use defect::{Defect, Loss, Observer};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
 pub use inputs::{PlannedInput, elevation_names, extract_names, input_name, photo_names};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use objects::is_in_object_storage;
-pub use observer::{Observer, Silent, Stage, Unit};
 pub use open_package::open_package;
 pub use parts::{
     Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs,

@@ -19,14 +19,14 @@ const THREADS: [(&str, &str); 9] = [
         "cli",
         "signals, the end of standard input, progress while nothing moves, a flight that is shown in a window",
     ),
-    ("export", "tiles of an export side by side"),
     ("live", "tiles are loaded while another thread draws"),
     ("objects", "the runtime of the library for object storage"),
     ("osm", "blobs are decoded in the pool that the caller hands in"),
-    ("pipeline", "tiles and roads of a build side by side"),
+    ("pipeline", "the pool in which extracts are decoded"),
     ("remote", "a thread that waits for the network"),
     ("serve", "connections side by side"),
     ("window", "files are written while the window draws"),
+    ("work", "what is made of tiles and roads side by side, and their one writer"),
 ];
 
 /// Crates with `unsafe` code.

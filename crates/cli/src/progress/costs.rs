@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
+use corniche_work::Stage;
+
 use super::{
-    task::Task,
     texts::{amount, rate},
     usage::Usage,
 };
@@ -15,7 +16,7 @@ use crate::{
 /// What one stage took.
 #[derive(Debug, Clone)]
 pub(crate) struct Cost {
-    pub(crate) task: Task,
+    pub(crate) stage: Stage,
     /// How much is done in all, by an earlier run too.
     pub(crate) done: u64,
     /// How much of it an earlier run did.
@@ -48,7 +49,7 @@ pub(crate) struct Costs(Vec<Cost>);
 impl Costs {
     /// A stage that came before gets what it took now on top.
     pub(crate) fn add(&mut self, cost: Cost) {
-        match self.0.iter_mut().find(|before| before.task == cost.task) {
+        match self.0.iter_mut().find(|before| before.stage == cost.stage) {
             Some(before) => {
                 before.done += cost.done;
                 before.already += cost.already;
@@ -81,10 +82,16 @@ impl Costs {
             ]
         };
         for cost in &self.0 {
-            let unit = cost.task.counts;
+            let unit = cost.stage.unit();
             let rate = cost.per_second().map(|per_second| rate(per_second, unit, digits));
             let done = amount(cost.done, unit, digits);
-            table.row(row(cost.task.title, done, cost.wall, rate.unwrap_or_default(), &cost.used));
+            table.row(row(
+                cost.stage.title(),
+                done,
+                cost.wall,
+                rate.unwrap_or_default(),
+                &cost.used,
+            ));
         }
         table.row(row("all", String::new(), wall, String::new(), used));
         table.without_empty_columns().to_text()
@@ -93,8 +100,8 @@ impl Costs {
     /// The same for programs.
     pub(crate) fn record(&self, wall: Duration, used: &Usage) -> ProgressRecord<'static> {
         let stage = |cost: &Cost| StageCostRecord {
-            stage: cost.task.id,
-            title: cost.task.title,
+            stage: cost.stage.id(),
+            title: cost.stage.title(),
             done: cost.done,
             already: cost.already,
             per_second: cost.per_second(),

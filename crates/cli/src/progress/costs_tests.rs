@@ -1,6 +1,6 @@
 //! The table of costs has one row for each stage and leaves out what the system does not tell.
 
-use corniche_pipeline::Stage;
+use corniche_work::Stage;
 use serde_json::json;
 
 use super::*;
@@ -15,7 +15,7 @@ fn used(cpu_s: f64, peak_mb: u64, read_mb: u64) -> Usage {
 }
 
 fn cost(stage: Stage, [done, already]: [u64; 2], wall_s: u64, used: Usage) -> Cost {
-    Cost { task: stage.into(), done, already, wall: Duration::from_secs(wall_s), used }
+    Cost { stage, done, already, wall: Duration::from_secs(wall_s), used }
 }
 
 #[test]

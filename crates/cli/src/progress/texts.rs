@@ -2,10 +2,9 @@
 
 use std::time::Duration;
 
-use super::{
-    task::{Counts, Task},
-    usage::Usage,
-};
+use corniche_work::{Stage, Unit};
+
+use super::usage::Usage;
 use crate::{
     documents::progress::{ProgressRecord, StageRecord, seconds},
     table::{Digits, bytes},
@@ -14,7 +13,7 @@ use crate::{
 /// What is known of a stage at one moment.
 #[derive(Debug, Clone)]
 pub(crate) struct Reading {
-    pub(crate) task: Task,
+    pub(crate) stage: Stage,
     /// How much is done in all, by an earlier run too.
     pub(crate) done: u64,
     /// How much of it an earlier run did.
@@ -31,7 +30,7 @@ pub(crate) struct Reading {
 impl Reading {
     /// While the stage runs, without its title: what is done of what, time left, rate, bytes.
     pub(crate) fn running(&self, digits: Digits) -> String {
-        let unit = self.task.counts;
+        let unit = self.stage.unit();
         let mut parts = vec![match self.total {
             None => amount(self.done, unit, digits),
             Some(0) => "nothing to do".to_owned(),
@@ -55,12 +54,12 @@ impl Reading {
         let seconds = self.elapsed.as_secs_f64();
         match (self.done, self.already) {
             (0, _) if self.total == Some(0) => "nothing to do".to_owned(),
-            (done, 0) => format!("{} in {seconds:.2} s", amount(done, self.task.counts, digits)),
+            (done, 0) => format!("{} in {seconds:.2} s", amount(done, self.stage.unit(), digits)),
             (done, already) if done == already => {
-                format!("{}, all by an earlier run", amount(done, self.task.counts, digits))
+                format!("{}, all by an earlier run", amount(done, self.stage.unit(), digits))
             }
             (done, already) => {
-                let unit = self.task.counts;
+                let unit = self.stage.unit();
                 let (done, already) = (amount(done, unit, digits), number(already, unit, digits));
                 format!("{done}, {already} of them by an earlier run, in {seconds:.2} s")
             }
@@ -70,10 +69,10 @@ impl Reading {
     /// The state of the stage as a record for programs.
     pub(crate) fn record(&self, state: &'static str) -> ProgressRecord<'static> {
         ProgressRecord::Stage(StageRecord {
-            stage: self.task.id,
-            title: self.task.title,
+            stage: self.stage.id(),
+            title: self.stage.title(),
             state,
-            unit: self.task.counts.plural(),
+            unit: self.stage.unit().plural(),
             done: self.done,
             already: self.already,
             total: self.total,
@@ -88,22 +87,22 @@ impl Reading {
 }
 
 /// A number without its unit, except for bytes.
-fn number(number: u64, unit: Counts, digits: Digits) -> String {
-    if unit == Counts::Bytes { bytes(number) } else { digits.count(number) }
+fn number(number: u64, unit: Unit, digits: Digits) -> String {
+    if unit == Unit::Bytes { bytes(number) } else { digits.count(number) }
 }
 
 /// A number with its unit.
-pub(crate) fn amount(number: u64, unit: Counts, digits: Digits) -> String {
+pub(crate) fn amount(number: u64, unit: Unit, digits: Digits) -> String {
     match (unit, number) {
-        (Counts::Bytes, _) => bytes(number),
+        (Unit::Bytes, _) => bytes(number),
         (_, 1) => format!("1 {}", unit.plural().trim_end_matches('s')),
         _ => format!("{} {}", digits.count(number), unit.plural()),
     }
 }
 
 /// Slow rates per minute or hour, so that no rate is a small fraction.
-pub(crate) fn rate(per_second: f64, unit: Counts, digits: Digits) -> String {
-    if unit == Counts::Bytes {
+pub(crate) fn rate(per_second: f64, unit: Unit, digits: Digits) -> String {
+    if unit == Unit::Bytes {
         return format!("{}/s", bytes(per_second.round() as u64));
     }
     let (number, per) = match per_second {

@@ -1,13 +1,13 @@
 //! Texts of progress never claim more than is done.
 
-use corniche_pipeline::Stage;
+use corniche_work::Stage;
 use serde_json::json;
 
 use super::*;
 
 fn reading(done: u64, total: Option<u64>) -> Reading {
     Reading {
-        task: Stage::Tiles.into(),
+        stage: Stage::Tiles,
         done,
         already: 0,
         total,
@@ -30,14 +30,14 @@ fn a_running_stage_tells_what_is_done_of_what_time_left_rate_and_bytes() {
         told.running(Digits::Apart),
         "120 of 1\u{202f}366 tiles (8 %), 29 s left, 43.2 tiles/s, 12.3 MB read, 4500 B written"
     );
-    assert_eq!(Reading { task: Stage::Hash.into(), ..told.clone() }.running(Digits::Apart), {
+    assert_eq!(Reading { stage: Stage::Hash, ..told.clone() }.running(Digits::Apart), {
         "120 B of 1366 B (8 %), 29 s left, 43 B/s, 12.3 MB read, 4500 B written"
     });
     // What is not known is left out.
     assert_eq!(reading(0, Some(1)).running(Digits::Apart), "0 of 1 tile (0 %)");
     assert_eq!(reading(1, None).running(Digits::Apart), "1 tile");
     assert_eq!(
-        Reading { task: Stage::Heights.into(), ..reading(2, None) }.running(Digits::Apart),
+        Reading { stage: Stage::Heights, ..reading(2, None) }.running(Digits::Apart),
         "2 areas"
     );
 }
@@ -95,9 +95,9 @@ fn slow_rates_are_told_per_minute_or_hour() {
         (0.01, "36.0 tiles/h"),
         (0.0, "0.0 tiles/h"),
     ] {
-        assert_eq!(rate(per_second, Counts::Things("tiles"), Digits::Apart), expected);
+        assert_eq!(rate(per_second, Unit::Things("tiles"), Digits::Apart), expected);
     }
-    assert_eq!(rate(2.5e6, Counts::Bytes, Digits::Plain), "2500.0 kB/s");
+    assert_eq!(rate(2.5e6, Unit::Bytes, Digits::Plain), "2500.0 kB/s");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use corniche_geom::TILE_CELLS;
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};
+use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
     block::{self, Block, Tins},
@@ -11,14 +12,7 @@ use super::{
     geotiff_request::{Elevation, GeoTiffRequest},
     grid::RasterGrid,
 };
-use crate::{
-    error::ExportError,
-    feature_request::Coordinates,
-    observer::{Observer, Stage},
-    places::Places,
-    read,
-    workers::{Progress, on_all},
-};
+use crate::{error::ExportError, feature_request::Coordinates, places::Places, read};
 
 /// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
 const BLOCKS_AT_ONCE: usize = 64;
@@ -187,22 +181,17 @@ impl Writing<'_> {
         let mut sums = SampleSums::new(package.manifest().vertical.quantum_m);
         let mut covered = 0;
         let [columns, rows] = grid.blocks();
-        let total = (columns * rows) as u64;
+        observer.begin(Stage::ExportBlocks, Some((columns * rows) as u64));
         let rows_at_once = BLOCKS_AT_ONCE.div_ceil(columns);
         for first in (0..rows).step_by(rows_at_once) {
             let places: Vec<[usize; 2]> = (first..rows.min(first + rows_at_once))
                 .flat_map(|row| (0..columns).map(move |column| [column, row]))
                 .collect();
             tins.forget_north_of(grid.window([0, first]).corner.j);
-            let made: Vec<Block<T>> = on_all(
-                &places,
+            let made: Vec<Block<T>> = make_all(
+                (*observer, Stage::ExportBlocks),
                 request.threads,
-                Progress {
-                    observer: *observer,
-                    stage: Stage::Blocks,
-                    done: (first * columns) as u64,
-                    total,
-                },
+                &places,
                 || Ok(request.elevation.map(|Elevation { dem, plan }| dem.reader(plan))),
                 |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut()),
             )?;
@@ -219,6 +208,7 @@ impl Writing<'_> {
             return Err(ExportError::NoGround { package: package.path().to_path_buf() });
         }
         let has_same_crs = file.finish()?;
+        observer.end(Stage::ExportBlocks);
         Ok(Written { covered, sums, has_same_crs })
     }
 }

@@ -4,6 +4,7 @@ use std::{fs::File, io::BufWriter, path::Path};
 
 use corniche_geom::{Bounds, TileId};
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use super::{
     glb::GlbWriter,
@@ -17,7 +18,6 @@ use super::{
 use crate::{
     error::ExportError,
     feature_request::Coordinates,
-    observer::{Observer, Stage, stop_if_asked},
     places::Places,
     read,
     surfaces::{RoadLook, TileLines},
@@ -82,9 +82,7 @@ pub fn export_mesh(
     let lines =
         (request.roads == ModelRoads::Surfaces).then(|| TileLines::new(package, look, level));
     let reading = TileReading { package, request, places: &places, local, lines };
-    for (done, &id) in ids.iter().enumerate() {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done as u64, ids.len() as u64);
+    one_by_one((observer, Stage::ExportTiles), &ids, |&id| {
         if let Some(tile) = reading.read(id)? {
             summary.tiles += 1;
             summary.triangles += tile.triangles.len() as u64;
@@ -92,8 +90,8 @@ pub fn export_mesh(
             summary.lines += tile.roads.len() as u64;
             writer.tile(&tile).map_err(failed)?;
         }
-    }
-    observer.done(Stage::Tiles, ids.len() as u64, ids.len() as u64);
+        Ok::<(), ExportError>(())
+    })?;
     if summary.tiles == 0 {
         return Err(nothing());
     }

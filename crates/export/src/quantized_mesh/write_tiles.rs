@@ -10,6 +10,7 @@ use std::{
 use corniche_geom::{Bounds, wgs84::radii_m};
 use corniche_tileset::{FilePackage, LevelRecord, Manifest};
 use corniche_tin::TriangulateError;
+use corniche_work::{Observer, Stage, workers::make_all};
 use flate2::{Compression, write::GzEncoder};
 
 use super::{
@@ -23,14 +24,7 @@ use super::{
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
     tiling::{FINEST, Nodes, TerrainTile, Tiling},
 };
-use crate::{
-    error::ExportError,
-    feature_request::Coordinates,
-    observer::{Observer, Stage},
-    places::Places,
-    read,
-    workers::{Progress, on_all},
-};
+use crate::{error::ExportError, feature_request::Coordinates, places::Places, read};
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices of the package's own triangles.
 const CELLS: [i64; 2] = [16, 128];
@@ -56,13 +50,13 @@ pub fn export_quantized_mesh(
     let finest = finest_level(manifest, request);
     let heights = heights_in_words(manifest, request.coordinates)?;
     let candidates = candidates(package, request, finest)?;
-    let job = Job { package, request, folder };
+    let job = Job { package, request, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
+    observer.begin(Stage::ExportTiles, Some(total));
     // Which tiles have ground is told by those of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
-        let progress = Progress { observer, stage: Stage::Tiles, done: 0, total };
-        let made = job.make(&candidates, Emptiness::IsLeftOut, &[], progress)?;
+        let made = job.make(&candidates, Emptiness::IsLeftOut, &[])?;
         let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
         (made, tiles)
     };
@@ -74,9 +68,9 @@ pub fn export_quantized_mesh(
     let available = blocks(&tiles);
     let above = in_curve_order(&above);
     let done = candidates.len() as u64;
-    let total = done + above.len() as u64;
-    let progress = Progress { observer, stage: Stage::Tiles, done, total };
-    let coarser = job.make(&above, Emptiness::IsWritten, &available, progress)?;
+    observer.reached(Stage::ExportTiles, done, done + above.len() as u64);
+    let coarser = job.make(&above, Emptiness::IsWritten, &available)?;
+    observer.end(Stage::ExportTiles);
     let mut levels: Vec<QuantizedMeshLevel> =
         (0..=finest).map(|level| job.empty_level(level)).collect();
     let mut deviations = vec![Deviation::default(); levels.len()];
@@ -216,6 +210,7 @@ struct Job<'a> {
     package: &'a FilePackage,
     request: &'a QuantizedMeshRequest,
     folder: &'a Path,
+    observer: &'a dyn Observer,
 }
 
 impl<'a> Job<'a> {
@@ -224,13 +219,12 @@ impl<'a> Job<'a> {
         tiles: &[TerrainTile],
         emptiness: Emptiness,
         available: &[Vec<Block>],
-        progress: Progress<'_>,
     ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
         let (package, coordinates) = (self.package, self.request.coordinates);
-        let made = on_all(
-            tiles,
+        let made = make_all(
+            (self.observer, Stage::ExportTiles),
             self.request.threads,
-            progress,
+            tiles,
             || Ok(Ground::new(package, Places::new(package.manifest(), coordinates)?)),
             |ground, tile| self.tile(*tile, ground, emptiness, available),
         )?;

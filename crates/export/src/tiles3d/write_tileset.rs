@@ -9,6 +9,7 @@ use std::{
 
 use corniche_geom::TileId;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
     content::{self, LevelOfTiles, TileFacts},
@@ -22,10 +23,8 @@ use super::{
 use crate::{
     error::ExportError,
     globe::{RootFrame, dot, geocentric_m},
-    observer::{Observer, Stage},
     places::Places,
     surfaces::{RoadLook, TileLines},
-    workers::{Progress, on_all},
 };
 
 /// A chord is so far from the earth's surface at least: its square by eight radii, of which the largest is taken.
@@ -262,14 +261,15 @@ impl Job<'_> {
         ids: &[TileId],
         observer: &dyn Observer,
     ) -> Result<BTreeMap<TileId, Written>, ExportError> {
-        let progress = Progress { observer, stage: Stage::Tiles, done: 0, total: ids.len() as u64 };
-        let made = on_all(
-            ids,
+        observer.begin(Stage::ExportTiles, Some(ids.len() as u64));
+        let made = make_all(
+            (observer, Stage::ExportTiles),
             self.request.threads,
-            progress,
+            ids,
             || Places::new(self.package.manifest(), self.request.coordinates),
             |places, id| self.tile(*id, places),
         )?;
+        observer.end(Stage::ExportTiles);
         let written = ids.iter().zip(made);
         Ok(written.filter_map(|(id, written)| Some((*id, written?))).collect())
     }

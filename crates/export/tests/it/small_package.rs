@@ -3,18 +3,19 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{
-    cell::Cell,
     fs,
     path::{Path, PathBuf},
+    sync::atomic::{AtomicU32, Ordering},
 };
 
 use corniche_export::{
-    Coordinates, ExportError, Observer, RoadsRequest, Silent, Stage, VectorFormat, WayGrowth,
-    export_roads, growth_by_way, road_fields,
+    Coordinates, ExportError, RoadsRequest, VectorFormat, WayGrowth, export_roads, growth_by_way,
+    road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
 use corniche_tileset::{FilePackage, InputRecord};
+use corniche_work::{Observer, Silent};
 
 /// The small package with a CRS that PROJ reads and an extract among its inputs.
 fn small_package(folder: &Path) -> PathBuf {
@@ -93,16 +94,13 @@ fn each_way_is_told_of_once_with_all_levels() {
 
 /// Asks a number of times whether to stop, then stops.
 struct Impatient {
-    asks: Cell<u32>,
+    asks: AtomicU32,
 }
 
 impl Observer for Impatient {
-    fn done(&self, _: Stage, _: u64, _: u64) {}
-
-    fn should_stop(&self) -> bool {
-        let left = self.asks.get();
-        self.asks.set(left.saturating_sub(1));
-        left == 0
+    fn is_cancelled(&self) -> bool {
+        let ask = |left: u32| left.checked_sub(1);
+        self.asks.fetch_update(Ordering::Relaxed, Ordering::Relaxed, ask).is_err()
     }
 }
 
@@ -114,7 +112,7 @@ fn an_export_stops_when_it_is_asked_to() {
     let mut stopped = 0;
     for asks in 0..20 {
         let path = folder.path().join(format!("{asks}.csv"));
-        let impatient = Impatient { asks: Cell::new(asks) };
+        let impatient = Impatient { asks: AtomicU32::new(asks) };
         match export_roads(&package, &request(1 << 20), &path, &impatient) {
             Err(ExportError::Interrupted) => stopped += 1,
             Ok(_) => break,

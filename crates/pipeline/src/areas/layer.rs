@@ -216,9 +216,7 @@ fn put_sections(
 ) -> Result<(), BuildError> {
     let mut tiles = Groups::of(parts.finish().map_err(BuildError::Storage)?);
     while let Some(records) = tiles.next_by(|record| record.tile).map_err(BuildError::Storage)? {
-        if observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
+        observer.check()?;
         let tile = records[0].tile;
         let no_part = || damaged(Kind::AreaSection.item(tile), &"what was read back is no area");
         let parts: Result<Vec<_>, _> = records

@@ -62,9 +62,7 @@ pub(crate) fn replay_defects(
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
     for block in 0.. {
-        if observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
+        observer.check()?;
         let key = Kind::Defects.item(block);
         let defects: Option<Vec<Defect>> = artifacts::get(store, key)?;
         let defects = defects.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;

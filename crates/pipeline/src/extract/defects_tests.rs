@@ -8,7 +8,7 @@ use std::sync::{
 use corniche_store::MemoryStore;
 
 use super::*;
-use crate::{OsmDefect, Stage};
+use crate::OsmDefect;
 
 /// Keeps what it is told of.
 #[derive(Default)]
@@ -17,17 +17,15 @@ struct Listener {
     is_cancelled: AtomicBool,
 }
 
-impl Observer for Listener {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
-
-    fn defect(&self, defect: &Defect) {
-        self.told.lock().unwrap().push(defect.clone());
-    }
-
+impl corniche_work::Observer for Listener {
     fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl Observer for Listener {
+    fn defect(&self, defect: &Defect) {
+        self.told.lock().unwrap().push(defect.clone());
     }
 }
 

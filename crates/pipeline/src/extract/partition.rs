@@ -229,9 +229,7 @@ fn on_extract<T>(
         scratch,
         on_progress: Some(&|done, total| observer.reached(stage, done, total)),
     });
-    if observer.is_cancelled() {
-        return Err(BuildError::Interrupted);
-    }
+    observer.check()?;
     let done = done?.map_err(not_read)?;
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
@@ -389,9 +387,7 @@ fn put_pieces(
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
     let put = |tile: u64, pieces: TilePiecesWriter| {
-        if observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
+        observer.check()?;
         Ok(store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?)
     };
     let mut current: Option<(u64, TilePiecesWriter)> = None;

@@ -18,11 +18,9 @@ use crate::roads::{pieces::TilePieces, totals::lengths_of_block};
 #[derive(Default)]
 struct Listener(Mutex<Vec<Defect>>);
 
-impl Observer for Listener {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
+impl corniche_work::Observer for Listener {}
 
+impl Observer for Listener {
     fn defect(&self, defect: &Defect) {
         self.0.lock().unwrap().push(defect.clone());
     }

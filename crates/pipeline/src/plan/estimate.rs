@@ -339,9 +339,7 @@ impl Ground {
         let mut triangles = 0;
         let mut spent = Duration::ZERO;
         for &id in &tiles {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
+            observer.check()?;
             let window = reader.window(grid.frame.tile_window(id).with_halo(1))?;
             let begun = thread_time();
             // Values that are no heights are found, and told, when all samples are looked at.

@@ -12,10 +12,9 @@ use crate::roads::totals::{LengthsWriter, RoadLength};
 #[derive(Default)]
 struct Told(Mutex<Vec<Defect>>);
 
+impl corniche_work::Observer for Told {}
+
 impl Observer for Told {
-    fn begin(&self, _: crate::Stage, _: Option<u64>) {}
-    fn advance(&self, _: crate::Stage, _: u64) {}
-    fn end(&self, _: crate::Stage) {}
     fn defect(&self, defect: &Defect) {
         self.0.lock().unwrap().push(defect.clone());
     }

@@ -69,9 +69,7 @@ pub(crate) fn make(
             tiles.add(id.z(), &record);
             fold.add(&record.fates)?;
         }
-        if context.observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
+        context.observer.check()?;
     }
     if tiles.levels.values().all(|level| level.tiles == 0) {
         let dem = context.settings.terrain_files();
@@ -152,9 +150,7 @@ fn write(
         .and_then(|file| Writer::of_file(file, manifest, payloads.len()))
         .map_err(failed)?;
     for item in payloads {
-        if context.observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
+        context.observer.check()?;
         let key = Kind::Payload.item(item);
         let id = artifacts::tile_of(key)?;
         let bytes = context.store.get(key)?;

@@ -63,9 +63,7 @@ fn read(
         scratch,
         on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
     });
-    if observer.is_cancelled() {
-        return Err(BuildError::Interrupted);
-    }
+    observer.check()?;
     read.map_err(not_read)?;
     observer.end(Stage::Roads);
     Ok(())

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use corniche_tileset::{OpenError, SourceError};
+use corniche_work::Interrupted;
 
 use crate::{
     BuildError,
     inputs::{InputError, Inputs},
-    workers::Interrupted,
 };
 
 /// Why a package could not be verified.

@@ -7,7 +7,7 @@ use std::{path::Path, sync::Mutex};
 
 use crate::support::{Options, settings, write_samples};
 use corniche_geom::Bounds;
-use corniche_pipeline::{Observer, Silent, Stage, VerifySettings, build, verify};
+use corniche_pipeline::{Observer, Silent, VerifySettings, build, verify};
 use corniche_tileset::{FilePackage, Manifest};
 
 /// Metres to a degree of the equator.
@@ -128,10 +128,9 @@ fn what_does_not_fit_one_package_is_refused() {
 #[derive(Default)]
 struct Heard(Mutex<Vec<String>>);
 
-impl Observer for Heard {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
+impl Observer for Heard {}
+
+impl corniche_work::Observer for Heard {
     fn warning(&self, words: &str) {
         self.0.lock().unwrap().push(words.to_owned());
     }

@@ -19,8 +19,8 @@ use crate::support::{
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_pipeline::{
-    BuildPlan, BuildSettings, CheckId, Defect, Loss, Observer, Silent, Stage, VerifyOsm,
-    VerifySettings, build, plan, verify,
+    BuildPlan, BuildSettings, CheckId, Defect, Loss, Observer, Silent, VerifyOsm, VerifySettings,
+    build, plan, verify,
 };
 use corniche_tileset::{FilePackage, Manifest, Sections};
 
@@ -28,10 +28,9 @@ use corniche_tileset::{FilePackage, Manifest, Sections};
 #[derive(Default)]
 struct Lost(Mutex<Vec<Loss>>);
 
+impl corniche_work::Observer for Lost {}
+
 impl Observer for Lost {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
     fn defect(&self, defect: &Defect) {
         if let Defect::LostRoad { loss, .. } = defect {
             self.0.lock().unwrap().push(*loss);

@@ -90,17 +90,16 @@ struct At<'a> {
     act: Mutex<Option<Box<dyn FnOnce() + Send + 'a>>>,
 }
 
-impl Observer for At<'_> {
+impl corniche_work::Observer for At<'_> {
     fn begin(&self, stage: Stage, _: Option<u64>) {
         let act = if stage == self.stage { self.act.lock().unwrap().take() } else { None };
         if let Some(act) = act {
             act();
         }
     }
-
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
 }
+
+impl Observer for At<'_> {}
 
 /// Replaces a raster by one with other heights, the same length and the same modification time.
 fn exchange(path: &Path) {

@@ -193,15 +193,15 @@ struct StopAfter {
     tiles: AtomicU64,
 }
 
-impl Observer for StopAfter {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
+impl Observer for StopAfter {}
+
+impl corniche_work::Observer for StopAfter {
     fn advance(&self, stage: Stage, by: u64) {
         if matches!(stage, Stage::Tiles | Stage::CoarseTiles) {
             let left = self.tiles.load(Ordering::SeqCst);
             self.tiles.store(left.saturating_sub(by), Ordering::SeqCst);
         }
     }
-    fn end(&self, _: Stage) {}
     fn is_cancelled(&self) -> bool {
         self.tiles.load(Ordering::SeqCst) == 0
     }

@@ -3,15 +3,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
-use crate::Stage;
 
 /// Cancels the run once it was asked so many times.
 struct CancelAfter(AtomicUsize);
 
 impl Observer for CancelAfter {
-    fn begin(&self, _: Stage, _: Option<u64>) {}
-    fn advance(&self, _: Stage, _: u64) {}
-    fn end(&self, _: Stage) {}
     fn is_cancelled(&self) -> bool {
         let left =
             self.0.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |left| left.checked_sub(1));

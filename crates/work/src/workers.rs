@@ -1,4 +1,4 @@
-//! The worker threads of a build: they work side by side, and one writer takes their results in order.
+//! The worker threads: they work side by side, and one writer takes their results in order.
 
 use std::{
     collections::BTreeMap,
@@ -6,17 +6,13 @@ use std::{
     thread,
 };
 
-use crate::{Observer, Stage};
-
-/// A run was cancelled by its [`Observer`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Interrupted;
+use crate::{Interrupted, Observer, Stage};
 
 /// Does the same as [`in_order`], and asks `observer` before each item whether the run is cancelled.
 ///
 /// # Errors
 /// Those of [`in_order`], or [`Interrupted`].
-pub(crate) fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
+pub fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     threads: usize,
     count: usize,
@@ -25,17 +21,45 @@ pub(crate) fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>
     write: impl FnMut(usize, R) -> Result<(), E>,
 ) -> Result<(), E> {
     let work = |state: &mut S, index| {
-        if observer.is_cancelled() { Err(Interrupted.into()) } else { work(state, index) }
+        observer.check()?;
+        work(state, index)
     };
     in_order(threads, count, start, work, write)
+}
+
+/// Makes something of each item of a stage that has begun, and tells `observer` how far it is. What is made comes in the items' order.
+///
+/// # Errors
+/// Those of [`in_order_unless_cancelled`].
+pub fn make_all<I: Sync, S, T: Send, E: Send + From<Interrupted>>(
+    (observer, stage): (&dyn Observer, Stage),
+    threads: usize,
+    items: &[I],
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, &I) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let mut made = Vec::with_capacity(items.len());
+    in_order_unless_cancelled(
+        observer,
+        threads,
+        items.len(),
+        start,
+        |state, index| work(state, &items[index]),
+        |_, one| {
+            made.push(one);
+            observer.advance(stage, 1);
+            Ok(())
+        },
+    )?;
+    Ok(made)
 }
 
 /// Makes the `missing` of `all` items of a stage, each by `work`, and tells `observer` how far it is. What the items become is kept by
 /// `work` itself.
 ///
 /// # Errors
-/// Those of [`in_order`], or [`Interrupted`].
-pub(crate) fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
+/// Those of [`in_order_unless_cancelled`].
+pub fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     stage: Stage,
     threads: usize,
@@ -45,17 +69,26 @@ pub(crate) fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
 ) -> Result<(), E> {
     observer.begin(stage, Some(all as u64));
     observer.already(stage, (all - missing.len()) as u64);
-    in_order_unless_cancelled(
-        observer,
-        threads,
-        missing.len(),
-        start,
-        |state, index| work(state, &missing[index]),
-        |_, ()| {
-            observer.advance(stage, 1);
-            Ok(())
-        },
-    )?;
+    make_all((observer, stage), threads, missing, start, work)?;
+    observer.end(stage);
+    Ok(())
+}
+
+/// A whole stage on the calling thread: `act` takes one item after the other, and `observer` is told of each and may end the run before it.
+///
+/// # Errors
+/// The first error of `act`, or [`Interrupted`].
+pub fn one_by_one<I, E: From<Interrupted>>(
+    (observer, stage): (&dyn Observer, Stage),
+    items: &[I],
+    mut act: impl FnMut(&I) -> Result<(), E>,
+) -> Result<(), E> {
+    observer.begin(stage, Some(items.len() as u64));
+    for item in items {
+        observer.check()?;
+        act(item)?;
+        observer.advance(stage, 1);
+    }
     observer.end(stage);
     Ok(())
 }

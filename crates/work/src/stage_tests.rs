@@ -22,10 +22,15 @@ fn every_stage_is_listed_once_in_order() {
             Stage::CoarseTiles => 10,
             Stage::Package => 11,
             Stage::Verify => 12,
+            Stage::ExportTiles => 13,
+            Stage::ExportBlocks => 14,
+            Stage::ExportFeatures => 15,
+            Stage::Match => 16,
+            Stage::Fly => 17,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 13);
+    assert_eq!(Stage::ALL.len(), 18);
 }
 
 #[test]
