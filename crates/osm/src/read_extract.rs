@@ -258,6 +258,7 @@ fn read_ways<'a, R: Read + Seek>(
     let rest = &before.with_others_than_relations;
     found.read(reading, file, rest, &wanted, outlines, on_defect)?;
     // Ways that relations name, where their ids did not fit in memory together.
+    let blobs = found.way_blobs.clone();
     loop {
         let way_ids = next_ids()?;
         if way_ids.iter().all(Vec::is_empty) {
@@ -265,7 +266,6 @@ fn read_ways<'a, R: Read + Seek>(
         }
         let own_tags = if is_sorted { OwnTags::KeptBefore } else { OwnTags::Ignored };
         wanted = WaysWanted { roads: None, own_tags, way_ids, bytes: [all_bytes; 2], ..wanted };
-        let blobs = found.way_blobs.clone();
         found.read(reading, file, &blobs, &wanted, outlines, on_defect)?;
     }
     found.looked_at.append(reading, before)?;

@@ -1,6 +1,4 @@
 //! Boundaries of the extract: their lines by tile.
 
-pub(crate) mod partition;
-pub(crate) mod sections;
+pub(crate) mod layer;
 pub(crate) mod split;
-pub(crate) mod totals;

@@ -59,9 +59,11 @@ impl SectionLayer {
             Self::Areas => {
                 corniche_tileset::with_areas(payload, id, AreasSection::from_bytes(section))
             }
-            Self::Boundaries => {
-                corniche_tileset::with_boundaries(payload, id, BoundariesSection::from_bytes(section))
-            }
+            Self::Boundaries => corniche_tileset::with_boundaries(
+                payload,
+                id,
+                BoundariesSection::from_bytes(section),
+            ),
         }
     }
 }

@@ -25,11 +25,13 @@ impl Unit {
 pub enum Stage {
     /// Hash the input files.
     Hash,
-    /// Read areas from the extract.
+    /// Read the extract: ways and nodes of all layers.
+    Extract,
+    /// Split areas by tile.
     MapAreas,
-    /// Read boundaries from the extract.
+    /// Split boundaries by tile.
     Boundaries,
-    /// Read roads from the extract.
+    /// Split roads by tile.
     Roads,
     /// Read the DEM, reproject it, fill its voids, make the level rasters.
     Heights,
@@ -63,8 +65,9 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Hash,
+        Self::Extract,
         Self::MapAreas,
         Self::Boundaries,
         Self::Roads,
@@ -89,9 +92,10 @@ impl Stage {
         const TILES: Unit = Unit::Things("tiles");
         match self {
             Self::Hash => ("hash", "hashing inputs", Unit::Bytes),
-            Self::MapAreas => ("areas", "reading areas", Unit::Bytes),
-            Self::Boundaries => ("boundaries", "reading boundaries", Unit::Bytes),
-            Self::Roads => ("roads", "reading roads", Unit::Bytes),
+            Self::Extract => ("extract", "reading extract", Unit::Bytes),
+            Self::MapAreas => ("areas", "splitting areas", Unit::Things("objects")),
+            Self::Boundaries => ("boundaries", "splitting boundaries", Unit::Things("ways")),
+            Self::Roads => ("roads", "splitting roads", Unit::Things("ways")),
             // Finest tiles of one window of the DEM.
             Self::Heights => ("heights", "reading heights", Unit::Things("areas")),
             Self::Photos => ("photos", "reading photos", TILES),

@@ -10,27 +10,28 @@ fn every_stage_is_listed_once_in_order() {
     for (place, stage) in Stage::ALL.into_iter().enumerate() {
         let expected = match stage {
             Stage::Hash => 0,
-            Stage::MapAreas => 1,
-            Stage::Boundaries => 2,
-            Stage::Roads => 3,
-            Stage::Heights => 4,
-            Stage::Photos => 5,
-            Stage::CoarseTins => 6,
-            Stage::Deviations => 7,
-            Stage::Samples => 8,
-            Stage::Tiles => 9,
-            Stage::CoarseTiles => 10,
-            Stage::Package => 11,
-            Stage::Verify => 12,
-            Stage::ExportTiles => 13,
-            Stage::ExportBlocks => 14,
-            Stage::ExportFeatures => 15,
-            Stage::Match => 16,
-            Stage::Fly => 17,
+            Stage::Extract => 1,
+            Stage::MapAreas => 2,
+            Stage::Boundaries => 3,
+            Stage::Roads => 4,
+            Stage::Heights => 5,
+            Stage::Photos => 6,
+            Stage::CoarseTins => 7,
+            Stage::Deviations => 8,
+            Stage::Samples => 9,
+            Stage::Tiles => 10,
+            Stage::CoarseTiles => 11,
+            Stage::Package => 12,
+            Stage::Verify => 13,
+            Stage::ExportTiles => 14,
+            Stage::ExportBlocks => 15,
+            Stage::ExportFeatures => 16,
+            Stage::Match => 17,
+            Stage::Fly => 18,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 18);
+    assert_eq!(Stage::ALL.len(), 19);
 }
 
 #[test]

@@ -40,7 +40,7 @@ pub(crate) struct StageRecord<'a> {
     pub(crate) title: &'a str,
     /// "begin", "running" or "end".
     pub(crate) state: &'a str,
-    /// What `done`, `already` and `total` count: "bytes", "blocks", "areas", "tiles", "pieces" or "frames".
+    /// What `done`, `already` and `total` count: "bytes", "blocks", "objects", "ways", "areas", "tiles", "pieces" or "frames".
     pub(crate) unit: &'a str,
     /// Done in all, by an earlier run too.
     pub(crate) done: u64,

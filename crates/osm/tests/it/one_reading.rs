@@ -254,7 +254,8 @@ fn several_extracts_give_the_same() {
         })
         .unwrap();
         assert!(found.roads.0 == whole.roads.0 && found.areas == whole.areas);
-        assert!(found.boundaries == whole.boundaries && found.defects == whole.defects);
+        assert_eq!(found.boundaries, whole.boundaries);
+        assert_eq!(found.defects, whole.defects);
     }
 }
 

@@ -1,168 +1,143 @@
-//! Reads the areas of the extract and keeps, for each tile of each level, the section with what lies in it.
-//!
-//! ```text
-//! extract ─► areas ─► parts by level and tile ─► sorted by tile and area ─► one section for each tile
-//! ```
+//! The areas of the extract: for each tile of each level, the section with what lies in it.
 
-use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
+use corniche_areas::{Area, AreaClass, AreaObject, OutlineError, Polygon};
 use corniche_geom::{LatticePoint, TileId};
-use corniche_osm::{AreaLoss, ReadOsmError, ReadRequest, read_areas};
-use corniche_store::{Artifacts, Groups, SortRecord, Sorter};
-use corniche_tileset::{AreaRecord, AreaRings, encode_areas, pmtiles_order};
-use rayon::prelude::*;
+use corniche_osm::{AreaLoss, AreaSummary};
+use corniche_store::{Artifacts, Scratch};
+use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
+use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
-use super::{sea::SeaPlace, sections::TileAreas, split::AreaSplitting, totals::AreaTotals};
+use super::{sea::SeaPlace, split::AreaSplitting};
 use crate::{
-    BuildError, Defect, Observer,
-    artifacts::{Kind, damaged, tile_of},
+    BuildError, Defect,
+    artifacts::{damaged, tile_of},
+    layers::{
+        SectionLayer,
+        layer_totals::AreaTotals,
+        layer_writer::{LayerContext, Splitting, TileLayer},
+        parts_by_tile::PartsByTile,
+        tile_section::TileSection,
+    },
 };
 
-/// Areas and points of areas that are split at once.
-const BATCH_AREAS: usize = 512;
-const BATCH_POINTS: usize = 1 << 16;
-
-/// Keeps the sections of all tiles and last the totals. `on_defect` is told what is wrong with areas, in an order that depends on
-/// the extract alone.
-pub(crate) fn partition(
-    request: &ReadRequest<'_>,
-    table: &AreaTable,
-    (splitting, sea): (&AreaSplitting<'_>, &SeaPlace<'_>),
-    store: &dyn Artifacts,
-    observer: &dyn Observer,
-    on_defect: &mut dyn FnMut(Defect),
-) -> Result<Result<(), ReadOsmError>, BuildError> {
-    // The reader keeps a third of its memory while it hands out areas.
-    let parts = Sorter::new(request.scratch, request.memory_bytes / 3 * 2);
-    let mut gathered = Gathered {
-        splitting,
-        pool: request.pool,
-        batch: Vec::new(),
-        batch_points: 0,
-        areas: 0,
-        parts,
-        intricate: Vec::new(),
-        failed: None,
-    };
-    let should_stop = || observer.is_cancelled();
-    let read = read_areas(
-        request,
-        table,
-        &mut |area| gathered.add(area),
-        &mut |defect| on_defect(Defect::from(defect)),
-        &should_stop,
-    );
-    let mut summary = match read {
-        Ok(summary) => summary,
-        Err(error) => return Ok(Err(error)),
-    };
-    if let Some(sea) = sea.close(&mut summary, &mut |defect| on_defect(Defect::from(defect)))? {
-        gathered.add(sea);
-    }
-    gathered.split_batch();
-    if let Some(error) = gathered.failed {
-        return Err(error);
-    }
-    for (object, class, area_m2) in gathered.intricate {
-        if let Some(kept) = summary.kept.get_mut(&class) {
-            kept.areas -= 1;
-            kept.area_m2 -= area_m2;
-        }
-        *summary.lost.entry(AreaLoss::TooIntricate).or_default() += 1;
-        let (kind, id) = object.parts();
-        let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
-        on_defect(corniche_osm::Defect::LostArea { is_relation, id, loss }.into());
-    }
-    put_sections(gathered.parts, splitting, store, observer)?;
-    AreaTotals::of(&summary).put(store)?;
-    Ok(Ok(()))
-}
-
 /// Areas as they come in.
-struct Gathered<'a> {
-    splitting: &'a AreaSplitting<'a>,
-    pool: &'a rayon::ThreadPool,
-    batch: Vec<Area>,
-    batch_points: usize,
-    areas: u64,
-    parts: Sorter<'a, AreaPartRecord>,
+pub(crate) struct AreaLayer<'a> {
+    splitting: AreaSplitting<'a>,
+    sea: SeaPlace<'a>,
+    store: &'a dyn Artifacts,
+    parts: PartsByTile<'a, u64>,
     /// Areas that could not be split, with their true area.
     intricate: Vec<(AreaObject, AreaClass, f64)>,
-    /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
-    failed: Option<BuildError>,
 }
 
-impl Gathered<'_> {
-    fn add(&mut self, area: Area) {
-        let rings = area.polygons.iter().flat_map(corniche_areas::Polygon::rings);
-        self.batch_points += rings.map(|ring| ring.points().len()).sum::<usize>();
-        self.batch.push(area);
-        if self.batch.len() >= BATCH_AREAS || self.batch_points >= BATCH_POINTS {
-            self.split_batch();
-        }
+impl<'a> AreaLayer<'a> {
+    pub(crate) fn new(
+        (splitting, sea): (AreaSplitting<'a>, SeaPlace<'a>),
+        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        memory_bytes: u64,
+    ) -> Self {
+        let parts = PartsByTile::new(scratch, memory_bytes);
+        Self { splitting, sea, store, parts, intricate: Vec::new() }
+    }
+}
+
+/// An area that was split.
+pub(crate) struct SplitArea {
+    number: u64,
+    object: AreaObject,
+    class: AreaClass,
+    area_m2: f64,
+    parts: Result<Vec<(TileId, Vec<u8>)>, OutlineError>,
+}
+
+impl Splitting for AreaSplitting<'_> {
+    type Object = Area;
+    type Split = SplitArea;
+
+    fn points(area: &Area) -> usize {
+        let rings = area.polygons.iter().flat_map(Polygon::rings);
+        rings.map(|ring| ring.points().len()).sum()
     }
 
-    /// Splits the areas of the batch side by side, and takes them in their order.
-    fn split_batch(&mut self) {
-        let batch = std::mem::take(&mut self.batch);
-        self.batch_points = 0;
-        if self.failed.is_some() {
-            return;
-        }
-        let splitting = self.splitting;
-        let split: Vec<_> =
-            self.pool.install(|| batch.par_iter().map(|area| splitting.split(area)).collect());
-        for (area, parts) in batch.iter().zip(split) {
-            let number = self.areas;
-            self.areas += 1;
-            let Ok(parts) = parts else {
-                self.intricate.push((area.object, area.class, area.area_m2));
-                continue;
-            };
-            for (id, record) in parts {
-                let part = StoredArea::from(record);
-                let record =
-                    AreaPartRecord { tile: pmtiles_order(id), number, bytes: part.to_bytes() };
-                if let Err(error) = self.parts.push(record) {
-                    self.failed = Some(BuildError::Storage(error));
-                    return;
-                }
+    fn split_object(&self, number: u64, area: Area) -> SplitArea {
+        let Area { object, class, area_m2, .. } = area;
+        let parts = self.split(&area).map(|parts| {
+            parts.into_iter().map(|(id, part)| (id, StoredArea::from(part).to_bytes())).collect()
+        });
+        SplitArea { number, object, class, area_m2, parts }
+    }
+}
+
+impl<'a> TileLayer for AreaLayer<'a> {
+    const STAGE: Stage = Stage::MapAreas;
+    type Splitting = AreaSplitting<'a>;
+    type Summary = AreaSummary;
+    type Done = AreaTotals;
+
+    fn splitting(&self) -> &AreaSplitting<'a> {
+        &self.splitting
+    }
+
+    fn take(&mut self, split: SplitArea) -> Result<(), BuildError> {
+        let SplitArea { number, object, class, area_m2, parts } = split;
+        match parts {
+            Ok(mut parts) => {
+                parts.drain(..).try_for_each(|(id, bytes)| self.parts.push(id, number, bytes))
+            }
+            Err(_) => {
+                self.intricate.push((object, class, area_m2));
+                Ok(())
             }
         }
     }
-}
 
-/// The part of an area on its way to its tile. No two have the same tile and number.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct AreaPartRecord {
-    /// The tile's place in the order of the package.
-    tile: u64,
-    number: u64,
-    bytes: Vec<u8>,
-}
-
-impl SortRecord for AreaPartRecord {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.tile.to_le_bytes());
-        bytes.extend(self.number.to_le_bytes());
-        bytes.extend((self.bytes.len() as u64).to_le_bytes());
-        bytes.extend(&self.bytes);
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let mut number = || -> Option<u64> {
-            let (number, rest) = bytes.split_first_chunk()?;
-            *bytes = rest;
-            Some(u64::from_le_bytes(*number))
+    /// Closes the sea, and keeps the sections of all tiles and last the totals.
+    fn finish(
+        mut self,
+        count: u64,
+        mut summary: AreaSummary,
+        told: &LayerContext<'_>,
+    ) -> Result<AreaTotals, BuildError> {
+        let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
+        if let Some(sea) = self.sea.close(&mut summary, on_defect)? {
+            let split = self.splitting.split_object(count, sea);
+            self.take(split)?;
+        }
+        for (object, class, area_m2) in self.intricate {
+            if let Some(kept) = summary.kept.get_mut(&class) {
+                kept.areas -= 1;
+                kept.area_m2 -= area_m2;
+            }
+            *summary.lost.entry(AreaLoss::TooIntricate).or_default() += 1;
+            let (kind, id) = object.parts();
+            let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
+            on_defect(corniche_osm::Defect::LostArea { is_relation, id, loss });
+        }
+        let (splitting, store) = (&self.splitting, self.store);
+        self.parts.for_each_tile(
+            told.observer,
+            |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
+                let part = StoredArea::of_bytes(&bytes).ok_or_else(|| {
+                    let key = SectionLayer::Areas.section().item(tile);
+                    damaged(key, &"what was read back is no area")
+                })?;
+                parts.push(part);
+                Ok(())
+            },
+            |tile, parts| put_section(tile, &parts, splitting, store),
+        )?;
+        let totals = AreaTotals {
+            objects: summary.objects,
+            kept: summary
+                .kept
+                .iter()
+                .map(|(class, kept)| (class.number(), (kept.areas, kept.area_m2)))
+                .collect(),
+            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason().to_owned(), n)).collect(),
         };
-        let (tile, own, length) = (number()?, number()?, number()?);
-        let (part, rest) = bytes.split_at_checked(usize::try_from(length).ok()?)?;
-        *bytes = rest;
-        Some(Self { tile, number: own, bytes: part.to_vec() })
-    }
-
-    fn extra_bytes(&self) -> usize {
-        self.bytes.capacity()
+        totals.put(SectionLayer::Areas, store)?;
+        Ok(totals)
     }
 }
 
@@ -207,41 +182,20 @@ impl StoredArea {
     }
 }
 
-/// Puts one section for each tile, in the order of the package.
-fn put_sections(
-    parts: Sorter<'_, AreaPartRecord>,
-    splitting: &AreaSplitting<'_>,
-    store: &dyn Artifacts,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let mut tiles = Groups::of(parts.finish().map_err(BuildError::Storage)?);
-    while let Some(records) = tiles.next_by(|record| record.tile).map_err(BuildError::Storage)? {
-        observer.check()?;
-        let tile = records[0].tile;
-        let no_part = || damaged(Kind::AreaSection.item(tile), &"what was read back is no area");
-        let parts: Result<Vec<_>, _> = records
-            .into_iter()
-            .map(|record| StoredArea::of_bytes(&record.bytes).ok_or_else(no_part))
-            .collect();
-        put_section(tile, &parts?, splitting, store)?;
-    }
-    Ok(())
-}
-
 fn put_section(
     tile: u64,
     areas: &[AreaRecord],
     splitting: &AreaSplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
-    let id: TileId = tile_of(Kind::AreaSection.item(tile))?;
+    let id: TileId = tile_of(SectionLayer::Areas.section().item(tile))?;
     let step = splitting.step(id.z());
     let Some(section) = encode_areas(id, splitting.frame, step, areas)? else { return Ok(()) };
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
-    let kept = TileAreas {
+    let kept = TileSection {
         section: section.into_bytes(),
-        areas: areas.len() as u64,
+        parts: areas.len() as u64,
         points: rings.map(|ring| ring.len() as u64).sum(),
     };
-    kept.put(store, id)
+    kept.put(SectionLayer::Areas, store, id)
 }

@@ -1,161 +1,150 @@
-//! Reads the boundaries of the extract and keeps, for each tile of each level, the section with what comes near it.
+//! The boundaries of the extract: for each tile of each level, the section with what comes near it.
 
 use std::collections::BTreeMap;
 
 use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_osm::{Boundary, ReadOsmError, ReadRequest, read_boundaries};
-use corniche_store::{Artifacts, Groups, SortRecord, Sorter};
-use corniche_tileset::{BoundaryRecord, encode_boundaries, pmtiles_order};
-use serde::{Deserialize, Serialize};
+use corniche_osm::{Boundary, BoundarySummary};
+use corniche_store::{Artifacts, Scratch};
+use corniche_tileset::{BoundaryRecord, encode_boundaries};
+use corniche_work::Stage;
 
-use super::{sections::TileBoundaries, split::BoundarySplitting, totals::BoundaryTotals};
+use super::split::BoundarySplitting;
 use crate::{
-    BuildError, Defect, Observer,
-    artifacts::{Kind, damaged, tile_of},
+    BuildError,
+    artifacts::{damaged, tile_of},
+    layers::{
+        SectionLayer,
+        layer_totals::BoundaryTotals,
+        layer_writer::{LayerContext, Splitting, TileLayer},
+        parts_by_tile::PartsByTile,
+        tile_section::TileSection,
+    },
     true_lengths::TrueLengths,
 };
 
-/// Keeps the sections of all tiles and last the totals. `on_defect` is told what is wrong, in an order that depends on the extract alone.
-pub(crate) fn partition(
-    request: &ReadRequest<'_>,
-    (splitting, lengths): (&BoundarySplitting<'_>, &TrueLengths<'_>),
-    store: &dyn Artifacts,
-    observer: &dyn Observer,
-    on_defect: &mut dyn FnMut(Defect),
-) -> Result<Result<(), ReadOsmError>, BuildError> {
-    // The reader keeps a third of its memory while it hands out lines.
-    let mut parts = Sorter::new(request.scratch, request.memory_bytes / 3 * 2);
-    let mut lengths_um: BTreeMap<BoundaryClass, u64> = BTreeMap::new();
-    // The reader's sink cannot fail; the first failure is kept and everything after it ignored.
-    let mut failed = None;
-    let mut sink = |boundary: Boundary| {
-        if failed.is_some() {
-            return;
-        }
-        let Ok(line) = Polyline::new(boundary.points.clone()) else { return };
-        *lengths_um.entry(boundary.class).or_default() +=
-            lengths.segments_um(&line).iter().sum::<u64>();
-        for (number, (id, record)) in (0..).zip(splitting.split(&boundary)) {
-            let record = BoundaryPartRecord::of(id, number, &record);
-            if let Err(error) = parts.push(record) {
-                failed = Some(BuildError::Storage(error));
-                return;
-            }
-        }
-    };
-    let should_stop = || observer.is_cancelled();
-    let mut defect = |defect| on_defect(Defect::from(defect));
-    let read = read_boundaries(request, &mut sink, &mut defect, &should_stop);
-    let summary = match read {
-        Ok(summary) => summary,
-        Err(error) => return Ok(Err(error)),
-    };
-    if let Some(error) = failed {
-        return Err(error);
+/// Parts of a tile are sorted by class and way; those of one way by where they begin, so that their order depends on what they are alone.
+type PartOrder = (u8, i64, LatticePoint, u64);
+
+/// How boundaries are split, and measured.
+pub(crate) struct MeasuredSplitting<'a> {
+    pub(crate) splitting: BoundarySplitting<'a>,
+    pub(crate) lengths: &'a TrueLengths<'a>,
+}
+
+/// Boundaries as they come in.
+pub(crate) struct BoundaryLayer<'a> {
+    splitting: MeasuredSplitting<'a>,
+    store: &'a dyn Artifacts,
+    parts: PartsByTile<'a, PartOrder>,
+    /// The true lengths of all ways that were handed out, by class.
+    lengths_um: BTreeMap<BoundaryClass, u64>,
+}
+
+impl<'a> BoundaryLayer<'a> {
+    pub(crate) fn new(
+        splitting: MeasuredSplitting<'a>,
+        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        memory_bytes: u64,
+    ) -> Self {
+        let parts = PartsByTile::new(scratch, memory_bytes);
+        Self { splitting, store, parts, lengths_um: BTreeMap::new() }
     }
-    put_sections(parts, splitting, store, observer)?;
-    BoundaryTotals::of(&summary, &lengths_um).put(store)?;
-    Ok(Ok(()))
 }
 
-/// The part of a boundary on its way to its tile. Parts of a tile are sorted by class and way; those of one way by where they begin, so that
-/// their order depends on what they are alone.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct BoundaryPartRecord {
-    /// The tile's place in the order of the package.
-    tile: u64,
-    class: u8,
-    way_id: i64,
-    first: LatticePoint,
-    number: u64,
-    bytes: Vec<u8>,
+/// A boundary that was split.
+pub(crate) struct SplitBoundary {
+    class: BoundaryClass,
+    length_um: u64,
+    parts: Vec<(TileId, PartOrder, Vec<u8>)>,
 }
 
-#[derive(Serialize, Deserialize)]
-struct StoredPart {
-    class: u8,
-    way_id: i64,
-    number: u64,
-    points: Vec<LatticePoint>,
-}
+impl Splitting for MeasuredSplitting<'_> {
+    type Object = Boundary;
+    type Split = SplitBoundary;
 
-impl BoundaryPartRecord {
-    fn of(id: TileId, number: u64, record: &BoundaryRecord) -> Self {
-        let stored = StoredPart {
-            class: record.class.number(),
-            way_id: record.way_id,
-            number,
-            points: record.points.clone(),
+    fn points(boundary: &Boundary) -> usize {
+        boundary.points.len()
+    }
+
+    fn split_object(&self, _: u64, boundary: Boundary) -> SplitBoundary {
+        let class = boundary.class;
+        let Ok(line) = Polyline::new(boundary.points.clone()) else {
+            return SplitBoundary { class, length_um: 0, parts: Vec::new() };
         };
-        // Writing to a list cannot fail, and all of it can be written.
-        let written = bincode::serde::encode_to_vec(&stored, bincode::config::standard());
-        debug_assert!(written.is_ok(), "{}", record.way_id);
-        Self {
-            tile: pmtiles_order(id),
-            class: stored.class,
-            way_id: stored.way_id,
-            first: record.points[0],
-            number,
-            bytes: written.unwrap_or_default(),
+        let part = |(number, (id, record)): (u64, (TileId, BoundaryRecord))| {
+            let order = (class.number(), record.way_id, record.points[0], number);
+            (id, order, points_to_bytes(&record.points))
+        };
+        SplitBoundary {
+            class,
+            length_um: self.lengths.segments_um(&line).iter().sum(),
+            parts: (0..).zip(self.splitting.split(&boundary)).map(part).collect(),
         }
     }
-
-    fn stored(bytes: &[u8]) -> Option<StoredPart> {
-        let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-        read.ok().map(|(stored, _)| stored)
-    }
-
-    fn record(&self) -> Option<BoundaryRecord> {
-        let StoredPart { class, way_id, points, .. } = Self::stored(&self.bytes)?;
-        Some(BoundaryRecord { way_id, class: BoundaryClass::from_number(class)?, points })
-    }
 }
 
-impl SortRecord for BoundaryPartRecord {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.tile.to_le_bytes());
-        bytes.extend((self.bytes.len() as u64).to_le_bytes());
-        bytes.extend(&self.bytes);
+impl<'a> TileLayer for BoundaryLayer<'a> {
+    const STAGE: Stage = Stage::Boundaries;
+    type Splitting = MeasuredSplitting<'a>;
+    type Summary = BoundarySummary;
+    type Done = BoundaryTotals;
+
+    fn splitting(&self) -> &MeasuredSplitting<'a> {
+        &self.splitting
     }
 
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let mut number = || -> Option<u64> {
-            let (number, rest) = bytes.split_first_chunk()?;
-            *bytes = rest;
-            Some(u64::from_le_bytes(*number))
+    fn take(&mut self, split: SplitBoundary) -> Result<(), BuildError> {
+        *self.lengths_um.entry(split.class).or_default() += split.length_um;
+        split.parts.into_iter().try_for_each(|(id, order, bytes)| self.parts.push(id, order, bytes))
+    }
+
+    /// Keeps the sections of all tiles and last the totals.
+    fn finish(
+        self,
+        _: u64,
+        summary: BoundarySummary,
+        told: &LayerContext<'_>,
+    ) -> Result<BoundaryTotals, BuildError> {
+        let (splitting, store) = (&self.splitting.splitting, self.store);
+        self.parts.for_each_tile(
+            told.observer,
+            |parts: &mut Vec<BoundaryRecord>, tile, (class, way_id, ..), bytes| {
+                let class = BoundaryClass::from_number(class);
+                let part = class.zip(points_of_bytes(&bytes)).ok_or_else(|| {
+                    let key = SectionLayer::Boundaries.section().item(tile);
+                    damaged(key, &"what was read back is no boundary")
+                });
+                let (class, points) = part?;
+                parts.push(BoundaryRecord { way_id, class, points });
+                Ok(())
+            },
+            |tile, parts| put_section(tile, &parts, splitting, store),
+        )?;
+        let kept = summary.kept.iter().map(|(class, &ways)| {
+            let length_um = self.lengths_um.get(class).copied().unwrap_or_default();
+            (class.number(), (ways, length_um))
+        });
+        let totals = BoundaryTotals {
+            objects: summary.ways,
+            kept: kept.collect(),
+            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason().to_owned(), n)).collect(),
         };
-        let (tile, length) = (number()?, number()?);
-        let (part, rest) = bytes.split_at_checked(usize::try_from(length).ok()?)?;
-        *bytes = rest;
-        let StoredPart { class, way_id, number, points } = Self::stored(part)?;
-        let first = *points.first()?;
-        Some(Self { tile, class, way_id, first, number, bytes: part.to_vec() })
-    }
-
-    fn extra_bytes(&self) -> usize {
-        self.bytes.capacity()
+        totals.put(SectionLayer::Boundaries, store)?;
+        Ok(totals)
     }
 }
 
-/// Puts one section for each tile, in the order of the package.
-fn put_sections(
-    parts: Sorter<'_, BoundaryPartRecord>,
-    splitting: &BoundarySplitting<'_>,
-    store: &dyn Artifacts,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let mut tiles = Groups::of(parts.finish().map_err(BuildError::Storage)?);
-    while let Some(records) = tiles.next_by(|record| record.tile).map_err(BuildError::Storage)? {
-        observer.check()?;
-        let tile = records[0].tile;
-        let no_part =
-            || damaged(Kind::BoundarySection.item(tile), &"what was read back is no boundary");
-        let parts: Result<Vec<_>, _> =
-            records.into_iter().map(|record| record.record().ok_or_else(no_part)).collect();
-        put_section(tile, &parts?, splitting, store)?;
-    }
-    Ok(())
+fn points_to_bytes(points: &[LatticePoint]) -> Vec<u8> {
+    // Writing to a list cannot fail, and all of it can be written.
+    let written = bincode::serde::encode_to_vec(points, bincode::config::standard());
+    debug_assert!(written.is_ok());
+    written.unwrap_or_default()
+}
+
+fn points_of_bytes(bytes: &[u8]) -> Option<Vec<LatticePoint>> {
+    let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
+    read.ok().map(|(points, _)| points)
 }
 
 fn put_section(
@@ -164,14 +153,14 @@ fn put_section(
     splitting: &BoundarySplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
-    let id: TileId = tile_of(Kind::BoundarySection.item(tile))?;
+    let id: TileId = tile_of(SectionLayer::Boundaries.section().item(tile))?;
     let Some(section) = encode_boundaries(id, splitting.step(id.z()), boundaries)? else {
         return Ok(());
     };
-    let kept = TileBoundaries {
+    let kept = TileSection {
         section: section.into_bytes(),
         parts: boundaries.len() as u64,
         points: boundaries.iter().map(|boundary| boundary.points.len() as u64).sum(),
     };
-    kept.put(store, id)
+    kept.put(SectionLayer::Boundaries, store, id)
 }

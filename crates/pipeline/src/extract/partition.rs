@@ -1,12 +1,12 @@
-//! Reads the extract once, or what was kept of it in shares, and keeps, for each tile of each level, the pieces of roads that it needs.
+//! Reads the extract once, or what was kept of it in shares, and keeps, for each tile of each level, what it needs of each layer.
 //!
 //! ```text
-//! extract ─► roads ─► pieces by level and tile ─► sorted by tile and ordinal ─► one artifact for each tile
-//!                └──► true lengths ─► one artifact for each block of roads
+//! extract ─► objects of a layer ─► parts by level and tile ─► sorted by tile ─► one artifact for each tile
+//!                           └────► totals; of roads true lengths ─► one artifact for each block of roads
 //!         defects ─► one artifact for each block of defects
 //! ```
 //!
-//! Nothing that grows with the number of roads stays in memory.
+//! Nothing that grows with the number of objects stays in memory.
 
 use std::{
     path::PathBuf,
@@ -15,49 +15,50 @@ use std::{
 
 use corniche_areas::AreaTable;
 use corniche_geom::{
-    GridFrame, LatticeBounds, LatticePoint, LatticeRegion, ProjectError, Projection, TileId,
+    GridFrame, LatticeBounds, LatticePoint, LatticeRegion, ProjectError, Projection,
 };
-use corniche_osm::{ExtractSummary, ReadOsmError, ReadRequest, read_kept_roads, read_roads};
-use corniche_roads::{FunctionalRoadClass, Road};
-use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
-use corniche_tileset::pmtiles_order;
-use rayon::prelude::*;
+use corniche_osm::{
+    ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
+};
+use corniche_store::{Artifacts, Scratch};
+use corniche_work::Stage;
 
-pub(crate) use super::defects::replay_defects;
 use super::{
-    defects::DefectsWriter,
-    extract::{kept_in, not_read},
+    defects::{DefectsWriter, replay_defects},
+    kept::{kept_in, not_read},
     no_road,
-    pieces::{RoadPiece, TilePiecesWriter},
-    split::{RoadSplitting, SplitRoad},
-    totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
 use crate::{
-    BuildError, Defect, Observer, RoadSettings, Stage,
-    areas::{self, sea::SeaPlace, totals::AreaTotals},
+    BuildError, Defect, Observer, RoadSettings,
+    areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
     artifacts::{self, Kind},
-    boundaries::{self, totals::BoundaryTotals},
+    boundaries::{
+        layer::{BoundaryLayer, MeasuredSplitting},
+        split::BoundarySplitting,
+    },
     heights::data_tiles::DataTiles,
+    layers::layer_writer::{LayerContext, LayerWriter},
     levels::Levels,
+    roads::{
+        layer::RoadLayer,
+        totals::{ExtractCounts, RoadTotals},
+    },
     true_lengths::TrueLengths,
 };
-
-/// Roads and points of roads that are split at once.
-const BATCH_ROADS: usize = 1024;
-const BATCH_POINTS: usize = 1 << 16;
 
 /// What is said if the ways of some shares are there, but not ways and nodes of all.
 const SOME_SHARES: &str = "not all shares of the steps ways and nodes are in the stores, so the whole extract is read again";
 
 /// What the partition needs.
-pub(crate) struct RoadInput<'a> {
+pub(crate) struct ExtractInput<'a> {
     /// Never empty.
     pub(crate) osm: &'a [PathBuf],
     pub(crate) settings: &'a RoadSettings,
-    /// Which objects are areas and on which tiles, if any are wanted.
-    pub(crate) areas: Option<AreaInput<'a>>,
-    /// The tiles on which data can lie, if boundaries are wanted.
-    pub(crate) boundaries: Option<DataTiles>,
+    /// Which objects are areas, if any are wanted.
+    pub(crate) areas: Option<&'a AreaTable>,
+    pub(crate) boundaries: bool,
+    /// The tiles on which data can lie.
+    pub(crate) data: DataTiles,
     pub(crate) projection: &'a (dyn Projection + Sync),
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
@@ -74,18 +75,10 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) memory_bytes: u64,
 }
 
-/// What areas need beside the extract.
-#[derive(Clone, Copy)]
-pub(crate) struct AreaInput<'a> {
-    pub(crate) table: &'a AreaTable,
-    /// The tiles on which data can lie.
-    pub(crate) data: DataTiles,
-}
-
-/// Keeps the pieces of all tiles, the lengths of all roads, the defects of the extract, and last the totals. If the totals are
+/// Keeps what tiles need of all layers, the lengths of all roads, the defects of the extract, and last the totals of roads. If these are
 /// in the store, all is, and nothing is read. The observer is told of the same defects in the same order either way.
 pub(crate) fn partition(
-    input: &RoadInput<'_>,
+    input: &ExtractInput<'_>,
     store: &dyn Artifacts,
     scratch: &dyn Scratch,
     observer: &dyn Observer,
@@ -94,19 +87,12 @@ pub(crate) fn partition(
         replay_defects(store, observer)?;
         return Ok(totals);
     }
-    let mut defects = DefectsWriter::new(store, observer);
-    read_areas(input, (store, scratch), &mut defects, observer)?;
-    read_boundaries(input, (store, scratch), &mut defects, observer)?;
-    observer.begin(Stage::Roads, None);
-    let mut gathered = Gathered::new(input, store, scratch);
-    let extract = read(input, (store, scratch), &mut gathered, &mut defects, observer)?;
-    gathered.split_batch();
-    if let Some(error) = gathered.failed {
-        return Err(error);
-    }
-    if gathered.totals.roads == 0 {
+    let told = LayerContext::begin(input.pool, observer, DefectsWriter::new(store, observer));
+    let found = read(input, (store, scratch), &told)?;
+    let (totals, extract) = found.roads;
+    if totals.roads == 0 {
         let why = no_road::why(&extract, &input.settings.table);
-        if !has_other_layer(store)? {
+        if !found.has_others {
             return Err(BuildError::NoRoads { osm: input.osm.to_vec(), why: why.to_string() });
         }
         let (osm, reason) = (input.osm, why.reason);
@@ -114,101 +100,89 @@ pub(crate) fn partition(
             "{osm:?} has no road: {reason}; only its areas and boundaries are taken"
         ));
     }
-    gathered.lengths.finish()?;
-    put_pieces(gathered.pieces, store, observer)?;
-    let defects = defects.finish()?;
-    let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..gathered.totals };
+    let defects = told.end().finish()?;
+    let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..totals };
     artifacts::put(store, Kind::RoadTotals.item(0), &totals)?;
-    observer.end(Stage::Roads);
     Ok(totals)
 }
 
-/// Whether areas or boundaries were asked for, and the extract has some: then it need not have roads.
-fn has_other_layer(store: &dyn Artifacts) -> Result<bool, BuildError> {
-    let areas = AreaTotals::get(store)?.is_some_and(|totals| totals.has_any());
-    Ok(areas || BoundaryTotals::get(store)?.is_some_and(|totals| totals.has_any()))
+/// What was found in the extract.
+struct Found {
+    roads: (RoadTotals, ExtractSummary),
+    /// Whether areas or boundaries were asked for, and there are some: then there need not be roads.
+    has_others: bool,
 }
 
-/// Makes the areas of the extract, if they are wanted. What is wrong with them comes before what is wrong with roads.
-fn read_areas(
-    input: &RoadInput<'_>,
-    (store, scratch): (&dyn Artifacts, &dyn Scratch),
-    defects: &mut DefectsWriter<'_>,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let Some(AreaInput { table, data }) = input.areas else { return Ok(()) };
-    observer.begin(Stage::MapAreas, None);
-    let frame = input.levels.frame();
-    let splitting = areas::split::AreaSplitting { frame, data, clip: input.clip };
-    let (osm, data) = (input.osm, input.data_bounds);
-    let sea = SeaPlace { osm, data, frame, projection: input.projection };
-    on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
-        let mut on_defect = |defect| defects.push(defect);
-        areas::partition::partition(
-            request,
-            table,
-            (&splitting, &sea),
-            store,
-            observer,
-            &mut on_defect,
-        )
-    })?;
-    observer.end(Stage::MapAreas);
-    Ok(())
-}
-
-/// Makes the boundaries of the extract, if they are wanted.
-fn read_boundaries(
-    input: &RoadInput<'_>,
-    (store, scratch): (&dyn Artifacts, &dyn Scratch),
-    defects: &mut DefectsWriter<'_>,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let Some(data) = input.boundaries else { return Ok(()) };
-    observer.begin(Stage::Boundaries, None);
-    let splitting =
-        boundaries::split::BoundarySplitting { levels: input.levels, data, clip: input.clip };
-    on_extract(input, (scratch, Stage::Boundaries), observer, |request| {
-        let mut on_defect = |defect| defects.push(defect);
-        let how = (&splitting, input.lengths);
-        boundaries::partition::partition(request, how, store, observer, &mut on_defect)
-    })?;
-    observer.end(Stage::Boundaries);
-    Ok(())
-}
-
-/// Hands all roads of the extract to `gathered` and its defects to `defects`; returns what it held.
+/// Reads all layers that are wanted, and keeps what tiles need of them.
 fn read(
-    input: &RoadInput<'_>,
-    (store, scratch): (&dyn Artifacts, &dyn Scratch),
-    gathered: &mut Gathered<'_>,
-    defects: &mut DefectsWriter<'_>,
-    observer: &dyn Observer,
-) -> Result<ExtractSummary, BuildError> {
-    let mut sink = |road| gathered.add(road);
-    let mut on_defect = |defect| defects.push(Defect::from(defect));
-    let should_stop = || observer.is_cancelled();
+    input: &ExtractInput<'_>,
+    places: (&dyn Artifacts, &dyn Scratch),
+    told: &LayerContext<'_>,
+) -> Result<Found, BuildError> {
+    let (store, scratch) = places;
+    let mut areas =
+        input.areas.map(|table| (table, LayerWriter::new(area_layer(input, places), told)));
+    let boundaries = input.boundaries.then(|| boundary_layer(input, places));
+    let mut boundaries = boundaries.map(|layer| LayerWriter::new(layer, told));
+    let mut roads = LayerWriter::new(RoadLayer::new(input, places), told);
     let kept = kept_in(store);
-    let extract = on_extract(input, (scratch, Stage::Roads), observer, |request| {
-        Ok(if let Some(of) = kept.complete() {
-            read_kept_roads(request, of, kept, &mut sink, &mut on_defect, &should_stop)
-        } else {
-            if kept.has_any() {
-                observer.warning(SOME_SHARES);
-            }
-            read_roads(request, &mut sink, &mut on_defect, &should_stop)
-        })
-    })?;
-    Ok(extract.unwrap_or_default())
+    let of = kept.complete();
+    if of.is_none() && kept.has_any() {
+        told.observer.warning(SOME_SHARES);
+    }
+    let should_stop = || told.observer.is_cancelled();
+    let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
+    let layers = Layers {
+        areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
+        boundaries: boundaries.as_mut().map(|sink| sink as &mut dyn LayerSink<_, _>),
+        // Shares keep roads alone.
+        roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
+    };
+    if of.is_none() || input.areas.is_some() || input.boundaries {
+        on_extract(input, scratch, told, |request| {
+            read_extract(request, layers, on_defect, &should_stop)
+        })?;
+    }
+    let has_areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
+    let has_boundaries = boundaries.map_or(Ok(None), LayerWriter::done)?;
+    let has_others = has_areas.is_some_and(|totals| totals.has_any())
+        || has_boundaries.is_some_and(|totals| totals.has_any());
+    if let Some(of) = of {
+        on_extract(input, scratch, told, |request| {
+            read_kept_roads(request, of, kept, &mut roads, on_defect, &should_stop)
+        })?;
+    }
+    let roads = roads.done()?.ok_or(BuildError::Interrupted)?;
+    Ok(Found { roads, has_others })
 }
 
-/// What `read` makes of the extract; `None` without one. Points that cannot be projected make it fail.
-fn on_extract<T>(
-    input: &RoadInput<'_>,
-    (scratch, stage): (&dyn Scratch, Stage),
-    observer: &dyn Observer,
-    read: impl FnOnce(&ReadRequest<'_>) -> Result<Result<T, ReadOsmError>, BuildError>,
-) -> Result<Option<T>, BuildError> {
+fn area_layer<'a>(
+    input: &ExtractInput<'a>,
+    places: (&'a dyn Artifacts, &'a dyn Scratch),
+) -> AreaLayer<'a> {
+    let frame = input.levels.frame();
+    let splitting = AreaSplitting { frame, data: input.data, clip: input.clip };
+    let sea =
+        SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
+    AreaLayer::new((splitting, sea), places, input.memory_bytes)
+}
+
+fn boundary_layer<'a>(
+    input: &ExtractInput<'a>,
+    places: (&'a dyn Artifacts, &'a dyn Scratch),
+) -> BoundaryLayer<'a> {
+    let splitting = BoundarySplitting { levels: input.levels, data: input.data, clip: input.clip };
+    let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
+    BoundaryLayer::new(splitting, places, input.memory_bytes)
+}
+
+/// Reads the extract. Points that cannot be projected make it fail.
+fn on_extract(
+    input: &ExtractInput<'_>,
+    scratch: &dyn Scratch,
+    told: &LayerContext<'_>,
+    read: impl FnOnce(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
+) -> Result<(), BuildError> {
     let unprojected = Mutex::new(None);
     let place = |positions_deg: &[[f64; 2]]| {
         place(positions_deg, input.levels.frame(), input.projection).unwrap_or_else(|error| {
@@ -217,7 +191,7 @@ fn on_extract<T>(
             vec![None; positions_deg.len()]
         })
     };
-    let Some((path, others)) = input.osm.split_first() else { return Ok(None) };
+    let Some((path, others)) = input.osm.split_first() else { return Ok(()) };
     let done = read(&ReadRequest {
         path,
         others,
@@ -227,14 +201,16 @@ fn on_extract<T>(
         pool: input.pool,
         memory_bytes: input.memory_bytes,
         scratch,
-        on_progress: Some(&|done, total| observer.reached(stage, done, total)),
+        on_progress: Some(&|done, total| told.reached(Stage::Extract, done, total)),
     });
-    observer.check()?;
-    let done = done?.map_err(not_read)?;
+    if told.observer.is_cancelled() {
+        return Err(BuildError::Interrupted);
+    }
+    done.map_err(not_read)?;
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
     }
-    Ok(Some(done))
+    Ok(())
 }
 
 fn place(
@@ -245,160 +221,6 @@ fn place(
     let mut positions = positions_deg.to_vec();
     projection.working_from_wgs84(&mut positions)?;
     Ok(positions.into_iter().map(|position_m| frame.snap(position_m)).collect())
-}
-
-/// Roads as they come in.
-struct Gathered<'a> {
-    splitting: RoadSplitting<'a>,
-    pool: &'a rayon::ThreadPool,
-    batch: Vec<Road>,
-    batch_points: usize,
-    totals: RoadTotals,
-    lengths: LengthsWriter<'a>,
-    pieces: Sorter<'a, PieceRecord>,
-    /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
-    failed: Option<BuildError>,
-}
-
-impl<'a> Gathered<'a> {
-    /// Nothing yet.
-    fn new(input: &RoadInput<'a>, store: &'a dyn Artifacts, scratch: &'a dyn Scratch) -> Self {
-        Self {
-            splitting: RoadSplitting {
-                levels: input.levels,
-                lengths: input.lengths,
-                data_bounds: input.data_bounds,
-                node_bounds: input.node_bounds,
-                clip: input.clip,
-                polygon: input.polygon,
-            },
-            pool: input.pool,
-            batch: Vec::new(),
-            batch_points: 0,
-            totals: RoadTotals {
-                classes: vec![(0, 0); FunctionalRoadClass::COUNT],
-                ..RoadTotals::default()
-            },
-            lengths: LengthsWriter::new(store),
-            // The reader keeps a third of its memory while it hands out roads.
-            pieces: Sorter::new(scratch, input.memory_bytes / 3 * 2),
-            failed: None,
-        }
-    }
-
-    fn add(&mut self, road: Road) {
-        self.batch_points += road.line.points().len();
-        self.batch.push(road);
-        if self.batch.len() >= BATCH_ROADS || self.batch_points >= BATCH_POINTS {
-            self.split_batch();
-        }
-    }
-
-    /// Splits the roads of the batch side by side, and takes them in their order.
-    fn split_batch(&mut self) {
-        let batch = std::mem::take(&mut self.batch);
-        self.batch_points = 0;
-        if self.failed.is_some() {
-            return;
-        }
-        let splitting = &self.splitting;
-        let first = self.totals.roads as u32;
-        // Roads are dropped where they are split, not by the one thread that takes the pieces.
-        let split = |(index, road): (usize, Road)| {
-            let mut road = splitting.split(&road);
-            let pieces = std::mem::take(&mut road.pieces).into_iter();
-            let ordinal = first + index as u32;
-            let record = |(id, piece): (TileId, RoadPiece)| PieceRecord {
-                tile: pmtiles_order(id),
-                ordinal,
-                bytes: piece.to_bytes(),
-            };
-            (road, pieces.map(record).collect())
-        };
-        let roads: Vec<(SplitRoad, Vec<PieceRecord>)> =
-            self.pool.install(|| batch.into_par_iter().enumerate().map(split).collect());
-        for (road, pieces) in roads {
-            if let Err(error) = self.take(&road, pieces) {
-                self.failed = Some(error);
-                return;
-            }
-        }
-    }
-
-    /// Takes the road with the next ordinal.
-    fn take(&mut self, road: &SplitRoad, pieces: Vec<PieceRecord>) -> Result<(), BuildError> {
-        self.totals.roads += 1;
-        let length_um = road.length.length_um;
-        self.totals.length_um += length_um;
-        let class = &mut self.totals.classes[usize::from(road.class.number())];
-        *class = (class.0 + 1, class.1 + length_um);
-        if let Some(own) = road.bounds {
-            let all =
-                self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
-            self.totals.bounds = Some([all.min, all.max]);
-        }
-        self.lengths.push(road.length)?;
-        for piece in pieces {
-            self.pieces.push(piece).map_err(BuildError::Storage)?;
-        }
-        Ok(())
-    }
-}
-
-/// The piece of a road on its way to its tile. No two have the same tile and ordinal.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct PieceRecord {
-    /// The tile's place in the order of the package.
-    tile: u64,
-    ordinal: u32,
-    bytes: Vec<u8>,
-}
-
-impl SortRecord for PieceRecord {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.tile.to_le_bytes());
-        bytes.extend(self.ordinal.to_le_bytes());
-        bytes.extend((self.bytes.len() as u32).to_le_bytes());
-        bytes.extend(&self.bytes);
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (tile, rest) = bytes.split_first_chunk()?;
-        let (ordinal, rest) = rest.split_first_chunk()?;
-        let (length, rest) = rest.split_first_chunk()?;
-        let (piece, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
-        *bytes = rest;
-        Some(Self {
-            tile: u64::from_le_bytes(*tile),
-            ordinal: u32::from_le_bytes(*ordinal),
-            bytes: piece.to_vec(),
-        })
-    }
-
-    fn extra_bytes(&self) -> usize {
-        self.bytes.capacity()
-    }
-}
-
-/// Puts one artifact for each tile, in the order of the package.
-fn put_pieces(
-    pieces: Sorter<'_, PieceRecord>,
-    store: &dyn Artifacts,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let put = |tile: u64, pieces: TilePiecesWriter| {
-        observer.check()?;
-        Ok(store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?)
-    };
-    let mut current: Option<(u64, TilePiecesWriter)> = None;
-    for record in pieces.finish().map_err(BuildError::Storage)? {
-        let PieceRecord { tile, ordinal, bytes } = record.map_err(BuildError::Storage)?;
-        if let Some((before, done)) = current.take_if(|(current, _)| *current != tile) {
-            put(before, done)?;
-        }
-        current.get_or_insert_with(|| (tile, TilePiecesWriter::default())).1.push(ordinal, &bytes);
-    }
-    current.map_or(Ok(()), |(tile, pieces)| put(tile, pieces))
 }
 
 #[cfg(test)]

@@ -7,12 +7,15 @@ use std::{
 };
 
 use corniche_geom::{Bounds, CoordinateTable, NodeIndex, TileId};
-use corniche_roads::{ClassFilter, FrcTable};
+use corniche_roads::{ClassFilter, FrcTable, FunctionalRoadClass};
 use corniche_store::{Key, MemoryScratch, MemoryStore, StoreError};
 use corniche_testing::{FlatProjection, Random, pbf};
 
 use super::*;
-use crate::roads::{pieces::TilePieces, totals::lengths_of_block};
+use crate::{
+    layers::layer_writer::BATCH_OBJECTS,
+    roads::{pieces::TilePieces, totals::lengths_of_block},
+};
 
 /// Keeps the defects that it is told of.
 #[derive(Default)]
@@ -96,8 +99,13 @@ impl World {
     ) -> (Vec<Defect>, Result<RoadTotals, BuildError>) {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
-        let input = RoadInput {
-            boundaries: None,
+        let input = ExtractInput {
+            boundaries: false,
+            data: DataTiles::between(
+                &frame,
+                NodeIndex { i: -512, j: -512 },
+                NodeIndex { i: 511, j: 511 },
+            ),
             osm: &[osm.to_path_buf()],
             settings: &self.settings,
             areas: None,
@@ -153,7 +161,7 @@ fn everything(store: &MemoryStore) -> Vec<(Key, Vec<u8>)> {
 #[test]
 fn neither_threads_nor_memory_matter_and_nothing_is_read_twice() {
     let folder = tempfile::tempdir().unwrap();
-    let osm = extract(folder.path(), 2 * BATCH_ROADS + 5);
+    let osm = extract(folder.path(), 2 * BATCH_OBJECTS + 5);
     let world = World::new();
     let store = MemoryStore::default();
     let totals = world.partition(&osm, &store, 1, 1 << 30).unwrap();
@@ -169,7 +177,7 @@ fn neither_threads_nor_memory_matter_and_nothing_is_read_twice() {
 #[test]
 fn pieces_lengths_and_totals_are_those_of_the_roads() {
     let folder = tempfile::tempdir().unwrap();
-    let count = BATCH_ROADS as u64 + 5;
+    let count = BATCH_OBJECTS as u64 + 5;
     let osm = extract(folder.path(), count as usize);
     let (world, store) = (World::new(), MemoryStore::default());
     let totals = world.partition(&osm, &store, 2, 1 << 20).unwrap();

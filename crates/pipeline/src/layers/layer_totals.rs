@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_store::Artifacts;
+use corniche_tileset::{AreaClassRecord, AreaCounts, BoundaryClassRecord, BoundaryCounts};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::SectionLayer;
@@ -25,11 +26,7 @@ pub(crate) type AreaTotals = LayerTotals<f64>;
 pub(crate) type BoundaryTotals = LayerTotals<u64>;
 
 impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
-    pub(crate) fn put(
-        &self,
-        layer: SectionLayer,
-        store: &dyn Artifacts,
-    ) -> Result<(), BuildError> {
+    pub(crate) fn put(&self, layer: SectionLayer, store: &dyn Artifacts) -> Result<(), BuildError> {
         artifacts::put(store, layer.totals().item(0), self)
     }
 
@@ -47,7 +44,33 @@ impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
     }
 
     /// How many objects were lost, by reason.
-    pub(crate) fn lost(&self) -> Vec<(String, u64)> {
+    fn lost(&self) -> Vec<(String, u64)> {
         self.lost.iter().map(|(reason, &objects)| (reason.clone(), objects)).collect()
+    }
+}
+
+impl AreaTotals {
+    /// What the manifest says of them.
+    pub(crate) fn counts(&self) -> AreaCounts {
+        let class = |(&class, &(areas, area_m2)): (&u8, &(u64, f64))| AreaClassRecord {
+            class,
+            areas,
+            area_km2: area_m2 / 1e6,
+        };
+        let kept = self.kept.iter().map(class).collect();
+        AreaCounts { objects: self.objects, kept, lost: self.lost() }
+    }
+}
+
+impl BoundaryTotals {
+    /// What the manifest says of them.
+    pub(crate) fn counts(&self) -> BoundaryCounts {
+        let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| BoundaryClassRecord {
+            class,
+            ways,
+            length_um,
+        };
+        let kept = self.kept.iter().map(class).collect();
+        BoundaryCounts { ways: self.objects, kept, lost: self.lost() }
     }
 }

@@ -17,8 +17,8 @@ use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
     build::unfinished::Claimed,
     context::Context,
+    extract::defects::replay_defects,
     objects::ObjectAccess,
-    roads::partition::replay_defects,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
     terrain::ground::GroundSource,
 };

@@ -8,10 +8,12 @@ use corniche_tileset::{
 
 use super::sums::{LevelSums, TileSums};
 use crate::{
-    areas::totals::AreaTotals,
-    boundaries::totals::BoundaryTotals,
     context::Context,
     heights::pyramid::HeightSums,
+    layers::{
+        SectionLayer,
+        layer_totals::{AreaTotals, BoundaryTotals},
+    },
     manifest_texts,
     roads::{counts::road_counts, losses, totals::RoadTotals},
     settings_record,
@@ -165,26 +167,34 @@ fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
 
 fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
     let counts = outcome.areas.as_ref()?.counts();
-    let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.areas.tiles > 0);
+    let levels = outcome
+        .tiles
+        .levels
+        .iter()
+        .filter(|(_, sums)| sums.sections[SectionLayer::Areas].tiles > 0);
     let level = |(&level, sums): (&u8, &LevelSums)| AreaLevelRecord {
         level,
-        tiles: sums.areas.tiles,
-        areas: sums.areas.areas,
-        points: sums.areas.points,
-        bytes: sums.areas.bytes,
+        tiles: sums.sections[SectionLayer::Areas].tiles,
+        areas: sums.sections[SectionLayer::Areas].parts,
+        points: sums.sections[SectionLayer::Areas].points,
+        bytes: sums.sections[SectionLayer::Areas].bytes,
     };
     Some(AreasRecord { counts, levels: levels.map(level).collect() })
 }
 
 fn boundaries(outcome: &Outcome<'_>) -> Option<BoundariesRecord> {
     let counts = outcome.boundaries.as_ref()?.counts();
-    let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.boundaries.tiles > 0);
+    let levels = outcome
+        .tiles
+        .levels
+        .iter()
+        .filter(|(_, sums)| sums.sections[SectionLayer::Boundaries].tiles > 0);
     let level = |(&level, sums): (&u8, &LevelSums)| BoundaryLevelRecord {
         level,
-        tiles: sums.boundaries.tiles,
-        parts: sums.boundaries.parts,
-        points: sums.boundaries.points,
-        bytes: sums.boundaries.bytes,
+        tiles: sums.sections[SectionLayer::Boundaries].tiles,
+        parts: sums.sections[SectionLayer::Boundaries].parts,
+        points: sums.sections[SectionLayer::Boundaries].points,
+        bytes: sums.sections[SectionLayer::Boundaries].bytes,
     };
     Some(BoundariesRecord { counts, levels: levels.map(level).collect() })
 }

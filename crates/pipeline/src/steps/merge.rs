@@ -14,11 +14,10 @@ use super::{
 };
 use crate::{
     BuildError, Stage,
-    areas::totals::AreaTotals,
     artifacts::{self, Kind},
-    boundaries::totals::BoundaryTotals,
     context::Context,
     heights::pyramid::{HeightSums, all_there},
+    layers::{SectionLayer, layer_totals::LayerTotals},
     roads::losses::LossFold,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
     tile::record::TileRecord,
@@ -84,8 +83,8 @@ pub(crate) fn make(
         inputs: hashes::records(context)?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
-        areas: AreaTotals::get(context.store)?,
-        boundaries: BoundaryTotals::get(context.store)?,
+        areas: LayerTotals::get(SectionLayer::Areas, context.store)?,
+        boundaries: LayerTotals::get(SectionLayer::Boundaries, context.store)?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {

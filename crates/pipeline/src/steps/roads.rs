@@ -6,11 +6,8 @@ use crate::{
     BuildError,
     artifacts::{self, Kind},
     context::Context,
-    roads::{
-        overlap::check_overlap,
-        partition::{AreaInput, RoadInput, partition},
-        totals::RoadTotals,
-    },
+    extract::partition::{ExtractInput, partition},
+    roads::{overlap::check_overlap, totals::RoadTotals},
     true_lengths::TrueLengths,
 };
 
@@ -50,15 +47,12 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
     let pool = pool(context)?;
     let projection = context.source.projection(context.grid)?;
     let frame = *context.frame();
-    let input = RoadInput {
+    let input = ExtractInput {
         osm,
         settings: &context.settings.roads,
-        areas: context
-            .settings
-            .areas
-            .as_ref()
-            .map(|table| AreaInput { table, data: context.data() }),
-        boundaries: context.settings.boundaries.then(|| context.data()),
+        areas: context.settings.areas.as_ref(),
+        boundaries: context.settings.boundaries,
+        data: context.data(),
         projection: &projection,
         levels: context.levels,
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),

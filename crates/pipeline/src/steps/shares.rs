@@ -7,7 +7,7 @@ use super::roads::{are_done, pool};
 use crate::{
     BuildError, Stage,
     context::Context,
-    roads::extract::{kept_in, not_read},
+    extract::kept::{kept_in, not_read},
 };
 
 /// Keeps the road ways of a share that are not there yet; none without an extract, or if the roads are there.
@@ -50,7 +50,7 @@ fn read(
         return Ok(());
     }
     let observer = context.observer;
-    observer.begin(Stage::Roads, None);
+    observer.begin(Stage::Extract, None);
     let read = step(&ReadRequest {
         path,
         others,
@@ -61,10 +61,10 @@ fn read(
         pool: &pool(context)?,
         memory_bytes: context.memory().sorting,
         scratch,
-        on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
+        on_progress: Some(&|done, total| observer.reached(Stage::Extract, done, total)),
     });
     observer.check()?;
     read.map_err(not_read)?;
-    observer.end(Stage::Roads);
+    observer.end(Stage::Extract);
     Ok(())
 }

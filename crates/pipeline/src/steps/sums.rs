@@ -6,8 +6,9 @@ use corniche_tileset::{SampleSums, VerticalRecord};
 
 use crate::{
     context::Context,
+    layers::{ByLayer, SectionLayer, tile_section::SectionSums},
     roads::lay::ClassSums,
-    tile::record::{AreasOfTile, BoundariesOfTile, LevelShare, TileRecord},
+    tile::record::{LevelShare, TileRecord},
 };
 
 /// Sums over all tiles.
@@ -33,50 +34,13 @@ pub(crate) struct LevelSums {
     /// Tiles with a photo.
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
-    pub(crate) areas: AreaSums,
-    pub(crate) boundaries: BoundarySums,
+    pub(crate) sections: ByLayer<SectionSums>,
     /// Geometric errors of its tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Geometric errors of its tiles over their deviations, where those can be measured.
     pub(crate) tightness: Vec<f64>,
     /// Nodes with data that its tiles do not cover, or that have no tile above them.
     pub(crate) uncovered_nodes: u64,
-}
-
-/// Sums over the areas sections of a level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct AreaSums {
-    pub(crate) tiles: u64,
-    pub(crate) areas: u64,
-    pub(crate) points: u64,
-    pub(crate) bytes: u64,
-}
-
-impl AreaSums {
-    fn add(&mut self, of_tile: AreasOfTile) {
-        self.tiles += u64::from(of_tile.areas > 0);
-        self.areas += of_tile.areas;
-        self.points += of_tile.points;
-        self.bytes += of_tile.bytes;
-    }
-}
-
-/// Sums over the boundaries sections of a level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct BoundarySums {
-    pub(crate) tiles: u64,
-    pub(crate) parts: u64,
-    pub(crate) points: u64,
-    pub(crate) bytes: u64,
-}
-
-impl BoundarySums {
-    fn add(&mut self, of_tile: BoundariesOfTile) {
-        self.tiles += u64::from(of_tile.parts > 0);
-        self.parts += of_tile.parts;
-        self.points += of_tile.points;
-        self.bytes += of_tile.bytes;
-    }
 }
 
 impl TileSums {
@@ -110,8 +74,9 @@ impl TileSums {
         sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
-        sums.areas.add(ground.areas);
-        sums.boundaries.add(ground.boundaries);
+        for layer in SectionLayer::ALL {
+            sums.sections[layer].add(ground.sections[layer]);
+        }
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);

@@ -10,15 +10,17 @@ use corniche_tin::{Placement, Surface};
 
 use super::{
     mesh::Meshed,
-    record::{AreasOfTile, BoundariesOfTile, GroundRecord, TileDeviation, TileRecord},
+    record::{GroundRecord, TileDeviation, TileRecord},
 };
 use crate::{
     BuildError,
-    areas::sections::TileAreas,
     artifacts::Kind,
-    boundaries::sections::TileBoundaries,
     context::Context,
     heights::{finest::TILE_NODES, rasters},
+    layers::{
+        ByLayer, SectionLayer,
+        tile_section::{SectionOfTile, TileSection},
+    },
     photos::textures,
     roads::{
         lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
@@ -79,19 +81,16 @@ pub(crate) fn with_ground(
     if let Some(photo) = photo {
         bytes = corniche_tileset::with_photo(&bytes, id, &photo)?;
     }
-    let mut areas = AreasOfTile::default();
-    if let Some(own) = TileAreas::get(context.store, id)? {
-        (areas.areas, areas.points) = (own.areas, own.points);
+    let mut sections = ByLayer::<SectionOfTile>::default();
+    for layer in SectionLayer::ALL {
+        let Some(TileSection { section, parts, points }) =
+            TileSection::get(layer, context.store, id)?
+        else {
+            continue;
+        };
         let size;
-        (bytes, size) = corniche_tileset::with_areas(&bytes, id, own.into_section())?;
-        areas.bytes = size.stored;
-    }
-    let mut boundaries = BoundariesOfTile::default();
-    if let Some(own) = TileBoundaries::get(context.store, id)? {
-        (boundaries.parts, boundaries.points) = (own.parts, own.points);
-        let size;
-        (bytes, size) = corniche_tileset::with_boundaries(&bytes, id, own.into_section())?;
-        boundaries.bytes = size.stored;
+        (bytes, size) = layer.add_to(&bytes, id, section)?;
+        sections[layer] = SectionOfTile { parts, points, bytes: size.stored };
     }
     context.store.put(Kind::Payload.of_tile(id), &bytes)?;
     let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
@@ -102,8 +101,7 @@ pub(crate) fn with_ground(
             terrain_bytes,
             relief_bytes,
             photo_bytes,
-            areas,
-            boundaries,
+            sections,
             deviation,
         }),
         classes,

@@ -12,6 +12,7 @@ use crate::{
     BuildError,
     artifacts::{self, Kind},
     heights::patch::union,
+    layers::{ByLayer, tile_section::SectionOfTile},
     roads::lay::{ClassSums, RoadFate},
 };
 
@@ -38,28 +39,8 @@ pub(crate) struct GroundRecord {
     pub(crate) relief_bytes: u64,
     /// 0 without a photo.
     pub(crate) photo_bytes: u64,
-    pub(crate) areas: AreasOfTile,
-    pub(crate) boundaries: BoundariesOfTile,
+    pub(crate) sections: ByLayer<SectionOfTile>,
     pub(crate) deviation: TileDeviation,
-}
-
-/// The areas section of a tile; all 0 without one.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct AreasOfTile {
-    pub(crate) areas: u64,
-    /// The number of points of all rings.
-    pub(crate) points: u64,
-    /// The size of the section as it is stored.
-    pub(crate) bytes: u64,
-}
-
-/// The boundaries section of a tile; all 0 without one.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct BoundariesOfTile {
-    pub(crate) parts: u64,
-    pub(crate) points: u64,
-    /// The size of the section as it is stored.
-    pub(crate) bytes: u64,
 }
 
 /// How far the TIN of one tile is from the nodes.

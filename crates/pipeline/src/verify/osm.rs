@@ -11,13 +11,14 @@ use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
 use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
-    georeference, grid, osm_areas, osm_boundaries,
+    georeference, grid, osm_layers,
     osm_tile::{Found, Laying, SoupCache, look_at},
     temporary_store::TemporaryStore,
     verify_settings::{VerifyOsm, VerifySettings},
 };
 use crate::{
     BuildError, Observer, Silent, Stage,
+    extract::partition::{ExtractInput, partition},
     heights::data_tiles::DataTiles,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
@@ -25,7 +26,6 @@ use crate::{
         counts::road_counts,
         lay::ClassSums,
         losses::{LossFold, Sums},
-        partition::{AreaInput, RoadInput, partition},
         pieces::TilePieces,
         totals::RoadTotals,
     },
@@ -57,7 +57,7 @@ fn compare_all(
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     let paths = check_inputs(manifest, osm, inputs, findings, observer)?;
-    let area_table = osm_areas::table(osm.areas.as_ref(), manifest)?;
+    let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
@@ -81,11 +81,12 @@ fn compare_all(
         .num_threads(request.threads)
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let input = RoadInput {
+    let input = ExtractInput {
         osm: &paths,
         settings: &settings,
-        areas: area_table.map(|table| AreaInput { table, data: DataTiles::spanning(first, last) }),
-        boundaries: manifest.settings.boundaries.then(|| DataTiles::spanning(first, last)),
+        areas: area_table,
+        boundaries: manifest.settings.boundaries,
+        data: DataTiles::spanning(first, last),
         projection: &projection,
         levels: &levels,
         lengths: &lengths,
@@ -103,10 +104,10 @@ fn compare_all(
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
     if area_table.is_some() {
-        osm_areas::compare(package, store, request.threads, findings, observer)?;
+        osm_layers::compare_areas(package, store, request.threads, findings, observer)?;
     }
     if manifest.settings.boundaries {
-        osm_boundaries::compare(package, store, request.threads, findings, observer)?;
+        osm_layers::compare_boundaries(package, store, request.threads, findings, observer)?;
     }
     check_growth(manifest, &classes, findings);
     Ok(())

@@ -1,0 +1,176 @@
+//! Objects of a layer as the reader hands them out: split side by side, and taken in their order.
+
+use std::cell::{Cell, RefCell};
+
+use corniche_osm::LayerSink;
+use corniche_work::Stage;
+use rayon::prelude::*;
+
+use crate::{BuildError, Defect, Observer, extract::defects::DefectsWriter};
+
+/// Objects, and points of objects, that are split at once.
+pub(crate) const BATCH_OBJECTS: usize = 1024;
+const BATCH_POINTS: usize = 1 << 16;
+
+/// How the objects of a layer are split by tile.
+pub(crate) trait Splitting: Sync {
+    type Object: Send;
+    /// The parts of an object, and what is counted of it.
+    type Split: Send;
+
+    /// How many points an object has.
+    fn points(object: &Self::Object) -> usize;
+
+    /// Splits an object. It is dropped here, and not by the one thread that takes the parts.
+    fn split_object(&self, number: u64, object: Self::Object) -> Self::Split;
+}
+
+/// What a layer makes of its objects. They are numbered in the order in which they come.
+pub(crate) trait TileLayer {
+    /// What is told while its objects are split.
+    const STAGE: Stage;
+    type Splitting: Splitting;
+    /// What the reader counted.
+    type Summary;
+    /// What is known of the layer at the end.
+    type Done;
+
+    fn splitting(&self) -> &Self::Splitting;
+
+    /// Takes the parts of the next object.
+    fn take(&mut self, split: SplitOf<Self>) -> Result<(), BuildError>;
+
+    /// Keeps what all `count` objects made.
+    fn finish(
+        self,
+        count: u64,
+        summary: Self::Summary,
+        told: &LayerContext<'_>,
+    ) -> Result<Self::Done, BuildError>;
+}
+
+/// An object of a layer.
+pub(crate) type ObjectOf<L> = <<L as TileLayer>::Splitting as Splitting>::Object;
+/// What splitting makes of it.
+pub(crate) type SplitOf<L> = <<L as TileLayer>::Splitting as Splitting>::Split;
+
+/// Who is told of all layers, and where they are split.
+pub(crate) struct LayerContext<'a> {
+    pub(crate) pool: &'a rayon::ThreadPool,
+    pub(crate) observer: &'a dyn Observer,
+    pub(crate) defects: RefCell<DefectsWriter<'a>>,
+    /// The stage that is under way.
+    stage: Cell<Stage>,
+}
+
+impl<'a> LayerContext<'a> {
+    /// Begins to read the extract.
+    pub(crate) fn begin(
+        pool: &'a rayon::ThreadPool,
+        observer: &'a dyn Observer,
+        defects: DefectsWriter<'a>,
+    ) -> Self {
+        observer.begin(Stage::Extract, None);
+        Self { pool, observer, defects: RefCell::new(defects), stage: Cell::new(Stage::Extract) }
+    }
+
+    pub(crate) fn on_defect(&self, defect: Defect) {
+        self.defects.borrow_mut().push(defect);
+    }
+
+    /// A stage has done so much. It is told if it is under way.
+    pub(crate) fn reached(&self, stage: Stage, done: u64, total: u64) {
+        if self.stage.get() == stage {
+            self.observer.reached(stage, done, total);
+        }
+    }
+
+    /// Ends the stage that is under way, and begins another one.
+    pub(crate) fn go_on_to(&self, stage: Stage) {
+        let before = self.stage.replace(stage);
+        if before != stage {
+            self.observer.end(before);
+            self.observer.begin(stage, None);
+        }
+    }
+
+    /// Ends the last stage; returns what is wrong with the extract.
+    pub(crate) fn end(self) -> DefectsWriter<'a> {
+        self.observer.end(self.stage.get());
+        self.defects.into_inner()
+    }
+}
+
+/// A layer while its objects come in.
+pub(crate) struct LayerWriter<'a, 'b, L: TileLayer> {
+    layer: Option<L>,
+    told: &'a LayerContext<'b>,
+    batch: Vec<ObjectOf<L>>,
+    batch_points: usize,
+    count: u64,
+    /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
+    done: Result<Option<L::Done>, BuildError>,
+}
+
+impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
+    pub(crate) fn new(layer: L, told: &'a LayerContext<'b>) -> Self {
+        let (batch, batch_points) = (Vec::new(), 0);
+        Self { layer: Some(layer), told, batch, batch_points, count: 0, done: Ok(None) }
+    }
+
+    /// What is known of the layer; `None` if it was not read to its end.
+    pub(crate) fn done(self) -> Result<Option<L::Done>, BuildError> {
+        self.done
+    }
+
+    /// Splits the objects of the batch side by side, and takes them in their order.
+    fn split_batch(&mut self) -> Result<(), BuildError> {
+        let batch = std::mem::take(&mut self.batch);
+        self.batch_points = 0;
+        let Some(layer) = &mut self.layer else { return Ok(()) };
+        let first = self.count;
+        self.count += batch.len() as u64;
+        let splitting = layer.splitting();
+        let split: Vec<SplitOf<L>> = self.told.pool.install(|| {
+            let objects = batch.into_par_iter().enumerate();
+            objects
+                .map(|(index, object)| splitting.split_object(first + index as u64, object))
+                .collect()
+        });
+        split.into_iter().try_for_each(|split| layer.take(split))
+    }
+}
+
+impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L> {
+    fn begin(&mut self) {
+        self.told.go_on_to(L::STAGE);
+    }
+
+    fn take(&mut self, object: ObjectOf<L>) {
+        if self.done.is_err() {
+            return;
+        }
+        self.batch_points += L::Splitting::points(&object);
+        self.batch.push(object);
+        if (self.batch.len() >= BATCH_OBJECTS || self.batch_points >= BATCH_POINTS)
+            && let Err(error) = self.split_batch()
+        {
+            self.done = Err(error);
+        }
+    }
+
+    fn reached(&mut self, done: u64, all: u64) {
+        self.told.reached(L::STAGE, done, all);
+    }
+
+    fn end(&mut self, summary: L::Summary) {
+        if self.done.is_err() {
+            return;
+        }
+        let split = self.split_batch();
+        if let Some(layer) = self.layer.take() {
+            let done = split.and_then(|()| layer.finish(self.count, summary, self.told));
+            self.done = done.map(Some);
+        }
+    }
+}

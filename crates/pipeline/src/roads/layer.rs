@@ -1,0 +1,117 @@
+//! The roads of the extract: for each tile of each level the pieces that it needs, and the true lengths of all.
+
+use corniche_geom::{LatticeBounds, TileId};
+use corniche_osm::ExtractSummary;
+use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_store::{Artifacts, Scratch};
+use corniche_work::Stage;
+
+use super::{
+    pieces::{RoadPiece, TilePiecesWriter},
+    split::{RoadSplitting, SplitRoad},
+    totals::{LengthsWriter, RoadTotals},
+};
+use crate::{
+    BuildError,
+    artifacts::Kind,
+    extract::partition::ExtractInput,
+    layers::{
+        layer_writer::{LayerContext, SplitOf, Splitting, TileLayer},
+        parts_by_tile::PartsByTile,
+    },
+};
+
+/// Roads as they come in.
+pub(crate) struct RoadLayer<'a> {
+    splitting: RoadSplitting<'a>,
+    store: &'a dyn Artifacts,
+    totals: RoadTotals,
+    lengths: LengthsWriter<'a>,
+    pieces: PartsByTile<'a, u32>,
+}
+
+impl<'a> RoadLayer<'a> {
+    pub(crate) fn new(
+        input: &ExtractInput<'a>,
+        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+    ) -> Self {
+        Self {
+            splitting: RoadSplitting {
+                levels: input.levels,
+                lengths: input.lengths,
+                data_bounds: input.data_bounds,
+                node_bounds: input.node_bounds,
+                clip: input.clip,
+                polygon: input.polygon,
+            },
+            store,
+            totals: RoadTotals {
+                classes: vec![(0, 0); FunctionalRoadClass::COUNT],
+                ..RoadTotals::default()
+            },
+            lengths: LengthsWriter::new(store),
+            pieces: PartsByTile::new(scratch, input.memory_bytes),
+        }
+    }
+}
+
+impl Splitting for RoadSplitting<'_> {
+    type Object = Road;
+    type Split = (SplitRoad, Vec<(TileId, u32, Vec<u8>)>);
+
+    fn points(road: &Road) -> usize {
+        road.line.points().len()
+    }
+
+    fn split_object(&self, number: u64, road: Road) -> Self::Split {
+        let mut road = self.split(&road);
+        let pieces = std::mem::take(&mut road.pieces).into_iter();
+        let piece = |(id, piece): (TileId, RoadPiece)| (id, number as u32, piece.to_bytes());
+        (road, pieces.map(piece).collect())
+    }
+}
+
+impl<'a> TileLayer for RoadLayer<'a> {
+    const STAGE: Stage = Stage::Roads;
+    type Splitting = RoadSplitting<'a>;
+    type Summary = ExtractSummary;
+    type Done = (RoadTotals, ExtractSummary);
+
+    fn splitting(&self) -> &RoadSplitting<'a> {
+        &self.splitting
+    }
+
+    fn take(&mut self, (road, pieces): SplitOf<Self>) -> Result<(), BuildError> {
+        self.totals.roads += 1;
+        let length_um = road.length.length_um;
+        self.totals.length_um += length_um;
+        let class = &mut self.totals.classes[usize::from(road.class.number())];
+        *class = (class.0 + 1, class.1 + length_um);
+        if let Some(own) = road.bounds {
+            let all =
+                self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
+            self.totals.bounds = Some([all.min, all.max]);
+        }
+        self.lengths.push(road.length)?;
+        pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
+    }
+
+    /// Keeps the last lengths and the pieces of all tiles.
+    fn finish(
+        self,
+        _: u64,
+        summary: ExtractSummary,
+        told: &LayerContext<'_>,
+    ) -> Result<Self::Done, BuildError> {
+        self.lengths.finish()?;
+        self.pieces.for_each_tile(
+            told.observer,
+            |pieces: &mut TilePiecesWriter, _, ordinal, bytes| {
+                pieces.push(ordinal, &bytes);
+                Ok(())
+            },
+            |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
+        )?;
+        Ok((self.totals, summary))
+    }
+}

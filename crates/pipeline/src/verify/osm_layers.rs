@@ -1,0 +1,133 @@
+//! Layers of the extract that have sections, split again, against those of the package, tile by tile.
+
+use corniche_areas::AreaTable;
+use corniche_geom::TileId;
+use corniche_store::Artifacts;
+use corniche_tileset::{
+    AreaRecord, AreasSection, BoundariesSection, BoundaryRecord, FilePackage, Manifest,
+    decode_areas, decode_boundaries,
+};
+
+use super::{
+    checks::{CheckId, Findings},
+    each_tile::{compare_in_order, each_tile},
+    error::VerifyError,
+};
+use crate::{
+    Observer,
+    layers::{
+        SectionLayer,
+        layer_totals::{AreaTotals, BoundaryTotals},
+        tile_section::TileSection,
+    },
+    settings_record,
+};
+
+/// The table that the package's areas were made with, out of the one that is given; `None` if the package has no areas.
+///
+/// Fails if it is another table.
+pub(crate) fn table<'a>(
+    given: Option<&'a AreaTable>,
+    manifest: &Manifest,
+) -> Result<Option<&'a AreaTable>, VerifyError> {
+    let Some(expected) = &manifest.settings.areas else { return Ok(None) };
+    let is_it = |table: &&AreaTable| settings_record::area_table_record(table) == *expected;
+    match given.filter(is_it) {
+        Some(table) => Ok(Some(table)),
+        None => Err(VerifyError::OtherAreaTable {
+            given: given.map(|table| table.name().to_owned()),
+            expected: expected.table.clone(),
+        }),
+    }
+}
+
+/// Compares the areas of each tile, and their counts, with those that the store has now.
+pub(crate) fn compare_areas(
+    package: &FilePackage,
+    store: &dyn Artifacts,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let frame = &package.manifest().frame;
+    let how = HowCompared {
+        layer: SectionLayer::Areas,
+        check: CheckId::OsmAreas,
+        recorded: |payload: &[u8], id| decode_areas(payload, id, frame).ok(),
+        expected: |section, id| AreasSection::from_bytes(section).decode(id, frame).ok(),
+        name: |area: &AreaRecord| {
+            let rings = area.polygons.iter().flat_map(|part| &part.rings);
+            let points: usize = rings.map(Vec::len).sum();
+            format!("{} {} with {points} points", area.class, area.object)
+        },
+    };
+    compare(package, store, threads, &how, findings, observer)?;
+    let found = AreaTotals::get(how.layer, store)?.map(|totals| totals.counts());
+    let recorded = package.manifest().areas.as_ref().map(|areas| areas.counts.clone());
+    findings.look(CheckId::OsmAreaCounts, found == recorded, || {
+        format!("{recorded:?} are recorded, {found:?} are in the extract")
+    });
+    Ok(())
+}
+
+/// Compares the boundaries of each tile, and their counts, with those that the store has now.
+pub(crate) fn compare_boundaries(
+    package: &FilePackage,
+    store: &dyn Artifacts,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let how = HowCompared {
+        layer: SectionLayer::Boundaries,
+        check: CheckId::OsmBoundaries,
+        recorded: |payload: &[u8], id| decode_boundaries(payload, id).ok(),
+        expected: |section, id| BoundariesSection::from_bytes(section).decode(id).ok(),
+        name: |of: &BoundaryRecord| {
+            format!("{} way {} with {} points", of.class, of.way_id, of.points.len())
+        },
+    };
+    compare(package, store, threads, &how, findings, observer)?;
+    let found = BoundaryTotals::get(how.layer, store)?.map(|totals| totals.counts());
+    let recorded = package.manifest().boundaries.as_ref().map(|of| of.counts.clone());
+    findings.look(CheckId::OsmBoundaryCounts, found == recorded, || {
+        format!("{recorded:?} are recorded, {found:?} are in the extract")
+    });
+    Ok(())
+}
+
+/// How the objects of a layer are compared: what a payload has of it, what a section has that was made anew, and what an object is called.
+struct HowCompared<R, E, N> {
+    layer: SectionLayer,
+    check: CheckId,
+    recorded: R,
+    expected: E,
+    name: N,
+}
+
+fn compare<T: PartialEq>(
+    package: &FilePackage,
+    store: &dyn Artifacts,
+    threads: usize,
+    how: &HowCompared<
+        impl Fn(&[u8], TileId) -> Option<Vec<T>> + Sync,
+        impl Fn(Vec<u8>, TileId) -> Option<Vec<T>> + Sync,
+        impl Fn(&T) -> String + Sync,
+    >,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let look_at = |id: TileId| {
+        let mut findings = Findings::default();
+        // Tiles that cannot be read are told elsewhere.
+        let payload = package.tile(id).ok().flatten();
+        let Some(recorded) = payload.and_then(|payload| (how.recorded)(&payload, id)) else {
+            return Ok(findings);
+        };
+        let made = TileSection::get(how.layer, store, id)?;
+        let expected = made.and_then(|made| (how.expected)(made.section, id)).unwrap_or_default();
+        compare_in_order(how.check, id, [&recorded, &expected], &how.name, &mut findings);
+        Ok(findings)
+    };
+    each_tile(package, threads, observer, look_at, |_, found| findings.merge(found))
+}
