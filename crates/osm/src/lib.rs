@@ -1,17 +1,18 @@
-//! `OpenStreetMap` extracts (`.osm.pbf`) to roads.
+//! `OpenStreetMap` extracts (`.osm.pbf`) to roads, areas and boundaries, all in one reading.
 //!
 //! ```text
-//!  blobs ──► find_ways ──► WayRecord by way id ──► number_nodes ──► Mention by node id ─┐
-//!                                                       │                              ▼
-//!                                  what the roads are ◄─┘         blobs, again ──► locate_nodes
-//!                                          │                                           │
-//!  Road, in order of way id ◄── assemble ◄─┴─ hand_out ◄── Stop in the ways' order ◄───┘
+//!  blobs with relations ──► find_objects ──► objects of areas and boundaries, ids of the ways that they name
+//!  blobs with ways ───────► find_ways ─────► WayRecord of each layer by way id ──► number_nodes ──► Mention by node id ─┐
+//!                                                                                     │                               ▼
+//!                                                                what the ways are ◄──┘   blobs with nodes ──► locate_nodes
+//!                                                                      │                                              │
+//!  Road, Area, Boundary: layer by layer, each in order of ids ◄── hand_out ◄── Stop in the order of the ways ◄────────┘
 //!
-//!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place     (areas, boundaries: osmpbf)
+//!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place; relations by osmpbf
 //! ```
 //!
-//! Of an extract that is sorted by kind the blobs before the first way are left for `locate_nodes`, so that each is unpacked once
-//! (`nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
+//! Of an extract that is sorted by kind each blob is unpacked once, whatever layers are wanted: relations first, nodes last
+//! (`read_extract`, `nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
 //! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.

@@ -1,13 +1,6 @@
-//! Reads the nodes of an extract after its ways, so that each blob is unpacked once, but for those that a bisection looks at.
+//! Reads the nodes of an extract after its ways: also those of the blobs before the first way, which were left for it.
 //!
-//! ```text
-//!  │ nodes … nodes │ nodes and ways │ ways … │ relations … │     an extract that is sorted by kind
-//!  └─── second ────┴───────────── first ───────────────────┘     when what is read
-//! ```
-//!
-//! Where the nodes end is found by bisection, which is right only if the extract is sorted by kind. Whether it is, is known when the nodes
-//! are read. Until then nothing is told, and if a way is among them, the extract is read once more in its own order. Relations are
-//! before the ways in the same way, if objects of them are wanted (`read_extract`).
+//! Whether these hold nodes alone is seen here: where they do not, the reading ends, and begins again in the extract's own order.
 
 use std::io::{Read, Seek};
 

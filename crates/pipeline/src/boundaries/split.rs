@@ -1,14 +1,17 @@
 //! One boundary to its parts near the tiles of each level.
 
+use std::borrow::Cow;
+
 use corniche_areas::BoundaryClass;
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_drape::{ClippedPart, clip_region};
+use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
 use corniche_osm::Boundary;
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
 use corniche_tileset::BoundaryRecord;
 
 use crate::{
-    heights::data_tiles::DataTiles, levels::Levels, points_step::points_step,
-    tiles_near::for_each_tile_near,
+    heights::data_tiles::DataTiles, layers::fixed_points::fixed_of_part, levels::Levels,
+    points_step::points_step, tiles_near::for_each_tile_near,
 };
 
 /// On levels above the finest, lines are simplified by so many of the level's cells.
@@ -30,6 +33,8 @@ pub(crate) struct BoundarySplitting<'a> {
     pub(crate) data: DataTiles,
     /// The bounds that were asked for: tiles that do not touch them get none.
     pub(crate) clip: Option<LatticeBounds>,
+    /// The polygon that was asked for: boundaries end at its outline.
+    pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
 impl BoundarySplitting<'_> {
@@ -47,8 +52,23 @@ impl BoundarySplitting<'_> {
 
     /// The parts of a boundary by tile.
     pub(crate) fn split(&self, boundary: &Boundary) -> Vec<(TileId, BoundaryRecord)> {
+        let parts = self.parts(boundary);
         let levels = self.levels.numbers().filter(|&level| self.shows(level, boundary.class));
-        levels.flat_map(|level| self.split_level(boundary, level)).collect()
+        levels
+            .flat_map(|level| parts.iter().flat_map(move |part| self.split_level(part, level)))
+            .collect()
+    }
+
+    /// The parts of a boundary in the polygon; without one, the boundary.
+    fn parts<'b>(&self, boundary: &'b Boundary) -> Vec<Cow<'b, Boundary>> {
+        let Some(region) = self.polygon else { return vec![Cow::Borrowed(boundary)] };
+        let Ok(line) = Polyline::new(boundary.points.clone()) else { return Vec::new() };
+        let cut = |part: ClippedPart| {
+            let fixed = fixed_of_part(&boundary.points, &boundary.fixed, &part);
+            let points = part.line.points().to_vec();
+            Cow::Owned(Boundary { way_id: boundary.way_id, class: boundary.class, points, fixed })
+        };
+        clip_region(&line, region).into_iter().map(cut).collect()
     }
 
     fn split_level(&self, boundary: &Boundary, level: u8) -> Vec<(TileId, BoundaryRecord)> {

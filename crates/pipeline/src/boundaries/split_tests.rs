@@ -19,7 +19,7 @@ fn levels() -> Levels {
 fn splitting(levels: &Levels) -> BoundarySplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    BoundarySplitting { levels, data, clip: None }
+    BoundarySplitting { levels, data, clip: None, polygon: None }
 }
 
 /// A wave across the whole of the root, in metres; its middle is a junction.
@@ -98,4 +98,25 @@ fn small_units_are_stored_where_cells_are_small() {
     assert_eq!(shown(BoundaryClass::Admin6), [0, 1, 2]);
     assert_eq!(shown(BoundaryClass::Admin8), [2]);
     assert_eq!(shown(BoundaryClass::Protected), [2]);
+}
+
+/// The part of the wave in a square around the middle: cut at the outline on every level, and nothing outside of it.
+#[test]
+fn boundaries_end_at_the_outline_of_a_polygon() {
+    let levels = levels();
+    let corner = |[x, y]: [f64; 2]| levels.frame().snap([x, y]).unwrap();
+    let square = [[-1000.0, -2000.0], [1000.0, -2000.0], [1000.0, 2000.0], [-1000.0, 2000.0]];
+    let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
+    let bounds = region.bounds();
+    let boundary = wave(&levels, BoundaryClass::Admin2);
+    let splitting = BoundarySplitting { polygon: Some(&region), ..splitting(&levels) };
+    let parts = splitting.split(&boundary);
+    for level in 0..=2 {
+        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);
+        let own = LatticeBounds::of(&points.copied().collect::<Vec<_>>()).unwrap();
+        let step = splitting.step(level);
+        assert!(
+            (own.min.u - bounds.min.u).abs() <= step && (own.max.u - bounds.max.u).abs() <= step
+        );
+    }
 }

@@ -10,6 +10,7 @@ use super::{
     pieces::{RoadPiece, Run},
     totals::RoadLength,
 };
+use crate::layers::fixed_points::fixed_of_part;
 use crate::levels::Levels;
 use crate::tiles_near::for_each_tile_near;
 use crate::true_lengths::{TrueLengths, pieces_um};
@@ -171,18 +172,8 @@ impl RoadPart<'_> {
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
         let own_um = pieces_um(&road.line, &part, segments_um).map(|[from, to]| to - from);
         let own_um = own_um.collect();
-        let ClippedPart { line, segments } = part;
-        // The points that are the road's own keep their role in simplification; cuts are ends, which stay anyway.
-        let source = |index: usize| match segments.get(index) {
-            Some(&segment) => segment,
-            None => segments.last().map_or(0, |&segment| segment + 1),
-        };
-        let is_fixed = |&index: &usize| {
-            let of_road = source(index);
-            road.line.points().get(of_road) == Some(&line.points()[index])
-                && road.fixed.binary_search(&(of_road as u32)).is_ok()
-        };
-        let fixed = (0..line.points().len()).filter(is_fixed).map(|index| index as u32).collect();
+        let fixed = fixed_of_part(road.line.points(), &road.fixed, &part);
+        let line = part.line;
         let own = Road {
             way_id: road.way_id,
             class: road.class,
