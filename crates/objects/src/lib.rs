@@ -32,5 +32,5 @@ pub use error::ObjectError;
 pub use object_place::ObjectPlace;
 pub use reader::ObjectReader;
 pub use settings::{Retries, StorageSettings};
-pub use upload::{Existing, Upload};
+pub use upload::Upload;
 pub use watch::Requests;

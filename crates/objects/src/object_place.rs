@@ -16,13 +16,12 @@ use std::{
 };
 
 use corniche_store::{
-    PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError, StoredPlan,
-    check_sealed, part_of_sealed, plan_of_header, store_header,
+    Existing, PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError,
+    StoredPlan, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 
 use crate::{
-    BlockCache, Bucket, Existing, Found, ObjectAddress, ObjectError, Storage, Upload,
-    object_part::ObjectPart,
+    BlockCache, Bucket, Found, ObjectAddress, ObjectError, Storage, Upload, object_part::ObjectPart,
 };
 
 /// The store under a prefix.
