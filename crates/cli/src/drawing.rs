@@ -8,6 +8,7 @@ use std::{
 };
 
 use corniche_overlay::{EllipsoidHeights, LineFile, SavedLine, Shape};
+use corniche_store::is_same_file;
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
@@ -15,7 +16,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Existing, Output, is_same_file},
+    output::{Existing, Output},
 };
 
 /// Without a name, lines go into a file with the first free number up to this.

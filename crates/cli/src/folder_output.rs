@@ -11,15 +11,17 @@
 use std::{
     fs::{self, File},
     io::{self, Read as _},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
-use corniche_pipeline::{Claim, OpenMode, folder_of, open_own, sync_folder};
+use corniche_store::{
+    Claim, OpenMode, UnfinishedFolder, folder_of, is_same_file, open_own, sync_folder,
+};
 
 use crate::{
     failure::Failure,
     interrupt, leftovers,
-    output::{Existing, exists, failed, is_same_file, not_begun},
+    output::{Existing, exists, failed, not_begun, unusable},
 };
 
 /// The marker of a folder that an export wrote.
@@ -34,11 +36,8 @@ const MARKER_BYTES: u64 = 1000;
 /// A folder to be written at [`FolderOutput::path`].
 #[derive(Debug)]
 pub(crate) struct FolderOutput {
-    target: PathBuf,
     existing: Existing,
-    folder: PathBuf,
-    /// Held as long as the folder is in use.
-    claim: Claim,
+    folder: UnfinishedFolder,
 }
 
 impl FolderOutput {
@@ -49,9 +48,7 @@ impl FolderOutput {
         existing: Existing,
         used: &[&Path],
     ) -> Result<Self, Failure> {
-        let unusable = |reason: &dyn std::fmt::Display| {
-            Failure::unusable(format!("cannot write {}: {reason}", named.display()))
-        };
+        let unusable = |reason: &dyn std::fmt::Display| unusable(named, reason);
         // A link is followed, and a name that ends in a slash or in ".." becomes one that has siblings.
         let target = match named.canonicalize() {
             Ok(found) => found,
@@ -90,55 +87,50 @@ impl FolderOutput {
         leftovers::tell(&target);
         let folder = claim.begin_folder().map_err(|error| not_begun(named, &error))?;
         // Not before: what a killed run left, perhaps an export that was replaced, is known by the claim alone until it is removed.
-        interrupt::remove_at_end(claim.path());
-        interrupt::remove_at_end(&folder);
-        Ok(Self { target, existing, folder, claim })
+        interrupt::remove_at_end(folder.claim().path());
+        interrupt::remove_at_end(folder.path());
+        Ok(Self { existing, folder })
     }
 
     /// Where to write.
     pub(crate) fn path(&self) -> &Path {
-        &self.folder
+        self.folder.path()
     }
 
     /// Adds the marker, makes all files durable and puts the folder in its place; returns its size in bytes.
     pub(crate) fn place(self, what: &str) -> Result<u64, Failure> {
-        let not_written = |error: io::Error| failed(&self.target, &error);
+        let (folder, claim) = (self.folder.path(), self.folder.claim());
+        let target = claim.target();
+        let not_written = |error: io::Error| failed(target, &error);
         let version = env!("CARGO_PKG_VERSION");
         let marker = format!("{what}{WRITTEN_BY}{version}. {IS_REPLACED}");
-        fs::write(self.folder.join(MARKER), marker).map_err(not_written)?;
-        let bytes = sync(&self.folder).map_err(not_written)?;
+        fs::write(folder.join(MARKER), marker).map_err(not_written)?;
+        let bytes = sync(folder).map_err(not_written)?;
         // What an early end removes while it takes its place would be half a new export, or the claim by which the old one is known.
-        interrupt::spare(&[self.claim.path(), &self.folder]);
-        let replaced = self.claim.replaced();
-        match kind_of(&self.target).map_err(not_written)? {
+        interrupt::spare(&[claim.path(), folder]);
+        let replaced = claim.replaced();
+        match kind_of(target).map_err(not_written)? {
             Kind::Free => {}
             // Someone else was faster.
-            Kind::Export if self.existing == Existing::Keep => return Err(exists(&self.target)),
+            Kind::Export if self.existing == Existing::Keep => return Err(exists(target)),
             Kind::Export => {
                 // What the old one is called now is known by the claim alone.
-                self.claim.sync().map_err(not_written)?;
-                fs::rename(&self.target, &replaced).map_err(not_written)?;
+                claim.sync().map_err(not_written)?;
+                fs::rename(target, &replaced).map_err(not_written)?;
             }
-            Kind::File | Kind::Other => return Err(exists(&self.target)),
+            Kind::File | Kind::Other => return Err(exists(target)),
         }
         // An empty folder is replaced by a rename, at least on Unix.
-        if let Err(error) = fs::rename(&self.folder, &self.target) {
+        if let Err(error) = fs::rename(folder, target) {
             if replaced.exists() {
-                fs::rename(&replaced, &self.target).map_err(not_written)?;
+                fs::rename(&replaced, target).map_err(not_written)?;
             }
             return Err(not_written(error));
         }
         // The new export is there; what is left of the old one is removed by the next run if not now.
         let _ = fs::remove_dir_all(&replaced);
-        sync_folder(folder_of(&self.target)).map_err(not_written)?;
+        sync_folder(folder_of(target)).map_err(not_written)?;
         Ok(bytes)
-    }
-}
-
-impl Drop for FolderOutput {
-    fn drop(&mut self) {
-        // What cannot be removed now is removed by the next export to this target.
-        let _ = fs::remove_dir_all(&self.folder);
     }
 }
 

@@ -6,31 +6,24 @@
 //!   .NAME.ID.unfinished/    what the library makes: the file, and others that go with it while it is written
 //! ```
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use corniche_export::ExportError;
-use corniche_pipeline::Claim;
-use tempfile::TempPath;
+use corniche_store::UnfinishedFolder;
 
 use crate::{
     exit::ExitCode,
     failure::Failure,
     leftovers,
-    output::{Existing, claim, failed, place},
+    output::{Existing, claim, not_begun, not_placed},
 };
 
 /// A file that a library is to write at [`NamedOutput::path`].
 #[derive(Debug)]
 pub(crate) struct NamedOutput {
-    target: PathBuf,
     existing: Existing,
-    folder: PathBuf,
+    folder: UnfinishedFolder,
     name: String,
-    /// Held as long as the folder is in use.
-    _claim: Claim,
 }
 
 impl NamedOutput {
@@ -41,32 +34,22 @@ impl NamedOutput {
         name: String,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let (target, claim) = claim(named, existing, others)?;
-        let unusable = |error: io::Error| {
-            Failure::unusable(format!("cannot write {}: {error}", named.display()))
-        };
-        leftovers::tell(&target);
-        let folder = claim.begin_folder().map_err(unusable)?;
-        Ok(Self { target, existing, folder, name, _claim: claim })
+        let claim = claim(named, existing, others)?;
+        leftovers::tell(claim.target());
+        let folder = claim.begin_folder().map_err(|error| not_begun(named, &error))?;
+        Ok(Self { existing, folder, name })
     }
 
     /// Where the library writes.
     pub(crate) fn path(&self) -> PathBuf {
-        self.folder.join(&self.name)
+        self.folder.path().join(&self.name)
     }
 
     /// Makes the file durable and puts it in its place; returns its size in bytes.
     pub(crate) fn place(self) -> Result<u64, Failure> {
-        let written =
-            TempPath::try_from_path(self.path()).map_err(|error| failed(&self.target, &error))?;
-        place(written, &self.target, self.existing)
-    }
-}
-
-impl Drop for NamedOutput {
-    fn drop(&mut self) {
-        // What cannot be removed now is removed by the next export to this target.
-        let _ = fs::remove_dir_all(&self.folder);
+        let target = self.folder.claim().target().to_path_buf();
+        let placed = self.folder.place_file(&self.name, self.existing);
+        placed.map_err(|error| not_placed(&target, &error))
     }
 }
 

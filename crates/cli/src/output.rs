@@ -6,10 +6,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub(crate) use corniche_pipeline::Existing;
-use corniche_pipeline::{Claim, file_target, folder_of};
+pub(crate) use corniche_store::Existing;
+use corniche_store::{Claim, UnfinishedFile, file_target, is_same_file};
 use image::RgbaImage;
-use tempfile::{NamedTempFile, TempPath};
 
 use crate::{exit::ExitCode, failure::Failure, interrupt, names};
 
@@ -19,17 +18,11 @@ pub(crate) fn existing_of(overwrite: bool) -> Existing {
 }
 
 /// A place for a file, claimed while it is written.
-pub(crate) fn claim(
-    named: &Path,
-    existing: Existing,
-    others: &[&Path],
-) -> Result<(PathBuf, Claim), Failure> {
-    let unusable = |reason: &dyn Display| {
-        Failure::unusable(format!("cannot write {}: {reason}", named.display()))
-    };
+pub(crate) fn claim(named: &Path, existing: Existing, others: &[&Path]) -> Result<Claim, Failure> {
     let target = writable(named)?;
     if others.iter().any(|other| is_same_file(other, &target)) {
-        return Err(unusable(&"the command uses that file itself; choose another name"));
+        let reason = "the command uses that file itself; choose another name";
+        return Err(unusable(named, &reason));
     }
     if existing == Existing::Keep && named.symlink_metadata().is_ok() {
         return Err(exists(named));
@@ -37,7 +30,12 @@ pub(crate) fn claim(
     let claim = Claim::take(&target).map_err(|error| not_begun(named, &error))?;
     interrupt::remove_at_end(claim.path());
     interrupt::remove_at_end(&claim.unfinished());
-    Ok((target, claim))
+    Ok(claim)
+}
+
+/// The failure of a command whose target is of no use.
+pub(crate) fn unusable(named: &Path, reason: &dyn Display) -> Failure {
+    Failure::unusable(format!("cannot write {}: {reason}", named.display()))
 }
 
 /// Why something cannot be begun: a disk that is full is no fault of what was asked for.
@@ -45,41 +43,32 @@ pub(crate) fn not_begun(named: &Path, error: &io::Error) -> Failure {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     match error.kind() {
         FileTooLarge | QuotaExceeded | StorageFull => failed(named, error),
-        _ => Failure::unusable(format!("cannot write {}: {error}", named.display())),
+        _ => unusable(named, error),
     }
 }
 
-/// Puts a finished file in its place, durably; returns its size in bytes.
-pub(crate) fn place(path: TempPath, target: &Path, existing: Existing) -> Result<u64, Failure> {
-    let placed = corniche_pipeline::place_finished(path, target, existing);
-    placed.map_err(|error| match error.kind() {
+/// Why something did not get to its place.
+pub(crate) fn not_placed(target: &Path, error: &io::Error) -> Failure {
+    match error.kind() {
         io::ErrorKind::AlreadyExists => exists(target),
-        _ => failed(target, &error),
-    })
+        _ => failed(target, error),
+    }
 }
 
 /// A file that is written beside its target and takes its place when it is complete.
 #[derive(Debug)]
-pub(crate) struct Output {
-    target: PathBuf,
-    existing: Existing,
-    file: BufWriter<NamedTempFile>,
-    /// Dropped last.
-    claim: Claim,
-}
+pub(crate) struct Output(BufWriter<UnfinishedFile>);
 
 impl Output {
     /// Begins a file that is none of `others`, which the command reads or writes itself. An unusable place is reported here,
     /// before any work is done.
     pub(crate) fn create(
-        target: &Path,
+        named: &Path,
         existing: Existing,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let named = target;
-        let (target, claim) = claim(named, existing, others)?;
-        let file = claim.begin_file().map_err(|error| not_begun(named, &error))?;
-        Ok(Self { target, existing, file: BufWriter::new(file), claim })
+        let file = claim(named, existing, others)?.begin_file(existing);
+        Ok(Self(BufWriter::new(file.map_err(|error| not_begun(named, &error))?)))
     }
 
     /// Puts the file in its place.
@@ -94,35 +83,27 @@ impl Output {
 
     /// Writes the whole file, which takes its place later: together with others.
     pub(crate) fn fill(mut self, bytes: &[u8]) -> Result<Complete, Failure> {
-        self.file.write_all(bytes).map_err(|error| failed(&self.target, &error))?;
+        self.write_all(bytes).map_err(|error| failed(self.0.get_ref().target(), &error))?;
         self.end()
     }
 
     fn end(self) -> Result<Complete, Failure> {
-        let Self { target, existing, file, claim } = self;
-        let file = file
-            .into_inner()
-            .map_err(|error| failed(&target, &io::IntoInnerError::into_error(error)))?;
-        Ok(Complete { target, existing, file, claim })
+        self.0.into_inner().map(Complete).map_err(|refused| {
+            let (error, writer) = refused.into_parts();
+            failed(writer.get_ref().target(), &error)
+        })
     }
 }
 
 /// A file that is written to its end, beside its target.
 #[derive(Debug)]
-pub(crate) struct Complete {
-    target: PathBuf,
-    existing: Existing,
-    file: NamedTempFile,
-    /// Dropped last.
-    claim: Claim,
-}
+pub(crate) struct Complete(UnfinishedFile);
 
 impl Complete {
     /// Puts it in its place.
     pub(crate) fn place(self) -> Result<(), Failure> {
-        // The claim is held until the file is in its place.
-        let Self { target, existing, file, claim: _claim } = self;
-        place(file.into_temp_path(), &target, existing)?;
+        let target = self.0.target().to_path_buf();
+        self.0.place().map_err(|error| not_placed(&target, &error))?;
         tracing::debug!(path = %target.display(), "file written");
         Ok(())
     }
@@ -130,11 +111,11 @@ impl Complete {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        self.0.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        self.0.flush()
     }
 }
 
@@ -150,22 +131,6 @@ pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, Failure> {
     let place = writable(target)?;
     names::refuse_other_than_package(target)?;
     Ok(place)
-}
-
-/// Whether two paths lead to one file, which need not exist yet.
-pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
-    place_of(one) == place_of(other)
-}
-
-/// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
-fn place_of(path: &Path) -> PathBuf {
-    if let Ok(place) = path.canonicalize() {
-        return place;
-    }
-    match (folder_of(path).canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => path.to_path_buf(),
-    }
 }
 
 /// A picture's file.

@@ -13,8 +13,8 @@ use std::{
     sync::Arc,
 };
 
-use corniche_pipeline::folder_of;
 use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
+use corniche_store::folder_of;
 
 use self::{
     package_file::PackageFile,

@@ -15,7 +15,6 @@
 //! storage cannot. It knows no tile and no road.
 
 mod address;
-mod blocks;
 mod bucket;
 mod error;
 mod object_part;
@@ -26,11 +25,11 @@ mod upload;
 mod watch;
 
 pub use address::ObjectAddress;
-pub use blocks::BlockCache;
 pub use bucket::{Bucket, Found, Storage};
+pub use corniche_blocks::BlockCache;
 pub use error::ObjectError;
-pub use object_place::ObjectPlace;
+pub use object_place::{ObjectPlace, block_cache};
 pub use reader::ObjectReader;
 pub use settings::{Retries, StorageSettings};
-pub use upload::{Existing, Upload};
+pub use upload::Upload;
 pub use watch::Requests;

@@ -23,7 +23,7 @@ pub(crate) struct ObjectPart {
 impl ObjectPart {
     pub(crate) fn new(bucket: Bucket, found: Found, blocks: Arc<BlockCache>) -> Self {
         let path = bucket.address(&found.key).to_string().into();
-        let number = blocks.new_object();
+        let number = blocks.new_file();
         Self { bucket, found, path, blocks, number }
     }
 
@@ -53,12 +53,9 @@ impl PartFile for ObjectPart {
         while !bytes.is_empty() {
             let number = offset / block_bytes;
             let from = number * block_bytes;
-            let block = self.blocks.get((self.number, number), || {
-                self.bucket.read(
-                    key,
-                    etag.as_deref(),
-                    from..length.min(&(from + block_bytes)).to_owned(),
-                )
+            let block = self.blocks.get((self.number, number), 1, u64::MAX, |_| {
+                let range = from..length.min(&(from + block_bytes)).to_owned();
+                self.bucket.read(key, etag.as_deref(), range)
             })?;
             let inside = &block[(offset - from) as usize..];
             let (now, later) = bytes.split_at_mut(inside.len().min(bytes.len()));

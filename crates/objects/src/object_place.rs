@@ -15,15 +15,27 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
+use corniche_blocks::{BlockCache, Limits};
 use corniche_store::{
-    PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError, StoredPlan,
-    check_sealed, part_of_sealed, plan_of_header, store_header,
+    Existing, PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError,
+    StoredPlan, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 
-use crate::{
-    BlockCache, Bucket, Existing, Found, ObjectAddress, ObjectError, Storage, Upload,
-    object_part::ObjectPart,
-};
+use crate::{Bucket, Found, ObjectAddress, ObjectError, Storage, Upload, object_part::ObjectPart};
+
+/// Blocks are no larger: an answer takes longer then, and more of it is never looked at.
+const LARGEST_BLOCK_BYTES: u64 = 4 << 20;
+/// Blocks are no smaller: each request costs as much as some hundred kilobytes.
+const SMALLEST_BLOCK_BYTES: u64 = 256 << 10;
+/// So many blocks fit, if they need not be smaller than the smallest for that.
+const BLOCKS: u64 = 16;
+
+/// A cache for parts in object storage that takes at most `kept_bytes`, in blocks of 256 KiB to 4 MiB.
+#[must_use]
+pub fn block_cache(kept_bytes: u64) -> BlockCache {
+    let block_bytes = (kept_bytes / BLOCKS).clamp(SMALLEST_BLOCK_BYTES, LARGEST_BLOCK_BYTES);
+    BlockCache::new(Limits { block_bytes, kept_bytes, most_blocks: 1 })
+}
 
 /// The store under a prefix.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-use corniche_store::{OpenMode, open_own, random_digits};
+use corniche_store::{Existing, OpenMode, open_own, random_digits};
 use object_store::{
     Error, ObjectStore, PutMode, PutMultipartOptions, PutOptions,
     aws::AmazonS3,
@@ -29,15 +29,6 @@ const LARGEST_PART_BYTES: u64 = 5 << 30;
 const AT_ONCE: usize = 2;
 /// `should_stop` is asked so often while parts are sent.
 const ASKS_EVERY: Duration = Duration::from_millis(200);
-
-/// What to do with an object of that name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Existing {
-    /// Leave it there and fail.
-    Keep,
-    /// Replace it, when the new one is complete.
-    Replace,
-}
 
 /// A file to be sent.
 #[derive(Clone, Copy)]

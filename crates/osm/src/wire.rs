@@ -2,8 +2,20 @@
 //!
 //! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
 
+use corniche_varints::BadVarint;
+pub(crate) use corniche_varints::{push_varint, to_zigzag, varint, zigzag};
+
 /// Why bytes are no message.
 pub(crate) type WireError = &'static str;
+
+/// The number that comes next.
+#[inline]
+fn next_number(rest: &mut &[u8]) -> Result<u64, WireError> {
+    varint(rest).map_err(|bad| match bad {
+        BadVarint::Cut => "a number has no end",
+        BadVarint::TooLarge => "a number does not fit 64 bits",
+    })
+}
 
 /// A field of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,16 +61,16 @@ impl<'a> Iterator for Fields<'a> {
 
 impl<'a> Fields<'a> {
     fn field(&mut self) -> Result<Field<'a>, WireError> {
-        let key = varint(&mut self.rest)?;
+        let key = next_number(&mut self.rest)?;
         let number = u32::try_from(key >> 3).map_err(|_| "a field's number is too large")?;
         if number == 0 {
             return Err("a field has the number 0");
         }
         let value = match key & 7 {
-            0 => Value::Varint(varint(&mut self.rest)?),
+            0 => Value::Varint(next_number(&mut self.rest)?),
             1 => self.take(8).map(|_| Value::Fixed)?,
             2 => {
-                let len = varint(&mut self.rest)?;
+                let len = next_number(&mut self.rest)?;
                 Value::Bytes(self.take(len)?)
             }
             5 => self.take(4).map(|_| Value::Fixed)?,
@@ -126,63 +138,12 @@ impl Iterator for Numbers<'_> {
         if self.rest.is_empty() {
             return None;
         }
-        let number = varint(&mut self.rest);
+        let number = next_number(&mut self.rest);
         if number.is_err() {
             self.rest = &[];
         }
         Some(number)
     }
-}
-
-/// Seven bits a byte, least first, the top bit set on all bytes but the last.
-#[inline]
-pub(crate) fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
-    // Most numbers are small, and this much is worth a place in every loop.
-    match **rest {
-        [first, ref after @ ..] if first < 0x80 => {
-            *rest = after;
-            Ok(u64::from(first))
-        }
-        [first, second, ref after @ ..] if second < 0x80 => {
-            *rest = after;
-            Ok(u64::from(first & 0x7f) | u64::from(second) << 7)
-        }
-        _ => long_varint(rest),
-    }
-}
-
-fn long_varint(rest: &mut &[u8]) -> Result<u64, WireError> {
-    let mut number = 0;
-    for (place, &byte) in rest.iter().take(10).enumerate() {
-        if place == 9 && byte > 1 {
-            return Err("a number does not fit 64 bits");
-        }
-        number |= u64::from(byte & 0x7f) << (7 * place);
-        if byte < 0x80 {
-            *rest = &rest[place + 1..];
-            return Ok(number);
-        }
-    }
-    Err("a number has no end")
-}
-
-/// The signed number behind a zigzag varint: 0, -1, 1, -2, …
-pub(crate) const fn zigzag(number: u64) -> i64 {
-    (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
-}
-
-/// The number that stands for a signed one: the inverse of [`zigzag`].
-pub(crate) const fn to_zigzag(number: i64) -> u64 {
-    ((number << 1) ^ (number >> 63)).cast_unsigned()
-}
-
-/// Appends a varint.
-pub(crate) fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
 }
 
 #[cfg(test)]

@@ -10,7 +10,6 @@
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
 pub(crate) mod destination;
-pub(crate) mod unfinished;
 pub(crate) mod work_store;
 
 use std::{sync::Arc, time::Duration};
@@ -20,7 +19,7 @@ use corniche_geom::TileId;
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
-use self::{destination::Destination, unfinished::Claimed};
+use self::destination::Destination;
 use crate::{
     BuildError, BuildPlan, BuildSettings, Observer, PlanSettings, TerrainSettings,
     context::Context,
@@ -71,7 +70,7 @@ pub fn build_on(
     let plan = BuildPlan::of(&settings.plan, &opened)?;
     let store_folder = work_store::folder_of(&destination.target, settings.tmp.as_deref());
     // Before the store is looked at: what another build is at work on is no leftover.
-    let claimed = Claimed::take(&destination, observer)?;
+    let claim = destination.claim(observer)?;
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
         let folder = &*destination.folder;
@@ -81,12 +80,12 @@ pub fn build_on(
     let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
-    let finished = claimed.begin()?;
+    let finished = destination.begin(claim)?;
     let finished_path = finished.path().to_path_buf();
     let context = Context::new(&settings.plan, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: &finished_path, named: &settings.output };
-    let built =
-        run(&context, &store, &wanted).and_then(|manifest| Ok((manifest, finished.place()?)));
+    let built = run(&context, &store, &wanted)
+        .and_then(|manifest| Ok((manifest, destination::place(finished)?)));
     match built {
         Ok((manifest, package_bytes)) => {
             work_store::remove(store, observer);

@@ -2,9 +2,10 @@
 
 use std::{io, path::PathBuf};
 
+use corniche_store::TargetError;
 use corniche_work::Interrupted;
 
-use crate::{TargetError, plan_error::PlanError};
+use crate::plan_error::PlanError;
 
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]

@@ -31,7 +31,6 @@ mod roads;
 mod settings;
 mod settings_record;
 mod steps;
-mod target;
 mod terrain;
 mod tile;
 mod tiles_near;
@@ -44,9 +43,7 @@ pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
 pub use corniche_objects::Requests;
 pub use corniche_osm::{Defect as OsmDefect, Share};
-pub use corniche_store::{
-    Claim, Existing, OpenMode, folder_of, open_own, place_finished, sync_folder,
-};
+pub use corniche_store::Existing;
 pub use corniche_work::{Silent, Stage};
 pub use defect::{Defect, Loss, Observer};
 pub use error::BuildError;
@@ -68,7 +65,6 @@ pub use settings::{
     BuildSettings, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings,
     TerrainSettings,
 };
-pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
 pub use terrain::recorded_grid::grid_of;
 pub use verify::{

@@ -3,7 +3,8 @@
 use std::{path::Path, sync::Arc};
 
 use corniche_objects::{
-    BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Requests, Storage, StorageSettings,
+    BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Requests, Storage,
+    StorageSettings, block_cache,
 };
 
 use crate::{Resources, memory_shares::MemoryShares};
@@ -31,7 +32,7 @@ pub(crate) struct ObjectAccess {
 impl ObjectAccess {
     pub(crate) fn new(resources: Resources) -> Self {
         let blocks = MemoryShares::of(resources.memory_bytes).blocks;
-        Self { storage: None, blocks: Arc::new(BlockCache::new(blocks)) }
+        Self { storage: None, blocks: Arc::new(block_cache(blocks)) }
     }
 
     /// The store at an address.

@@ -15,7 +15,6 @@
 
 mod address;
 mod answer;
-mod blocks;
 mod error;
 mod package_place;
 mod range;

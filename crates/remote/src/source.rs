@@ -6,14 +6,20 @@ use std::{
 };
 
 use bytes::Bytes;
+use corniche_blocks::{BlockCache, Limits};
 use corniche_tileset::{BlockingSource, SourceError};
 
-use crate::{
-    HttpAddress, HttpError, Requests,
-    answer::Version,
-    blocks::{BLOCK_BYTES, Blocks},
-    range::Ranges,
-};
+use crate::{HttpAddress, HttpError, Requests, answer::Version, range::Ranges};
+
+/// Bytes of a block; the last one of a file has fewer.
+///
+/// The first one holds header, root directory and manifest of most packages, so one request opens them. In the packages that were measured
+/// a tile has 10 to 350 kB. With smaller blocks a picture takes more requests, with larger ones more bytes (`docs/lab/remote.md`).
+const BLOCK_BYTES: u64 = 64 << 10;
+/// A request has 4 MiB at most, a second at 32 Mbit/s.
+const LIMITS: Limits = Limits { block_bytes: BLOCK_BYTES, kept_bytes: 64 << 20, most_blocks: 64 };
+/// The one file of its cache.
+const FILE: u64 = 0;
 
 /// The bytes of a file on a web server. Threads wait for them, and many may do so at once.
 ///
@@ -21,7 +27,7 @@ use crate::{
 #[derive(Debug)]
 pub struct HttpSource {
     ranges: Ranges,
-    blocks: Blocks,
+    blocks: BlockCache,
     version: OnceLock<Version>,
     /// Held by the one that asks first.
     first: Mutex<()>,
@@ -33,7 +39,7 @@ impl HttpSource {
     pub(crate) fn new(ranges: Ranges) -> Self {
         Self {
             ranges,
-            blocks: Blocks::default(),
+            blocks: BlockCache::new(LIMITS),
             version: OnceLock::new(),
             first: Mutex::default(),
             changed: OnceLock::new(),
@@ -68,7 +74,7 @@ impl HttpSource {
             return Ok(version);
         }
         let mut found = None;
-        self.blocks.get(0, 1, 1, |_| {
+        self.blocks.get((FILE, 0), 1, 1, |_| {
             let (version, bytes) = self.ranges.get(&(0..BLOCK_BYTES), None)?;
             found = Some(version);
             Ok::<Bytes, HttpError>(bytes)
@@ -81,7 +87,7 @@ impl HttpSource {
 
     fn block(&self, number: u64, last: u64, version: &Version) -> Result<Bytes, HttpError> {
         let count = version.length.div_ceil(BLOCK_BYTES);
-        self.blocks.get(number, last + 1 - number, count, |run: Range<u64>| {
+        self.blocks.get((FILE, number), last + 1 - number, count, |run: Range<u64>| {
             if let Some(changed) = self.changed.get() {
                 return Err(changed.clone());
             }

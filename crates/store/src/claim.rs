@@ -86,6 +86,12 @@ impl Claim {
         Err(busy())
     }
 
+    /// What is claimed.
+    #[must_use]
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
     /// The file that is locked.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -109,28 +115,29 @@ impl Claim {
         self.target.with_file_name(format!(".{name}.{}.{end}", self.id))
     }
 
-    /// Begins the file that becomes the target; it is removed when it is dropped. What a killed run left of it is removed.
+    /// Begins the file that becomes the target. What a killed run left of it is removed.
     ///
     /// # Errors
     /// Where the folder cannot be written.
-    pub fn begin_file(&self) -> io::Result<NamedTempFile> {
+    pub fn begin_file(self, existing: Existing) -> io::Result<UnfinishedFile> {
         let path = self.unfinished();
         remove_left(&path)?;
         let file = open_own(&path, OpenMode::New)?;
-        Ok(NamedTempFile::from_parts(file, TempPath::try_from_path(path)?))
+        let file = NamedTempFile::from_parts(file, TempPath::try_from_path(path)?);
+        Ok(UnfinishedFile { file, existing, claim: self })
     }
 
     /// Begins the folder that becomes the target, or holds what does. What killed runs left of this target is removed.
     ///
     /// # Errors
     /// Where the folder cannot be written.
-    pub fn begin_folder(&self) -> io::Result<PathBuf> {
+    pub fn begin_folder(self) -> io::Result<UnfinishedFolder> {
         let path = self.unfinished();
         for left in [&path, &self.replaced()] {
             remove_left(left)?;
         }
         fs::create_dir(&path)?;
-        Ok(path)
+        Ok(UnfinishedFolder { path, claim: self })
     }
 
     /// Makes durable that this claim is there, so that what has its id is ours also after the machine failed.
@@ -161,6 +168,85 @@ impl Drop for Claim {
     }
 }
 
+/// A file that is made beside its target. It is removed if it is dropped before it gets there.
+#[derive(Debug)]
+pub struct UnfinishedFile {
+    // Dropped before what claims it.
+    file: NamedTempFile,
+    existing: Existing,
+    claim: Claim,
+}
+
+impl UnfinishedFile {
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Where it will be.
+    #[must_use]
+    pub fn target(&self) -> &Path {
+        &self.claim.target
+    }
+
+    /// Moves the finished file to its target, durably; returns its size.
+    ///
+    /// # Errors
+    /// Of kind `AlreadyExists` if there is something at the target that is to be kept; else when the disk does not take it.
+    pub fn place(self) -> io::Result<u64> {
+        // The claim is held until the file is in its place.
+        let Self { file, existing, claim } = self;
+        place(file.into_temp_path(), &claim.target, existing)
+    }
+}
+
+impl io::Write for UnfinishedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// A folder that is made beside the target that it, or a file in it, becomes. It is removed when it is dropped; what cannot be removed is removed
+/// by the next run with this target.
+#[derive(Debug)]
+pub struct UnfinishedFolder {
+    path: PathBuf,
+    claim: Claim,
+}
+
+impl UnfinishedFolder {
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The claim of the target, which is held as long as the folder is in use.
+    #[must_use]
+    pub fn claim(&self) -> &Claim {
+        &self.claim
+    }
+
+    /// Moves a finished file of the folder to the target, durably; returns its size.
+    ///
+    /// # Errors
+    /// Those of [`UnfinishedFile::place`].
+    pub fn place_file(self, name: &str, existing: Existing) -> io::Result<u64> {
+        place(TempPath::try_from_path(self.path.join(name))?, &self.claim.target, existing)
+    }
+}
+
+impl Drop for UnfinishedFolder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.path);
+    }
+}
+
 /// What a file says that has the name of a claim.
 fn read(file: &File) -> io::Result<String> {
     let mut bytes = Vec::new();
@@ -169,10 +255,7 @@ fn read(file: &File) -> io::Result<String> {
 }
 
 /// Writes the bytes of a finished file to the disk, moves it to its target, and makes its name durable. Returns its size.
-///
-/// # Errors
-/// Of kind `AlreadyExists` if there is something at the target that is to be kept; else when the disk does not take it.
-pub fn place_finished(path: TempPath, target: &Path, existing: Existing) -> io::Result<u64> {
+fn place(path: TempPath, target: &Path, existing: Existing) -> io::Result<u64> {
     let file = open_own(&path, OpenMode::Read)?;
     file.sync_all()?;
     let bytes = file.metadata()?.len();

@@ -48,18 +48,16 @@ fn what_a_killed_program_left_is_taken_over_at_each_of_its_steps() {
             assert_eq!(names(folder.path()), before, "{files:?} {folders:?}");
         }
         let claim = Claim::take(&target).unwrap();
-        claim.begin_folder().unwrap();
-        assert_eq!(fs::read_dir(claim.unfinished()).unwrap().count(), 0);
-        fs::remove_dir(claim.unfinished()).unwrap();
-        drop(claim);
+        let made = claim.begin_folder().unwrap();
+        assert_eq!(fs::read_dir(made.path()).unwrap().count(), 0);
+        drop(made);
         assert_eq!(names(folder.path()), [""; 0], "{files:?} {folders:?}");
     }
     let (folder, target) = left(&[unfinished], &[]);
     let claim = Claim::take(&target).unwrap();
-    let file = claim.begin_file().unwrap();
-    assert_eq!(file.as_file().metadata().unwrap().len(), 0);
-    place_finished(file.into_temp_path(), &target, Existing::Keep).unwrap();
-    drop(claim);
+    let file = claim.begin_file(Existing::Keep).unwrap();
+    assert_eq!(file.path().metadata().unwrap().len(), 0);
+    file.place().unwrap();
     assert_eq!(names(folder.path()), ["x.csv"]);
 }
 
@@ -69,11 +67,10 @@ fn of_two_programs_one_is_refused_and_the_other_goes_on() {
     let target = folder.path().join("x.csv");
     let first = Claim::take(&target).unwrap();
     assert_eq!(Claim::take(&target).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
-    first.begin_file().unwrap().persist(&target).unwrap();
-    drop(first);
+    first.begin_file(Existing::Keep).unwrap().place().unwrap();
     // A finished one is nobody's any more, and is not touched.
     fs::write(&target, "all of it").unwrap();
-    drop(Claim::take(&target).unwrap().begin_file().unwrap());
+    drop(Claim::take(&target).unwrap().begin_file(Existing::Keep).unwrap());
     assert_eq!(names(folder.path()), ["x.csv"]);
     assert_eq!(fs::read(&target).unwrap(), b"all of it");
 }
@@ -93,8 +90,7 @@ fn a_claim_that_was_only_begun_proves_nothing_and_is_used() {
         fs::write(&there, &line[..end]).unwrap();
         let claim = Claim::take(&target).unwrap();
         assert_eq!(fs::read_to_string(&there).unwrap(), format!("{MARK}{}\n", claim.id));
-        drop(claim.begin_file().unwrap());
-        drop(claim);
+        drop(claim.begin_file(Existing::Keep).unwrap());
         assert_eq!(names(folder.path()), of_others, "{end}");
     }
 }

@@ -44,9 +44,10 @@ mod scratch;
 mod sorter;
 mod stored_plan;
 mod system_disk;
+mod target;
 
 pub use artifacts::{Artifacts, Key};
-pub use claim::{Claim, Existing, place_finished};
+pub use claim::{Claim, Existing, UnfinishedFile, UnfinishedFolder};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
@@ -63,3 +64,4 @@ pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;
+pub use target::{TargetError, file_target, is_same_file};

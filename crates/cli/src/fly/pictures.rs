@@ -1,13 +1,9 @@
 //! Pictures of a flight's frames, written to a folder that appears when all of them are complete.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
-use corniche_pipeline::folder_of;
+use corniche_store::{Claim, UnfinishedFolder};
 use corniche_viewer::Replay;
-use tempfile::TempDir;
 
 use crate::{
     exit::ExitCode,
@@ -18,8 +14,7 @@ use crate::{
 
 /// A folder of pictures that takes its place when it is complete.
 pub(crate) struct Pictures {
-    target: PathBuf,
-    folder: TempDir,
+    folder: UnfinishedFolder,
 }
 
 impl Pictures {
@@ -43,13 +38,11 @@ impl Pictures {
                 ),
             ));
         }
-        let mut builder = tempfile::Builder::new();
-        // Temporary folders are their owner's alone; this one is to become an ordinary folder.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let folder = builder.tempdir_in(folder_of(target)).map_err(|error| unusable(&error))?;
+        let claim = Claim::take(target).map_err(|error| unusable(&error))?;
+        let folder = claim.begin_folder().map_err(|error| unusable(&error))?;
+        interrupt::remove_at_end(folder.claim().path());
         interrupt::remove_at_end(folder.path());
-        Ok(Self { target: target.to_path_buf(), folder })
+        Ok(Self { folder })
     }
 
     pub(crate) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
@@ -58,18 +51,15 @@ impl Pictures {
     }
 
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        let Self { target, folder } = self;
+        let (folder, target) = (self.folder.path(), self.folder.claim().target());
         // An early end would leave half of them there.
-        interrupt::spare(&[folder.path()]);
-        fs::rename(folder.path(), &target).map_err(|error| {
+        interrupt::spare(&[folder]);
+        fs::rename(folder, target).map_err(|error| {
             Failure::new(
                 ExitCode::Failed,
                 anyhow::anyhow!("cannot move the pictures to {}: {error}", target.display()),
             )
-        })?;
-        // It is the user's folder now.
-        let _ = folder.keep();
-        Ok(())
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 use std::{fmt::Write as _, io::Write as _, path::Path};
 
 use corniche_export::{WayGrowth, growth_by_way};
-use corniche_pipeline::folder_of;
 use corniche_roads::FunctionalRoadClass;
+use corniche_store::folder_of;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{

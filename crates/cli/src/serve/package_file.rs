@@ -7,8 +7,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_pipeline::{OpenMode, open_own};
 use corniche_serve::OnDisk;
+use corniche_store::{OpenMode, open_own};
 use corniche_tileset::telling_ranges;
 
 /// So much of a package is read to see which it is.

@@ -8,7 +8,7 @@ use crate::support::{
     server::{Fault, Server, first},
     storage,
 };
-use corniche_objects::{BlockCache, ObjectAddress, ObjectPlace};
+use corniche_objects::{ObjectAddress, ObjectPlace, block_cache};
 use corniche_store::{
     Artifacts as _, Hold, Key, LocalStore, OwnPart, PartsPlace as _, Publish as _, SealedParts,
     StoreError, StoredPlan, SystemDisk,
@@ -25,7 +25,7 @@ fn other_plan() -> StoredPlan {
 
 fn place(server: &Server) -> ObjectPlace {
     let address = ObjectAddress::parse("s3://maps/utah").unwrap().unwrap();
-    ObjectPlace::new(&storage(server), &address, &Arc::new(BlockCache::new(4 << 20))).unwrap()
+    ObjectPlace::new(&storage(server), &address, &Arc::new(block_cache(4 << 20))).unwrap()
 }
 
 fn artifact(item: u64) -> Vec<u8> {
@@ -284,4 +284,11 @@ fn a_part_that_could_not_be_sent_is_sent_by_the_next_try() {
     store.publish(&place, &|| false).unwrap().unwrap();
     assert_eq!(place.parts().unwrap().len(), 1);
     nothing_is_left(&work);
+}
+
+#[test]
+fn blocks_fit_the_memory() {
+    for (limit, block) in [(1 << 20, 256 << 10), (16 << 20, 1 << 20), (1 << 30, 4 << 20)] {
+        assert_eq!(block_cache(limit).block_bytes(), block, "{limit}");
+    }
 }

@@ -9,7 +9,8 @@ use crate::support::{
     server::{Fault, Server, first},
     told,
 };
-use corniche_objects::{Bucket, Existing, ObjectError, Upload};
+use corniche_objects::{Bucket, ObjectError, Upload};
+use corniche_store::Existing;
 use corniche_testing::Random;
 use tempfile::TempDir;
 

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
-    build::unfinished::Claimed,
+    build::destination,
     context::Context,
     extract::defects::replay_defects,
     objects::ObjectAccess,
@@ -71,13 +71,13 @@ pub fn merge(
     let stores = Stores::look(given, plan, access, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     place.refuse_inputs(&plan_settings, &settings.stores)?;
-    let finished = Claimed::take(destination, observer)?.begin()?;
+    let finished = destination.begin(destination.claim(observer)?)?;
     let open_stores = stores.open(OWN_PART, &is_merged)?;
     let store = &open_stores.store;
     let context = Context::new(&plan_settings, *resources, &opened, store, observer);
     let wanted = sums::Target { finished: finished.path(), named: output };
-    let merged =
-        run(&context, store, &wanted).and_then(|manifest| Ok((manifest, finished.place()?)));
+    let merged = run(&context, store, &wanted)
+        .and_then(|manifest| Ok((manifest, destination::place(finished)?)));
     let abandoned = open_stores.abandon();
     let (manifest, package_bytes) = merged.map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.

@@ -1,16 +1,18 @@
 //! Where a merge writes its package: a file, or an object, which is sent when the package is complete.
 
 use std::{
-    env, fs, io,
+    env, fs,
     path::{Path, PathBuf},
 };
 
-use corniche_objects::{Bucket, Existing as ExistingObject, ObjectAddress, ObjectError, Upload};
+use corniche_objects::{Bucket, ObjectAddress, ObjectError, Upload};
 use corniche_store::{Claim, PARTS_NAME, PLAN_NAME, STORE_NAME, make_own_folder};
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    BuildError, Existing, Observer, PlanSettings, build::destination::Destination, hex::hex,
+    BuildError, Existing, Observer, PlanSettings,
+    build::destination::{Destination, claim},
+    hex::hex,
     objects::ObjectAccess,
 };
 
@@ -71,13 +73,7 @@ impl PackagePlace {
         if let Err(source) = make_own_folder(&folder) {
             return Err(BuildError::Target { folder: tmp, source });
         }
-        let lock = match Claim::take(&folder.join("merge")) {
-            Ok(lock) => lock,
-            Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
-                return Err(BuildError::AtWork { path: output.to_path_buf() });
-            }
-            Err(source) => return Err(BuildError::Target { folder, source }),
-        };
+        let lock = claim(&folder.join("merge"), output, &folder)?;
         let file = folder.join(address.file_name());
         let destination = Destination::of(&file, Existing::Replace)?;
         let object =
@@ -119,10 +115,7 @@ impl PackagePlace {
         let sent = bucket.upload(&Upload {
             file,
             key: &address.key,
-            existing: match existing {
-                Existing::Keep => ExistingObject::Keep,
-                Existing::Replace => ExistingObject::Replace,
-            },
+            existing: *existing,
             should_stop: &|| observer.is_cancelled(),
         });
         // Where it was stopped or refused: the parts are in the stores, and merging them again takes little.

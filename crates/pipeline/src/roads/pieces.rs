@@ -5,8 +5,9 @@ use std::sync::Arc;
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::Artifacts;
+use corniche_varints::push_varint;
 
-use super::varints::{Take, put_signed, put_text, put_unsigned};
+use super::varints::{Take, put_signed, put_text};
 use crate::{
     BuildError,
     artifacts::{Kind, damaged},
@@ -87,7 +88,7 @@ impl TilePiecesWriter {
     /// Adds a road by its encoded piece. Ordinals ascend.
     pub(crate) fn push(&mut self, ordinal: u32, piece: &[u8]) {
         debug_assert!(ordinal >= self.next, "ordinals ascend");
-        put_unsigned(&mut self.bytes, u64::from(ordinal - self.next));
+        push_varint(&mut self.bytes, u64::from(ordinal - self.next));
         self.bytes.extend(piece);
         self.next = ordinal + 1;
     }
@@ -106,21 +107,21 @@ impl RoadPiece {
         put_signed(&mut bytes, *way_id);
         bytes.push(class.number());
         put_attributes(&mut bytes, attributes);
-        put_unsigned(&mut bytes, *source_points);
-        put_unsigned(&mut bytes, *simplified_points);
-        put_unsigned(&mut bytes, runs.len() as u64);
+        push_varint(&mut bytes, *source_points);
+        push_varint(&mut bytes, *simplified_points);
+        push_varint(&mut bytes, runs.len() as u64);
         let mut before = LatticePoint::new(0, 0);
         for run in runs {
             let points = run.line.points();
-            put_unsigned(&mut bytes, points.len() as u64);
+            push_varint(&mut bytes, points.len() as u64);
             for &point in points {
                 put_signed(&mut bytes, point.u.wrapping_sub(before.u));
                 put_signed(&mut bytes, point.v.wrapping_sub(before.v));
                 before = point;
             }
-            put_unsigned(&mut bytes, run.segments_um.len() as u64);
+            push_varint(&mut bytes, run.segments_um.len() as u64);
             for &segment_um in &run.segments_um {
-                put_unsigned(&mut bytes, segment_um);
+                push_varint(&mut bytes, segment_um);
             }
         }
         bytes
@@ -145,7 +146,7 @@ impl RoadPiece {
 fn put_attributes(bytes: &mut Vec<u8>, attributes: &RoadAttributes) {
     let AttributeParts { codes, width_mm, texts } = attributes.parts();
     bytes.extend(codes);
-    put_unsigned(bytes, width_mm.into());
+    push_varint(bytes, width_mm.into());
     for text in texts {
         put_text(bytes, text);
     }

@@ -1,23 +1,15 @@
-//! Whole numbers of variable length: seven bits a byte, lowest first, the eighth bit set where more follow. A signed number
-//! has its sign in the lowest bit.
+//! Numbers and texts of variable length, put one after the other and taken again.
 
-/// Appends a number.
-pub(crate) fn put_unsigned(bytes: &mut Vec<u8>, mut number: u64) {
-    while number >= 0x80 {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
-}
+use corniche_varints::{push_varint, to_zigzag, varint, zigzag};
 
 /// Appends a number that may be below 0.
 pub(crate) fn put_signed(bytes: &mut Vec<u8>, number: i64) {
-    put_unsigned(bytes, ((number << 1) ^ (number >> 63)).cast_unsigned());
+    push_varint(bytes, to_zigzag(number));
 }
 
 /// Appends a text, its length first.
 pub(crate) fn put_text(bytes: &mut Vec<u8>, text: &str) {
-    put_unsigned(bytes, text.len() as u64);
+    push_varint(bytes, text.len() as u64);
     bytes.extend(text.as_bytes());
 }
 
@@ -42,26 +34,11 @@ impl<'a> Take<'a> {
     }
 
     pub(crate) fn unsigned(&mut self) -> Option<u64> {
-        let mut number = 0;
-        for shift in (0..64).step_by(7) {
-            let (&byte, tail) = self.rest.split_first()?;
-            self.rest = tail;
-            let bits = u64::from(byte & 0x7f);
-            // The tenth byte has room for one bit.
-            if bits << shift >> shift != bits {
-                return None;
-            }
-            number |= bits << shift;
-            if byte & 0x80 == 0 {
-                return Some(number);
-            }
-        }
-        None
+        varint(&mut self.rest).ok()
     }
 
     pub(crate) fn signed(&mut self) -> Option<i64> {
-        let number = self.unsigned()?;
-        Some((number >> 1).cast_signed() ^ -((number & 1).cast_signed()))
+        self.unsigned().map(zigzag)
     }
 
     /// How many things follow that take a byte each at least: never more than there are bytes.

@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use corniche_varints::varint;
 use flate2::read::GzDecoder;
 
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_DIRECTORY_ENTRIES, MIN_PAYLOAD_BYTES};
@@ -32,7 +33,7 @@ impl Directory {
     pub(crate) fn parse(stored: &[u8]) -> Option<Self> {
         let bytes = gunzip(stored, MAX_DIRECTORY_BYTES)?;
         let mut bytes = bytes.as_slice();
-        let count = usize::try_from(varint(&mut bytes)?).ok()?;
+        let count = usize::try_from(varint(&mut bytes).ok()?).ok()?;
         // Every entry has four varints of at least one byte each.
         if count > MAX_DIRECTORY_ENTRIES.min(bytes.len() / 4) {
             return None;
@@ -40,7 +41,7 @@ impl Directory {
         let mut entries = vec![Entry { first: 0, run: 0, offset: 0, length: 0 }; count];
         let mut first = 0_u64;
         for (index, entry) in entries.iter_mut().enumerate() {
-            let step = varint(&mut bytes)?;
+            let step = varint(&mut bytes).ok()?;
             if index > 0 && step == 0 {
                 return None;
             }
@@ -50,18 +51,19 @@ impl Directory {
         for entry in &mut entries {
             // Each payload contains its tile's id, so no two are equal and a run is never longer than 1; and a run of
             // four thousand million tiles would not fit in memory.
-            entry.run = u32::try_from(varint(&mut bytes)?).ok().filter(|&run| run <= 1)?;
+            entry.run = u32::try_from(varint(&mut bytes).ok()?).ok().filter(|&run| run <= 1)?;
         }
         for entry in &mut entries {
             let shortest = if entry.run == 0 { 1 } else { MIN_PAYLOAD_BYTES };
-            entry.length =
-                u32::try_from(varint(&mut bytes)?).ok().filter(|&length| length >= shortest)?;
+            entry.length = u32::try_from(varint(&mut bytes).ok()?)
+                .ok()
+                .filter(|&length| length >= shortest)?;
         }
         let mut after = None;
         // Where the last leaf and the last tile end.
         let mut ends = [0_u64; 2];
         for entry in &mut entries {
-            entry.offset = match varint(&mut bytes)? {
+            entry.offset = match varint(&mut bytes).ok()? {
                 0 => after?,
                 offset => offset - 1,
             };
@@ -90,23 +92,6 @@ pub(crate) fn gunzip(stored: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     GzDecoder::new(stored).take(limit as u64 + 1).read_to_end(&mut bytes).ok()?;
     (bytes.len() <= limit).then_some(bytes)
-}
-
-fn varint(bytes: &mut &[u8]) -> Option<u64> {
-    let mut value = 0_u64;
-    for shift in (0..64).step_by(7) {
-        let (&byte, rest) = bytes.split_first()?;
-        *bytes = rest;
-        let bits = u64::from(byte & 0x7f);
-        if shift == 63 && bits > 1 {
-            return None;
-        }
-        value |= bits << shift;
-        if byte < 0x80 {
-            return Some(value);
-        }
-    }
-    None
 }
 
 #[cfg(test)]

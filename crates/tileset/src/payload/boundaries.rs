@@ -5,11 +5,12 @@ mod encode;
 
 use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, TileId};
+use corniche_varints::zigzag;
 
 use crate::limits::{MAX_BOUNDARIES, MAX_POINTS};
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope;
-use crate::payload::number_codes::{Cursor, Planes, unzigzag};
+use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::section_kind::Kind;
 
 #[cfg(feature = "write")]
@@ -64,7 +65,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<BoundaryRecord>, Damage> {
     for ((class, way), length) in classes.iter().zip(ways.iter()).zip(lengths.iter()) {
         let class = u8::try_from(class).ok().and_then(BoundaryClass::from_number);
         let class = class.ok_or(Damage::Invalid { what: "a class of boundaries" })?;
-        way_id = way_id.wrapping_add(unzigzag(way));
+        way_id = way_id.wrapping_add(zigzag(way));
         let points: Result<Vec<LatticePoint>, Damage> =
             (0..length + 2).map(|_| Ok(LatticePoint::new(east.next()?, north.next()?))).collect();
         let points = points?;
@@ -97,7 +98,7 @@ struct Coordinates<S> {
 
 impl<S: Iterator<Item = u64>> Coordinates<S> {
     fn next(&mut self) -> Result<i64, Damage> {
-        let by = unzigzag(self.steps.next().unwrap_or_default());
+        let by = zigzag(self.steps.next().unwrap_or_default());
         let place = self.last.checked_add(by).and_then(|last| last.checked_mul(self.step));
         let place = place.filter(|place| (-FARTHEST..=FARTHEST).contains(place));
         self.last = place.map_or(0, |place| place / self.step);

@@ -2,10 +2,11 @@
 //! class.
 
 use corniche_roads::FunctionalRoadClass;
+use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_POINTS};
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, unzigzag};
+use crate::payload::number_codes::Cursor;
 
 /// Class, number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
@@ -98,7 +99,7 @@ impl Heads {
         let mut heads = vec![Head { way_id: 0, part: 0, points: 0, flags: 0 }; lines];
         let mut way_id = 0_i64;
         for head in &mut heads {
-            way_id = way_id.wrapping_add(unzigzag(cursor.varint()?));
+            way_id = way_id.wrapping_add(zigzag(cursor.varint()?));
             head.way_id = way_id;
         }
         for head in &mut heads {
@@ -122,8 +123,9 @@ pub(crate) use write::{encode, put_heads};
 
 #[cfg(feature = "write")]
 mod write {
+    use corniche_varints::{push_varint, to_zigzag};
+
     use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
-    use crate::payload::number_codes::{put_varint, zigzag};
     use crate::payload::source_grid::SourceGrid;
 
     /// Writes the grid of a coded section, the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
@@ -161,15 +163,15 @@ mod write {
     pub(crate) fn put_heads(out: &mut Vec<u8>, heads: &[Head]) {
         let mut previous = 0_i64;
         for head in heads {
-            put_varint(out, zigzag(head.way_id.wrapping_sub(previous)));
+            push_varint(out, to_zigzag(head.way_id.wrapping_sub(previous)));
             previous = head.way_id;
         }
         for head in heads {
-            put_varint(out, u64::from(head.part));
+            push_varint(out, u64::from(head.part));
         }
         for head in heads {
             debug_assert!(head.points <= MAX_POINTS);
-            put_varint(out, 4 * head.points as u64 + u64::from(head.flags));
+            push_varint(out, 4 * head.points as u64 + u64::from(head.flags));
         }
     }
 }

@@ -1,27 +1,8 @@
-//! The codes for numbers that all sections use: varints, zigzag, byte planes.
+//! The codes for numbers that all sections use: varints and byte planes.
+
+use corniche_varints::{BadVarint, varint};
 
 use crate::payload::damage::Damage;
-
-/// Writes little-endian base-128: seven bits a byte, the top bit set on all but the last.
-#[cfg(any(feature = "write", test))]
-pub(crate) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
-    while value >= 0x80 {
-        out.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    out.push(value as u8);
-}
-
-/// 0, −1, 1, −2, 2 … → 0, 1, 2, 3, 4 …
-#[cfg(any(feature = "write", test))]
-pub(crate) fn zigzag(value: i64) -> u64 {
-    ((value << 1) ^ (value >> 63)) as u64
-}
-
-/// The inverse of [`zigzag`].
-pub(crate) fn unzigzag(value: u64) -> i64 {
-    (value >> 1) as i64 ^ -((value & 1) as i64)
-}
 
 /// Writes the number of bytes that the largest value needs, then the lowest byte of all values, then their
 /// second bytes, and so on: high bytes are nearly all alike and cost nothing once compressed.
@@ -95,19 +76,10 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn varint(&mut self) -> Result<u64, Damage> {
-        let mut value = 0_u64;
-        for shift in (0..64).step_by(7) {
-            let byte = self.byte()?;
-            let bits = u64::from(byte & 0x7f);
-            if shift == 63 && bits > 1 {
-                break;
-            }
-            value |= bits << shift;
-            if byte < 0x80 {
-                return Ok(value);
-            }
-        }
-        Err(Damage::Invalid { what: "a varint of more than 64 bits" })
+        varint(&mut self.bytes).map_err(|bad| match bad {
+            BadVarint::Cut => Damage::TooShort,
+            BadVarint::TooLarge => Damage::Invalid { what: "a varint of more than 64 bits" },
+        })
     }
 
     /// A varint that may not be above `limit`; `what` names it in the error.

@@ -1,10 +1,11 @@
 //! Lattice points as differences from one to the next.
 
 use corniche_geom::LatticePoint;
+use corniche_varints::zigzag;
 
 use crate::payload::class_table::Heads;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, unzigzag};
+use crate::payload::number_codes::Cursor;
 
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
 const REACH_STEPS: u64 = 1 << 55;
@@ -37,7 +38,7 @@ pub(crate) fn decode_points(
             if number > 0 && du == 0 && dv == 0 {
                 return Err(STILL);
             }
-            let moved = at.u.checked_add(unzigzag(du)).zip(at.v.checked_add(unzigzag(dv)));
+            let moved = at.u.checked_add(zigzag(du)).zip(at.v.checked_add(zigzag(dv)));
             let moved = moved.map(|(u, v)| LatticePoint::new(u, v));
             at = moved.filter(|&point| is_near(point, corner)).ok_or(FAR)?;
             points.push(at);
@@ -53,14 +54,16 @@ pub(crate) fn put_points(
     points: &[LatticePoint],
     corner: LatticePoint,
 ) -> Result<(), &'static str> {
-    use crate::payload::number_codes::{put_planes, zigzag};
+    use corniche_varints::to_zigzag;
+
+    use crate::payload::number_codes::put_planes;
 
     if !points.iter().all(|&point| is_near(point, corner)) {
         return Err("a point far away from the tile");
     }
     let steps = |of: fn(&LatticePoint) -> i64| -> Vec<u64> {
         let before = std::iter::once(&corner).chain(points);
-        points.iter().zip(before).map(|(point, before)| zigzag(of(point) - of(before))).collect()
+        points.iter().zip(before).map(|(point, before)| to_zigzag(of(point) - of(before))).collect()
     };
     put_planes(out, &steps(|point| point.u));
     put_planes(out, &steps(|point| point.v));

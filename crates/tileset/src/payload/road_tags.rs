@@ -82,7 +82,9 @@ fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>,
 /// The section's bytes; `None` if no way has any of the tags. The caller has checked the ways and their texts.
 #[cfg(feature = "write")]
 pub(crate) fn encode(roads: &[RoadRecord]) -> Option<Vec<u8>> {
-    use crate::payload::number_codes::{put_planes, put_varint};
+    use corniche_varints::push_varint;
+
+    use crate::payload::number_codes::put_planes;
 
     let mut known: Vec<&str> = roads
         .iter()
@@ -100,9 +102,9 @@ pub(crate) fn encode(roads: &[RoadRecord]) -> Option<Vec<u8>> {
         return None;
     }
     let mut bytes = Vec::new();
-    put_varint(&mut bytes, known.len() as u64);
+    push_varint(&mut bytes, known.len() as u64);
     for text in &known {
-        put_varint(&mut bytes, text.len() as u64);
+        push_varint(&mut bytes, text.len() as u64);
         bytes.extend(text.as_bytes());
     }
     for column in 0..TEXT_COLUMNS {

@@ -5,12 +5,13 @@ mod ground_ranges;
 use corniche_drape::SvLine;
 use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
+use corniche_varints::zigzag;
 
 use crate::limits::MAX_POINTS;
 use crate::payload::class_table::{self, Head, Heads, LineOrder};
 use crate::payload::coded_lines::LineCoder;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, unzigzag};
+use crate::payload::number_codes::Cursor;
 use crate::payload::points::decode_points;
 use crate::payload::range_coder::Reader;
 use crate::payload::roads_sv::ground_ranges::RangeCoder;
@@ -67,7 +68,7 @@ impl Section {
         let mut low_q = 0_i64;
         let mut ranges = Vec::with_capacity(segments);
         for (low, span) in lows.iter().zip(spans.iter()) {
-            low_q = low_q.wrapping_add(unzigzag(low));
+            low_q = low_q.wrapping_add(zigzag(low));
             ranges.push(range_m(low_q, span, self.quantum_m)?);
         }
         let (mut points, mut ranges) = (points.as_slice(), ranges.as_slice());
@@ -144,15 +145,13 @@ pub(crate) use write::encode;
 #[cfg(feature = "write")]
 mod write {
     use corniche_roads::FunctionalRoadClass;
+    use corniche_varints::to_zigzag;
 
     use super::{
         LatticePoint, LineCoder, MAX_POINTS, REACH_Q, RangeCoder, SourceGrid, SvRoad, class_table,
     };
     use crate::payload::{
-        class_table::Head,
-        number_codes::{put_planes, zigzag},
-        points::put_points,
-        range_coder::Writer,
+        class_table::Head, number_codes::put_planes, points::put_points, range_coder::Writer,
     };
 
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
@@ -190,7 +189,7 @@ mod write {
         let mut previous = 0;
         for range_m in roads.iter().flat_map(|road| &road.line.ground_range_m) {
             let (low, span) = range_q(*range_m, quantum_m)?;
-            lows.push(zigzag(low - previous));
+            lows.push(to_zigzag(low - previous));
             spans.push(span);
             previous = low;
         }

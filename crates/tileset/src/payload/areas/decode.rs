@@ -2,12 +2,13 @@
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_varints::zigzag;
 
 use super::coded_rings::RingCoder;
 use super::record::{AreaRecord, AreaRings};
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS};
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes, unzigzag};
+use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::range_coder::Reader;
 
 /// The columns of numbers that a section is made of, and its points.
@@ -137,7 +138,7 @@ impl Columns<'_> {
         for (((class, object), name_bytes), polygons) in heads {
             let number = u8::try_from(class >> 1).ok().and_then(AreaClass::from_number);
             let class_of = number.ok_or(Damage::Invalid { what: "a class of areas" })?;
-            id = id.wrapping_add(unzigzag(object));
+            id = id.wrapping_add(zigzag(object));
             let name = str::from_utf8(names.take(name_bytes as usize)?)
                 .map_err(|_| Damage::Invalid { what: "a name that is no UTF-8" })?;
             let mut parts = Vec::new();
@@ -186,7 +187,7 @@ struct Places<S, B> {
 impl<S: Iterator<Item = u64>, B: Iterator<Item = u64>> Places<S, B> {
     fn next(&mut self) -> Result<i64, Damage> {
         let wrong = Damage::Invalid { what: "a point outside the tile" };
-        let by = unzigzag(self.steps.next().unwrap_or_default());
+        let by = zigzag(self.steps.next().unwrap_or_default());
         let beside = i64::try_from(self.beside.next().unwrap_or_default());
         let last = self.last.checked_add(by);
         let place = last.and_then(|last| last.checked_mul(self.step)?.checked_add(beside.ok()?));

@@ -2,6 +2,7 @@
 
 use corniche_areas::AreaObject;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
+use corniche_varints::{push_varint, to_zigzag};
 
 use super::coded_rings::RingCoder;
 use super::decode::{self, PlacesOfSection};
@@ -9,7 +10,7 @@ use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
-use crate::payload::number_codes::{Planes, put_planes, put_varint, zigzag};
+use crate::payload::number_codes::{Planes, put_planes};
 use crate::payload::range_coder::Writer;
 use crate::payload::section_kind::{AREAS, Kind};
 
@@ -88,8 +89,8 @@ fn section(
         columns.push_area(area);
     }
     let mut bytes = Vec::new();
-    put_varint(&mut bytes, step.cast_unsigned());
-    put_varint(&mut bytes, areas.len() as u64);
+    push_varint(&mut bytes, step.cast_unsigned());
+    push_varint(&mut bytes, areas.len() as u64);
     for column in [&columns.classes, &columns.objects, &columns.name_bytes, &columns.polygons] {
         put_planes(&mut bytes, column);
     }
@@ -204,7 +205,7 @@ impl Columns {
             AreaObject::Relation(id) => (1, id),
         };
         self.classes.push(u64::from(area.class.number()) << 1 | is_relation);
-        self.objects.push(zigzag(id.wrapping_sub(self.last_id)));
+        self.objects.push(to_zigzag(id.wrapping_sub(self.last_id)));
         self.last_id = id;
         self.name_bytes.push(area.name.len() as u64);
         self.names.extend(area.name.as_bytes());
@@ -226,7 +227,7 @@ impl Columns {
         for point in &self.all_points {
             for (axis, part) in [point.u, point.v].into_iter().enumerate() {
                 let steps = part.div_euclid(step);
-                columns[axis].push(zigzag(steps - last[axis]));
+                columns[axis].push(to_zigzag(steps - last[axis]));
                 columns[2 + axis].push(part.rem_euclid(step).cast_unsigned());
                 last[axis] = steps;
             }

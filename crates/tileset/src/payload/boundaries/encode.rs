@@ -1,12 +1,13 @@
 //! The boundaries of a tile are encoded as a section.
 
 use corniche_geom::TileId;
+use corniche_varints::{push_varint, to_zigzag};
 
 use super::{BoundaryRecord, FARTHEST, MOST_STEP, decode};
 use crate::limits::{MAX_BOUNDARIES, MAX_POINTS};
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
-use crate::payload::number_codes::{put_planes, put_varint, zigzag};
+use crate::payload::number_codes::put_planes;
 use crate::payload::section_kind::Kind;
 
 /// A tile's boundaries as the section of a payload.
@@ -61,20 +62,20 @@ pub fn encode_boundaries(
     let mut columns = [const { Vec::new() }; 5];
     for boundary in boundaries {
         columns[0].push(u64::from(boundary.class.number()));
-        columns[1].push(zigzag(boundary.way_id.wrapping_sub(last_id)));
+        columns[1].push(to_zigzag(boundary.way_id.wrapping_sub(last_id)));
         last_id = boundary.way_id;
         columns[2].push(boundary.points.len() as u64 - 2);
         for point in &boundary.points {
             for (axis, part) in [point.u, point.v].into_iter().enumerate() {
                 let steps = part / step;
-                columns[3 + axis].push(zigzag(steps - last[axis]));
+                columns[3 + axis].push(to_zigzag(steps - last[axis]));
                 last[axis] = steps;
             }
         }
     }
     let mut bytes = Vec::new();
-    put_varint(&mut bytes, step.cast_unsigned());
-    put_varint(&mut bytes, boundaries.len() as u64);
+    push_varint(&mut bytes, step.cast_unsigned());
+    push_varint(&mut bytes, boundaries.len() as u64);
     for column in &columns {
         put_planes(&mut bytes, column);
     }

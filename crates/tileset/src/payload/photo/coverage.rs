@@ -1,9 +1,10 @@
 //! Which texels have a photo, as lengths of runs.
 
+#[cfg(feature = "write")]
+use corniche_varints::push_varint;
+
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
-#[cfg(feature = "write")]
-use crate::payload::number_codes::put_varint;
 
 /// Writes the lengths of the runs of texels with and without a photo, in turn, the first with (which may be empty).
 #[cfg(feature = "write")]
@@ -11,12 +12,12 @@ pub(crate) fn encode(has_photo: impl Iterator<Item = bool>, out: &mut Vec<u8>) {
     let (mut is_run_of, mut length) = (true, 0_u64);
     for has_photo in has_photo {
         if has_photo != is_run_of {
-            put_varint(out, length);
+            push_varint(out, length);
             (is_run_of, length) = (has_photo, 0);
         }
         length += 1;
     }
-    put_varint(out, length);
+    push_varint(out, length);
 }
 
 /// Reads runs that come to `count` texels, and hands on each with its first texel and its length.

@@ -1,9 +1,11 @@
 //! The fixed part of the relief section.
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, unzigzag};
+use corniche_varints::zigzag;
 #[cfg(feature = "write")]
-use crate::payload::number_codes::{put_varint, zigzag};
+use corniche_varints::{push_varint, to_zigzag};
+
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
 
 /// Steps of the bands: the smooth band's, then three for each division, the coarsest first.
 pub(crate) const BANDS: usize = 1 + 3 * super::wavelet::LEVELS;
@@ -42,11 +44,11 @@ impl Head {
     #[cfg(feature = "write")]
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut out = vec![u8::from(self.has_voids) | u8::from(self.has_water) << 1];
-        put_varint(&mut out, zigzag(i64::from(self.exponent)));
+        push_varint(&mut out, to_zigzag(i64::from(self.exponent)));
         for number in self.slope_factors.iter().chain(&self.steps) {
-            put_varint(&mut out, number.unsigned_abs());
+            push_varint(&mut out, number.unsigned_abs());
         }
-        put_varint(&mut out, self.greatest_error);
+        push_varint(&mut out, self.greatest_error);
         out
     }
 
@@ -56,7 +58,7 @@ impl Head {
             return Err(Damage::Invalid { what: "the flags of the relief" });
         }
         let [has_voids, has_water] = [flags & 1 == 1, flags & 2 == 2];
-        let exponent = i32::try_from(unzigzag(cursor.varint()?)).ok();
+        let exponent = i32::try_from(zigzag(cursor.varint()?)).ok();
         let exponent = exponent
             .filter(|exponent| (-MOST_EXPONENT..=MOST_EXPONENT).contains(exponent))
             .ok_or(Damage::Invalid { what: "the unit of the relief" })?;

@@ -131,9 +131,11 @@ pub(crate) use write::{Surprise, put_surprises};
 #[cfg(feature = "write")]
 mod write {
     use corniche_drape::DrapedVertex;
+    use corniche_varints::push_varint;
 
     use super::{CROSSING, END, SOURCE, SurpriseCoder, VERTEX};
-    use crate::payload::{number_codes::put_varint, range_coder::Writer};
+
+    use crate::payload::range_coder::Writer;
 
     /// A vertex that is not as guessed, or the end of the line.
     pub(crate) struct Surprise {
@@ -158,13 +160,13 @@ mod write {
 
     /// Writes the surprises of a line.
     pub(crate) fn put_surprises(out: &mut Vec<u8>, surprises: &[Surprise]) {
-        put_varint(out, surprises.len() as u64);
+        push_varint(out, surprises.len() as u64);
         for surprise in surprises {
             let (kind, indices) = surprise.parts();
-            put_varint(out, surprise.as_guessed);
+            push_varint(out, surprise.as_guessed);
             out.push(kind);
             for index in indices {
-                put_varint(out, index);
+                push_varint(out, index);
             }
         }
     }

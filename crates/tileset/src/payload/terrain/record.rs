@@ -1,13 +1,13 @@
 //! The fixed part of the terrain section, and what its numbers may be.
 
 use corniche_geom::Cell;
+#[cfg(feature = "write")]
+use corniche_varints::push_varint;
 
 use crate::limits::MAX_TRIANGLES;
 use crate::manifest::check::MAX_MEASURE_M;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
-#[cfg(feature = "write")]
-use crate::payload::number_codes::put_varint;
 
 /// The fixed part of the section.
 pub(crate) struct Record {
@@ -33,8 +33,8 @@ impl Record {
         for measure in [self.geometric_error_m, self.height_range_m[0], self.height_range_m[1]] {
             out.extend(measure.to_le_bytes());
         }
-        put_varint(&mut out, self.uncovered_nodes);
-        put_varint(&mut out, self.triangles as u64);
+        push_varint(&mut out, self.uncovered_nodes);
+        push_varint(&mut out, self.triangles as u64);
         out.extend([self.height_shift, self.normal_shift]);
         out
     }

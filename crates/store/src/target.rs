@@ -1,9 +1,11 @@
-//! Where a file may be written.
+//! Where a file may be written, and whether two names mean one place.
 
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
+
+use crate::folder_of;
 
 /// Why nothing can be written at a place.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +66,23 @@ pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
         kind if !kind.is_file() => Err(TargetError::NoFile { path: own(), found: name_of(kind) }),
         _ if is_link => fs::canonicalize(path).map_err(unknown),
         _ => Ok(own()),
+    }
+}
+
+/// Whether two paths lead to one file, which need not exist yet.
+#[must_use]
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    place_of(one) == place_of(other)
+}
+
+/// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
+fn place_of(path: &Path) -> PathBuf {
+    if let Ok(place) = path.canonicalize() {
+        return place;
+    }
+    match (folder_of(path).canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_path_buf(),
     }
 }
 

@@ -1,0 +1,200 @@
+//! Blocks of files: kept, fetched once, and read ahead where reads follow each other.
+
+use std::{
+    collections::{HashMap, VecDeque},
+    ops::Range,
+    sync::{Condvar, Mutex, MutexGuard, PoisonError},
+};
+
+use bytes::Bytes;
+
+/// A read that begins so many blocks behind an earlier one goes on with it: what nobody asks for may lie between.
+const LEAP_BLOCKS: u64 = 1;
+/// So many places where reads went on are remembered: threads read side by side.
+const PLACES: usize = 16;
+
+/// How large blocks are, and how many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of a block; the last one of a file has fewer.
+    pub block_bytes: u64,
+    /// The most bytes that are kept, but at least what was fetched last. What is being fetched comes on top.
+    pub kept_bytes: u64,
+    /// The most blocks that are fetched at once: with 1, nothing is read ahead.
+    pub most_blocks: u64,
+}
+
+/// Which block of which file.
+type BlockId = (u64, u64);
+
+/// Blocks of some files, those that were used last.
+#[derive(Debug)]
+pub struct BlockCache {
+    limits: Limits,
+    state: Mutex<State>,
+    /// A fetch ended.
+    fetched: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    blocks: HashMap<BlockId, Block>,
+    kept_bytes: u64,
+    clock: u64,
+    files: u64,
+    /// Where fetches ended, and how many blocks they had; the last one at the back.
+    ends: VecDeque<(BlockId, u64)>,
+}
+
+#[derive(Debug)]
+enum Block {
+    /// A thread fetches it.
+    Coming,
+    Kept {
+        bytes: Bytes,
+        used: u64,
+    },
+}
+
+impl BlockCache {
+    /// A cache without blocks.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        Self { limits, state: Mutex::default(), fetched: Condvar::new() }
+    }
+
+    /// Bytes of a block. The last one of a file may have fewer.
+    #[must_use]
+    pub fn block_bytes(&self) -> u64 {
+        self.limits.block_bytes
+    }
+
+    /// A number for a file, by which its blocks are told from those of others.
+    #[must_use]
+    pub fn new_file(&self) -> u64 {
+        let mut state = self.state();
+        state.files += 1;
+        state.files
+    }
+
+    /// A block of a file of `count` blocks. `wanted` is how many from this one on are asked for next, at least 1.
+    ///
+    /// `fetch` gets the bytes of a run of blocks; one thread fetches while others that want the same wait.
+    ///
+    /// # Errors
+    /// What `fetch` returns.
+    pub fn get<E>(
+        &self,
+        (file, number): BlockId,
+        wanted: u64,
+        count: u64,
+        fetch: impl FnOnce(Range<u64>) -> Result<Bytes, E>,
+    ) -> Result<Bytes, E> {
+        let mut state = self.state();
+        while let Some(Block::Coming) = state.blocks.get(&(file, number)) {
+            state = self.fetched.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        state.clock += 1;
+        let now = state.clock;
+        if let Some(Block::Kept { bytes, used }) = state.blocks.get_mut(&(file, number)) {
+            *used = now;
+            return Ok(bytes.clone());
+        }
+        let run = state.run((file, number), wanted, count, self.limits.most_blocks);
+        for block in run.clone() {
+            state.blocks.insert((file, block), Block::Coming);
+        }
+        drop(state);
+        // Whatever happens, also a panic, others must not wait for ever.
+        let mut coming = Coming { blocks: self, file, run: run.clone(), bytes: None };
+        let bytes = fetch(run)?;
+        let first = bytes.slice(..bytes.len().min(self.limits.block_bytes as usize));
+        coming.bytes = Some(bytes);
+        drop(coming);
+        Ok(first)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts in what was fetched, or takes the marks away.
+    fn arrived(&self, file: u64, run: &Range<u64>, bytes: Option<&Bytes>) {
+        let block_bytes = self.limits.block_bytes as usize;
+        let mut state = self.state();
+        for (k, number) in run.clone().enumerate() {
+            let rest = bytes.and_then(|bytes| Some((bytes, bytes.get(k * block_bytes..)?)));
+            match rest {
+                Some((bytes, rest)) => {
+                    // A copy of its own, so that memory is given back block by block.
+                    let bytes = match run.end - run.start {
+                        1 => bytes.slice(..bytes.len().min(block_bytes)),
+                        _ => Bytes::copy_from_slice(&rest[..rest.len().min(block_bytes)]),
+                    };
+                    let used = state.clock;
+                    state.kept_bytes += bytes.len() as u64;
+                    state.blocks.insert((file, number), Block::Kept { bytes, used });
+                }
+                None => drop(state.blocks.remove(&(file, number))),
+            }
+        }
+        if bytes.is_some() {
+            state.ends.push_back(((file, run.end), run.end - run.start));
+            if state.ends.len() > PLACES {
+                state.ends.pop_front();
+            }
+        }
+        state.forget(self.limits.kept_bytes, file, run);
+        drop(state);
+        self.fetched.notify_all();
+    }
+}
+
+impl State {
+    /// Which blocks are fetched for a block that is not there: what is wanted, and where reads follow each other twice as many as before.
+    /// A run ends before a block that is there or comes.
+    fn run(&mut self, (file, number): BlockId, wanted: u64, count: u64, most: u64) -> Range<u64> {
+        let follows = |&((of, end), _): &(BlockId, u64)| {
+            of == file && (end..=end + LEAP_BLOCKS).contains(&number)
+        };
+        let before = self.ends.iter().rposition(follows).and_then(|at| self.ends.remove(at));
+        let ahead = before.map_or(1, |(_, blocks)| 2 * blocks);
+        let end = (number + wanted.max(ahead).clamp(1, most)).min(count).max(number + 1);
+        let known = (number + 1..end).find(|&block| self.blocks.contains_key(&(file, block)));
+        number..known.unwrap_or(end)
+    }
+
+    /// Gives up the blocks that were used longest ago, beyond what is kept, and none of the last run.
+    fn forget(&mut self, limit_bytes: u64, file: u64, run: &Range<u64>) {
+        while self.kept_bytes > limit_bytes {
+            let kept = self.blocks.iter().filter_map(|(&id, block)| match block {
+                Block::Kept { used, .. } if id.0 != file || !run.contains(&id.1) => {
+                    Some((*used, id))
+                }
+                Block::Kept { .. } | Block::Coming => None,
+            });
+            let Some((_, oldest)) = kept.min() else { return };
+            if let Some(Block::Kept { bytes, .. }) = self.blocks.remove(&oldest) {
+                self.kept_bytes -= bytes.len() as u64;
+            }
+        }
+    }
+}
+
+/// A run that is being fetched.
+struct Coming<'a> {
+    blocks: &'a BlockCache,
+    file: u64,
+    run: Range<u64>,
+    bytes: Option<Bytes>,
+}
+
+impl Drop for Coming<'_> {
+    fn drop(&mut self) {
+        self.blocks.arrived(self.file, &self.run, self.bytes.as_ref());
+    }
+}
+
+#[cfg(test)]
+#[path = "block_cache_tests.rs"]
+mod tests;

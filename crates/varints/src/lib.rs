@@ -1,0 +1,77 @@
+//! Whole numbers of variable length: seven bits a byte, least first, the top bit set on all bytes but the last.
+//!
+//! Extracts, the directories of packages, tiles and what a build keeps have them. A signed number has its sign in the lowest bit (zigzag).
+//!
+//! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
+//!
+//! This crate knows no file and no message.
+
+/// Why bytes do not begin with a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BadVarint {
+    /// They end before it does.
+    Cut,
+    /// It does not fit 64 bits.
+    TooLarge,
+}
+
+/// Takes a number off the front of some bytes.
+///
+/// # Errors
+/// See [`BadVarint`]; the bytes stay as they are.
+#[inline]
+pub fn varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
+    // Most numbers are small, and this much is worth a place in every loop.
+    match **rest {
+        [first, ref after @ ..] if first < 0x80 => {
+            *rest = after;
+            Ok(u64::from(first))
+        }
+        [first, second, ref after @ ..] if second < 0x80 => {
+            *rest = after;
+            Ok(u64::from(first & 0x7f) | u64::from(second) << 7)
+        }
+        _ => long_varint(rest),
+    }
+}
+
+fn long_varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
+    let mut number = 0;
+    for (place, &byte) in rest.iter().take(10).enumerate() {
+        // The tenth byte has room for one bit.
+        if place == 9 && byte > 1 {
+            return Err(BadVarint::TooLarge);
+        }
+        number |= u64::from(byte & 0x7f) << (7 * place);
+        if byte < 0x80 {
+            *rest = &rest[place + 1..];
+            return Ok(number);
+        }
+    }
+    Err(BadVarint::Cut)
+}
+
+/// Appends a number.
+pub fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+/// The signed number behind 0, 1, 2, 3 …: 0, −1, 1, −2 …
+#[must_use]
+pub const fn zigzag(number: u64) -> i64 {
+    (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
+}
+
+/// The number that stands for a signed one: the inverse of [`zigzag`].
+#[must_use]
+pub const fn to_zigzag(number: i64) -> u64 {
+    ((number << 1) ^ (number >> 63)).cast_unsigned()
+}
+
+#[cfg(test)]
+#[path = "lib_tests.rs"]
+mod tests;
