@@ -1,46 +1,40 @@
-//! The pieces of all tiles, sorted by way.
+//! The pieces of all tiles, sorted by the object that they belong to.
 
 use std::path::Path;
 
 use corniche_geom::TileId;
-use corniche_roads::FunctionalRoadClass;
-use corniche_store::{Groups, Sorter};
-use corniche_tileset::FilePackage;
+use corniche_store::{Groups, SortRecord, Sorter};
 
 use crate::{
     error::ExportError,
     observer::{Observer, Stage, stop_if_asked},
-    piece::{Piece, SortedPiece},
-    read,
 };
 
-/// The pieces of one way after the other.
-pub(crate) struct Ways<'a> {
-    sorted: Groups<'a, SortedPiece>,
+/// The pieces of one object after the other: of a way, or of an area.
+pub(crate) struct SortedPieces<'a, P: SortRecord> {
+    sorted: Groups<'a, P>,
     /// How many pieces there are.
     count: u64,
     /// Where they were sorted.
     folder: &'a Path,
 }
 
-impl<'a> Ways<'a> {
-    /// Reads tiles and sorts what `keep` leaves of each piece of a road of these classes. `sorter` sorts in `folder`.
+impl<'a, P: SortRecord> SortedPieces<'a, P> {
+    /// Reads tiles and sorts the pieces that `pieces` finds in each. `sorter` sorts in `folder`.
     pub(crate) fn read(
-        package: &FilePackage,
         tiles: &[TileId],
-        classes: &[FunctionalRoadClass],
-        (mut sorter, folder): (Sorter<'a, SortedPiece>, &'a Path),
+        (mut sorter, folder): (Sorter<'a, P>, &'a Path),
         observer: &dyn Observer,
-        keep: impl Fn(Piece) -> Vec<Piece>,
+        pieces: impl Fn(TileId) -> Result<Vec<P>, ExportError>,
     ) -> Result<Self, ExportError> {
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
         let mut count = 0;
         for (done, &id) in tiles.iter().enumerate() {
             stop_if_asked(observer)?;
             observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
-            for piece in read::pieces(package, id, classes)?.into_iter().flat_map(&keep) {
+            for piece in pieces(id)? {
                 count += 1;
-                sorter.push(SortedPiece(piece)).map_err(failed)?;
+                sorter.push(piece).map_err(failed)?;
             }
         }
         observer.done(Stage::Tiles, tiles.len() as u64, tiles.len() as u64);
@@ -52,22 +46,21 @@ impl<'a> Ways<'a> {
         self.count
     }
 
-    /// Hands all pieces of each way to `each`, in ascending order of ids.
-    pub(crate) fn for_each<E: From<ExportError>>(
+    /// Hands all pieces of each object to `each`, in ascending order.
+    pub(crate) fn for_each<K: PartialEq, E: From<ExportError>>(
         mut self,
         observer: &dyn Observer,
-        mut each: impl FnMut(Vec<Piece>) -> Result<(), E>,
+        object: impl Fn(&P) -> K,
+        mut each: impl FnMut(Vec<P>) -> Result<(), E>,
     ) -> Result<(), E> {
         let folder = self.folder;
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
         let mut done = 0;
-        while let Some(pieces) =
-            self.sorted.next_by(|SortedPiece(piece)| piece.key.way_id).map_err(failed)?
-        {
+        while let Some(pieces) = self.sorted.next_by(&object).map_err(failed)? {
             stop_if_asked(observer)?;
             observer.done(Stage::Pieces, done, self.count);
             done += pieces.len() as u64;
-            each(pieces.into_iter().map(|SortedPiece(piece)| piece).collect())?;
+            each(pieces)?;
         }
         Ok(())
     }
