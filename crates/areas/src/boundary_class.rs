@@ -66,6 +66,15 @@ impl BoundaryClass {
         }
     }
 
+    /// OSM's `admin_level` of its relations; `None` for protected areas.
+    #[must_use]
+    pub const fn admin_level(self) -> Option<u8> {
+        match self {
+            Self::Protected => None,
+            _ => Some(self.number() + 2),
+        }
+    }
+
     /// The class with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {

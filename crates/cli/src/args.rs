@@ -31,8 +31,9 @@ use clap::{
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportGeoTiffArgs, ExportMeshArgs,
-    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, Format, OnOrNone, TerrainCompress,
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
+    ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs,
+    Format, InPlanArgs, OnOrNone, TerrainCompress,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, Roads};
@@ -44,7 +45,7 @@ pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::DatumArg;
+pub(crate) use shared::{DatumArg, FileArgs};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};

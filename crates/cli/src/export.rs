@@ -8,16 +8,19 @@ mod unknown_ending;
 
 use std::{io::stderr, path::Path};
 
-use corniche_areas::AreaClass;
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
-    AreasRequest, AreasSummary, Coordinates, ExportSummary, RoadsRequest, VectorFormat,
-    export_areas, export_roads,
+    Coordinates, ExportError, ExportSummary, FeatureRequest, RoadFeatures, VectorFormat,
+    export_areas, export_boundaries, export_roads,
 };
-use corniche_tileset::Manifest;
+use corniche_tileset::{FilePackage, Manifest};
 
 use self::unknown_ending::unknown_ending;
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
+    args::{
+        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, ExportRoadsArgs,
+        FileArgs, Format, InPlanArgs,
+    },
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -28,13 +31,14 @@ use crate::{
     table::{Digits, bytes, length},
 };
 
-/// Memory for sorting pieces of roads by way.
+/// Memory for sorting pieces by their objects.
 pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {
         Export::Roads(args) => roads(args),
         Export::Areas(args) => areas(args),
+        Export::Boundaries(args) => boundaries(args),
         Export::Mesh(args) => mesh::run(args),
         Export::GeoTiff(args) => geotiff::run(args),
         Export::Tiles3d(args) => tiles3d::run(args),
@@ -55,87 +59,119 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         }
     };
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
-    let request = RoadsRequest {
+    let request = FeatureRequest {
         format,
         level: args.at.level,
         classes: args.filter.classes.classes(),
         bounds: args.within.bounds,
-        pieces: args.pieces,
         coordinates,
         memory_bytes: MEMORY_BYTES,
     };
+    let features = if args.pieces { RoadFeatures::Pieces } else { RoadFeatures::Ways };
+    let export = |path: &Path, progress: &Progress| {
+        export_roads(&package, &request, features, path, progress)
+    };
     let name = format!("roads.{}", format.ending());
-    let existing = existing_of(args.file.overwrite);
-    let output =
-        NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
-    let progress = Progress::new();
-    let exported = export_roads(&package, &request, &output.path(), &progress);
-    progress.finish();
-    let summary = exported.map_err(|error| named(error, &args.file.output))?;
-    let size = output.place()?;
+    let (summary, size) = write(&args.file, name, args.from.package.name(), export)?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
-    let format = format(args.format, &args.file.output)?;
-    let package = packages::open(&args.from.package)?;
-    let request = AreasRequest {
-        format,
-        level: args.at.level,
-        classes: if args.classes.is_empty() {
-            AreaClass::ALL.to_vec()
-        } else {
-            args.classes.clone()
-        },
-        coordinates: match args.crs {
-            ExportCrs::Package => Coordinates::Package,
-            ExportCrs::Wgs84 => Coordinates::Wgs84WithPackageHeights,
-        },
-        memory_bytes: MEMORY_BYTES,
-    };
-    let name = format!("areas.{}", format.ending());
-    let existing = existing_of(args.file.overwrite);
-    let output =
-        NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
-    let progress = Progress::new();
-    let exported = export_areas(&package, &request, &output.path(), &progress);
-    progress.finish();
-    let summary = exported.map_err(|error| named(error, &args.file.output))?;
-    let size = output.place()?;
+    let plan = &args.plan;
+    let (package, request) = plan_request(plan, &args.classes, &AreaClass::ALL)?;
+    let name = format!("areas.{}", request.format.ending());
+    let export =
+        |path: &Path, progress: &Progress| export_areas(&package, &request, path, progress);
+    let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
     if summary.unjoined > 0 {
         messages::warning(&format!(
             "{} areas could not be joined over borders of tiles; each of their parts is a polygon",
             summary.unjoined
         ));
     }
-    messages::note(&areas_to_text(args, &summary, package.manifest(), size));
-    Ok(ExitCode::Done)
-}
-
-fn areas_to_text(
-    args: &ExportAreasArgs,
-    summary: &AreasSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
     let count = |number| Digits::on(&stderr()).count(number);
-    let coordinates = match args.crs {
-        ExportCrs::Package => &manifest.crs,
-        ExportCrs::Wgs84 => "EPSG:4326",
-    };
-    format!(
-        "{}: {} areas of level {}, {:.3} km², {} polygons, {} points, {}\ncoordinates: {}\nto be shown with it: {}",
-        args.file.output.display(),
+    let what = format!(
+        "{} areas of level {}, {:.3} km², {} polygons, {} points",
         count(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
         count(summary.polygons),
         count(summary.points),
+    );
+    note_plan(plan, &what, package.manifest(), size);
+    Ok(ExitCode::Done)
+}
+
+fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
+    let plan = &args.plan;
+    let (package, request) = plan_request(plan, &args.classes, &BoundaryClass::ALL)?;
+    let name = format!("boundaries.{}", request.format.ending());
+    let export =
+        |path: &Path, progress: &Progress| export_boundaries(&package, &request, path, progress);
+    let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
+    let count = |number| Digits::on(&stderr()).count(number);
+    let what = format!(
+        "{} ways of level {}, {}, {} lines, {} points",
+        count(summary.ways),
+        summary.level,
+        length((summary.length_m * 1e6).round() as u64),
+        count(summary.lines),
+        count(summary.points),
+    );
+    note_plan(plan, &what, package.manifest(), size);
+    Ok(ExitCode::Done)
+}
+
+/// The package, and what is asked of a layer without heights; `classes` is empty for all.
+fn plan_request<C: Copy>(
+    args: &InPlanArgs,
+    classes: &[C],
+    all: &[C],
+) -> Result<(FilePackage, FeatureRequest<C>), Failure> {
+    let format = format(args.format, &args.file.output)?;
+    let package = packages::open(&args.from.package)?;
+    let request = FeatureRequest {
+        format,
+        level: args.at.level,
+        classes: if classes.is_empty() { all } else { classes }.to_vec(),
+        bounds: args.within.bounds,
+        coordinates: match args.crs {
+            ExportCrs::Package => Coordinates::Package,
+            ExportCrs::Wgs84 => Coordinates::Wgs84WithPackageHeights,
+        },
+        memory_bytes: MEMORY_BYTES,
+    };
+    Ok((package, request))
+}
+
+/// Writes a file in a folder beside its target, under its own name there, and puts it into its place. Gives its size, too.
+fn write<T>(
+    file: &FileArgs,
+    name: String,
+    package: &Path,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
+) -> Result<(T, u64), Failure> {
+    let output = NamedOutput::create(&file.output, existing_of(file.overwrite), name, &[package])?;
+    let progress = Progress::new();
+    let exported = export(&output.path(), &progress);
+    progress.finish();
+    let summary = exported.map_err(|error| named(error, &file.output))?;
+    Ok((summary, output.place()?))
+}
+
+/// Tells what was exported of a layer without heights.
+fn note_plan(args: &InPlanArgs, what: &str, manifest: &Manifest, size: u64) {
+    let coordinates = match args.crs {
+        ExportCrs::Package => &manifest.crs,
+        ExportCrs::Wgs84 => "EPSG:4326",
+    };
+    messages::note(&format!(
+        "{}: {what}, {}\ncoordinates: {coordinates}\nto be shown with it: {}",
+        args.file.output.display(),
         bytes(size),
-        coordinates,
         manifest.attribution.join("; "),
-    )
+    ));
 }
 
 /// The format that is named, or that of the ending.

@@ -4,7 +4,8 @@ use std::io;
 
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
-    AreaRecord, FilePackage, Manifest, Sections, Terrain, TilePayload, decode_areas,
+    AreaRecord, BoundaryRecord, FilePackage, Manifest, Sections, Terrain, TilePayload,
+    decode_areas, decode_boundaries,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -12,6 +13,7 @@ use crate::{
     args::{Coordinates, TileArgs},
     documents::{
         areas::TileAreaDocument,
+        boundaries::TileBoundaryDocument,
         tile::{GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal},
         to_line,
     },
@@ -29,12 +31,12 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
         // The command line has one of them.
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
     };
-    let areas = areas(&package, payload.id)?;
+    let layers = PlanLayers::read(&package, payload.id)?;
     if args.json {
-        let document = document(package.manifest(), &payload, areas, args.coordinates)?;
+        let document = document(package.manifest(), &payload, layers, args.coordinates)?;
         messages::answer(&format!("{}\n", to_line(&document)))?;
     } else {
-        messages::answer(&to_text(&payload, &areas, Digits::on(&io::stdout())))?;
+        messages::answer(&to_text(&payload, &layers, Digits::on(&io::stdout())))?;
     }
     Ok(ExitCode::Done)
 }
@@ -43,10 +45,23 @@ fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Fai
     package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 
-fn areas(package: &FilePackage, id: TileId) -> Result<Vec<AreaRecord>, Failure> {
-    let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
-    let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
-    decode_areas(&bytes, id, &package.manifest().frame).map_err(|error| unusable(&error))
+/// What a tile has of the layers in plan.
+struct PlanLayers {
+    areas: Vec<AreaRecord>,
+    boundaries: Vec<BoundaryRecord>,
+}
+
+impl PlanLayers {
+    fn read(package: &FilePackage, id: TileId) -> Result<Self, Failure> {
+        let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
+        let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
+        let areas = decode_areas(&bytes, id, &package.manifest().frame);
+        let boundaries = decode_boundaries(&bytes, id);
+        Ok(Self {
+            areas: areas.map_err(|error| unusable(&error))?,
+            boundaries: boundaries.map_err(|error| unusable(&error))?,
+        })
+    }
 }
 
 fn no_tile(args: &TileArgs, id: TileId) -> Failure {
@@ -138,7 +153,7 @@ fn tile_at(
     })
 }
 
-fn to_text(payload: &TilePayload, areas: &[AreaRecord], digits: Digits) -> String {
+fn to_text(payload: &TilePayload, layers: &PlanLayers, digits: Digits) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
     let count = |number: usize| digits.count(number as u64);
     if let Some(terrain) = &payload.terrain {
@@ -153,8 +168,9 @@ fn to_text(payload: &TilePayload, areas: &[AreaRecord], digits: Digits) -> Strin
     table.row(["GEO vertices".into(), count(vertices)]);
     table.row(["SV lines".into(), count(payload.roads_sv.len())]);
     table.row(["ways".into(), count(payload.attributes.len())]);
-    if !areas.is_empty() {
-        table.row(["areas".into(), count(areas.len())]);
+    let layers = [("areas", layers.areas.len()), ("boundaries", layers.boundaries.len())];
+    for (name, number) in layers.into_iter().filter(|(_, number)| *number > 0) {
+        table.row([name.into(), count(number)]);
     }
     table.to_text()
 }
@@ -179,7 +195,7 @@ impl Places {
 fn document(
     manifest: &Manifest,
     payload: &TilePayload,
-    areas: Vec<AreaRecord>,
+    layers: PlanLayers,
     coordinates: Coordinates,
 ) -> Result<TileDocument, Failure> {
     let frame = &manifest.frame;
@@ -214,9 +230,15 @@ fn document(
         roads_geo,
         roads_sv: roads_sv(manifest, payload, &places),
         attributes: payload.attributes.iter().map(WayDocument::from).collect(),
-        areas: areas
+        areas: layers
+            .areas
             .into_iter()
             .map(|area| TileAreaDocument::of(area, frame, &|position| places.of(position)))
+            .collect(),
+        boundaries: layers
+            .boundaries
+            .into_iter()
+            .map(|line| TileBoundaryDocument::of(line, frame, &|position| places.of(position)))
             .collect(),
     })
 }

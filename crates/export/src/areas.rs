@@ -2,21 +2,20 @@
 
 use std::path::Path;
 
-use corniche_areas::{AreaClass, Polygon};
-use corniche_geom::{LatticePoint, TileId, wgs84};
-use corniche_store::{Groups, Sorter};
+use corniche_areas::{AreaClass, AreaObject, Polygon};
+use corniche_geom::{TileId, wgs84};
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
-use corniche_work::{Observer, Stage, workers::one_by_one};
+use corniche_work::Observer;
 
 use crate::{
-    area_piece::AreaPiece,
     cut::polygons_of,
+    cut_polygon::{Rings, cut_polygon_at_bounds, rings_of},
     error::ExportError,
-    feature_request::{AreasRequest, Coordinates},
+    feature_request::FeatureRequest,
+    features::{About, FeatureSource, Features, write_features},
     places::Places,
-    read,
-    scratch::FileScratch,
-    vector::{Field, FieldKind, Layer, Record, Shape, ShapeKind, Value, VectorFile, VectorFormat},
+    plan_piece::{PlanPiece, class_of, lines_of},
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value},
 };
 
 /// What was exported.
@@ -74,47 +73,21 @@ const FIELDS: &[Field] = &[
 /// written.
 pub fn export_areas(
     package: &FilePackage,
-    request: &AreasRequest,
+    request: &FeatureRequest<AreaClass>,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<AreasSummary, ExportError> {
-    let manifest = package.manifest();
-    if manifest.areas.is_none() {
-        return Err(ExportError::NoAreas { package: package.path().to_path_buf() });
+    if package.manifest().areas.is_none() {
+        let package = package.path().to_path_buf();
+        return Err(ExportError::NoLayer { package, layer: Areas::NAME });
     }
-    let level = read::level(package, request.level)?;
-    if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
-        return Err(ExportError::GeoJsonPlanCrs);
-    }
-    let places = Places::new(manifest, request.coordinates)?;
-    let folder = corniche_store::folder_of(path);
-    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
-    let scratch = FileScratch::create(folder).map_err(sort)?;
-    let mut sorter = Sorter::new(&scratch, request.memory_bytes);
-    let mut ids = package.tile_ids()?;
-    ids.retain(|id| id.z() == level);
-    let mut count = 0;
-    one_by_one((observer, Stage::ExportTiles), &ids, |&id| {
-        for piece in pieces(package, id, &request.classes)? {
-            count += 1;
-            sorter.push(piece).map_err(sort)?;
-        }
-        Ok::<(), ExportError>(())
-    })?;
-    let mut sorted = Groups::of(sorter.finish().map_err(sort)?);
-    let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
-    let mut summary =
+    let source = FeatureSource::new(package, request, Areas::SHAPES)?;
+    let level = source.level;
+    let summary =
         AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
-    let rounding_m = rounding_m(package, level);
-    observer.begin(Stage::ExportFeatures, Some(count));
-    while let Some(pieces) = sorted.next_by(|piece| piece.object).map_err(sort)? {
-        observer.check()?;
-        file.push(feature(&pieces, (&places, rounding_m), &mut summary)?)?;
-        observer.advance(Stage::ExportFeatures, pieces.len() as u64);
-    }
-    file.finish()?;
-    observer.end(Stage::ExportFeatures);
-    Ok(summary)
+    let mut areas = Areas { rounding_m: rounding_m(package, level), summary };
+    write_features(&mut areas, &source, path, observer)?;
+    Ok(areas.summary)
 }
 
 /// The most by which corners of areas can be off on a level: the build has them on a lattice of 0.1 m on the finest level, of a quarter of a cell
@@ -124,108 +97,117 @@ fn rounding_m(package: &FilePackage, level: u8) -> f64 {
     if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 }
 }
 
-/// What a tile has of areas of these classes.
-fn pieces(
-    package: &FilePackage,
-    id: TileId,
-    classes: &[AreaClass],
-) -> Result<Vec<AreaPiece>, ExportError> {
-    let Some(bytes) = package.tile(id)? else { return Ok(Vec::new()) };
-    let areas = decode_areas(&bytes, id, &package.manifest().frame)
-        .map_err(|source| ExportError::Areas { source: Box::new(source) })?;
-    let wanted = areas.into_iter().filter(|area| classes.contains(&area.class));
-    Ok(wanted
-        .map(|area| AreaPiece {
-            object: area.object,
-            tile: pmtiles_order(id),
-            class: area.class.number(),
-            name: area.name,
-            rings: area.polygons.into_iter().flat_map(|polygon| polygon.rings).collect(),
-        })
-        .collect())
+/// Areas on their way into a file.
+struct Areas {
+    rounding_m: f64,
+    summary: AreasSummary,
 }
 
-fn feature(
-    pieces: &[AreaPiece],
-    (places, rounding_m): (&Places<'_>, f64),
-    summary: &mut AreasSummary,
-) -> Result<Record, ExportError> {
-    let first = &pieces[0];
-    let object = first.object;
-    if pieces.iter().any(|piece| (piece.class, &piece.name) != (first.class, &first.name)) {
-        return Err(ExportError::AreaDiffers { object });
-    }
-    let class = first.class().ok_or(ExportError::AreaDiffers { object })?;
-    let (polygons, is_joined) = joined(pieces);
-    let (mut shape, mut area_m2, mut points) = (Vec::new(), 0.0, 0);
-    for polygon in &polygons {
-        let mut rings = Vec::new();
-        for ring in polygon.rings() {
-            points += ring.points().len();
-            area_m2 += area_of(ring.points(), places);
-            rings.push(places.carry_ring(object, ring.points())?);
+impl Features for Areas {
+    type Class = AreaClass;
+    type Piece = PlanPiece;
+    const NAME: &'static str = "areas";
+    const SHAPES: ShapeKind = ShapeKind::Polygons;
+
+    fn about(&self, source: &FeatureSource<'_, AreaClass>) -> About {
+        About {
+            fields: FIELDS.to_vec(),
+            description: format!("Areas, as they are stored for {}.", source.cells()),
+            metadata: Vec::new(),
         }
-        shape.extend(places.cut_polygon(object, rings, rounding_m)?);
     }
-    summary.areas += 1;
-    summary.polygons += polygons.len() as u64;
-    summary.points += points as u64;
-    summary.area_m2 += area_m2;
-    summary.unjoined += u64::from(!is_joined);
-    let (kind, id) = object.parts();
-    let name = first.name.clone();
-    let values = vec![
-        Value::Text(kind.to_owned()),
-        Value::Integer(id),
-        Value::Text(class.name().to_owned()),
-        if name.is_empty() { Value::Null } else { Value::Text(name) },
-        Value::Real((area_m2 * 1e3).round() / 1e3),
-        Value::Integer(polygons.len() as i64),
-        Value::Integer(points as i64),
-    ];
-    Ok(Record { values, shape: Shape::Polygons(shape) })
+
+    fn pieces(
+        &self,
+        FeatureSource { package, request, .. }: &FeatureSource<'_, AreaClass>,
+        tile: TileId,
+    ) -> Result<Vec<PlanPiece>, ExportError> {
+        let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
+        let areas = decode_areas(&bytes, tile, &package.manifest().frame).map_err(|source| {
+            ExportError::Damaged { layer: Self::NAME, source: Box::new(source) }
+        })?;
+        let wanted = areas.into_iter().filter(|area| request.classes.contains(&area.class));
+        Ok(wanted
+            .map(|area| PlanPiece {
+                object: area.object,
+                tile: pmtiles_order(tile),
+                class: area.class.number(),
+                name: area.name,
+                lines: area.polygons.into_iter().flat_map(|polygon| polygon.rings).collect(),
+            })
+            .collect())
+    }
+
+    fn object(piece: &PlanPiece) -> AreaObject {
+        piece.object
+    }
+
+    fn records(
+        &mut self,
+        FeatureSource { places, request, .. }: &FeatureSource<'_, AreaClass>,
+        pieces: &[PlanPiece],
+    ) -> Result<Vec<Record>, ExportError> {
+        let class = class_of(pieces, AreaClass::from_number)?;
+        let object = pieces[0].object;
+        let (joined, is_joined) = joined(pieces);
+        let mut polygons: Vec<Rings> = Vec::new();
+        for polygon in &joined {
+            match &request.bounds {
+                None => polygons.push(rings_of(polygon, places)),
+                Some(bounds) => polygons.extend(
+                    cut_polygon_at_bounds(polygon, bounds, places)
+                        .ok_or(ExportError::BoundsAcross { object })?,
+                ),
+            }
+        }
+        if polygons.is_empty() {
+            return Ok(Vec::new());
+        }
+        let count = polygons.len();
+        let (mut shape, mut area_m2, mut points) = (Vec::new(), 0.0, 0);
+        for polygon in polygons {
+            let mut rings = Vec::new();
+            for ring in polygon {
+                points += ring.len();
+                area_m2 += area_of(&ring, places);
+                rings.push(places.carry_plan(object, ring)?);
+            }
+            shape.extend(places.cut_polygon(object, rings, self.rounding_m)?);
+        }
+        self.summary.areas += 1;
+        self.summary.polygons += count as u64;
+        self.summary.points += points as u64;
+        self.summary.area_m2 += area_m2;
+        self.summary.unjoined += u64::from(!is_joined);
+        let (kind, id) = object.parts();
+        let name = pieces[0].name.clone();
+        let values = vec![
+            Value::Text(kind.to_owned()),
+            Value::Integer(id),
+            Value::Text(class.name().to_owned()),
+            if name.is_empty() { Value::Null } else { Value::Text(name) },
+            Value::Real((area_m2 * 1e3).round() / 1e3),
+            Value::Integer(count as i64),
+            Value::Integer(points as i64),
+        ];
+        Ok(vec![Record { values, shape: Shape::Polygons(shape) }])
+    }
 }
 
 /// The polygons of an object, joined over borders of tiles: there both tiles have the same segments, and what is there twice
 /// cancels out. Where that is no outline any more (a damaged package), the parts as the tiles have them, and `false`.
-fn joined(pieces: &[AreaPiece]) -> (Vec<Polygon>, bool) {
-    let all: Vec<&[LatticePoint]> =
-        pieces.iter().flat_map(|piece| piece.rings.iter().map(Vec::as_slice)).collect();
+fn joined(pieces: &[PlanPiece]) -> (Vec<Polygon>, bool) {
+    let all: Vec<_> = lines_of(pieces).collect();
     if let Some(polygons) = polygons_of(&all) {
         return (polygons, true);
     }
-    let parts = pieces.iter().filter_map(|piece| {
-        let rings: Vec<&[LatticePoint]> = piece.rings.iter().map(Vec::as_slice).collect();
-        polygons_of(&rings)
-    });
+    let parts = pieces.iter().filter_map(|piece| polygons_of(&piece.lines));
     (parts.flatten().collect(), false)
 }
 
-/// True area inside a ring, square metres; negative for a clockwise one.
-fn area_of(points: &[LatticePoint], places: &Places<'_>) -> f64 {
-    let at = |point: &LatticePoint| places.wgs84([point.u as f64, point.v as f64]);
-    wgs84::area_m2(&points.iter().map(at).collect::<Vec<_>>())
-}
-
-/// What the file says of itself.
-fn layer(package: &FilePackage, level: u8, places: &Places<'_>) -> Layer {
-    let manifest = package.manifest();
-    let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
-    let name = package.file_name().to_owned();
-    Layer {
-        name: "areas",
-        fields: FIELDS.to_vec(),
-        shapes: ShapeKind::Polygons,
-        crs: places.crs().to_owned(),
-        description: format!(
-            "Areas, as they are stored for cells of {east_m:.1} × {north_m:.1} m."
-        ),
-        attribution: manifest.attribution.join("; "),
-        metadata: vec![
-            ("GENERATOR", manifest.generator.clone()),
-            ("PACKAGE", name),
-            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
-            ("LEVEL", level.to_string()),
-        ],
-    }
+/// True area inside a ring of positions in working metres, square metres; negative for a clockwise one.
+fn area_of(ring: &[[f64; 2]], places: &Places<'_>) -> f64 {
+    let coordinates = &places.manifest().coordinates;
+    let at = |position: &[f64; 2]| coordinates.wgs84_from_working(*position);
+    wgs84::area_m2(&ring.iter().map(at).collect::<Vec<_>>())
 }

@@ -74,24 +74,25 @@ impl DegreeBounds {
         [Seam::of_degrees().around(before[0]).image(east), lat]
     }
 
+    /// Lowest and highest degrees, as [`DegreeBounds::relative`] has them, eastwards and northwards; once for each turn around the earth.
+    pub(crate) fn limits(&self) -> Vec<[[f64; 2]; 2]> {
+        let across = [self.south, self.north];
+        // All around the earth there is no side in the west and none in the east.
+        if self.half_width >= 180.0 {
+            return vec![[[f64::NEG_INFINITY, f64::INFINITY], across]];
+        }
+        [-360.0, 0.0, 360.0]
+            .map(|turn| [[turn - self.half_width, turn + self.half_width], across])
+            .to_vec()
+    }
+
     /// What of the line between two positions (longitude and latitude) lies inside: from which share of it to which, in its order. There
     /// are two parts where the line leaves at one side and comes in at the other one, behind which the rectangle begins again.
     pub(crate) fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
         let from = self.relative(from);
         let to = self.relative_after(to, from);
-        let across = [self.south, self.north];
-        // All around the earth there is no side in the west and none in the east.
-        if self.half_width >= 180.0 {
-            let lengthwise = [f64::NEG_INFINITY, f64::INFINITY];
-            return clip(from, to, [lengthwise, across]).into_iter().collect();
-        }
-        let mut parts: Vec<[f64; 2]> = [-360.0, 0.0, 360.0]
-            .into_iter()
-            .filter_map(|turn| {
-                let lengthwise = [turn - self.half_width, turn + self.half_width];
-                clip(from, to, [lengthwise, across])
-            })
-            .collect();
+        let mut parts: Vec<[f64; 2]> =
+            self.limits().into_iter().filter_map(|limits| clip(from, to, limits)).collect();
         parts.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
         parts
     }

@@ -8,44 +8,110 @@ use crate::{
     piece::{Piece, PieceKey, Vertex},
 };
 
-/// What the bounds leave of a piece. `wgs84` gives the longitude and latitude of a place on the lattice.
-///
-/// A new end lies on the line, where it crosses a side of the rectangle; it is no source point and nothing goes on from it.
+/// What the bounds leave of a piece; see [`cut_line_at_bounds`]. Nothing goes on from a new end.
 pub(crate) fn cut_at_bounds(
     piece: &Piece,
     bounds: &DegreeBounds,
     wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Vec<Piece> {
     let [first_end, last_end] = piece.goes_on;
-    let last_vertex = piece.vertices.len() - 1;
-    let mut cuts: Vec<Piece> = Vec::new();
+    (0..)
+        .zip(cut_line_at_bounds(&piece.vertices, bounds, wgs84))
+        .map(|(cut, CutLine { vertices, has_end: [first, last] })| Piece {
+            key: PieceKey { cut, ..piece.key },
+            vertices,
+            goes_on: [first && first_end, last && last_end],
+            ..piece.clone()
+        })
+        .collect()
+}
+
+/// What the bounds left of a line.
+pub(crate) struct CutLine {
+    /// At least two.
+    pub(crate) vertices: Vec<Vertex>,
+    /// Whether the line's own first vertex is its first one, and likewise the last.
+    has_end: [bool; 2],
+}
+
+/// What the bounds leave of a line. `wgs84` gives the longitude and latitude of a place on the lattice.
+///
+/// A new end lies on the line, where it crosses a side of the rectangle; it is no source point.
+pub(crate) fn cut_line_at_bounds(
+    vertices: &[Vertex],
+    bounds: &DegreeBounds,
+    wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
+) -> Vec<CutLine> {
+    let mut cuts: Vec<CutLine> = Vec::new();
     // Whether the segment before ended inside.
     let mut goes_on = false;
     let mut before: Option<[f64; 2]> = None;
-    for (at, pair) in piece.vertices.windows(2).enumerate() {
+    for (at, pair) in vertices.array_windows::<2>().enumerate() {
         let from = before.unwrap_or_else(|| wgs84(pair[0].at));
         let to = wgs84(pair[1].at);
         before = Some(to);
-        let parts = bounds.inside(from, to);
+        let mut parts = Vec::new();
+        let ends = [(pair[0].at, from), (pair[1].at, to)];
+        shares_inside(bounds, wgs84, ends, [0.0, 1.0], &mut parts);
         for &[first, last] in &parts {
             let [start, end] = [first, last].map(|share| between(pair[0], pair[1], share));
             match cuts.last_mut().filter(|_| goes_on && first <= 0.0) {
                 Some(cut) => cut.vertices.push(end),
-                None => cuts.push(Piece {
-                    key: PieceKey { cut: cuts.len() as u32, ..piece.key },
+                None => cuts.push(CutLine {
                     vertices: vec![start, end],
-                    goes_on: [at == 0 && first <= 0.0 && first_end, false],
-                    ..piece.clone()
+                    has_end: [at == 0 && first <= 0.0, false],
                 }),
             }
             goes_on = last >= 1.0;
             if let Some(cut) = cuts.last_mut() {
-                cut.goes_on[1] = at + 1 == last_vertex && goes_on && last_end;
+                cut.has_end[1] = at + 2 == vertices.len() && goes_on;
             }
         }
         goes_on &= !parts.is_empty();
     }
     cuts
+}
+
+/// A line is as good as straight in degrees where its middle is no farther beside, degrees: a centimetre.
+pub(crate) const STRAIGHT_DEG: f64 = 1e-7;
+
+/// Bent segments are halved down to this share: then one of ten kilometres is straight to a millimetre, and the work is bounded.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
+
+/// Which shares of a segment lie inside; its ends are places on the lattice with their degrees, and `of` is the part of the segment that they
+/// are. Where the projection bends it in degrees, its halves are looked at.
+fn shares_inside(
+    bounds: &DegreeBounds,
+    wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
+    [(from, from_deg), (to, to_deg)]: [([f64; 2], [f64; 2]); 2],
+    of: [f64; 2],
+    parts: &mut Vec<[f64; 2]>,
+) {
+    let mean = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis| f64::midpoint(a[axis], b[axis]));
+    let middle = mean(from, to);
+    let middle_deg = wgs84(middle);
+    let [start, length] = [of[0], of[1] - of[0]];
+    let first = bounds.relative(from_deg);
+    let [east, north] = mean(first, bounds.relative_after(to_deg, first));
+    let [is_east, is_north] = bounds.relative_after(middle_deg, first);
+    let is_bent = (is_east - east).hypot(is_north - north) > STRAIGHT_DEG;
+    if is_bent && length > LEAST_SHARE {
+        let half = start + length / 2.0;
+        for (ends, of) in [
+            ([(from, from_deg), (middle, middle_deg)], [start, half]),
+            ([(middle, middle_deg), (to, to_deg)], [half, of[1]]),
+        ] {
+            shares_inside(bounds, wgs84, ends, of, parts);
+        }
+        return;
+    }
+    for [first, last] in bounds.inside(from_deg, to_deg) {
+        let [first, last] = [first, last].map(|share| start + length * share);
+        match parts.last_mut().filter(|part| part[1] >= first) {
+            Some(part) => part[1] = last,
+            None => parts.push([first, last]),
+        }
+    }
 }
 
 /// The vertex at a share of the way from one to the next; at its ends these themselves.
@@ -106,7 +172,7 @@ fn is_long(line: &[[f64; 3]]) -> bool {
 }
 
 /// Steps of a degree in which polygons are cut: a tenth of a millimetre.
-const STEPS: f64 = 1e9;
+pub(crate) const STEPS: f64 = 1e9;
 
 /// Rings of a polygon in degrees, the outer one first, as polygons that do not cross the antimeridian, with longitudes within ±180. Corners
 /// that lie as near to it as `rounding_deg` lie on it, and what is no wider is left out. `None` where that is no polygon.

@@ -14,7 +14,7 @@ use corniche_work::Interrupted;
 #[error("the outlines of its roads cannot be triangulated")]
 pub struct CutError;
 
-/// Why roads or areas could not be exported.
+/// Why something could not be exported.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -27,20 +27,18 @@ pub enum ExportError {
     Line { tile: TileId, source: BadLine },
     #[error("tile {tile} knows nothing of way {way_id}, which it holds; corniche verify says more")]
     NoAttributes { tile: TileId, way_id: i64 },
-    #[error("way {way_id} is not the same in all tiles; corniche verify says more")]
-    Differs { way_id: i64 },
-    #[error("the areas of a tile are damaged; corniche verify says more")]
-    Areas { source: Box<corniche_tileset::DecodeError> },
     #[error("{object} is not the same in all tiles; corniche verify says more")]
-    AreaDiffers { object: AreaObject },
-    #[error("a position of {object} has no longitude and latitude in WGS84")]
-    NoAreaPosition { object: AreaObject },
+    Differs { object: AreaObject },
+    #[error("the {layer} of a tile are damaged; corniche verify says more")]
+    Damaged { layer: &'static str, source: Box<corniche_tileset::DecodeError> },
+    #[error("{object} cannot be cut at --bounds; leave them out")]
+    BoundsAcross { object: AreaObject },
     #[error(
         "{object} lies across 180 degrees of longitude and cannot be cut there; export it in the package's CRS"
     )]
     AcrossAntimeridian { object: AreaObject },
-    #[error("{package:?} has no areas: it was built without --areas")]
-    NoAreas { package: PathBuf },
+    #[error("{package:?} has no {layer}: it was built without --{layer}")]
+    NoLayer { package: PathBuf, layer: &'static str },
     #[error(
         "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); give --crs EPSG:4326, or choose another format"
     )]
@@ -127,8 +125,8 @@ pub enum ExportError {
     Project(#[from] ProjectError),
     #[error("a position of the ground has no longitude and latitude in WGS84")]
     NoGroundPosition,
-    #[error("a position of way {way_id} has no longitude and latitude in WGS84")]
-    NoPosition { way_id: i64 },
+    #[error("a position of {object} has no longitude and latitude in WGS84")]
+    NoPosition { object: AreaObject },
     #[error(
         "this GDAL has no driver {driver} for writing; install a GDAL with it, or choose another format"
     )]

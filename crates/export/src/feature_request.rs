@@ -1,7 +1,4 @@
-//! What a user asks for when roads or areas become features of a vector file.
-
-use corniche_areas::AreaClass;
-use corniche_roads::FunctionalRoadClass;
+//! What a user asks for when a layer becomes features of a vector file.
 
 use crate::{bounds::DegreeBounds, vector::VectorFormat};
 
@@ -16,36 +13,28 @@ pub enum Coordinates {
     Wgs84WithPackageHeights,
 }
 
-/// Which areas of a package are exported, and how.
+/// Which objects of a layer of a package are exported, and how.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AreasRequest {
+pub struct FeatureRequest<C> {
     /// The format of the file.
     pub format: VectorFormat,
-    /// The level whose areas are taken; `None` is the finest.
+    /// The level whose objects are taken; `None` is the finest.
     pub level: Option<u8>,
     /// The classes that are taken.
-    pub classes: Vec<AreaClass>,
-    /// The coordinates of features; areas have no heights.
+    pub classes: Vec<C>,
+    /// Objects are cut here.
+    pub bounds: Option<DegreeBounds>,
+    /// The coordinates of features; only roads have heights.
     pub coordinates: Coordinates,
     /// Memory for sorting, bytes.
     pub memory_bytes: u64,
 }
 
-/// Which roads of a package are exported, and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RoadsRequest {
-    /// The format of the file.
-    pub format: VectorFormat,
-    /// The level whose roads are taken; `None` is the finest.
-    pub level: Option<u8>,
-    /// The classes that are taken.
-    pub classes: Vec<FunctionalRoadClass>,
-    /// Roads are cut here.
-    pub bounds: Option<DegreeBounds>,
-    /// A feature for each piece, as the tiles have them, in place of one for each way.
-    pub pieces: bool,
-    /// The coordinates of features.
-    pub coordinates: Coordinates,
-    /// Memory for sorting, bytes.
-    pub memory_bytes: u64,
+/// Which features roads become.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RoadFeatures {
+    /// One for each way.
+    Ways,
+    /// One for each piece, as the tiles have them.
+    Pieces,
 }

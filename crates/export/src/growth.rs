@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use corniche_areas::AreaObject;
 use corniche_geom::LatticeBounds;
 use corniche_roads::FunctionalRoadClass;
 use corniche_store::Sorter;
@@ -15,8 +16,9 @@ use crate::{
     measures::Measures,
     piece::{Piece, Vertex},
     places::Places,
+    read,
     scratch::FileScratch,
-    ways::Ways,
+    sorted_pieces::SortedPieces,
 };
 
 /// What laying one way on the terrain costs.
@@ -56,9 +58,11 @@ pub fn growth_by_way<E: From<ExportError>>(
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = package.tile_ids().map_err(ExportError::from)?;
     let sorter = (Sorter::new(&scratch, memory_bytes), folder);
-    let ways = Ways::read(package, &tiles, &classes, sorter, observer, |piece| vec![piece])?;
+    let pieces =
+        SortedPieces::read(&tiles, sorter, observer, |id| read::pieces(package, id, &classes))?;
     let places = Places::new(manifest, Coordinates::Package)?;
-    ways.for_each(observer, |pieces| {
+    let way = |piece: &Piece| piece.key.way_id;
+    pieces.for_each(observer, way, |pieces| {
         growth_of(pieces, manifest, &places)?.map_or(Ok(()), |way| each(&way))
     })?;
     observer.end(Stage::ExportFeatures);
@@ -79,7 +83,7 @@ fn growth_of(
     let mut of_finest = Vec::new();
     for piece in pieces {
         if piece.class != class {
-            return Err(ExportError::Differs { way_id });
+            return Err(ExportError::Differs { object: AreaObject::Way(way_id) });
         }
         // Keys were made of tiles that the package has.
         let Some(tile) = tile_of_order(piece.key.tile) else { continue };

@@ -1,4 +1,4 @@
-//! What a package holds, for other programs: roads and areas as features (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models
+//! What a package holds, for other programs: roads, areas and boundaries as features (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models
 //! (GLB, PLY, OBJ).
 //!
 //! ```text
@@ -16,7 +16,8 @@
 //!
 //! [`profile`] follows some ways and tells height and grade along them.
 //!
-//! Areas go the same way, sorted by object; what tiles hold of one is joined where both sides of a border have the same segments.
+//! Each layer goes this way ([`features`]). What tiles hold of an area is joined where both sides of a border have the same segments; parts of
+//! boundaries overlap, and each of their segments is taken once.
 //!
 //! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
 //!
@@ -30,14 +31,16 @@
 //! This crate never reads an extract, reads elevation files only to compare with them, never decides which road matters, and
 //! writes no file but the one it is asked for.
 
-mod area_piece;
 mod areas;
+mod boundaries;
 mod bounds;
 mod cut;
+mod cut_polygon;
 mod datum;
 mod error;
 mod feature;
 mod feature_request;
+mod features;
 mod gdal_settings;
 mod geotiff;
 mod globe;
@@ -49,24 +52,27 @@ mod measures;
 mod mesh;
 mod piece;
 mod places;
+mod plan_piece;
 mod profile;
 mod quantized_mesh;
 mod read;
 mod relief_map;
 mod roads;
 mod scratch;
+mod sorted_pieces;
 mod surfaces;
 mod texture;
 mod tiles3d;
 mod vector;
-mod ways;
+mod whole_lines;
 
 pub use areas::{AreasSummary, export_areas};
+pub use boundaries::{BoundariesSummary, export_boundaries};
 pub use bounds::DegreeBounds;
 pub use datum::with_vertical_crs;
 pub use error::{CutError, ExportError};
 pub use feature::road_fields;
-pub use feature_request::{AreasRequest, Coordinates, RoadsRequest};
+pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use geotiff::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};

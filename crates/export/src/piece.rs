@@ -39,36 +39,27 @@ pub(crate) struct Piece {
     pub(crate) goes_on: [bool; 2],
 }
 
-impl PartialEq for SortedPiece {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.key == other.0.key
-    }
-}
+/// No two pieces have the same key.
+impl Eq for Piece {}
 
-impl Eq for SortedPiece {}
-
-impl PartialOrd for SortedPiece {
+impl PartialOrd for Piece {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for SortedPiece {
+impl Ord for Piece {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.key.cmp(&other.0.key)
+        self.key.cmp(&other.key)
     }
 }
 
-/// A piece as it is sorted: no two have the same key.
-#[derive(Debug, Clone)]
-pub(crate) struct SortedPiece(pub(crate) Piece);
-
 const VERTEX_BYTES: usize = 25;
 
-impl SortRecord for SortedPiece {
+impl SortRecord for Piece {
     /// Numbers in little-endian order; a text has its length before it; vertices come last.
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Piece { key, class, attributes, vertices, goes_on } = &self.0;
+        let Piece { key, class, attributes, vertices, goes_on } = self;
         let AttributeParts { codes, width_mm, texts } = attributes.parts();
         bytes.extend(key.way_id.to_le_bytes());
         bytes.extend(key.tile.to_le_bytes());
@@ -107,11 +98,11 @@ impl SortRecord for SortedPiece {
             vertices.push(Vertex { at: [u, v], z_m, is_source: is_source == 1 });
         }
         let class = FunctionalRoadClass::new(class)?;
-        Some(Self(Piece { key, class, attributes, vertices, goes_on: [first == 1, last == 1] }))
+        Some(Self { key, class, attributes, vertices, goes_on: [first == 1, last == 1] })
     }
 
     fn extra_bytes(&self) -> usize {
-        let Piece { attributes, vertices, .. } = &self.0;
+        let Piece { attributes, vertices, .. } = self;
         vertices.capacity() * size_of::<Vertex>() + attributes.text_bytes()
     }
 }

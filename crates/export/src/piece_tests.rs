@@ -42,10 +42,10 @@ fn pieces_come_back_sorted_and_whole() {
     let keys = [(7, 3, 1), (-7, 9, 0), (7, 3, 0), (7, 2, 5), (i64::MAX, 0, 0), (i64::MIN, 1, 1)];
     for round in 0..40 {
         for (way_id, tile, part) in keys {
-            sorter.push(SortedPiece(piece(way_id, tile + 10 * round, part))).unwrap();
+            sorter.push(piece(way_id, tile + 10 * round, part)).unwrap();
         }
     }
-    let pieces: Vec<Piece> = sorter.finish().unwrap().map(|sorted| sorted.unwrap().0).collect();
+    let pieces: Vec<Piece> = sorter.finish().unwrap().map(Result::unwrap).collect();
     assert_eq!(pieces.len(), 240);
     assert!(pieces.is_sorted_by(|a, b| a.key < b.key));
     for found in pieces {

@@ -2,7 +2,7 @@
 
 use corniche_areas::AreaObject;
 use corniche_dem::{DemError, DemProjection, RecordedCrs, RecordedHeights};
-use corniche_geom::{LatticePoint, Projection as _, wgs84};
+use corniche_geom::{Projection as _, wgs84};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -168,14 +168,12 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A ring of an area in the features' coordinates.
-    pub(crate) fn carry_ring(
+    /// Positions of an object in working metres, in the features' coordinates.
+    pub(crate) fn carry_plan(
         &self,
         object: AreaObject,
-        points: &[LatticePoint],
+        mut plan: Vec<[f64; 2]>,
     ) -> Result<Vec<[f64; 2]>, ExportError> {
-        let frame = &self.manifest.frame;
-        let mut plan: Vec<[f64; 2]> = points.iter().map(|point| frame.position_m(*point)).collect();
         match &self.target {
             Target::Package => {
                 let [unit_x, unit_y] = self.manifest.metres_per_unit;
@@ -186,7 +184,7 @@ impl<'a> Places<'a> {
             Target::Wgs84 { projection, .. } => {
                 projection.wgs84_from_working(&mut plan)?;
                 if plan.iter().flatten().any(|degrees| !degrees.is_finite()) {
-                    return Err(ExportError::NoAreaPosition { object });
+                    return Err(ExportError::NoPosition { object });
                 }
             }
         }
@@ -212,46 +210,35 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A line of a way in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.
+    /// A line of an object in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.
     pub(crate) fn carry(
         &self,
-        way_id: i64,
+        object: AreaObject,
         vertices: &[Vertex],
     ) -> Result<Vec<Vec<[f64; 3]>>, ExportError> {
         let frame = &self.manifest.frame;
-        let mut plan: Vec<[f64; 2]> =
+        let plan: Vec<[f64; 2]> =
             vertices.iter().map(|vertex| frame.position_of_fraction_m(vertex.at)).collect();
         let mut heights_m: Vec<f64> = vertices.iter().map(|vertex| vertex.z_m).collect();
-        let joined = |plan: &[[f64; 2]], heights_m: &[f64]| -> Vec<[f64; 3]> {
-            plan.iter().zip(heights_m).map(|(&[x, y], &z)| [x, y, z]).collect()
-        };
-        match &self.target {
-            Target::Package => {
-                let [unit_x, unit_y] = self.manifest.metres_per_unit;
-                for [x, y] in &mut plan {
-                    (*x, *y) = (*x / unit_x, *y / unit_y);
-                }
-                Ok(vec![joined(&plan, &heights_m)])
-            }
-            Target::Wgs84 { projection, heights } => {
-                let datum = || self.manifest.vertical.datum.clone();
-                if let Some(heights) = heights {
-                    heights.to_wgs84_m(&plan, &mut heights_m).map_err(|source| {
-                        ExportError::Heights { datum: datum(), source: Box::new(source) }
-                    })?;
-                }
-                projection.wgs84_from_working(&mut plan)?;
-                for ([lon, lat], height_m) in plan.iter().zip(&heights_m) {
-                    if !(lon.is_finite() && lat.is_finite()) {
-                        return Err(ExportError::NoPosition { way_id });
-                    }
-                    if !height_m.is_finite() {
-                        let (lon, lat) = (*lon, *lat);
-                        return Err(ExportError::NoHeightHere { datum: datum(), lon, lat });
-                    }
-                }
-                Ok(cut_at_antimeridian(joined(&plan, &heights_m)))
+        self.to_wanted_heights(&plan, &mut heights_m)?;
+        let plan = self.carry_plan(object, plan)?;
+        let line = plan.iter().zip(&heights_m).map(|(&[x, y], &z)| [x, y, z]).collect();
+        match self.target {
+            Target::Package => Ok(vec![line]),
+            Target::Wgs84 { .. } => {
+                self.all_have_heights(&plan, &heights_m)?;
+                Ok(cut_at_antimeridian(line))
             }
         }
+    }
+
+    /// Whether straight lines of the features' coordinates are straight in degrees.
+    pub(crate) fn are_degrees(&self) -> bool {
+        matches!(self.target, Target::Wgs84 { .. })
+    }
+
+    /// The package of the places.
+    pub(crate) fn manifest(&self) -> &'a Manifest {
+        self.manifest
     }
 }

@@ -2,23 +2,24 @@
 
 use std::path::Path;
 
-use corniche_store::Sorter;
+use corniche_areas::AreaObject;
+use corniche_geom::TileId;
+use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, tile_of_order};
-use corniche_work::{Observer, Stage};
+use corniche_work::Observer;
 
 use crate::{
     cut::cut_at_bounds,
     error::ExportError,
     feature::{Road, road_fields, road_values},
-    feature_request::{Coordinates, RoadsRequest},
+    feature_request::{FeatureRequest, RoadFeatures},
+    features::{About, FeatureSource, Features, write_features},
     join::{Line, lines},
     measures::Measures,
     piece::Piece,
     places::Places,
     read,
-    scratch::FileScratch,
-    vector::{Layer, Record, Shape, ShapeKind, VectorFile, VectorFormat},
-    ways::Ways,
+    vector::{Record, Shape, ShapeKind},
 };
 
 /// What was exported.
@@ -46,112 +47,106 @@ pub struct ExportSummary {
 /// written.
 pub fn export_roads(
     package: &FilePackage,
-    request: &RoadsRequest,
+    request: &FeatureRequest<FunctionalRoadClass>,
+    features: RoadFeatures,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<ExportSummary, ExportError> {
-    let manifest = package.manifest();
-    if manifest.inputs.iter().all(|input| input.kind != "osm") {
+    if package.manifest().inputs.iter().all(|input| input.kind != "osm") {
         return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
     }
-    let level = read::level(package, request.level)?;
-    if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
-        return Err(ExportError::GeoJsonCrs);
-    }
-    let places = Places::new(manifest, request.coordinates)?;
-    let folder = corniche_store::folder_of(path);
-    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
-    let scratch = FileScratch::create(folder).map_err(sort)?;
-    let tiles = read::tiles(package, level, request.bounds.as_ref())?;
-    let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
-    let keep = |piece: Piece| match &request.bounds {
-        Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
-        None => vec![piece],
-    };
-    let ways = Ways::read(package, &tiles, &request.classes, sorter, observer, keep)?;
-    let layer = layer(package, level, request, &places);
-    let mut writing = Writing {
-        places: &places,
-        by_piece: request.pieces,
-        file: VectorFile::create(path, request.format, layer)?,
+    let source = FeatureSource::new(package, request, Roads::SHAPES)?;
+    let mut roads = Roads {
+        by_piece: features == RoadFeatures::Pieces,
         summary: ExportSummary {
-            level,
+            level: source.level,
             features: 0,
             ways: 0,
             length_2d_m: 0.0,
             vertices: 0,
-            heights: places.heights().to_owned(),
+            heights: source.places.heights().to_owned(),
         },
     };
-    ways.for_each(observer, |pieces| writing.way(&pieces))?;
-    let Writing { file, summary, .. } = writing;
-    file.finish()?;
-    observer.end(Stage::ExportFeatures);
-    Ok(summary)
+    write_features(&mut roads, &source, path, observer)?;
+    Ok(roads.summary)
 }
 
-/// What the file says of itself.
-fn layer(package: &FilePackage, level: u8, request: &RoadsRequest, places: &Places<'_>) -> Layer {
-    let manifest = package.manifest();
-    let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
-    let name = package.file_name().to_owned();
-    let what = if request.pieces { "Pieces of roads" } else { "Roads" };
-    Layer {
-        name: "roads",
-        fields: road_fields(request.pieces),
-        shapes: ShapeKind::Lines,
-        crs: places.crs().to_owned(),
-        description: format!(
-            "{what} laid on terrain with cells of {east_m:.1} × {north_m:.1} m. Heights: {}.",
-            places.heights()
-        ),
-        attribution: manifest.attribution.join("; "),
-        metadata: vec![
-            ("GENERATOR", manifest.generator.clone()),
-            ("PACKAGE", name),
-            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
-            ("LEVEL", level.to_string()),
-            ("HEIGHTS", places.heights().to_owned()),
-            ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
-        ],
-    }
-}
-
-/// Makes features of pieces and writes them.
-struct Writing<'a> {
-    places: &'a Places<'a>,
+/// Roads on their way into a file.
+struct Roads {
     by_piece: bool,
-    file: VectorFile,
     summary: ExportSummary,
 }
 
-impl Writing<'_> {
-    /// Writes the features of a way.
-    fn way(&mut self, pieces: &[Piece]) -> Result<(), ExportError> {
-        let Some(first) = pieces.first() else { return Ok(()) };
+impl Features for Roads {
+    type Class = FunctionalRoadClass;
+    type Piece = Piece;
+    const NAME: &'static str = "roads";
+    const SHAPES: ShapeKind = ShapeKind::Lines;
+
+    fn about(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> About {
+        let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
+        let (cells, heights) = (source.cells(), source.places.heights());
+        About {
+            fields: road_fields(self.by_piece),
+            description: format!("{what} laid on terrain with {cells}. Heights: {heights}."),
+            metadata: vec![
+                ("HEIGHTS", heights.to_owned()),
+                ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
+            ],
+        }
+    }
+
+    fn pieces(
+        &self,
+        FeatureSource { package, request, places, .. }: &FeatureSource<'_, FunctionalRoadClass>,
+        tile: TileId,
+    ) -> Result<Vec<Piece>, ExportError> {
+        let pieces = read::pieces(package, tile, &request.classes)?;
+        let Some(bounds) = &request.bounds else { return Ok(pieces) };
+        let cut = |piece| cut_at_bounds(piece, bounds, &|at| places.wgs84(at));
+        Ok(pieces.iter().flat_map(cut).collect())
+    }
+
+    fn object(piece: &Piece) -> AreaObject {
+        AreaObject::Way(piece.key.way_id)
+    }
+
+    fn records(
+        &mut self,
+        source: &FeatureSource<'_, FunctionalRoadClass>,
+        pieces: &[Piece],
+    ) -> Result<Vec<Record>, ExportError> {
+        let Some(first) = pieces.first() else { return Ok(Vec::new()) };
         let is_same =
             |piece: &Piece| piece.class == first.class && piece.attributes == first.attributes;
         if !pieces.iter().all(is_same) {
-            return Err(ExportError::Differs { way_id: first.key.way_id });
+            return Err(ExportError::Differs { object: Self::object(first) });
         }
         self.summary.ways += 1;
         if !self.by_piece {
-            return self.feature(first, &lines(pieces), false);
+            return Ok(vec![self.record(&source.places, first, &lines(pieces))?]);
         }
-        for piece in pieces {
+        let of_piece = |piece: &Piece| {
             let line = Line { vertices: piece.vertices.clone(), joins: Vec::new() };
-            self.feature(piece, &[line], true)?;
-        }
-        Ok(())
+            self.record(&source.places, piece, &[line])
+        };
+        pieces.iter().map(of_piece).collect()
     }
+}
 
-    fn feature(&mut self, of: &Piece, lines: &[Line], is_piece: bool) -> Result<(), ExportError> {
+impl Roads {
+    fn record(
+        &mut self,
+        places: &Places<'_>,
+        of: &Piece,
+        lines: &[Line],
+    ) -> Result<Record, ExportError> {
         let Piece { key, class, attributes, .. } = of;
-        let measures = Measures::of(lines, &|from, to| self.places.distance_m(from, to));
+        let measures = Measures::of(lines, &|from, to| places.distance_m(from, to));
         self.summary.features += 1;
         self.summary.length_2d_m += measures.length_2d_m;
         self.summary.vertices += measures.vertices_out;
-        let piece = tile_of_order(key.tile).filter(|_| is_piece).map(|tile| (tile, key.part));
+        let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
         let road = Road {
             way_id: key.way_id,
             class: *class,
@@ -162,8 +157,8 @@ impl Writing<'_> {
         };
         let mut carried = Vec::with_capacity(lines.len());
         for line in lines {
-            carried.extend(self.places.carry(key.way_id, &line.vertices)?);
+            carried.extend(places.carry(Self::object(of), &line.vertices)?);
         }
-        self.file.push(Record { values: road_values(&road), shape: Shape::Lines(carried) })
+        Ok(Record { values: road_values(&road), shape: Shape::Lines(carried) })
     }
 }

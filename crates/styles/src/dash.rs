@@ -135,6 +135,22 @@ impl Dash {
         self.widths
     }
 
+    /// How wide a line is so far along it on the picture, as a share of its width, where its pattern is as short as it gets.
+    #[must_use]
+    pub fn width_at(&self, along_px: f32) -> f32 {
+        if self.least_px <= 0.0 {
+            return 1.0;
+        }
+        let at = (along_px / self.least_px).rem_euclid(1.0);
+        match self.widths {
+            Some(widths) => widths[((at * Self::WIDTHS as f32) as usize).min(Self::WIDTHS - 1)],
+            None => {
+                let [dash, gap, second] = self.ends;
+                f32::from(u8::from(at < dash || (gap..second).contains(&at)))
+            }
+        }
+    }
+
     /// Where the first dash, the first gap and the second dash end, as shares of the pattern.
     #[must_use]
     pub const fn ends(&self) -> [f32; 3] {

@@ -6,5 +6,5 @@ mod letters;
 
 pub use self::{
     credits::draw_attribution,
-    legend::{Legend, LegendArea, LegendRoad, bar_length, bar_length_m, draw_legend},
+    legend::{Legend, LegendArea, LegendLine, LegendRoad, bar_length, bar_length_m, draw_legend},
 };

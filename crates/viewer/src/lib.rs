@@ -59,7 +59,8 @@ pub mod for_tests {
 
 #[cfg(feature = "annotations")]
 pub use annotations::{
-    Legend, LegendArea, LegendRoad, bar_length, bar_length_m, draw_attribution, draw_legend,
+    Legend, LegendArea, LegendLine, LegendRoad, bar_length, bar_length_m, draw_attribution,
+    draw_legend,
 };
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};

@@ -2,24 +2,29 @@
 
 use std::collections::BTreeMap;
 
+use corniche_areas::BoundaryClass;
 use corniche_geom::TileId;
 use image::RgbaImage;
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{AreaStyle, Style};
+use corniche_styles::{AreaStyle, LineStyle, Rgb, Style};
 
 use crate::{
-    annotations::{Legend, LegendArea, LegendRoad, draw_attribution, draw_legend},
+    annotations::{Legend, LegendArea, LegendLine, LegendRoad, draw_attribution, draw_legend},
     camera::Camera,
     class_scale,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, SlopeChain, Targets, TileBuffers},
+    layer_view::view_of_lines,
     lod::{Drawn, Fineness, Quality},
     options::{ClassSet, RoadMethod, RoadOptions},
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{BlockingPackage, ClassVolumes, LoadTileError, MapExtent, TileGeometry, TileStore},
+    tiles::{
+        BlockingPackage, ClassVolumes, LineLayer, LoadTileError, MapExtent, RoadSegments,
+        RoadVolumes, TileGeometry, TileStore,
+    },
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
@@ -283,11 +288,16 @@ fn camera(
     Ok(camera)
 }
 
-/// The classes of roads of which some tile of the view has a piece that is shown in the middle of the picture or nearer.
-fn drawn_classes(tiles: &[&TileGeometry], view: &FrameView<'_>) -> ClassSet {
-    let has = |tile: &TileGeometry, class: FunctionalRoadClass| match view.roads.method {
-        RoadMethod::Geometry => !tile.roads.of_class(class).is_empty(),
-        RoadMethod::ShadowVolumes => !tile.volumes.of_class(class).is_empty(),
+/// The classes of which some tile of the view has a piece that is shown in the middle of the picture or nearer; `of` are a tile's roads, or
+/// the lines that are drawn as roads.
+fn drawn_classes<'a>(
+    tiles: &[&'a TileGeometry],
+    view: &FrameView<'_>,
+    of: impl Fn(&'a TileGeometry) -> (&'a RoadSegments, &'a RoadVolumes),
+) -> ClassSet {
+    let has = |tile: &'a TileGeometry, class: FunctionalRoadClass| match view.roads.method {
+        RoadMethod::Geometry => !of(tile).0.of_class(class).is_empty(),
+        RoadMethod::ShadowVolumes => !of(tile).1.of_class(class).is_empty(),
         RoadMethod::None => false,
     };
     let shown = class_scale::shown_classes(view, view.camera.focus_m());
@@ -310,26 +320,55 @@ fn legend(
         pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
         // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
         north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
-        roads: drawn_classes(tiles, view).iter().map(road).collect(),
+        roads: drawn_classes(tiles, view, |tile| (&tile.roads, &tile.volumes))
+            .iter()
+            .map(road)
+            .collect(),
         areas: legend_areas(view, tiles),
+        boundaries: legend_boundaries(view, tiles),
     }
 }
 
-/// The classes of areas of which some tile of the view has one, in their colours over the ground in the middle of the picture.
-fn legend_areas(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendArea> {
+/// The colour of the ground in the middle of the picture, as far as something of this colour and opacity lets it be seen.
+fn over_ground(view: &FrameView<'_>, color: Rgb, opacity: f32) -> Rgb {
     let ground = view.style.tint.color_at(
         view.camera.target_in_world().z / view.vertical_scale(),
         view.height_range_m,
         view.latitude_deg,
     );
+    [0, 1, 2].map(|k| ground[k] + (color[k] - ground[k]) * opacity)
+}
+
+/// The classes of boundaries of the picture, in their colours over the ground.
+fn legend_boundaries(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendLine> {
+    let layer = LineLayer::Boundaries;
+    let style = layer.style_of(view.style);
+    let view = view_of_lines(view, &style);
+    let line = |class: FunctionalRoadClass| {
+        let label = match BoundaryClass::from_number(class.number())?.admin_level() {
+            Some(2) => "country border".to_owned(),
+            Some(level) => format!("boundary, level {level}"),
+            None => "protected area".to_owned(),
+        };
+        let style = layer.lines_of(view.style)[usize::from(class.number())];
+        let color = over_ground(&view, style.color, style.opacity);
+        Some(LegendLine { label, style: LineStyle { color, ..style } })
+    };
+    let classes = drawn_classes(tiles, &view, |tile| {
+        (&tile.lines.of(layer).segments, &tile.lines.of(layer).volumes)
+    });
+    classes.iter().filter_map(line).collect()
+}
+
+/// The classes of areas of which some tile of the view has one, in their colours over the ground in the middle of the picture.
+fn legend_areas(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendArea> {
     let is_there = |class| {
         let has = |tile: &&TileGeometry| tile.areas.classes.iter().any(|of| of.class == class);
         view.style.area(class).is_drawn() && tiles.iter().any(has)
     };
     let area = |class| {
         let AreaStyle { color, opacity } = *view.style.area(class);
-        let mixed = |k: usize| ground[k] + (color[k] - ground[k]) * opacity;
-        LegendArea { label: class.to_string(), color: [0, 1, 2].map(mixed) }
+        LegendArea { label: class.to_string(), color: over_ground(view, color, opacity) }
     };
     AreaStyle::TOP_FIRST.into_iter().filter(|class| is_there(*class)).map(area).collect()
 }

@@ -4,9 +4,10 @@
 
 use std::path::Path;
 
-use e2e::{corniche, extract_with_areas, sample, text};
+use e2e::{corniche, extract_with_areas, extract_with_boundaries, sample, text};
 use gdal::{
     Dataset, Metadata as _,
+    spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef},
     vector::{Feature, Geometry, LayerAccess as _},
 };
 
@@ -119,4 +120,90 @@ fn json_features(file: &Path) -> usize {
     let text = std::fs::read_to_string(file).unwrap();
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
     value["features"].as_array().unwrap().len()
+}
+
+/// A package in metres, whose CRS bends the sides of a rectangle of degrees: what is cut is what GEOS cuts, in both coordinates.
+#[test]
+fn bounds_cut_areas_and_boundaries_as_geos_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let dem = sample("pass/pass-dem.tif");
+    // West of the lake's middle, south of the wood's hole; in UTM 33 north is 4 degrees beside.
+    let bounds = [9.512, 46.8765, 9.531, 46.895];
+    let words = bounds.map(|degrees| degrees.to_string()).join(",");
+    let [west, south, east, north] = bounds;
+    let wkt = format!(
+        "POLYGON(({west} {south},{east} {south},{east} {north},{west} {north},{west} {south}))"
+    );
+    let rectangle = Geometry::from_wkt(&wkt).unwrap();
+    let extracts = [
+        ("areas", extract_with_areas(folder.path())),
+        ("boundaries", extract_with_boundaries(folder.path())),
+    ];
+    for (layer, osm) in extracts {
+        let package = at(&format!("{layer}.pmtiles"));
+        let inputs = ["build", "-q", "--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
+        let more = ["--areas", "default", "--boundaries", "on", "--crs", "EPSG:32633"];
+        let ran = corniche([&inputs[..], &more, &["-o", text(&package)]].concat());
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let export = |more: &[&str]| {
+            let file = at("file.gpkg");
+            let words = ["export", layer, text(&package), "-O", "-o", text(&file)];
+            let ran = corniche([&words[..], more].concat());
+            assert_eq!(ran.code, 0, "{}", ran.err);
+            by_id(&file)
+        };
+        let whole = export(&["--crs", "EPSG:4326"]);
+        let size = |geometry: &Geometry| {
+            if layer == "areas" { geometry.area() } else { geometry.length() }
+        };
+        let expected: Vec<(i64, Geometry)> = whole
+            .iter()
+            .map(|(id, geometry)| (*id, geometry.intersection(&rectangle).unwrap()))
+            .filter(|(_, cut)| size(cut) > 0.0)
+            .collect();
+        assert!(expected.len() > 1);
+        let is_cut =
+            expected.iter().zip(&whole).any(|((_, cut), (_, own))| size(cut) < 0.9 * size(own));
+        assert!(is_cut, "{layer}");
+        for crs in ["EPSG:4326", "package"] {
+            let found = export(&["--bounds", &words, "--crs", crs]);
+            assert_eq!(found.len(), expected.len(), "{layer}");
+            for ((id, found), (same, expected)) in found.iter().zip(&expected) {
+                assert_eq!(id, same);
+                assert!(found.is_valid(), "{layer} {id}");
+                let ratio = size(found) / size(expected);
+                let envelope = found.envelope();
+                let beyond = [west - envelope.MinX, south - envelope.MinY]
+                    .into_iter()
+                    .chain([envelope.MaxX - east, envelope.MaxY - north])
+                    .fold(0.0, f64::max);
+                assert!(beyond < 2e-7, "{layer} {id} in {crs}: {beyond} degrees beyond");
+                // GEOS takes the long lines of boundaries for straight in degrees, which are straight in metres.
+                let [least, away] = if layer == "areas" { [1e-5, 2e-7] } else { [5e-5, 1e-6] };
+                assert!((ratio - 1.0).abs() < least, "{layer} {id} in {crs}: {ratio}");
+                let away = found.difference(&expected.buffer(away, 4).unwrap()).unwrap();
+                assert!(away.is_empty(), "{layer} {id} in {crs}: {}", away.wkt().unwrap());
+            }
+        }
+    }
+}
+
+/// The features of a file, in longitude and latitude, by ascending ids.
+fn by_id(file: &Path) -> Vec<(i64, Geometry)> {
+    let dataset = Dataset::open(file).unwrap();
+    let mut layer = dataset.layer(0).unwrap();
+    let mut wgs84 = SpatialRef::from_epsg(4326).unwrap();
+    wgs84.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    let mut own = layer.spatial_ref().unwrap();
+    own.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    let transform = CoordTransform::new(&own, &wgs84).unwrap();
+    let features = layer.features().map(|feature| {
+        let id = ["id", "way_id"].iter().find_map(|name| feature.field_index(name).ok()).unwrap();
+        let geometry = feature.geometry().unwrap().transform(&transform).unwrap();
+        (feature.field_as_integer64(id).unwrap().unwrap(), geometry)
+    });
+    let mut all: Vec<_> = features.collect();
+    all.sort_by_key(|(id, _)| *id);
+    all
 }

@@ -22,7 +22,7 @@ const MOST_MIB: u64 = 1024;
 const MOST_MIB_OF_TEXT: u64 = 1536;
 
 /// What is done with a package: the words before its name, and those after.
-const COMMANDS: [(&str, &[&str], &[&str]); 12] = [
+const COMMANDS: [(&str, &[&str], &[&str]); 13] = [
     ("verify", &["verify", "-q"], &[]),
     ("render geo", &["render", "-q", "--size", "200x150", "--roads", "geo"], &["-o", "OUT.png"]),
     ("render sv", &["render", "-q", "--size", "200x150", "--roads", "sv"], &["-o", "OUT.png"]),
@@ -32,6 +32,7 @@ const COMMANDS: [(&str, &[&str], &[&str]); 12] = [
         &["-o", "OUT.gpkg"],
     ),
     ("export areas", &["export", "areas", "-q"], &["-o", "OUT.gpkg"]),
+    ("export boundaries", &["export", "boundaries", "-q"], &["-o", "OUT.gpkg"]),
     ("export mesh", &["export", "mesh", "-q"], &["-o", "OUT.glb"]),
     ("export tiles3d", &["export", "3dtiles", "-q", "--heights", "as-is"], &["-o", "OUT.tiles"]),
     (

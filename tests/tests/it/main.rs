@@ -12,6 +12,7 @@ mod date_line;
 mod datums;
 mod die_with_parent;
 mod export_areas;
+mod export_boundaries;
 mod export_geotiff;
 mod export_mesh;
 mod export_quantized_mesh;

@@ -39,7 +39,7 @@ pub(crate) struct RenderArgs {
     /// Samples per pixel along each side, averaged
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
-    /// Draw a legend: classes of roads, an arrow to the north, and a scale for the middle of the picture
+    /// Draw a legend: classes of roads, areas and boundaries, an arrow to the north, and a scale for the middle of the picture
     #[arg(long)]
     pub(crate) legend: bool,
     /// Draw the edges of the ground's triangles, beneath the roads

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
-use corniche_areas::AreaClass;
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
     Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
@@ -30,6 +30,8 @@ pub(crate) enum Export {
     Roads(Box<ExportRoadsArgs>),
     /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
     Areas(Box<ExportAreasArgs>),
+    /// Write the boundaries of a package (administrative, protected) as lines for GIS programs
+    Boundaries(Box<ExportBoundariesArgs>),
     /// Write the ground of a package and its roads as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),
     /// Write the heights of a package as a raster (GeoTIFF), with --dem also how far they are from the elevation files
@@ -75,9 +77,9 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) report: ReportArgs,
 }
 
+// What exports of layers without heights have.
 #[derive(Debug, Args)]
-#[command(mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")))]
-pub(crate) struct ExportAreasArgs {
+pub(crate) struct InPlanArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
     #[command(flatten)]
@@ -87,14 +89,39 @@ pub(crate) struct ExportAreasArgs {
     pub(crate) format: Option<Format>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
-    /// Classes that are taken, such as water,forest [default: all]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
-    pub(crate) classes: Vec<AreaClass>,
+    #[command(flatten)]
+    pub(crate) within: BoundsArg,
     /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
     pub(crate) crs: ExportCrs,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")),
+    mut_arg("bounds", |arg| arg.help("Cut areas at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
+)]
+pub(crate) struct ExportAreasArgs {
+    #[command(flatten)]
+    pub(crate) plan: InPlanArgs,
+    /// Classes that are taken, such as water,forest [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
+    pub(crate) classes: Vec<AreaClass>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("level", |arg| arg.help("The level whose boundaries are taken [default: the finest]")),
+    mut_arg("bounds", |arg| arg.help("Cut boundaries at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
+)]
+pub(crate) struct ExportBoundariesArgs {
+    #[command(flatten)]
+    pub(crate) plan: InPlanArgs,
+    /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_boundary_class)]
+    pub(crate) classes: Vec<BoundaryClass>,
 }
 
 #[derive(Debug, Args)]
@@ -308,7 +335,8 @@ impl Export {
     pub(crate) fn report(&self) -> ReportArgs {
         match self {
             Self::Roads(args) => args.report,
-            Self::Areas(args) => args.report,
+            Self::Areas(args) => args.plan.report,
+            Self::Boundaries(args) => args.plan.report,
             Self::Mesh(args) => args.report,
             Self::GeoTiff(args) => args.report,
             Self::Tiles3d(args) => args.report,
@@ -459,7 +487,7 @@ pub(crate) enum Format {
     Gpkg,
     /// FlatGeobuf
     Fgb,
-    /// GeoJSON (RFC 7946; with --crs EPSG:4979, areas with EPSG:4326)
+    /// GeoJSON (RFC 7946; with --crs EPSG:4979, areas and boundaries with EPSG:4326)
     Geojson,
     /// Comma-separated values, geometries as WKT
     Csv,
@@ -481,7 +509,7 @@ impl From<Format> for VectorFormat {
 pub(crate) enum ExportCrs {
     /// The package's own.
     Package,
-    /// WGS84: roads in three dimensions, areas in two.
+    /// WGS84: roads in three dimensions, areas and boundaries in two.
     Wgs84,
 }
 
@@ -496,6 +524,13 @@ fn parse_area_class(text: &str) -> Result<AreaClass, String> {
     AreaClass::from_name(text).ok_or_else(|| {
         let names = AreaClass::ALL.map(AreaClass::name).join(", ");
         format!("classes of areas are {names}")
+    })
+}
+
+fn parse_boundary_class(text: &str) -> Result<BoundaryClass, String> {
+    BoundaryClass::from_name(text).ok_or_else(|| {
+        let names = BoundaryClass::ALL.map(BoundaryClass::name).join(", ");
+        format!("classes of boundaries are {names}")
     })
 }
 

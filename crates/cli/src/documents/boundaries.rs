@@ -1,7 +1,8 @@
 //! Boundaries in the JSON documents of several commands.
 
 use corniche_areas::BoundaryClass;
-use corniche_tileset::{BoundariesRecord, BoundaryLevelRecord};
+use corniche_geom::GridFrame;
+use corniche_tileset::{BoundariesRecord, BoundaryLevelRecord, BoundaryRecord};
 use serde::Serialize;
 
 /// The boundaries of a package.
@@ -54,6 +55,32 @@ struct BoundaryLevelDocument {
     points: u64,
     /// Stored bytes of their sections.
     bytes: u64,
+}
+
+/// A part of a boundary near a tile.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct TileBoundaryDocument {
+    /// OSM's id of the way.
+    way_id: i64,
+    /// The most important of what it bounds: "admin-2" to "admin-8" or "protected".
+    class: &'static str,
+    /// OSM's `admin_level` of that; null for protected areas.
+    admin_level: Option<u8>,
+    /// x and y of each point. Segments are whole: each comes into the tile or its level's width margin, and its ends may lie outside.
+    line: Vec<[f64; 2]>,
+}
+
+impl TileBoundaryDocument {
+    /// `place` makes coordinates from working metres.
+    pub(crate) fn of(
+        BoundaryRecord { way_id, class, points }: BoundaryRecord,
+        frame: &GridFrame,
+        place: &impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Self {
+        let line = points.into_iter().map(|point| place(frame.position_m(point))).collect();
+        Self { way_id, class: class.name(), admin_level: class.admin_level(), line }
+    }
 }
 
 impl From<BoundariesRecord> for BoundariesDocument {

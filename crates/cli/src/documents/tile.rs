@@ -3,7 +3,7 @@
 use corniche_tileset::RoadRecord;
 use serde::Serialize;
 
-use super::areas::TileAreaDocument;
+use super::{areas::TileAreaDocument, boundaries::TileBoundaryDocument};
 
 /// A tile, decoded.
 #[derive(Debug, Serialize)]
@@ -40,6 +40,9 @@ pub(crate) struct TileDocument {
     /// Parts of areas that lie in the tile; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) areas: Vec<TileAreaDocument>,
+    /// Parts of boundaries near the tile; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) boundaries: Vec<TileBoundaryDocument>,
 }
 
 /// Triangles of the ground.

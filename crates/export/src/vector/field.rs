@@ -61,6 +61,8 @@ pub(crate) struct Record {
 pub(crate) enum ShapeKind {
     /// [`Shape::Lines`]
     Lines,
+    /// [`Shape::Lines`], whose heights are left out.
+    PlanLines,
     /// [`Shape::Polygons`]
     Polygons,
 }

@@ -101,14 +101,14 @@ impl VectorFile {
         let records = std::mem::take(&mut self.waiting);
         self.written.features += records.len() as u64;
         self.written.vertices += std::mem::take(&mut self.waiting_vertices) as u64;
-        let fields = &self.layer.fields;
+        let of = &self.layer;
         let written = match self.format {
             // Without a transaction each feature would be one.
             VectorFormat::GeoPackage => self.dataset.start_transaction().and_then(|transaction| {
-                write_all(&transaction.layer(0)?, fields, &records)?;
+                write_all(&transaction.layer(0)?, of, &records)?;
                 transaction.commit()
             }),
-            _ => self.dataset.layer(0).and_then(|layer| write_all(&layer, fields, &records)),
+            _ => self.dataset.layer(0).and_then(|layer| write_all(&layer, of, &records)),
         };
         written.map_err(|error| failed(&self.path, error))
     }
@@ -154,6 +154,7 @@ fn create(
         srs: (format != VectorFormat::GeoJson).then_some(&crs),
         ty: match layer.shapes {
             ShapeKind::Lines => OGRwkbGeometryType::wkbMultiLineString25D,
+            ShapeKind::PlanLines => OGRwkbGeometryType::wkbMultiLineString,
             ShapeKind::Polygons => OGRwkbGeometryType::wkbMultiPolygon,
         },
         options: Some(&options),
@@ -194,11 +195,11 @@ fn options(format: VectorFormat, layer: &Layer, driver: &Driver) -> Vec<String> 
     }
 }
 
-fn write_all(layer: &GdalLayer<'_>, fields: &[Field], records: &[Record]) -> Result<(), GdalError> {
+fn write_all(layer: &GdalLayer<'_>, of: &Layer, records: &[Record]) -> Result<(), GdalError> {
     let defn = Defn::from_layer(layer);
     for record in records {
         let mut feature = Feature::new(&defn)?;
-        for (index, (value, field)) in record.values.iter().zip(fields).enumerate() {
+        for (index, (value, field)) in record.values.iter().zip(&of.fields).enumerate() {
             match value {
                 Value::Null => feature.set_field_null(index)?,
                 Value::Integer(number) if field.kind == FieldKind::Integer => {
@@ -209,15 +210,15 @@ fn write_all(layer: &GdalLayer<'_>, fields: &[Field], records: &[Record]) -> Res
                 Value::Text(text) => feature.set_field_string(index, text)?,
             }
         }
-        feature.set_geometry(geometry(&record.shape)?)?;
+        feature.set_geometry(geometry(&record.shape, of.shapes)?)?;
         feature.create(layer)?;
     }
     Ok(())
 }
 
-fn geometry(shape: &Shape) -> Result<Geometry, GdalError> {
+fn geometry(shape: &Shape, kind: ShapeKind) -> Result<Geometry, GdalError> {
     match shape {
-        Shape::Lines(lines) => multi_line(lines),
+        Shape::Lines(lines) => multi_line(lines, kind),
         Shape::Polygons(polygons) => multi_polygon(polygons),
     }
 }
@@ -240,13 +241,22 @@ fn multi_polygon(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Geometry, GdalError>
     Ok(all)
 }
 
-fn multi_line(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
-    let mut all = Geometry::empty(OGRwkbGeometryType::wkbMultiLineString25D)?;
+fn multi_line(lines: &[Vec<[f64; 3]>], kind: ShapeKind) -> Result<Geometry, GdalError> {
+    let [of_all, of_part] = match kind {
+        ShapeKind::PlanLines => {
+            [OGRwkbGeometryType::wkbMultiLineString, OGRwkbGeometryType::wkbLineString]
+        }
+        _ => [OGRwkbGeometryType::wkbMultiLineString25D, OGRwkbGeometryType::wkbLineString25D],
+    };
+    let mut all = Geometry::empty(of_all)?;
     for line in lines {
-        let mut part = Geometry::empty(OGRwkbGeometryType::wkbLineString25D)?;
+        let mut part = Geometry::empty(of_part)?;
         // From the end, so that GDAL takes memory for all vertices at once.
         for (index, &[x, y, z]) in line.iter().enumerate().rev() {
-            part.set_point(index, (x, y, z));
+            match kind {
+                ShapeKind::PlanLines => part.set_point_2d(index, (x, y)),
+                _ => part.set_point(index, (x, y, z)),
+            }
         }
         all.add_geometry(part)?;
     }

@@ -9,8 +9,8 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ExportError, RoadsRequest, VectorFormat, WayGrowth, export_roads, growth_by_way,
-    road_fields,
+    Coordinates, ExportError, FeatureRequest, RoadFeatures, VectorFormat, WayGrowth, export_roads,
+    growth_by_way, road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
@@ -33,13 +33,12 @@ fn small_package(folder: &Path) -> PathBuf {
     path
 }
 
-fn request(memory_bytes: u64) -> RoadsRequest {
-    RoadsRequest {
+fn request(memory_bytes: u64) -> FeatureRequest<FunctionalRoadClass> {
+    FeatureRequest {
         format: VectorFormat::Csv,
         level: None,
         classes: FunctionalRoadClass::all().collect(),
         bounds: None,
-        pieces: true,
         coordinates: Coordinates::Package,
         memory_bytes,
     }
@@ -52,7 +51,9 @@ fn memory_does_not_change_the_file() {
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
         let path = folder.path().join(format!("{memory_bytes}.csv"));
-        let summary = export_roads(&package, &request(memory_bytes), &path, &Silent).unwrap();
+        let summary =
+            export_roads(&package, &request(memory_bytes), RoadFeatures::Pieces, &path, &Silent)
+                .unwrap();
         assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
         fs::read(path).unwrap()
     });
@@ -113,7 +114,7 @@ fn an_export_stops_when_it_is_asked_to() {
     for asks in 0..20 {
         let path = folder.path().join(format!("{asks}.csv"));
         let impatient = Impatient { asks: AtomicU32::new(asks) };
-        match export_roads(&package, &request(1 << 20), &path, &impatient) {
+        match export_roads(&package, &request(1 << 20), RoadFeatures::Pieces, &path, &impatient) {
             Err(ExportError::Interrupted) => stopped += 1,
             Ok(_) => break,
             Err(error) => panic!("{error}"),
@@ -134,7 +135,8 @@ fn a_damaged_tile_is_named() {
     fs::write(&path, bytes).unwrap();
     let package = FilePackage::open(&path).unwrap();
     let target = folder.path().join("a.csv");
-    let error = export_roads(&package, &request(1 << 20), &target, &Silent).unwrap_err();
+    let error = export_roads(&package, &request(1 << 20), RoadFeatures::Pieces, &target, &Silent)
+        .unwrap_err();
     assert!(error.is_unusable_input() && error.to_string().contains("2/"), "{error}");
 }
 

@@ -161,7 +161,7 @@ fn area_layer<'a>(
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
-    let splitting = AreaSplitting { frame, data: input.data, clip: input.clip, polygon: input.polygon };
+    let splitting = AreaSplitting { frame, data: input.data, clip: input.clip };
     let sea =
         SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)
@@ -171,7 +171,12 @@ fn boundary_layer<'a>(
     input: &ExtractInput<'a>,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> BoundaryLayer<'a> {
-    let splitting = BoundarySplitting { levels: input.levels, data: input.data, clip: input.clip, polygon: input.polygon };
+    let splitting = BoundarySplitting {
+        levels: input.levels,
+        data: input.data,
+        clip: input.clip,
+        polygon: input.polygon,
+    };
     let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
     BoundaryLayer::new(splitting, places, input.memory_bytes)
 }

@@ -3,7 +3,7 @@
 use image::RgbaImage;
 
 use super::letters::{INK, Letters, blend, draw_box, fill, line_px};
-use corniche_styles::{Rgb, RoadBands};
+use corniche_styles::{LineStyle, Rgb, RoadBands};
 
 /// What a legend tells.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,17 @@ pub struct Legend {
     pub roads: Vec<LegendRoad>,
     /// The areas of the picture, the topmost first.
     pub areas: Vec<LegendArea>,
+    /// The boundaries of the picture, most important first.
+    pub boundaries: Vec<LegendLine>,
+}
+
+/// A class of boundaries in a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendLine {
+    /// What people call it.
+    pub label: String,
+    /// How it is drawn, with its colour as over the ground.
+    pub style: LineStyle,
 }
 
 /// A class of areas in a legend.
@@ -41,7 +52,7 @@ pub struct LegendRoad {
 /// The scale bar is about this part of the picture's width.
 const BAR_SHARE: f64 = 0.12;
 
-/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads and of areas, an arrow to the north, and a bar
+/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads, areas and boundaries, an arrow to the north, and a bar
 /// with its length on the ground in the middle of the picture.
 pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     let (width, height) = picture.dimensions();
@@ -54,9 +65,10 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     let sample_px = 2 * line_px;
     let labels = legend.roads.iter().map(|road| road.label.as_str());
     let labels = labels.chain(legend.areas.iter().map(|area| area.label.as_str()));
+    let labels = labels.chain(legend.boundaries.iter().map(|line| line.label.as_str()));
     let labels_px = letters.widest_px(labels);
     let bar_line_px = bar_px + pad_px + letters.widest_px([bar_text.as_str()].into_iter());
-    let classes = (legend.roads.len() + legend.areas.len()) as u32;
+    let classes = (legend.roads.len() + legend.areas.len() + legend.boundaries.len()) as u32;
     let classes_px = if classes == 0 { 0 } else { sample_px + pad_px + labels_px };
     let right = bar_line_px.max(classes_px) + 2 * pad_px + 2 * line_px;
     let lines = classes + 1;
@@ -88,6 +100,23 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
         let rows = above + line_px / 8..above + line_px - line_px / 8;
         fill(picture, pad_px..pad_px + sample_px, rows, of_255(area.color), 1.0);
         letters.draw(picture, &area.label, (2 * pad_px + sample_px) as f32, above as f32);
+    }
+
+    let first = (legend.roads.len() + legend.areas.len()) as u32;
+    for (line, row) in legend.boundaries.iter().zip(first..) {
+        let above = above_row(row);
+        let thick = (line.style.width_px.round() as u32).clamp(1, line_px - 2);
+        let start = above + (line_px - thick) / 2;
+        for column in 0..sample_px {
+            let share = line.style.dash.width_at(column as f32 + 0.5);
+            let beside = (0.5 * (1.0 - share) * thick as f32).round() as u32;
+            if share > 0.0 && 2 * beside < thick {
+                let rows = start + beside..start + thick - beside;
+                let columns = pad_px + column..pad_px + column + 1;
+                fill(picture, columns, rows, of_255(line.style.color), 1.0);
+            }
+        }
+        letters.draw(picture, &line.label, (2 * pad_px + sample_px) as f32, above as f32);
     }
 
     let above = height.saturating_sub(line_px + pad_px / 2);

@@ -17,6 +17,13 @@ fn legend(north_deg: f64) -> Legend {
         north_deg,
         roads: vec![road("motorway", [1.0, 0.0, 0.0]), road("track", [1.0, 1.0, 0.0])],
         areas: vec![LegendArea { label: "water".to_owned(), color: [0.0, 1.0, 1.0] }],
+        boundaries: vec![LegendLine {
+            label: "country border".to_owned(),
+            style: LineStyle {
+                dash: corniche_styles::Dash::new(&[6.0, 4.0]).unwrap(),
+                ..LineStyle::solid([1.0, 0.0, 1.0], 3.0)
+            },
+        }],
     }
 }
 
@@ -72,10 +79,24 @@ fn the_bar_is_as_long_as_it_says() {
 fn each_class_has_its_colours() {
     let mut picture = picture();
     draw_legend(&mut picture, &legend(0.0));
-    for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255], [0, 255, 255]] {
+    for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255]] {
         let count = picture.pixels().filter(|pixel| pixel.0[..3] == color).count();
         assert!(count > 40, "{color:?}: {count}");
     }
+}
+
+/// Three pixels thick, six of ten along it.
+#[test]
+fn boundaries_have_their_dashes() {
+    let mut picture = picture();
+    draw_legend(&mut picture, &legend(0.0));
+    let is_line = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [255, 0, 255];
+    let rows: Vec<u32> = (0..480).filter(|&y| (0..640).any(|x| is_line(x, y))).collect();
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    let columns: Vec<u32> = (0..640).filter(|&x| is_line(x, rows[0])).collect();
+    let first = columns[0];
+    assert!(columns.len() > 15, "{columns:?}");
+    assert!(columns.iter().all(|x| (x - first) % 10 < 6), "{columns:?}");
 }
 
 /// The arrow's dark half lies west of its axis; the tip turns with the north.

@@ -1,4 +1,4 @@
-//! A piece of an area comes back from its bytes as it was.
+//! A piece of an object in plan comes back from its bytes as it was.
 
 use super::*;
 
@@ -6,23 +6,23 @@ use super::*;
 fn a_piece_comes_back_as_it_was_and_never_from_less() {
     let point = |u, v| LatticePoint { u, v };
     for object in [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)] {
-        let piece = AreaPiece {
+        let piece = PlanPiece {
             object,
             tile: 1 << 40,
             class: 2,
             name: "Gänglesee".to_owned(),
-            rings: vec![
+            lines: vec![
                 vec![point(0, 0), point(1 << 40, -3), point(5, 5)],
                 vec![point(1, 1), point(2, 1), point(2, 2), point(1, 2)],
             ],
         };
         let mut bytes = Vec::new();
         piece.encode(&mut bytes);
-        assert_eq!(AreaPiece::decode(&mut bytes.as_slice()), Some(piece.clone()));
+        assert_eq!(PlanPiece::decode(&mut bytes.as_slice()), Some(piece.clone()));
         for length in 0..bytes.len() {
-            // Cut between two rings, it is a piece with fewer rings; the sorter never cuts.
-            let cut = AreaPiece::decode(&mut &bytes[..length]);
-            assert!(cut.is_none_or(|cut| cut.rings.len() < piece.rings.len()), "{length}");
+            // Cut between two lines, it is a piece with fewer lines; the sorter never cuts.
+            let cut = PlanPiece::decode(&mut &bytes[..length]);
+            assert!(cut.is_none_or(|cut| cut.lines.len() < piece.lines.len()), "{length}");
         }
     }
 }

@@ -1,0 +1,210 @@
+//! Areas cut at a rectangle of longitudes and latitudes, whose sides a projection bends.
+
+use std::collections::BTreeMap;
+
+use corniche_areas::{Polygon, cut_out};
+use corniche_geom::{LatticeBounds, LatticePoint};
+
+use crate::{
+    bounds::DegreeBounds,
+    cut::{STEPS, STRAIGHT_DEG, polygons_of},
+    places::Places,
+};
+
+/// A polygon as rings of positions in working metres, the outer one first.
+pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
+
+/// A corner: where it is in working metres, and in degrees as [`DegreeBounds::relative`] has them.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    at_m: [f64; 2],
+    at_deg: [f64; 2],
+}
+
+/// The rings of a polygon of the package.
+pub(crate) fn rings_of(polygon: &Polygon, places: &Places<'_>) -> Rings {
+    let frame = &places.manifest().frame;
+    let position = |point: &LatticePoint| frame.position_m(*point);
+    polygon.rings().map(|ring| ring.points().iter().map(position).collect()).collect()
+}
+
+/// What the bounds leave of a polygon; `None` where it cannot be cut, as around a pole.
+///
+/// It is cut on a lattice of degrees, where the rectangle's sides are straight. So that the polygon's own lines are straight there, too, those
+/// that the projection bends get points between, which are left out again afterwards. New corners lie on the sides; where
+/// features have the package's coordinates, a side gets as many as it needs to be bent.
+pub(crate) fn cut_polygon_at_bounds(
+    polygon: &Polygon,
+    bounds: &DegreeBounds,
+    places: &Places<'_>,
+) -> Option<Vec<Rings>> {
+    let cutting = Cutting { bounds, places };
+    let whole = rings_of(polygon, places);
+    let mut first = None;
+    let rings: Option<Vec<Vec<Corner>>> =
+        whole.iter().map(|ring| cutting.corners(ring, &mut first)).collect();
+    let rings = rings?;
+    // What each corner is in working metres; `None` for those between.
+    let mut known: BTreeMap<LatticePoint, Option<[f64; 2]>> = BTreeMap::new();
+    let mut on_lattice: Vec<Vec<LatticePoint>> = Vec::with_capacity(rings.len());
+    for (ring, own) in rings.iter().zip(&whole) {
+        let mut own = own.iter().peekable();
+        let mut points = Vec::with_capacity(ring.len());
+        for corner in ring {
+            let point = lattice_point(corner.at_deg);
+            let is_own = own.next_if(|own| **own == corner.at_m).is_some();
+            if is_own || !known.contains_key(&point) {
+                known.insert(point, is_own.then_some(corner.at_m));
+            }
+            points.push(point);
+        }
+        on_lattice.push(points);
+    }
+    let limits = bounds.limits().into_iter().map(lattice_limits);
+    let is_inside = |limits: &LatticeBounds| {
+        let is_in = |point: &LatticePoint| limits.contains(*point);
+        on_lattice.iter().flatten().all(is_in)
+    };
+    if limits.clone().any(|limits| is_inside(&limits)) {
+        return Some(vec![whole]);
+    }
+    let polygons = polygons_of(&on_lattice)?;
+    let mut cut = Vec::new();
+    for limits in limits {
+        for polygon in cut_out(&polygons, &limits).ok()? {
+            let rings = polygon.rings().map(|ring| {
+                let segments = ring.segments();
+                cutting.ring(segments, &limits, &known)
+            });
+            let rings: Option<Rings> = rings.collect();
+            cut.push(rings?);
+        }
+    }
+    Some(cut)
+}
+
+struct Cutting<'a> {
+    bounds: &'a DegreeBounds,
+    places: &'a Places<'a>,
+}
+
+impl Cutting<'_> {
+    /// The corners of a ring with those between where its lines are bent in degrees. Longitudes run on from `first`, the polygon's first corner.
+    fn corners(&self, ring: &[[f64; 2]], first: &mut Option<[f64; 2]>) -> Option<Vec<Corner>> {
+        let coordinates = &self.places.manifest().coordinates;
+        let after = |at_m: [f64; 2], before: Option<[f64; 2]>| {
+            let deg = coordinates.wgs84_from_working(at_m);
+            let at_deg = match before {
+                Some(before) => self.bounds.relative_after(deg, before),
+                None => self.bounds.relative(deg),
+            };
+            Corner { at_m, at_deg }
+        };
+        let start = after(*ring.first()?, *first);
+        first.get_or_insert(start.at_deg);
+        let mut corners = vec![start];
+        for &at_m in ring[1..].iter().chain(&ring[..1]) {
+            let from = *corners.last()?;
+            let to = after(at_m, Some(from.at_deg));
+            let middle =
+                |from: Corner, to: Corner| Some(after(mean(from.at_m, to.at_m), Some(from.at_deg)));
+            add_between([from, to], &middle, LINE_HALVINGS, &mut corners);
+            corners.push(to);
+        }
+        let end = corners.pop()?;
+        // Around a pole a ring does not come back to its first longitude.
+        ((end.at_deg[0] - start.at_deg[0]).abs() < 1.0).then_some(corners)
+    }
+
+    /// A ring of the lattice of degrees in working metres.
+    fn ring(
+        &self,
+        segments: impl Iterator<Item = [LatticePoint; 2]>,
+        limits: &LatticeBounds,
+        known: &BTreeMap<LatticePoint, Option<[f64; 2]>>,
+    ) -> Option<Vec<[f64; 2]>> {
+        let sides = |point: LatticePoint| {
+            let LatticeBounds { min, max } = limits;
+            [point.u == min.u, point.u == max.u, point.v == min.v, point.v == max.v]
+        };
+        let corner = |point: LatticePoint| {
+            let at_deg = [point.u, point.v].map(|steps| steps as f64 / STEPS);
+            let at_m = known.get(&point).copied().flatten();
+            let at_m = at_m.or_else(|| self.position_m(at_deg))?;
+            Some(Corner { at_m, at_deg })
+        };
+        let middle = |from: Corner, to: Corner| {
+            let at_deg = mean(from.at_deg, to.at_deg);
+            Some(Corner { at_m: self.position_m(at_deg)?, at_deg })
+        };
+        let mut corners = Vec::new();
+        for [from, to] in segments {
+            let is_on_side = sides(from).contains(&true);
+            if known.get(&from) == Some(&None) && !is_on_side {
+                continue;
+            }
+            let start = corner(from)?;
+            corners.push(start);
+            let is_along_side = sides(from).iter().zip(sides(to)).any(|(one, other)| *one && other);
+            if is_along_side && !self.places.are_degrees() {
+                add_between([start, corner(to)?], &middle, SIDE_HALVINGS, &mut corners);
+            }
+        }
+        Some(corners.iter().map(|corner| corner.at_m).collect())
+    }
+
+    /// The position of a place in degrees from the middle of the bounds. Longitudes of a package may run on past 180.
+    fn position_m(&self, [east, lat]: [f64; 2]) -> Option<[f64; 2]> {
+        let manifest = self.places.manifest();
+        let lon = self.bounds.middle()[0] + east;
+        let data = manifest.whole_data_bounds();
+        let places = [0.0, 360.0, -360.0, 720.0, -720.0]
+            .map(|turn| manifest.coordinates.working_from_wgs84([lon + turn, lat]));
+        let is_near = |position: &[f64; 2]| data.contains(*position);
+        let mut found = places.into_iter().flatten();
+        found.clone().find(is_near).or_else(|| found.next())
+    }
+}
+
+/// Lines are bent if their middle is farther than this from where it would be, metres; in degrees, [`STRAIGHT_DEG`].
+const STRAIGHT_M: f64 = 0.01;
+/// How often lines of a polygon are halved at most: then one of ten kilometres is straight to a millimetre, and the work is bounded.
+const LINE_HALVINGS: u32 = 6;
+/// The same for the sides of the rectangle, which are few and long.
+const SIDE_HALVINGS: u32 = 12;
+
+/// Adds corners between two, so many that lines from one to the next are straight in both coordinates.
+fn add_between(
+    [from, to]: [Corner; 2],
+    middle: &dyn Fn(Corner, Corner) -> Option<Corner>,
+    halvings: u32,
+    corners: &mut Vec<Corner>,
+) {
+    let Some(between) = middle(from, to).filter(|_| halvings > 0) else { return };
+    let away = |at: [f64; 2], mean: [f64; 2]| (at[0] - mean[0]).hypot(at[1] - mean[1]);
+    if away(between.at_m, mean(from.at_m, to.at_m)) > STRAIGHT_M
+        || away(between.at_deg, mean(from.at_deg, to.at_deg)) > STRAIGHT_DEG
+    {
+        add_between([from, between], middle, halvings - 1, corners);
+        corners.push(between);
+        add_between([between, to], middle, halvings - 1, corners);
+    }
+}
+
+fn mean(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]))
+}
+
+fn lattice_point(deg: [f64; 2]) -> LatticePoint {
+    let [u, v] = deg.map(|degrees| (degrees * STEPS).round() as i64);
+    LatticePoint::new(u, v)
+}
+
+fn lattice_limits([[west, east], [south, north]]: [[f64; 2]; 2]) -> LatticeBounds {
+    // Farther than anything lies, where there is no side.
+    let within = |degrees: f64| degrees.clamp(-2000.0, 2000.0);
+    LatticeBounds {
+        min: lattice_point([within(west), south]),
+        max: lattice_point([within(east), north]),
+    }
+}

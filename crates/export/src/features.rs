@@ -1,0 +1,134 @@
+//! The way of each layer out of a package: pieces of tiles, sorted by object, become features of a vector file.
+
+use std::path::Path;
+
+use corniche_areas::AreaObject;
+use corniche_geom::TileId;
+use corniche_store::{SortRecord, Sorter};
+use corniche_tileset::FilePackage;
+use corniche_work::{Observer, Stage};
+
+use crate::{
+    error::ExportError,
+    feature_request::{Coordinates, FeatureRequest},
+    places::Places,
+    read,
+    scratch::FileScratch,
+    sorted_pieces::SortedPieces,
+    vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
+};
+
+/// A layer of a package on its way into a file: what is its own.
+pub(crate) trait Features {
+    /// The classes of its objects.
+    type Class;
+    /// What one tile holds of an object; pieces sort by objects.
+    type Piece: SortRecord;
+    /// The layer's name in the file.
+    const NAME: &'static str;
+    /// Its geometries.
+    const SHAPES: ShapeKind;
+
+    /// What the file says of the layer.
+    fn about(&self, source: &FeatureSource<'_, Self::Class>) -> About;
+
+    /// What a tile holds of the objects that are wanted.
+    fn pieces(
+        &self,
+        source: &FeatureSource<'_, Self::Class>,
+        tile: TileId,
+    ) -> Result<Vec<Self::Piece>, ExportError>;
+
+    /// The object of a piece.
+    fn object(piece: &Self::Piece) -> AreaObject;
+
+    /// The features of an object, from all its pieces.
+    fn records(
+        &mut self,
+        source: &FeatureSource<'_, Self::Class>,
+        pieces: &[Self::Piece],
+    ) -> Result<Vec<Record>, ExportError>;
+}
+
+/// What a file says of a layer, beside what it says of the package.
+pub(crate) struct About {
+    pub(crate) fields: Vec<Field>,
+    pub(crate) description: String,
+    pub(crate) metadata: Vec<(&'static str, String)>,
+}
+
+/// What features are made from.
+pub(crate) struct FeatureSource<'a, C> {
+    pub(crate) package: &'a FilePackage,
+    pub(crate) request: &'a FeatureRequest<C>,
+    /// The level whose objects are taken.
+    pub(crate) level: u8,
+    pub(crate) places: Places<'a>,
+}
+
+impl<'a, C> FeatureSource<'a, C> {
+    /// Fails where the package or the format cannot have what is asked for.
+    pub(crate) fn new(
+        package: &'a FilePackage,
+        request: &'a FeatureRequest<C>,
+        shapes: ShapeKind,
+    ) -> Result<Self, ExportError> {
+        let level = read::level(package, request.level)?;
+        if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
+            return Err(match shapes {
+                ShapeKind::Lines => ExportError::GeoJsonCrs,
+                ShapeKind::PlanLines | ShapeKind::Polygons => ExportError::GeoJsonPlanCrs,
+            });
+        }
+        let places = Places::new(package.manifest(), request.coordinates)?;
+        Ok(Self { package, request, level, places })
+    }
+
+    /// The spacing of the level's nodes, in words.
+    pub(crate) fn cells(&self) -> String {
+        let [east_m, north_m] = self.package.manifest().frame.level_cell(self.level).to_array();
+        format!("cells of {east_m:.1} × {north_m:.1} m")
+    }
+}
+
+/// Writes the features of a layer to a new file at `path`. Beside it, in the same folder, are unnamed files for sorting, and what GDAL needs
+/// while it writes. After an error the file at `path` is of no use.
+pub(crate) fn write_features<F: Features>(
+    features: &mut F,
+    source: &FeatureSource<'_, F::Class>,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<(), ExportError> {
+    let FeatureSource { package, request, level, places } = source;
+    let folder = corniche_store::folder_of(path);
+    let scratch = FileScratch::create(folder)
+        .map_err(|source| ExportError::Sort { folder: folder.to_path_buf(), source })?;
+    let tiles = read::tiles(package, *level, request.bounds.as_ref())?;
+    let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
+    let pieces =
+        SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
+    let manifest = package.manifest();
+    let About { fields, description, metadata } = features.about(source);
+    let of_package = [
+        ("GENERATOR", manifest.generator.clone()),
+        ("PACKAGE", package.file_name().to_owned()),
+        ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+        ("LEVEL", level.to_string()),
+    ];
+    let layer = Layer {
+        name: F::NAME,
+        fields,
+        shapes: F::SHAPES,
+        crs: places.crs().to_owned(),
+        description,
+        attribution: manifest.attribution.join("; "),
+        metadata: of_package.into_iter().chain(metadata).collect(),
+    };
+    let mut file = VectorFile::create(path, request.format, layer)?;
+    pieces.for_each(observer, F::object, |pieces| {
+        features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
+    })?;
+    file.finish()?;
+    observer.end(Stage::ExportFeatures);
+    Ok(())
+}
