@@ -24,6 +24,8 @@ const MOST_ENTRIES_PER_EDGE: usize = 8;
 /// Source: D. Sunday 2021, *Practical Geometry Algorithms*, "Winding number".
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LatticeRegion {
+    /// Open, outer ones counter-clockwise, holes clockwise.
+    rings: Vec<Vec<LatticePoint>>,
     edges: Vec<Edge>,
     bounds: LatticeBounds,
     /// Rows of lattice points to a band.
@@ -45,7 +47,7 @@ impl LatticeRegion {
     /// nothing on the lattice are left out. `None` where nothing is left.
     #[must_use]
     pub fn new(polygons: &[Vec<Vec<LatticePoint>>]) -> Option<Self> {
-        let mut edges = Vec::new();
+        let (mut edges, mut rings) = (Vec::new(), Vec::new());
         for polygon in polygons {
             for (index, ring) in polygon.iter().enumerate() {
                 let area = twice_signed_area(ring);
@@ -55,6 +57,13 @@ impl LatticeRegion {
                 // Outer rings wind counter-clockwise, holes clockwise, whichever way they are written.
                 let is_turned = (area > 0) != (index == 0);
                 edges.extend(ring_edges(ring).filter_map(|edge| Edge::new(edge, is_turned)));
+                let mut own = ring.clone();
+                own.dedup();
+                own.pop_if(|last| ring.first() == Some(last) && ring.len() > 1);
+                if is_turned {
+                    own.reverse();
+                }
+                rings.push(own);
             }
         }
         let corners: Vec<LatticePoint> =
@@ -75,13 +84,19 @@ impl LatticeRegion {
         let bands = IndexLists::new(band(bounds.max.v) + 1, edges.len(), |index| {
             band(edges[index].low.v)..=band(edges[index].high.v)
         });
-        Some(Self { edges, bounds, band_steps, bands })
+        Some(Self { rings, edges, bounds, band_steps, bands })
     }
 
     /// The smallest rectangle around it.
     #[must_use]
     pub fn bounds(&self) -> LatticeBounds {
         self.bounds
+    }
+
+    /// The outlines as open lines, whose last point is joined to the first: counter-clockwise around what is inside, clockwise around holes. What
+    /// they wind around more often than never is inside.
+    pub fn rings(&self) -> impl Iterator<Item = &[LatticePoint]> {
+        self.rings.iter().map(Vec::as_slice)
     }
 
     /// The edges of outlines that may share a point with a rectangle, in a fixed order; each once.

@@ -17,6 +17,7 @@ mod geo_against_sv;
 mod georeference;
 mod grid;
 mod header;
+mod layer_sums;
 mod manifest_sums;
 mod one_tile;
 mod osm;

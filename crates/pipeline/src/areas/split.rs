@@ -1,7 +1,9 @@
 //! One area to its parts in the tiles of each level.
 
-use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all};
-use corniche_geom::{GridFrame, LatticeBounds, TileId};
+use corniche_areas::{
+    Area, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all, intersection,
+};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use crate::{heights::data_tiles::DataTiles, points_step::points_step};
@@ -12,6 +14,8 @@ pub(crate) struct AreaSplitting<'a> {
     pub(crate) data: DataTiles,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
+    /// The polygon that was asked for: areas end at its outline.
+    pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
 impl AreaSplitting<'_> {
@@ -37,6 +41,9 @@ impl AreaSplitting<'_> {
             if let Some(clip) = &self.clip {
                 coarse = cut_out(&coarse, clip)?;
             }
+            if let Some(region) = self.polygon {
+                coarse = inside(coarse, region, step)?;
+            }
             let mut tiles = Vec::new();
             let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
@@ -44,6 +51,24 @@ impl AreaSplitting<'_> {
         }
         Ok(parts)
     }
+}
+
+/// The parts of polygons in a region, on the lattice of a level.
+fn inside(
+    polygons: Vec<Polygon>,
+    region: &LatticeRegion,
+    step: i64,
+) -> Result<Vec<Polygon>, OutlineError> {
+    let points: Vec<LatticePoint> =
+        polygons.iter().flat_map(|polygon| polygon.outer().points()).copied().collect();
+    // Outlines are put on the lattice of the level, too.
+    let Some(near) = LatticeBounds::of(&points).map(|bounds| bounds.expanded(2 * step)) else {
+        return Ok(polygons);
+    };
+    if region.edges_near(&near).next().is_some() {
+        return intersection(&polygons, region.rings(), step);
+    }
+    Ok(if region.contains(near.min) { polygons } else { Vec::new() })
 }
 
 /// The tiles of a level on which data can lie.

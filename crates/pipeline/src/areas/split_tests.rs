@@ -16,7 +16,12 @@ fn frame() -> GridFrame {
 
 fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
-    AreaSplitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
+    AreaSplitting {
+        frame,
+        data: DataTiles::between(frame, south_west, north_east),
+        clip: None,
+        polygon: None,
+    }
 }
 
 /// A star around a place, with a hole.
@@ -126,6 +131,44 @@ proptest! {
             let reach = 3000 + 1500;
             prop_assert!(reach < 5120 && (sum - whole).abs() <= off, "{level}: {sum} of {whole}");
             assert_seams_hold(&frame, &tiles);
+        }
+    }
+
+    /// A part of an area in a triangle of any place: seams hold, nothing lies outside, and what lies in it and what lies beside it is all.
+    #[test]
+    fn areas_end_at_the_outline_of_a_polygon(
+        center in [-1500_i64..1500, -1500_i64..1500],
+        radii in prop::collection::vec(300_i64..3000, 5..30),
+        corners in prop::array::uniform3([-4000_i64..4000, -4000_i64..4000]),
+    ) {
+        let frame = frame();
+        let metre = (1.0 / frame.lattice_step_m()) as i64;
+        let radii: Vec<i64> = radii.into_iter().map(|radius| radius * metre).collect();
+        let area = star(center.map(|part| part * metre), &radii);
+        let corner = |[u, v]: [i64; 2]| LatticePoint::new(u * metre, v * metre);
+        let triangle = corners.map(corner).to_vec();
+        let square = [[-9000, -9000], [9000, -9000], [9000, 9000], [-9000, 9000]].map(corner).to_vec();
+        let Some(inside) = LatticeRegion::new(&[vec![triangle.clone()]]) else { return Ok(()) };
+        let outside = LatticeRegion::new(&[vec![square, triangle]]).unwrap();
+        let whole: BTreeMap<_, _> = by_level(&splitting(&frame), &area);
+        let [within, beside] = [&inside, &outside].map(|region| {
+            by_level(&AreaSplitting { polygon: Some(region), ..splitting(&frame) }, &area)
+        });
+        for (level, tiles) in &whole {
+            let step = splitting(&frame).step(*level);
+            let mut sums = [0; 2];
+            for (part, sum) in [&within, &beside].into_iter().zip(&mut sums) {
+                let Some(tiles) = part.get(level) else { continue };
+                assert_seams_hold(&frame, tiles);
+                *sum = tiles.values().map(|record| doubled_area(&record.polygons)).sum::<i128>();
+            }
+            let around = inside.bounds().expanded(step);
+            let points = within.get(level).into_iter().flat_map(|tiles| tiles.values());
+            let mut points = points.flat_map(|record| &record.polygons).flat_map(|part| &part.rings).flatten();
+            prop_assert!(points.all(|&point| around.contains(point)));
+            let all: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
+            let off = i128::from(step) * 4 * (radii.iter().map(|&radius| i128::from(radius)).sum::<i128>() + 3 * 12_000 * i128::from(metre));
+            prop_assert!((sums[0] + sums[1] - all).abs() <= off, "{level}: {sums:?} of {all}");
         }
     }
 

@@ -161,7 +161,8 @@ fn area_layer<'a>(
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
-    let splitting = AreaSplitting { frame, data: input.data, clip: input.clip };
+    let splitting =
+        AreaSplitting { frame, data: input.data, clip: input.clip, polygon: input.polygon };
     let sea =
         SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)

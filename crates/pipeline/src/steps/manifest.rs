@@ -13,6 +13,7 @@ use crate::{
     layers::{
         SectionLayer,
         layer_totals::{AreaTotals, BoundaryTotals},
+        tile_section::SectionSums,
     },
     manifest_texts,
     roads::{counts::road_counts, losses, totals::RoadTotals},
@@ -167,36 +168,34 @@ fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
 
 fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
     let counts = outcome.areas.as_ref()?.counts();
-    let levels = outcome
-        .tiles
-        .levels
-        .iter()
-        .filter(|(_, sums)| sums.sections[SectionLayer::Areas].tiles > 0);
-    let level = |(&level, sums): (&u8, &LevelSums)| AreaLevelRecord {
+    let level = |(level, SectionSums { tiles, parts: areas, points, bytes })| AreaLevelRecord {
         level,
-        tiles: sums.sections[SectionLayer::Areas].tiles,
-        areas: sums.sections[SectionLayer::Areas].parts,
-        points: sums.sections[SectionLayer::Areas].points,
-        bytes: sums.sections[SectionLayer::Areas].bytes,
+        tiles,
+        areas,
+        points,
+        bytes,
     };
-    Some(AreasRecord { counts, levels: levels.map(level).collect() })
+    let levels = sections(outcome, SectionLayer::Areas).map(level).collect();
+    Some(AreasRecord { counts, levels })
 }
 
 fn boundaries(outcome: &Outcome<'_>) -> Option<BoundariesRecord> {
     let counts = outcome.boundaries.as_ref()?.counts();
-    let levels = outcome
-        .tiles
-        .levels
-        .iter()
-        .filter(|(_, sums)| sums.sections[SectionLayer::Boundaries].tiles > 0);
-    let level = |(&level, sums): (&u8, &LevelSums)| BoundaryLevelRecord {
+    let level = |(level, SectionSums { tiles, parts, points, bytes })| BoundaryLevelRecord {
         level,
-        tiles: sums.sections[SectionLayer::Boundaries].tiles,
-        parts: sums.sections[SectionLayer::Boundaries].parts,
-        points: sums.sections[SectionLayer::Boundaries].points,
-        bytes: sums.sections[SectionLayer::Boundaries].bytes,
+        tiles,
+        parts,
+        points,
+        bytes,
     };
-    Some(BoundariesRecord { counts, levels: levels.map(level).collect() })
+    let levels = sections(outcome, SectionLayer::Boundaries).map(level).collect();
+    Some(BoundariesRecord { counts, levels })
+}
+
+/// The sums of a layer on the levels that have some of it.
+fn sections(outcome: &Outcome<'_>, layer: SectionLayer) -> impl Iterator<Item = (u8, SectionSums)> {
+    let levels = outcome.tiles.levels.iter();
+    levels.map(move |(&level, sums)| (level, sums.sections[layer])).filter(|(_, own)| own.tiles > 0)
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {

@@ -1,25 +1,20 @@
 //! The areas of tiles: decoded, and compared with those of neighbours.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use corniche_areas::AreaObject;
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, cross};
-use corniche_tileset::{AreaLevelRecord, AreaRecord, FilePackage, decode_areas, payload_sizes};
+use corniche_tileset::{
+    AreaCounts, AreaLevelRecord, AreaRecord, FilePackage, decode_areas, payload_sizes,
+};
 
 use super::{
     area_seams::{Beside, Seam},
     checks::{CheckId, Findings},
-    each_tile::each_tile,
     error::VerifyError,
+    layer_sums::{Counts, OfTile, check_totals, look_at_layer},
 };
 use crate::Observer;
-
-/// What is found in one tile.
-struct Found {
-    findings: Findings,
-    /// Areas, points, stored bytes.
-    counts: [u64; 3],
-}
 
 pub(crate) fn verify(
     package: &FilePackage,
@@ -32,44 +27,24 @@ pub(crate) fn verify(
     findings.look(CheckId::AreaSums, is_counted == manifest.settings.areas.is_some(), || {
         "areas are counted without a table of areas, or there is a table and they are not counted".to_owned()
     });
-    let mut levels: BTreeMap<u8, AreaLevelRecord> = BTreeMap::new();
-    each_tile(
-        package,
-        threads,
-        observer,
-        |id| Ok(look_at(package, id)),
-        |id, found: Found| {
-            findings.merge(found.findings);
-            let [areas, points, bytes] = found.counts;
-            if areas > 0 {
-                let level = id.z();
-                let none = AreaLevelRecord { level, tiles: 0, areas: 0, points: 0, bytes: 0 };
-                let sums = levels.entry(level).or_insert(none);
-                sums.tiles += 1;
-                sums.areas += areas;
-                sums.points += points;
-                sums.bytes += bytes;
-            }
-        },
-    )?;
-    let found: Vec<AreaLevelRecord> = levels.into_values().collect();
-    let recorded = manifest.areas.as_ref().map(|areas| areas.levels.clone()).unwrap_or_default();
-    findings.look(CheckId::AreaSums, found == recorded, || {
-        format!("{found:?} in the tiles, {recorded:?} are recorded")
-    });
+    let levels = manifest.areas.iter().flat_map(|areas| &areas.levels);
+    let level =
+        |&AreaLevelRecord { level, tiles, areas: parts, points, bytes }: &AreaLevelRecord| {
+            (level, Counts { tiles, parts, points, bytes })
+        };
+    let recorded = (CheckId::AreaSums, levels.map(level).collect());
+    let look_at = |id| look_at(package, id);
+    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
     if let Some(areas) = &manifest.areas {
-        let counts = &areas.counts;
-        let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
-        let lost: u64 = counts.lost.iter().map(|lost| lost.1).sum();
-        findings.look(CheckId::AreaSums, counts.objects == kept + lost, || {
-            format!("{} objects, {kept} kept and {lost} lost", counts.objects)
-        });
+        let AreaCounts { objects, kept, lost } = &areas.counts;
+        let kept = kept.iter().map(|kept| kept.areas);
+        check_totals(CheckId::AreaSums, "objects", (*objects, kept, lost), findings);
     }
     Ok(())
 }
 
-fn look_at(package: &FilePackage, id: TileId) -> Found {
-    let mut found = Found { findings: Findings::default(), counts: [0; 3] };
+fn look_at(package: &FilePackage, id: TileId) -> OfTile {
+    let mut found = OfTile::default();
     // Tiles that cannot be read are told elsewhere.
     let Some(payload) = package.tile(id).ok().flatten() else { return found };
     let manifest = package.manifest();
@@ -86,7 +61,8 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
     }
     let points = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.areas.stored);
-    found.counts = [areas.len() as u64, points.map(|ring| ring.len() as u64).sum(), bytes];
+    let points = points.map(|ring| ring.len() as u64).sum();
+    found.counts = Counts { tiles: 1, parts: areas.len() as u64, points, bytes };
     for beside in [Beside::East, Beside::South] {
         let Some(neighbour) = beside.neighbour(id) else { continue };
         let other = package.tile(neighbour).ok().flatten();

@@ -1,25 +1,17 @@
 //! The boundaries of tiles: decoded, and compared with what the manifest says of them.
 
-use std::collections::BTreeMap;
-
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_tileset::{
-    BoundaryLevelRecord, BoundaryRecord, FilePackage, decode_boundaries, payload_sizes,
+    BoundaryCounts, BoundaryLevelRecord, BoundaryRecord, FilePackage, decode_boundaries,
+    payload_sizes,
 };
 
 use super::{
     checks::{CheckId, Findings},
-    each_tile::each_tile,
     error::VerifyError,
+    layer_sums::{Counts, OfTile, check_totals, look_at_layer},
 };
 use crate::Observer;
-
-/// What is found in one tile.
-struct Found {
-    findings: Findings,
-    /// Parts, points, stored bytes.
-    counts: [u64; 3],
-}
 
 pub(crate) fn verify(
     package: &FilePackage,
@@ -32,44 +24,24 @@ pub(crate) fn verify(
     findings.look(CheckId::BoundarySums, is_counted == manifest.settings.boundaries, || {
         "boundaries are counted and were not asked for, or the other way round".to_owned()
     });
-    let mut levels: BTreeMap<u8, BoundaryLevelRecord> = BTreeMap::new();
-    each_tile(
-        package,
-        threads,
-        observer,
-        |id| Ok(look_at(package, id)),
-        |id, found: Found| {
-            findings.merge(found.findings);
-            let [parts, points, bytes] = found.counts;
-            if parts > 0 {
-                let level = id.z();
-                let none = BoundaryLevelRecord { level, tiles: 0, parts: 0, points: 0, bytes: 0 };
-                let sums = levels.entry(level).or_insert(none);
-                sums.tiles += 1;
-                sums.parts += parts;
-                sums.points += points;
-                sums.bytes += bytes;
-            }
-        },
-    )?;
-    let found: Vec<BoundaryLevelRecord> = levels.into_values().collect();
-    let recorded = manifest.boundaries.as_ref().map(|of| of.levels.clone()).unwrap_or_default();
-    findings.look(CheckId::BoundarySums, found == recorded, || {
-        format!("{found:?} in the tiles, {recorded:?} are recorded")
-    });
+    let levels = manifest.boundaries.iter().flat_map(|boundaries| &boundaries.levels);
+    let level =
+        |&BoundaryLevelRecord { level, tiles, parts, points, bytes }: &BoundaryLevelRecord| {
+            (level, Counts { tiles, parts, points, bytes })
+        };
+    let recorded = (CheckId::BoundarySums, levels.map(level).collect());
+    let look_at = |id| look_at(package, id);
+    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
     if let Some(boundaries) = &manifest.boundaries {
-        let counts = &boundaries.counts;
-        let kept: u64 = counts.kept.iter().map(|kept| kept.ways).sum();
-        let lost: u64 = counts.lost.iter().map(|lost| lost.1).sum();
-        findings.look(CheckId::BoundarySums, counts.ways == kept + lost, || {
-            format!("{} ways, {kept} kept and {lost} lost", counts.ways)
-        });
+        let BoundaryCounts { ways, kept, lost } = &boundaries.counts;
+        let kept = kept.iter().map(|kept| kept.ways);
+        check_totals(CheckId::BoundarySums, "ways", (*ways, kept, lost), findings);
     }
     Ok(())
 }
 
-fn look_at(package: &FilePackage, id: TileId) -> Found {
-    let mut found = Found { findings: Findings::default(), counts: [0; 3] };
+fn look_at(package: &FilePackage, id: TileId) -> OfTile {
+    let mut found = OfTile::default();
     // Tiles that cannot be read are told elsewhere.
     let Some(payload) = package.tile(id).ok().flatten() else { return found };
     let manifest = package.manifest();
@@ -88,7 +60,7 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
     found.findings.look(CheckId::BoundaryOrder, is_sorted, || format!("tile {id}"));
     let points = boundaries.iter().map(|boundary| boundary.points.len() as u64).sum();
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.boundaries.stored);
-    found.counts = [boundaries.len() as u64, points, bytes];
+    found.counts = Counts { tiles: 1, parts: boundaries.len() as u64, points, bytes };
     found
 }
 
