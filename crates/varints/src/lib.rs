@@ -52,6 +52,7 @@ fn long_varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
 }
 
 /// Appends a number.
+#[inline]
 pub fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     while number > 0x7f {
         bytes.push(number as u8 | 0x80);
@@ -62,12 +63,14 @@ pub fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
 
 /// The signed number behind 0, 1, 2, 3 …: 0, −1, 1, −2 …
 #[must_use]
+#[inline]
 pub const fn zigzag(number: u64) -> i64 {
     (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
 }
 
 /// The number that stands for a signed one: the inverse of [`zigzag`].
 #[must_use]
+#[inline]
 pub const fn to_zigzag(number: i64) -> u64 {
     ((number << 1) ^ (number >> 63)).cast_unsigned()
 }
