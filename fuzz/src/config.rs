@@ -1,13 +1,13 @@
-//! Settings files, tables of roads and of areas, and styles of any bytes are read or refused.
+//! Texts in TOML are read or refused, whatever their bytes are: settings files, tables of roads and of areas, styles.
 
 use corniche_presets::{Config, class_filter, parse_area_table, parse_frc_table};
 use corniche_styles::parse_style;
 
-/// A settings file, a table of roads or areas and a style of these bytes are read or refused; what is read keeps its own promises.
+/// A settings file and a table of roads or of areas of these bytes are read or refused; what is read keeps its own promises.
 ///
 /// # Panics
 /// When a promise is broken.
-pub fn config(data: &[u8]) {
+pub fn settings(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     match Config::parse(text) {
         Ok(config) => {
@@ -32,6 +32,14 @@ pub fn config(data: &[u8]) {
     if let Err(error) = parse_area_table(text) {
         assert!(!error.to_string().is_empty());
     }
+}
+
+/// A style of these bytes is read or refused, and has no number that a shader cannot use.
+///
+/// # Panics
+/// When a promise is broken.
+pub fn styles(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
     match parse_style(text) {
         Ok(style) => {
             // The shaders divide by these values.

@@ -15,7 +15,7 @@ mod package;
 mod payload;
 mod vectors;
 
-pub use config::config;
+pub use config::{settings, styles};
 pub use drape::drape;
 pub use osm::osm;
 pub use package::{package, package_of};

@@ -37,8 +37,8 @@ export function tests({ sources }) {
     assert.equal(hashWith("#a=8,46;roads=sv&9,47", "a", place), `#9,47&a=${textOf(place)}`);
   });
 
-  // Small in tests; CORNICHE_FUZZ_SECONDS=600 makes it a fuzz run.
-  test("no address makes the page throw, and what it reads it writes", async () => {
+  // Small in tests; CORNICHE_FUZZ_SECONDS=600 makes it a fuzz run (scripts/fuzz 600 links).
+  test("no address makes the page throw, and what it reads it writes", async (context) => {
     const { placeOf, textOf, partInHash, placeBefore, changesAfter, hashWith } = await load("hash.js");
     const { changesIn } = await load("hand_made.js");
     const [classes, widths] = [Array(9).fill(true), Array(9).fill(1)];
@@ -48,7 +48,8 @@ export function tests({ sources }) {
     let state = 38;
     const next = (most) => (state = (state * 48271) % 2147483647) % most;
     const end = Date.now() + 1000 * Number(process.env.CORNICHE_FUZZ_SECONDS ?? 0);
-    for (let done = 0; done < 20_000 || Date.now() < end; done++) {
+    let [done, places] = [0, 0];
+    for (; done < 20_000 || Date.now() < end; done++) {
       const begin = ["", "9.52,47.14,", "a=9.52,47.14;"][next(3)];
       const hash = begin + Array.from({ length: next(12) }, () => pieces[next(pieces.length)]).join("");
       const name = ["", "a", "b="][next(3)];
@@ -61,6 +62,7 @@ export function tests({ sources }) {
         assert.ok(unknown.every((text) => typeof text === "string"), hash);
       }
       if (!place) continue;
+      places++;
       assert.ok(Math.abs(place.lon) <= 180 && Math.abs(place.lat) <= 90, hash);
       const { above, ...numbers } = place;
       assert.ok((above === undefined || above === true) && Object.values(numbers).every(Number.isFinite), hash);
@@ -69,6 +71,7 @@ export function tests({ sources }) {
       if (placeOf(text)) assert.equal(textOf(placeOf(text)), text, hash);
       assert.ok(hashWith(hash, name, place).startsWith("#"), hash);
     }
+    context.diagnostic(`${done} addresses, ${places} of them with a camera`);
   });
 
   test("lengths of the scale are round and no longer than asked", async () => {

@@ -48,8 +48,13 @@ fn every_extract_is_read_or_refused() {
 }
 
 #[test]
-fn every_settings_file_table_and_style_is_read_or_refused() {
-    replay("config", corniche_fuzz::config);
+fn every_settings_file_and_table_is_read_or_refused() {
+    replay("settings", corniche_fuzz::settings);
+}
+
+#[test]
+fn every_style_is_read_or_refused() {
+    replay("styles", corniche_fuzz::styles);
 }
 
 #[test]
@@ -112,6 +117,11 @@ fn changed_polygons_are_read_or_refused() {
 }
 
 #[test]
-fn changed_settings_tables_and_styles_are_read_or_refused() {
-    change("config", corniche_fuzz::config);
+fn changed_settings_and_tables_are_read_or_refused() {
+    change("settings", corniche_fuzz::settings);
+}
+
+#[test]
+fn changed_styles_are_read_or_refused() {
+    change("styles", corniche_fuzz::styles);
 }

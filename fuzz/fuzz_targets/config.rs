@@ -1,4 +1,0 @@
-//! libFuzzer's way into [`corniche_fuzz::config`].
-#![no_main]
-
-libfuzzer_sys::fuzz_target!(|data: &[u8]| corniche_fuzz::config(data));
