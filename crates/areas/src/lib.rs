@@ -30,6 +30,7 @@ mod sea;
 
 mod coastlines;
 mod faces;
+mod named_classes;
 mod planar_graph;
 mod rectangle_edge;
 mod segments;

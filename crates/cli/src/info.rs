@@ -131,28 +131,15 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
         let area_km2 = format!("{:.3}", kept.area_km2);
         classes.row([name.to_owned(), digits.count(kept.areas), area_km2]);
     }
-    let mut table = Table::new(["level", "tiles", "areas", "points", "bytes", "per tile"]);
-    for level in levels {
-        table.row([
-            level.level.to_string(),
-            digits.count(level.tiles),
-            digits.count(level.areas),
-            digits.count(level.points),
-            bytes(level.bytes),
-            bytes(level.bytes / level.tiles.max(1)),
-        ]);
-    }
     let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
-    let lost = counts.lost.iter().map(|(reason, objects)| {
-        format!("  lost {} objects: {}\n", digits.count(*objects), plain(reason))
-    });
+    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
     format!(
         "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}{}\n{}",
         digits.count(counts.objects),
         digits.count(kept),
         classes.to_text(),
-        lost.collect::<String>(),
-        table.to_text()
+        lost_text("objects", &counts.lost, digits),
+        level_text("areas", levels, digits)
     )
 }
 
@@ -165,28 +152,33 @@ fn boundary_texts(boundaries: &BoundariesRecord, digits: Digits) -> String {
         let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
         classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
     }
-    let mut table = Table::new(["level", "tiles", "parts", "points", "bytes", "per tile"]);
-    for level in levels {
-        table.row([
-            level.level.to_string(),
-            digits.count(level.tiles),
-            digits.count(level.parts),
-            digits.count(level.points),
-            bytes(level.bytes),
-            bytes(level.bytes / level.tiles.max(1)),
-        ]);
-    }
-    let lost = counts
-        .lost
-        .iter()
-        .map(|(reason, ways)| format!("  lost {} ways: {}\n", digits.count(*ways), plain(reason)));
+    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
     format!(
         "Boundaries: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
         digits.count(counts.ways),
         classes.to_text(),
-        lost.collect::<String>(),
-        table.to_text()
+        lost_text("ways", &counts.lost, digits),
+        level_text("parts", levels, digits)
     )
+}
+
+/// Which objects of a layer were lost, by reason.
+fn lost_text(objects: &str, lost: &[(String, u64)], digits: Digits) -> String {
+    let line = |(reason, number): &(String, u64)| {
+        format!("  lost {} {objects}: {}\n", digits.count(*number), plain(reason))
+    };
+    lost.iter().map(line).collect()
+}
+
+/// What a layer takes on each level: tiles, parts of objects in them, points, bytes.
+fn level_text(parts: &str, levels: impl Iterator<Item = (u8, [u64; 4])>, digits: Digits) -> String {
+    let mut table = Table::new(["level", "tiles", parts, "points", "bytes", "per tile"]);
+    for (level, [tiles, parts, points, of_level]) in levels {
+        let [tiles_text, parts, points] = [tiles, parts, points].map(|number| digits.count(number));
+        let per_tile = bytes(of_level / tiles.max(1));
+        table.row([level.to_string(), tiles_text, parts, points, bytes(of_level), per_tile]);
+    }
+    table.to_text()
 }
 
 /// Lines that are too wide are texts: they go on below the place where they began, beside their name.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_tileset::{Counts, Manifest, VerticalRecord};
+use corniche_tileset::{AreasRecord, BoundariesRecord, Counts, Manifest, VerticalRecord};
 
 use crate::{
     info::{plain, rounded, sides},
@@ -142,15 +142,14 @@ fn remedy(reason: &str) -> Option<&'static str> {
 
 /// Areas and boundaries, where they were asked for.
 fn layers(manifest: &Manifest, digits: Digits) -> Option<String> {
-    let areas = manifest.areas.as_ref().map(|areas| {
-        let kept = areas.counts.kept.iter().map(|kept| kept.areas).sum();
-        let (kept, all) = (digits.count(kept), digits.count(areas.counts.objects));
-        format!("areas        {kept} of {all} objects kept")
+    let kept = |kept: u64, all: u64| format!("{} of {}", digits.count(kept), digits.count(all));
+    let areas = manifest.areas.as_ref().map(|AreasRecord { counts, .. }| {
+        let kept = kept(counts.kept.iter().map(|of| of.areas).sum(), counts.objects);
+        format!("areas        {kept} objects kept")
     });
-    let boundaries = manifest.boundaries.as_ref().map(|boundaries| {
-        let kept = boundaries.counts.kept.iter().map(|kept| kept.ways).sum();
-        let (kept, all) = (digits.count(kept), digits.count(boundaries.counts.ways));
-        format!("{kept} of {all} ways kept")
+    let boundaries = manifest.boundaries.as_ref().map(|BoundariesRecord { counts, .. }| {
+        let kept = kept(counts.kept.iter().map(|of| of.ways).sum(), counts.ways);
+        format!("{kept} ways kept")
     });
     match (areas, boundaries) {
         (Some(areas), Some(boundaries)) => Some(format!("{areas}; boundaries: {boundaries}")),

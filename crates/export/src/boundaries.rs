@@ -27,7 +27,7 @@ pub struct BoundariesSummary {
     pub ways: u64,
     /// Lines of all features.
     pub lines: u64,
-    /// Their points.
+    /// Points of all lines.
     pub points: u64,
     /// True length in plan, metres.
     pub length_m: f64,
@@ -150,7 +150,7 @@ impl Features for Boundaries {
             z_m: 0.0,
             is_source: true,
         };
-        let whole = whole_lines(lines_of(pieces)).into_iter();
+        let whole = whole_lines(&lines_of(pieces)).into_iter();
         let whole = whole.map(|line| line.iter().map(vertex).collect::<Vec<Vertex>>());
         let lines: Vec<Vec<Vertex>> = match &request.bounds {
             None => whole.collect(),

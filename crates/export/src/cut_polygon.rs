@@ -19,6 +19,8 @@ pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 struct Corner {
     at_m: [f64; 2],
     at_deg: [f64; 2],
+    /// Whether it is none of the polygon's, but lies between two.
+    is_between: bool,
 }
 
 /// The rings of a polygon of the package.
@@ -47,14 +49,12 @@ pub(crate) fn cut_polygon_at_bounds(
     // What each corner is in working metres; `None` for those between.
     let mut known: BTreeMap<LatticePoint, Option<[f64; 2]>> = BTreeMap::new();
     let mut on_lattice: Vec<Vec<LatticePoint>> = Vec::with_capacity(rings.len());
-    for (ring, own) in rings.iter().zip(&whole) {
-        let mut own = own.iter().peekable();
+    for ring in &rings {
         let mut points = Vec::with_capacity(ring.len());
-        for corner in ring {
-            let point = lattice_point(corner.at_deg);
-            let is_own = own.next_if(|own| **own == corner.at_m).is_some();
-            if is_own || !known.contains_key(&point) {
-                known.insert(point, is_own.then_some(corner.at_m));
+        for Corner { at_m, at_deg, is_between } in ring {
+            let point = lattice_point(*at_deg);
+            if !is_between || !known.contains_key(&point) {
+                known.insert(point, (!is_between).then_some(*at_m));
             }
             points.push(point);
         }
@@ -98,7 +98,7 @@ impl Cutting<'_> {
                 Some(before) => self.bounds.relative_after(deg, before),
                 None => self.bounds.relative(deg),
             };
-            Corner { at_m, at_deg }
+            Corner { at_m, at_deg, is_between: false }
         };
         let start = after(*ring.first()?, *first);
         first.get_or_insert(start.at_deg);
@@ -106,8 +106,10 @@ impl Cutting<'_> {
         for &at_m in ring[1..].iter().chain(&ring[..1]) {
             let from = *corners.last()?;
             let to = after(at_m, Some(from.at_deg));
-            let middle =
-                |from: Corner, to: Corner| Some(after(mean(from.at_m, to.at_m), Some(from.at_deg)));
+            let middle = |from: Corner, to: Corner| {
+                let between = after(mean(from.at_m, to.at_m), Some(from.at_deg));
+                Some(Corner { is_between: true, ..between })
+            };
             add_between([from, to], &middle, LINE_HALVINGS, &mut corners);
             corners.push(to);
         }
@@ -131,11 +133,11 @@ impl Cutting<'_> {
             let at_deg = [point.u, point.v].map(|steps| steps as f64 / STEPS);
             let at_m = known.get(&point).copied().flatten();
             let at_m = at_m.or_else(|| self.position_m(at_deg))?;
-            Some(Corner { at_m, at_deg })
+            Some(Corner { at_m, at_deg, is_between: false })
         };
         let middle = |from: Corner, to: Corner| {
             let at_deg = mean(from.at_deg, to.at_deg);
-            Some(Corner { at_m: self.position_m(at_deg)?, at_deg })
+            Some(Corner { at_m: self.position_m(at_deg)?, at_deg, is_between: true })
         };
         let mut corners = Vec::new();
         for [from, to] in segments {

@@ -1,6 +1,6 @@
 //! Lines in plan out of parts that overlap: each tile has the segments that come near it, whole.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use corniche_geom::LatticePoint;
 
@@ -18,31 +18,39 @@ type Segment = [LatticePoint; 2];
 /// Segments follow each other as they do in a part. So a line that touches itself goes on as the way does. Lines that then end where another one begins
 /// are joined. What is once more in the same direction is there once.
 pub(crate) fn whole_lines<'a>(
-    parts: impl Iterator<Item = &'a [LatticePoint]> + Clone,
+    parts: &(impl Iterator<Item = &'a [LatticePoint]> + Clone),
 ) -> Vec<Vec<LatticePoint>> {
-    let mut next: BTreeMap<Segment, Segment> = BTreeMap::new();
-    let mut follows: BTreeSet<Segment> = BTreeSet::new();
-    let parts_of = |points: &'a [LatticePoint]| points.array_windows::<3>();
-    for &[a, b, c] in parts.clone().flat_map(parts_of) {
-        if next.contains_key(&[a, b]) || !follows.insert([b, c]) {
-            continue;
-        }
-        next.insert([a, b], [b, c]);
-    }
     let segments = || parts.clone().flat_map(|points| points.array_windows::<2>()).copied();
+    let mut known: Vec<Segment> = segments().collect();
+    known.sort_unstable();
+    known.dedup();
+    let number_of = |segment: &Segment| known.binary_search(segment).ok();
+    let mut next = vec![None; known.len()];
+    let mut follows = vec![false; known.len()];
+    for &[a, b, c] in parts.clone().flat_map(|points| points.array_windows::<3>()) {
+        if let (Some(one), Some(other)) = (number_of(&[a, b]), number_of(&[b, c]))
+            && next[one].is_none()
+            && !follows[other]
+        {
+            next[one] = Some(other);
+            follows[other] = true;
+        }
+    }
     // Lines with a beginning first; what is left are rings.
-    let beginnings = segments().filter(|segment| !follows.contains(segment));
-    let mut taken = BTreeSet::new();
+    let numbers = || segments().filter_map(|segment| number_of(&segment));
+    let beginnings = numbers().filter(|&number| !follows[number]);
+    let mut taken = vec![false; known.len()];
     let mut lines: Vec<Vec<LatticePoint>> = Vec::new();
-    for beginning in beginnings.chain(segments()) {
+    for beginning in beginnings.chain(numbers()) {
         let mut line = Vec::new();
         let mut at = Some(beginning);
-        while let Some(segment) = at.filter(|segment| taken.insert(*segment)) {
+        while let Some(number) = at.filter(|&number| !std::mem::replace(&mut taken[number], true)) {
+            let [from, to] = known[number];
             if line.is_empty() {
-                line.push(segment[0]);
+                line.push(from);
             }
-            line.push(segment[1]);
-            at = next.get(&segment).copied();
+            line.push(to);
+            at = next[number];
         }
         if !line.is_empty() {
             lines.push(line);

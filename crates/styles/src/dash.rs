@@ -142,13 +142,11 @@ impl Dash {
             return 1.0;
         }
         let at = (along_px / self.least_px).rem_euclid(1.0);
-        match self.widths {
-            Some(widths) => widths[((at * Self::WIDTHS as f32) as usize).min(Self::WIDTHS - 1)],
-            None => {
-                let [dash, gap, second] = self.ends;
-                f32::from(u8::from(at < dash || (gap..second).contains(&at)))
-            }
+        if let Some(widths) = self.widths {
+            return widths[((at * Self::WIDTHS as f32) as usize).min(Self::WIDTHS - 1)];
         }
+        let [dash, gap, second] = self.ends;
+        f32::from(u8::from(at < dash || (gap..second).contains(&at)))
     }
 
     /// Where the first dash, the first gap and the second dash end, as shares of the pattern.

@@ -521,17 +521,16 @@ pub(crate) enum Heights {
 }
 
 fn parse_area_class(text: &str) -> Result<AreaClass, String> {
-    AreaClass::from_name(text).ok_or_else(|| {
-        let names = AreaClass::ALL.map(AreaClass::name).join(", ");
-        format!("classes of areas are {names}")
-    })
+    AreaClass::from_name(text).ok_or_else(|| other_classes("areas", &AreaClass::ALL))
 }
 
 fn parse_boundary_class(text: &str) -> Result<BoundaryClass, String> {
-    BoundaryClass::from_name(text).ok_or_else(|| {
-        let names = BoundaryClass::ALL.map(BoundaryClass::name).join(", ");
-        format!("classes of boundaries are {names}")
-    })
+    BoundaryClass::from_name(text).ok_or_else(|| other_classes("boundaries", &BoundaryClass::ALL))
+}
+
+fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
+    let names: Vec<String> = classes.iter().map(ToString::to_string).collect();
+    format!("classes of {layer} are {}", names.join(", "))
 }
 
 fn parse_plan_crs(text: &str) -> Result<ExportCrs, String> {

@@ -8,9 +8,7 @@ use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex
 use corniche_roads::FrcTable;
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{
-    AreaLevelRecord, AreasRecord, BoundariesRecord, BoundaryLevelRecord, Manifest,
-};
+use crate::manifest::contents::{AreasRecord, BoundariesRecord, Manifest};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
@@ -132,54 +130,49 @@ impl Manifest {
             that(photo.levels <= MAX_PHOTO_LEVELS, "settings.photo.levels", photo.levels)?;
             that((1..=100).contains(&photo.quality), "settings.photo.quality", photo.quality)?;
         }
-        let levels = self.photos.iter().map(|photos| photos.level);
-        let is_sorted = levels.clone().is_sorted_by(|a, b| a < b);
-        that(is_sorted, "photos.level", levels.clone().collect::<Vec<_>>())?;
-        let most = levels.max().unwrap_or_default();
-        that(most <= self.frame.max_level(), "photos.level", most)?;
+        check_ascending("photos.level", self.photos.iter().map(|photos| photos.level), |level| {
+            level <= self.frame.max_level()
+        })?;
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
     }
 
     fn check_boundaries(&self) -> Result<(), String> {
         let Some(BoundariesRecord { counts, levels }) = &self.boundaries else { return Ok(()) };
-        let numbers = levels.iter().map(|of| of.level);
-        let is_sorted = numbers.clone().is_sorted_by(|one, next| one < next);
-        that(is_sorted, "boundaries.levels.level", numbers.clone().collect::<Vec<_>>())?;
-        let most = numbers.max().unwrap_or_default();
-        that(most <= self.frame.max_level(), "boundaries.levels.level", most)?;
-        let of_level = |of: &BoundaryLevelRecord| [of.tiles, of.parts, of.points, of.bytes];
-        check_sum("boundaries.levels", levels.iter().flat_map(of_level))?;
-        let classes: Vec<u8> = counts.kept.iter().map(|kept| kept.class).collect();
-        let is_known = classes.iter().all(|class| BoundaryClass::from_number(*class).is_some());
-        let is_right = is_known && classes.is_sorted_by(|one, next| one < next);
-        that(is_right, "boundaries.counts.kept.class", classes)?;
-        check_sum(
-            "boundaries.counts.kept.length_um",
-            counts.kept.iter().map(|kept| kept.length_um),
-        )?;
-        let kept = counts.kept.iter().map(|kept| kept.ways);
-        check_sum("boundaries.counts", kept.chain(counts.lost.iter().map(|lost| lost.1)))
+        let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
+        check_sum("boundaries.counts.kept.length_um", lengths_um)?;
+        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+        let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
+        let is_class = |class| BoundaryClass::from_number(class).is_some();
+        self.check_layer("boundaries", levels, kept, is_class, &counts.lost)
     }
 
     fn check_areas(&self) -> Result<(), String> {
         let Some(AreasRecord { counts, levels }) = &self.areas else { return Ok(()) };
-        let numbers = levels.iter().map(|areas| areas.level);
-        let is_sorted = numbers.clone().is_sorted_by(|a, b| a < b);
-        that(is_sorted, "areas.levels.level", numbers.clone().collect::<Vec<_>>())?;
-        let most = numbers.max().unwrap_or_default();
-        that(most <= self.frame.max_level(), "areas.levels.level", most)?;
-        let of_level =
-            |areas: &AreaLevelRecord| [areas.tiles, areas.areas, areas.points, areas.bytes];
-        check_sum("areas.levels", levels.iter().flat_map(of_level))?;
-        let classes = counts.kept.iter().map(|kept| kept.class);
-        let is_sorted = classes.clone().is_sorted_by(|a, b| a < b);
-        that(is_sorted, "areas.counts.kept.class", classes.clone().collect::<Vec<_>>())?;
-        let known = |class: u8| AreaClass::from_number(class).is_some();
-        that(classes.clone().all(known), "areas.counts.kept.class", classes.collect::<Vec<_>>())?;
         let areas_km2: Vec<f64> = counts.kept.iter().map(|kept| kept.area_km2).collect();
         all_measures("areas.counts.kept.area_km2", &areas_km2)?;
-        let kept = counts.kept.iter().map(|kept| kept.areas);
-        check_sum("areas.counts", kept.chain(counts.lost.iter().map(|lost| lost.1)))
+        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
+        let kept = counts.kept.iter().map(|kept| (kept.class, kept.areas));
+        let is_class = |class| AreaClass::from_number(class).is_some();
+        self.check_layer("areas", levels, kept, is_class, &counts.lost)
+    }
+
+    /// Checks the numbers of each level, and of objects by class and by reason.
+    fn check_layer(
+        &self,
+        name: &str,
+        levels: impl Iterator<Item = (u8, [u64; 4])> + Clone,
+        kept: impl Iterator<Item = (u8, u64)> + Clone,
+        is_class: impl Fn(u8) -> bool,
+        lost: &[(String, u64)],
+    ) -> Result<(), String> {
+        let is_level = |level| level <= self.frame.max_level();
+        let numbers = levels.clone().map(|(level, _)| level);
+        check_ascending(&format!("{name}.levels.level"), numbers, is_level)?;
+        check_sum(&format!("{name}.levels"), levels.flat_map(|(_, counts)| counts))?;
+        let classes = kept.clone().map(|(class, _)| class);
+        check_ascending(&format!("{name}.counts.kept.class"), classes, is_class)?;
+        let objects = kept.map(|(_, objects)| objects);
+        check_sum(&format!("{name}.counts"), objects.chain(lost.iter().map(|lost| lost.1)))
     }
 
     fn check_settings(&self) -> Result<(), String> {
@@ -220,6 +213,17 @@ impl Manifest {
             .iter()
             .try_for_each(|cell_m| measure("settings.class_max_cell_m", cell_m.unwrap_or(0.0)))
     }
+}
+
+/// Numbers of levels or classes: each once, ascending, known.
+fn check_ascending(
+    name: &str,
+    numbers: impl Iterator<Item = u8>,
+    is_known: impl Fn(u8) -> bool,
+) -> Result<(), String> {
+    let numbers: Vec<u8> = numbers.collect();
+    let is_right = numbers.iter().all(|number| is_known(*number));
+    that(is_right && numbers.is_sorted_by(|one, next| one < next), name, numbers)
 }
 
 fn check_level(level: usize, record: &LevelRecord) -> Result<(), String> {

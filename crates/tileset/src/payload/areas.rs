@@ -28,10 +28,8 @@ pub fn decode_areas(
     id: TileId,
     frame: &GridFrame,
 ) -> Result<Vec<AreaRecord>, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
-    let inside = failed(Kind::Areas.name());
-    decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside)
+    let bounds = frame.tile_lattice_bounds(id);
+    envelope::read_part(bytes, id, Kind::Areas.name(), |sections| decode_in(sections, bounds))
 }
 
 /// The areas of these sections of a payload.

@@ -9,7 +9,7 @@ use corniche_varints::zigzag;
 
 use crate::limits::{MAX_BOUNDARIES, MAX_POINTS};
 use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope;
+use crate::payload::envelope::{self, StoredSection};
 use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::section_kind::Kind;
 
@@ -39,16 +39,17 @@ const MOST_STEP: i64 = 1 << 40;
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the section is damaged.
 pub fn decode_boundaries(bytes: &[u8], id: TileId) -> Result<Vec<BoundaryRecord>, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
-    let inside = failed(Kind::Boundaries.name());
-    let section = envelope::section(&sections, Kind::Boundaries).map_err(inside)?;
-    let boundaries = section.map(|section| decode(&section)).transpose();
-    Ok(boundaries.map_err(inside)?.unwrap_or_default())
+    envelope::read_part(bytes, id, Kind::Boundaries.name(), decode_in)
+}
+
+/// The boundaries of these sections of a payload.
+pub(crate) fn decode_in(sections: &[StoredSection<'_>]) -> Result<Vec<BoundaryRecord>, Damage> {
+    let section = envelope::section(sections, Kind::Boundaries)?;
+    Ok(section.map(|bytes| decode(&bytes)).transpose()?.unwrap_or_default())
 }
 
 /// Reads the section's bytes.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<BoundaryRecord>, Damage> {
+fn decode(bytes: &[u8]) -> Result<Vec<BoundaryRecord>, Damage> {
     let cursor = &mut Cursor::new(bytes);
     let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
     let step = step.ok_or(Damage::Invalid { what: "the spacing of the boundaries' lattice" })?;

@@ -87,10 +87,9 @@ pub fn decode(
     if wanted.contains(Sections::AREAS) {
         areas::decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside(Kind::Areas))?;
     }
-    let _checked = read(Kind::Boundaries, Sections::BOUNDARIES)?
-        .map(|bytes| boundaries::decode(&bytes))
-        .transpose()
-        .map_err(inside(Kind::Boundaries))?;
+    if wanted.contains(Sections::BOUNDARIES) {
+        boundaries::decode_in(&sections).map_err(inside(Kind::Boundaries))?;
+    }
     Ok(TilePayload {
         id,
         terrain: ground,

@@ -8,7 +8,7 @@ use corniche_geom::TileId;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
 use crate::limits::MAX_SECTION_BYTES;
-use crate::payload::damage::Damage;
+use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::number_codes::Cursor;
 use crate::payload::section_kind::{Kind, TwoKinds};
 
@@ -132,6 +132,18 @@ pub(crate) fn section(
         ZSTD => Err(Damage::Invalid { what: "the length of a compressed section" }),
         _ => Err(Damage::Invalid { what: "an unknown compression" }),
     }
+}
+
+/// Reads something of the bytes of a payload by itself; damage is told with the tile and the part.
+pub(crate) fn read_part<T>(
+    bytes: &[u8],
+    tile: TileId,
+    part: &'static str,
+    read: impl FnOnce(&[StoredSection<'_>]) -> Result<T, Damage>,
+) -> Result<T, DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile, part, damage };
+    let sections = open(bytes, tile).map_err(failed("header"))?;
+    read(&sections).map_err(failed(part))
 }
 
 /// The same of roads or areas, and whether their points are range-coded bits: a section of one of two kinds.

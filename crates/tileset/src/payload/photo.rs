@@ -23,11 +23,10 @@ pub use image::{PHOTO_BORDER, Photo};
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the photo is damaged.
 pub fn decode_photo(bytes: &[u8], id: TileId) -> Result<Option<Photo>, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
-    let inside = failed(Kind::Photo.name());
-    let section = envelope::section(&sections, Kind::Photo).map_err(inside)?;
-    section.map(|section| decode::decode(&section)).transpose().map_err(inside)
+    envelope::read_part(bytes, id, Kind::Photo.name(), |sections| {
+        let section = envelope::section(sections, Kind::Photo)?;
+        section.map(|section| decode::decode(&section)).transpose()
+    })
 }
 
 #[cfg(test)]

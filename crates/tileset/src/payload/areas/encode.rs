@@ -8,7 +8,7 @@ use super::coded_rings::RingCoder;
 use super::decode::{self, PlacesOfSection};
 use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
-use crate::payload::damage::{DecodeError, EncodeError};
+use crate::payload::damage::{Damage, DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
 use crate::payload::number_codes::{Planes, put_planes};
 use crate::payload::range_coder::Writer;
@@ -128,14 +128,14 @@ fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Optio
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the section is damaged.
 pub fn area_part_sizes(payload: &[u8], id: TileId) -> Result<[usize; 5], DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let inside = failed(Kind::Areas.name());
-    let sections = envelope::open(payload, id).map_err(failed("header"))?;
-    let section = envelope::section_of_two(&sections, AREAS).map_err(inside)?;
-    let Some((section, is_coded)) = section else {
-        return Ok([0; 5]);
-    };
-    let columns = decode::Columns::read(&section, is_coded).map_err(inside)?;
+    envelope::read_part(payload, id, Kind::Areas.name(), |sections| {
+        let section = envelope::section_of_two(sections, AREAS)?;
+        section.map_or(Ok([0; 5]), |(bytes, is_coded)| part_sizes(&bytes, is_coded))
+    })
+}
+
+fn part_sizes(section: &[u8], is_coded: bool) -> Result<[usize; 5], Damage> {
+    let columns = decode::Columns::read(section, is_coded)?;
     let decode::Columns { classes, name_bytes, polygons, rings, points, .. } = columns;
     let bytes =
         |planes: &[Planes<'_>]| planes.iter().flat_map(|one| one.bytes()).copied().collect();

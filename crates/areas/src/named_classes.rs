@@ -1,0 +1,54 @@
+//! Classes of a layer: an enum with numbers and names, from one list.
+
+/// Declares the classes of a layer in order of their numbers, with their names in tables, styles and packages.
+macro_rules! named_classes {
+    ($(#[$about:meta])* $class:ident: $($(#[$meaning:meta])* $variant:ident = $name:literal,)+) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum $class {
+            $($(#[$meaning])* $variant,)+
+        }
+
+        impl $class {
+            /// How many classes there are.
+            pub const COUNT: usize = [$($name),+].len();
+
+            /// All classes, in order of their numbers.
+            pub const ALL: [Self; Self::COUNT] = [$(Self::$variant),+];
+
+            /// The class with this number.
+            #[must_use]
+            pub fn from_number(number: u8) -> Option<Self> {
+                Self::ALL.get(usize::from(number)).copied()
+            }
+
+            /// Its number, from 0.
+            #[must_use]
+            pub const fn number(self) -> u8 {
+                self as u8
+            }
+
+            /// Its name in tables, settings and styles.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+
+            /// The class with this name.
+            #[must_use]
+            pub fn from_name(name: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|class| class.name() == name)
+            }
+        }
+
+        impl std::fmt::Display for $class {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+    };
+}
+
+pub(crate) use named_classes;
