@@ -6,7 +6,7 @@ mod quantized_mesh;
 mod tiles3d;
 mod unknown_ending;
 
-use std::{io::stderr, path::Path};
+use std::path::Path;
 
 use corniche_areas::AreaClass;
 use corniche_export::{
@@ -18,6 +18,7 @@ use corniche_tileset::Manifest;
 use self::unknown_ending::unknown_ending;
 use crate::{
     args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -73,7 +74,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     progress.finish();
     let summary = exported.map_err(|error| named(error, &args.file.output))?;
     let size = output.place()?;
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -109,7 +110,7 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
             summary.unjoined
         ));
     }
-    messages::note(&areas_to_text(args, &summary, package.manifest(), size));
+    messages::summary(&areas_to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -119,22 +120,22 @@ fn areas_to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let coordinates = match args.crs {
         ExportCrs::Package => &manifest.crs,
         ExportCrs::Wgs84 => "EPSG:4326",
     };
     format!(
         "{}: {} areas of level {}, {:.3} km², {} polygons, {} points, {}\ncoordinates: {}\nto be shown with it: {}",
-        args.file.output.display(),
+        in_line(&args.file.output.to_string_lossy()),
         count(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
         count(summary.polygons),
         count(summary.points),
         bytes(size),
-        coordinates,
-        manifest.attribution.join("; "),
+        in_line(coordinates),
+        in_line(&manifest.attribution.join("; ")),
     )
 }
 
@@ -153,7 +154,7 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, _) => &manifest.crs,
         (ExportCrs::Wgs84, None) => "EPSG:4979",
@@ -166,13 +167,13 @@ fn to_text(
     };
     format!(
         "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
-        args.file.output.display(),
+        in_line(&args.file.output.to_string_lossy()),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),
         bytes(size),
-        coordinates,
-        summary.heights,
-        manifest.attribution.join("; "),
+        in_line(coordinates),
+        in_line(&summary.heights),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

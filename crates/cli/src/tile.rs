@@ -1,7 +1,5 @@
 //! `corniche tile`: one decoded tile, for other tools to check packages with.
 
-use std::io;
-
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
     AreaRecord, FilePackage, Manifest, Sections, Terrain, TilePayload, decode_areas,
@@ -12,8 +10,10 @@ use crate::{
     args::{Coordinates, TileArgs},
     documents::{
         areas::TileAreaDocument,
-        tile::{GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal},
-        to_line,
+        tile::{
+            GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, Written,
+            normal,
+        },
     },
     exit::ExitCode,
     failure::Failure,
@@ -32,9 +32,9 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     let areas = areas(&package, payload.id)?;
     if args.json {
         let document = document(package.manifest(), &payload, areas, args.coordinates)?;
-        messages::answer(&format!("{}\n", to_line(&document)))?;
+        messages::answer_document(&document)?;
     } else {
-        messages::answer(&to_text(&payload, &areas, Digits::on(&io::stdout())))?;
+        messages::answer(&to_text(&payload, &areas, Digits::of_answers()))?;
     }
     Ok(ExitCode::Done)
 }
@@ -160,6 +160,7 @@ fn to_text(payload: &TilePayload, areas: &[AreaRecord], digits: Digits) -> Strin
 }
 
 /// Makes coordinates of one kind from working metres.
+#[derive(Clone, Copy)]
 struct Places {
     /// What working metres are divided by.
     unit: [f64; 2],
@@ -176,12 +177,12 @@ impl Places {
     }
 }
 
-fn document(
-    manifest: &Manifest,
-    payload: &TilePayload,
+fn document<'a>(
+    manifest: &'a Manifest,
+    payload: &'a TilePayload,
     areas: Vec<AreaRecord>,
     coordinates: Coordinates,
-) -> Result<TileDocument, Failure> {
+) -> Result<TileDocument<'a>, Failure> {
     let frame = &manifest.frame;
     let id = payload.id;
     let (word, unit) = match coordinates {
@@ -212,8 +213,8 @@ fn document(
         uncovered_nodes: terrain.map(|terrain| terrain.uncovered_nodes),
         tin: terrain.map(|terrain| tin(manifest, id, terrain, &places)).unwrap_or_default(),
         roads_geo,
-        roads_sv: roads_sv(manifest, payload, &places),
-        attributes: payload.attributes.iter().map(WayDocument::from).collect(),
+        roads_sv: Written::of(&payload.roads_sv, move |road| sv_road(manifest, road, places)),
+        attributes: Written::of(&payload.attributes, WayDocument::from),
         areas: areas
             .into_iter()
             .map(|area| TileAreaDocument::of(area, frame, &|position| places.of(position)))
@@ -262,14 +263,13 @@ fn roads_geo(
     payload.roads_geo.iter().map(road).collect()
 }
 
-fn roads_sv(manifest: &Manifest, payload: &TilePayload, places: &Places) -> Vec<SvRoadDocument> {
+fn sv_road(manifest: &Manifest, road: &corniche_tileset::SvRoad, places: Places) -> SvRoadDocument {
     let place = |&point: &_| places.of(manifest.frame.position_m(point));
-    let road = |road: &corniche_tileset::SvRoad| SvRoadDocument {
+    SvRoadDocument {
         way_id: road.way_id,
         part: road.part,
         frc: road.class.number(),
         line: road.line.points.iter().map(place).collect(),
         ground_range_m: road.line.ground_range_m.clone(),
-    };
-    payload.roads_sv.iter().map(road).collect()
+    }
 }
