@@ -6,6 +6,7 @@ use i_overlay::{
         fill_rule::FillRule,
         overlay::{IntOverlayOptions, Overlay, ShapeType},
         overlay_rule::OverlayRule,
+        solver::Solver,
     },
     i_float::int::point::IntPoint,
 };
@@ -32,7 +33,7 @@ pub fn intersection<'a>(
         };
         points.iter().map(point).collect()
     };
-    let mut overlay = Overlay::new_custom(0, IntOverlayOptions::ogc(), Default::default());
+    let mut overlay = Overlay::new_custom(0, IntOverlayOptions::ogc(), Solver::default());
     for ring in polygons.iter().flat_map(Polygon::rings) {
         overlay.add_contour(&coarse(ring.points())?, ShapeType::Subject);
     }

@@ -1,9 +1,6 @@
 //! `corniche build`: runs the pipeline.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Leftovers};
 
@@ -63,7 +60,7 @@ pub(crate) fn finish(
         messages::warning(&warning);
     }
     if messages::is_for_people() {
-        let digits = Digits::on(&io::stderr());
+        let digits = Digits::of_notes();
         let verdict = verdict::to_text(&manifest, package_bytes, output, digits);
         messages::write_line(&format!("\n{}", verdict.trim_end()));
         if messages::is_detailed() {

@@ -12,15 +12,27 @@ pub(crate) mod progress;
 pub(crate) mod tile;
 pub(crate) mod verify;
 
+use std::io::{self, Write};
+
 use serde::Serialize;
 
-use crate::escaped::in_json;
+use crate::escaped::JsonTexts;
 
 /// As one line.
 pub(crate) fn to_line(document: &impl Serialize) -> String {
+    let mut line = Vec::new();
     // Texts, numbers, lists and fields have a JSON form, so there is no error.
-    let document = serde_json::to_string(document).unwrap_or_default();
-    in_json(&document).into_owned()
+    let _ = write_line_to(&mut line, document);
+    String::from_utf8(line).unwrap_or_default()
+}
+
+/// Writes a document as one line while it is made: its text is never held as a whole.
+///
+/// # Errors
+/// When it cannot be written.
+pub(crate) fn write_line_to(out: impl Write, document: &impl Serialize) -> io::Result<()> {
+    let mut serializer = serde_json::Serializer::with_formatter(out, JsonTexts);
+    document.serialize(&mut serializer).map_err(io::Error::from)
 }
 
 #[cfg(test)]

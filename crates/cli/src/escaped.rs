@@ -1,6 +1,10 @@
 //! Texts of other people as they may be shown: a terminal obeys control characters, and bidirectional ones hide what is written.
 
-use std::{borrow::Cow, fmt::Write as _};
+use std::{
+    borrow::Cow,
+    fmt::Write as _,
+    io::{self, Write},
+};
 
 /// Whether a character does something other than to be seen. Line breaks and tabs are our own.
 fn is_unseen(character: char) -> bool {
@@ -17,7 +21,15 @@ fn is_unseen(character: char) -> bool {
 
 /// The text with what does something written out, as in `\u{1b}`.
 pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
-    replaced(text, |out, character| {
+    replaced(text, is_unseen, |out, character| {
+        let _ = write!(out, "{}", character.escape_unicode());
+    })
+}
+
+/// A value of others that stands within a line of ours: line breaks are written out, too, so that it cannot pass for another line.
+pub(crate) fn in_line(value: &str) -> Cow<'_, str> {
+    let breaks = |character| is_unseen(character) || matches!(character, '\n' | '\t');
+    replaced(value, breaks, |out, character| {
         let _ = write!(out, "{}", character.escape_unicode());
     })
 }
@@ -26,18 +38,35 @@ pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
 ///
 /// Such characters can only stand within texts, and all of them have four digits.
 pub(crate) fn in_json(document: &str) -> Cow<'_, str> {
-    replaced(document, |out, character| {
+    replaced(document, is_unseen, |out, character| {
         let _ = write!(out, "\\u{:04x}", u32::from(character));
     })
 }
 
-fn replaced(text: &str, write: impl Fn(&mut String, char)) -> Cow<'_, str> {
-    if !text.contains(is_unseen) {
+/// Writes JSON whose texts are as those of [`in_json`].
+pub(crate) struct JsonTexts;
+
+impl serde_json::ser::Formatter for JsonTexts {
+    fn write_string_fragment<W: Write + ?Sized>(
+        &mut self,
+        out: &mut W,
+        text: &str,
+    ) -> io::Result<()> {
+        out.write_all(in_json(text).as_bytes())
+    }
+}
+
+fn replaced(
+    text: &str,
+    is_written_out: impl Fn(char) -> bool,
+    write: impl Fn(&mut String, char),
+) -> Cow<'_, str> {
+    if !text.contains(&is_written_out) {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len() + 16);
     for character in text.chars() {
-        if is_unseen(character) { write(&mut out, character) } else { out.push(character) }
+        if is_written_out(character) { write(&mut out, character) } else { out.push(character) }
     }
     Cow::Owned(out)
 }

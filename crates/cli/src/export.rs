@@ -6,7 +6,7 @@ mod quantized_mesh;
 mod tiles3d;
 mod unknown_ending;
 
-use std::{io::stderr, path::Path};
+use std::path::Path;
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
@@ -21,6 +21,7 @@ use crate::{
         Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, ExportRoadsArgs,
         FileArgs, Format, InPlanArgs,
     },
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -73,7 +74,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     };
     let name = format!("roads.{}", format.ending());
     let (summary, size) = write(&args.file, name, args.from.package.name(), export)?;
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -90,7 +91,7 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
             summary.unjoined
         ));
     }
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} areas of level {}, {:.3} km², {} polygons, {} points",
         count(summary.areas),
@@ -110,7 +111,7 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
     let export =
         |path: &Path, progress: &Progress| export_boundaries(&package, &request, path, progress);
     let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} ways of level {}, {}, {} lines, {} points",
         count(summary.ways),
@@ -166,11 +167,12 @@ fn note_plan(args: &InPlanArgs, what: &str, manifest: &Manifest, size: u64) {
         ExportCrs::Package => &manifest.crs,
         ExportCrs::Wgs84 => "EPSG:4326",
     };
-    messages::note(&format!(
-        "{}: {what}, {}\ncoordinates: {coordinates}\nto be shown with it: {}",
-        args.file.output.display(),
+    messages::summary(&format!(
+        "{}: {what}, {}\ncoordinates: {}\nto be shown with it: {}",
+        in_line(&args.file.output.to_string_lossy()),
         bytes(size),
-        manifest.attribution.join("; "),
+        in_line(coordinates),
+        in_line(&manifest.attribution.join("; ")),
     ));
 }
 
@@ -189,7 +191,7 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, _) => &manifest.crs,
         (ExportCrs::Wgs84, None) => "EPSG:4979",
@@ -202,13 +204,13 @@ fn to_text(
     };
     format!(
         "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
-        args.file.output.display(),
+        in_line(&args.file.output.to_string_lossy()),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),
         bytes(size),
-        coordinates,
-        summary.heights,
-        manifest.attribution.join("; "),
+        in_line(coordinates),
+        in_line(&summary.heights),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

@@ -8,7 +8,7 @@ mod pictures;
 mod summary;
 
 use std::{
-    fs, io, panic,
+    fs, panic,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
 
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
     let point_scale = package.manifest().point_scale;
-    let digits = Digits::on(&io::stdout());
+    let digits = Digits::of_answers();
     messages::answer(&summary::to_text(&runs, point_scale, digits))?;
     Ok(ExitCode::Done)
 }

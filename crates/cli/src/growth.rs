@@ -8,7 +8,7 @@ mod factors;
 mod per_way;
 mod text;
 
-use std::{io, path::Path};
+use std::path::Path;
 
 use corniche_remote::PackagePlace;
 use corniche_tileset::FilePackage;
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     let answer = match &compared[..] {
         [one] if args.json => format!("{}\n", to_line(&document::document(one.manifest))),
         [one] if args.csv => csv::to_csv(one.manifest),
-        [one] => text::to_text(one.manifest, Digits::on(&io::stdout())),
+        [one] => text::to_text(one.manifest, Digits::of_answers()),
         several if args.json => format!("{}\n", to_line(&compare::to_document(several))),
         several if args.csv => {
             for difference in compare::differences(several) {
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
             let named = several.iter().map(|package| (package.name.as_str(), package.manifest));
             csv::to_csv_of_several(named)
         }
-        several => compare::to_text(several, Digits::on(&io::stdout())),
+        several => compare::to_text(several, Digits::of_answers()),
     };
     messages::answer(&answer)?;
     Ok(ExitCode::Done)

@@ -1,6 +1,6 @@
 //! `corniche info`: what a package holds and what became of its inputs.
 
-use std::{fmt::Write as _, io};
+use std::fmt::Write as _;
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
@@ -11,7 +11,8 @@ use corniche_tileset::{
 
 use crate::{
     args::InfoArgs,
-    documents::{info::InfoDocument, to_line},
+    documents::info::InfoDocument,
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages, packages,
@@ -26,10 +27,10 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
         let document = InfoDocument { manifest: package.manifest().into(), tiles };
-        messages::answer(&format!("{}\n", to_line(&document)))?;
+        messages::answer_document(&document)?;
     } else {
         let size = package.bytes()?;
-        messages::answer(&to_text(package.manifest(), size, Digits::on(&io::stdout())))?;
+        messages::answer(&to_text(package.manifest(), size, Digits::of_answers()))?;
     }
     Ok(ExitCode::Done)
 }
@@ -47,9 +48,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         "package      {}, format {}, by {}",
         bytes(package_bytes),
         manifest.format_version,
-        plain(&manifest.generator)
+        in_line(&manifest.generator)
     ));
-    say(format!("CRS          {}, {}", plain(&manifest.crs), factors(manifest.metres_per_unit)));
+    say(format!("CRS          {}, {}", in_line(&manifest.crs), factors(manifest.metres_per_unit)));
     say(format!("scale        {}", scales(&manifest.scale)));
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
@@ -58,16 +59,20 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         say(format!("bounds       {west} {south} {east} {north}, a part of the elevation data"));
     }
     if let Some(polygon) = &manifest.settings.polygon {
-        say(format!("polygon      {}, a part of the elevation data", plain(&polygon.name)));
+        say(format!("polygon      {}, a part of the elevation data", in_line(&polygon.name)));
     }
-    say(format!("grid         cell {} m, {}", sides(frame.cell()), plain(&manifest.resampling)));
+    say(format!("grid         cell {} m, {}", sides(frame.cell()), in_line(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
         "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m",
         vertical.quantum_m
     ));
-    say(format!("datum        {}; heights {}", plain(&vertical.datum), plain(&vertical.treatment)));
+    say(format!(
+        "datum        {}; heights {}",
+        in_line(&vertical.datum),
+        in_line(&vertical.treatment)
+    ));
     for found in &manifest.datum_operations {
         say(format!("positions    {}", datum_operation(found)));
     }
@@ -84,18 +89,18 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     ));
     for input in &manifest.inputs {
         let hash = match input.sha256.get(..12) {
-            Some(hash) => format!("sha256 {}…", plain(hash)),
+            Some(hash) => format!("sha256 {}…", in_line(hash)),
             None => "outside the bounds, not used".to_owned(),
         };
         say(format!(
             "input        {} {}, {}, {hash}",
-            plain(&input.kind),
-            plain(&input.name),
+            in_line(&input.kind),
+            in_line(&input.name),
             bytes(input.bytes)
         ));
     }
     for credit in &manifest.attribution {
-        say(format!("attribution  {}", plain(credit)));
+        say(format!("attribution  {}", in_line(credit)));
     }
     say(format!("\n{}", levels(manifest, digits).to_text()));
     if !manifest.photos.is_empty() {
@@ -119,7 +124,7 @@ pub(crate) fn datum_operation(found: &DatumOperationRecord) -> String {
     let accuracy = accuracy_m
         .map_or_else(|| "of unknown accuracy".to_owned(), |m| format!("accurate to {m} m"));
     let guess = if *ballpark { ", which takes one datum for the other" } else { "" };
-    format!("{} to {} by {}, {accuracy}{guess}", plain(from), plain(to), plain(operation))
+    format!("{} to {} by {}, {accuracy}{guess}", in_line(from), in_line(to), in_line(operation))
 }
 
 /// What became of areas, and what they take on each level.
@@ -165,7 +170,7 @@ fn boundary_texts(boundaries: &BoundariesRecord, digits: Digits) -> String {
 /// Which objects of a layer were lost, by reason.
 fn lost_text(objects: &str, lost: &[(String, u64)], digits: Digits) -> String {
     let line = |(reason, number): &(String, u64)| {
-        format!("  lost {} {objects}: {}\n", digits.count(*number), plain(reason))
+        format!("  lost {} {objects}: {}\n", digits.count(*number), in_line(reason))
     };
     lost.iter().map(line).collect()
 }
@@ -320,11 +325,6 @@ pub(crate) fn rounded(metres: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Text from a file, made safe for a terminal: without control characters that could set colours or imitate other lines.
-pub(crate) fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
-
 /// A number with so many digits after the point; a dash where there is none.
 pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
@@ -378,7 +378,7 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
     for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
         if roads > 0 {
             table.row([
-                format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
+                format!("  FRC {class} ({})", in_line(&manifest.settings.frc_table)),
                 digits.count(roads),
                 length(length_um),
             ]);
@@ -395,7 +395,7 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
     }
     for loss in &counts.roads_lost {
         table.row([
-            format!("lost {}", plain(&loss.reason)),
+            format!("lost {}", in_line(&loss.reason)),
             digits.count(loss.roads),
             length(loss.length_um),
         ]);
@@ -413,22 +413,27 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         let of_reason = || counts.left_out.iter().filter(|left_out| &left_out.reason == reason);
         let length_um: u64 = of_reason().map(|left_out| left_out.length_um).sum();
         let whole = if length_um > 0 { format!(", {}", length(length_um)) } else { String::new() };
-        let _ = writeln!(text, "  not taken, {}: {}{whole}", plain(reason), digits.count(*number));
+        let _ =
+            writeln!(text, "  not taken, {}: {}{whole}", in_line(reason), digits.count(*number));
         for left_out in of_reason() {
             let (ways, length) = (digits.count(left_out.ways), length(left_out.length_um));
-            let _ = writeln!(text, "    highway={}: {ways}, {length}", plain(&left_out.highway));
+            let _ = writeln!(text, "    highway={}: {ways}, {length}", in_line(&left_out.highway));
         }
     }
     for (name, number) in defects(counts) {
-        let _ = writeln!(text, "defect: {}: {}", plain(name), digits.count(*number));
+        let _ = writeln!(text, "defect: {}: {}", in_line(name), digits.count(*number));
     }
     for (value, number) in &counts.unknown_highways {
         let _ =
-            writeln!(text, "highway={} is in no class: {}", plain(value), digits.count(*number));
+            writeln!(text, "highway={} is in no class: {}", in_line(value), digits.count(*number));
     }
     for (tag, number) in &counts.tags_taken_otherwise {
-        let _ =
-            writeln!(text, "{} is taken for another value: {}", plain(tag), digits.count(*number));
+        let _ = writeln!(
+            text,
+            "{} is taken for another value: {}",
+            in_line(tag),
+            digits.count(*number)
+        );
     }
     text
 }

@@ -3,13 +3,8 @@
 use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
-    args::JobsArgs,
-    documents::{plan::JobDocument, to_line},
-    exit::ExitCode,
-    failure::Failure,
-    messages,
-    part::read_plan,
-    settings,
+    args::JobsArgs, documents::plan::JobDocument, exit::ExitCode, failure::Failure, messages,
+    part::read_plan, settings,
 };
 
 pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
@@ -32,7 +27,7 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
 /// Prints one JSON object per line.
 pub(crate) fn print(jobs: &[Job]) -> Result<ExitCode, Failure> {
     for job in jobs {
-        messages::answer(&format!("{}\n", to_line(&JobDocument::from(job))))?;
+        messages::answer_document(&JobDocument::from(job))?;
     }
     Ok(ExitCode::Done)
 }

@@ -5,7 +5,7 @@ mod map;
 mod sure;
 mod text;
 
-use std::{io, path::Path};
+use std::path::Path;
 
 use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     if let Some(output) = files.svg {
         output.write_whole(map::to_svg(&report, manifest).as_bytes())?;
     }
-    let text = text::to_text(&report, manifest, Digits::on(&io::stdout()));
+    let text = text::to_text(&report, manifest, Digits::of_answers());
     messages::answer(&text)?;
     Ok(ExitCode::Done)
 }

@@ -7,12 +7,14 @@
 mod lines;
 
 use std::{
-    io::{self, Write},
+    borrow::Cow,
+    io::{self, BufWriter, IsTerminal, Write},
     sync::OnceLock,
     time::Instant,
 };
 
 use corniche_remote::without_secrets;
+use serde::Serialize;
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
@@ -23,9 +25,9 @@ use crate::{
     args::{LogFormat, Voice},
     documents::{
         progress::{EndRecord, ProgressRecord},
-        to_line,
+        to_line, write_line_to,
     },
-    escaped::{for_people, in_json},
+    escaped::{for_people, in_json, in_line},
     exit::ExitCode,
     failure::Failure,
 };
@@ -88,10 +90,23 @@ pub(crate) fn is_detailed() -> bool {
     is_for_people() && voice().verbosity > 0
 }
 
-/// Something good to know.
+/// Something good to know, in one line.
 pub(crate) fn note(text: &str) {
+    summary(&line(text));
+}
+
+/// Something good to know, in lines of ours. What others wrote stands in them as [`in_line`] makes it.
+pub(crate) fn summary(text: &str) {
     if !voice().json_progress {
         tracing::info!("{text}");
+    }
+}
+
+/// A message of one line. Records for programs hold it as it is.
+fn line(text: &str) -> Cow<'_, str> {
+    match voice().format {
+        LogFormat::Text => in_line(text),
+        LogFormat::Json => Cow::Borrowed(text),
     }
 }
 
@@ -100,14 +115,14 @@ pub(crate) fn warning(text: &str) {
     if voice().json_progress {
         write_line(&to_line(&ProgressRecord::Warning { warning: text }));
     } else {
-        tracing::warn!("{text}");
+        tracing::warn!("{}", line(text));
     }
 }
 
 /// Why something failed.
 pub(crate) fn error(failure: &Failure) {
     if !voice().json_progress {
-        tracing::error!(exit_code = failure.code().number(), "{failure}");
+        tracing::error!(exit_code = failure.code().number(), "{}", line(&failure.to_string()));
     }
 }
 
@@ -126,6 +141,16 @@ pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
     }
 }
 
+/// Whether answers go to a terminal.
+pub(crate) fn answers_are_seen() -> bool {
+    io::stdout().is_terminal()
+}
+
+/// Whether notes, warnings and progress go to a terminal.
+pub(crate) fn notes_are_seen() -> bool {
+    io::stderr().is_terminal()
+}
+
 /// A line that is complete as it is, but for the secrets of addresses.
 pub(crate) fn write_line(line: &str) {
     let _ = writeln!(io::stderr(), "{}", for_people(&without_secrets(line)));
@@ -134,6 +159,14 @@ pub(crate) fn write_line(line: &str) {
 /// Writes an answer for people, or a list, to standard output.
 pub(crate) fn answer(text: &str) -> io::Result<()> {
     answer_as_it_is(for_people(text).as_bytes())
+}
+
+/// Writes a document for programs as a line of JSON, piece by piece.
+pub(crate) fn answer_document(document: &impl Serialize) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    write_line_to(&mut out, document)?;
+    out.write_all(b"\n")?;
+    out.flush()
 }
 
 /// Writes what programs read as it is, such as a script that we made.

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use corniche_overlay::{OverlayError, VectorLines, place, read};
+use corniche_overlay::{MOST_POINTS, OverlayError, VectorLines, place, read};
 use corniche_styles::LineStyle;
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{LayerLine, Overlays};
@@ -21,9 +21,14 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
         let most = LineStyle::MOST;
         return Err(Failure::unusable(format!("at most {most} files can be given as --overlay")));
     }
-    let (mut lines, mut first) = (Vec::new(), 0);
+    let (mut lines, mut first, mut points) = (Vec::new(), 0, 0);
     for (style, file) in (0..).zip(files) {
         let found = read(file.path(), look.allow_ballpark)?;
+        points += found.lines.iter().map(|line| line.positions_deg.len()).sum::<usize>();
+        if points > MOST_POINTS {
+            let (path, limit) = (file.path().to_path_buf(), MOST_POINTS);
+            return Err(OverlayError::TooManyTogether { path, limit }.into());
+        }
         let placed = place(&found.lines, manifest)?;
         tell(file.path(), &found);
         let is_near = placed.iter().any(|line| {
@@ -40,7 +45,7 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
         }));
         first += found.lines.len();
     }
-    Ok(Arc::new(Overlays::new(&lines, &manifest.frame)))
+    Ok(Arc::new(Overlays::new(&lines, &manifest.frame).of_files(names(files))))
 }
 
 /// Tells what of a file may not be meant.

@@ -1,6 +1,6 @@
 //! `corniche plan`: what a build will make and what it will take.
 
-use std::{borrow::Cow, fmt::Write as _, io, path::Path};
+use std::{borrow::Cow, fmt::Write as _, path::Path};
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Resources};
 use corniche_remote::without_secrets;
@@ -8,7 +8,7 @@ use corniche_work::Observer;
 
 use crate::{
     args::PlanArgs,
-    documents::{plan::PlanDocument, to_line},
+    documents::plan::PlanDocument,
     exit::ExitCode,
     failure::Failure,
     info::datum_operation,
@@ -49,11 +49,10 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = written {
         write_plan(file, &plan)?;
     }
-    let digits = Digits::on(&io::stdout());
+    let digits = Digits::of_answers();
     if args.json {
         estimate.memory.block_file = shown(&estimate.memory.block_file).into_owned();
-        let line = to_line(&PlanDocument::new(&plan, estimate));
-        messages::answer(&format!("{line}\n"))?;
+        messages::answer_document(&PlanDocument::new(&plan, estimate))?;
     } else {
         messages::answer(&to_text(&plan, &estimate, work.resources, digits))?;
     }

@@ -10,7 +10,6 @@ mod texts;
 mod usage;
 
 use std::{
-    io::{IsTerminal as _, stderr},
     path::Path,
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
     thread::{self, JoinHandle},
@@ -59,7 +58,7 @@ impl Manner {
             Voice { json_progress: true, .. } => Self::Json,
             Voice { format: LogFormat::Json, .. } => Self::Events,
             // Lines that come in between would tear a bar.
-            Voice { verbosity: 0, .. } if stderr().is_terminal() => Self::Bars,
+            Voice { verbosity: 0, .. } if messages::notes_are_seen() => Self::Bars,
             Voice { .. } => Self::Lines,
         }
     }
@@ -183,7 +182,7 @@ impl Progress {
 
 /// How whole numbers are written on standard error.
 fn digits() -> Digits {
-    Digits::on(&stderr())
+    Digits::of_notes()
 }
 
 impl Drop for Progress {

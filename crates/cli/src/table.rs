@@ -1,6 +1,8 @@
 //! Tables as plain text.
 
-use std::{fmt::Write as _, io::IsTerminal, ops::Range};
+use std::{fmt::Write as _, ops::Range};
+
+use crate::messages;
 
 /// Rows under headings, columns as wide as they need; the first column left, the others right.
 pub(crate) struct Table {
@@ -115,9 +117,14 @@ pub(crate) enum Digits {
 }
 
 impl Digits {
-    /// The form of numbers that suits the stream they are written to.
-    pub(crate) fn on(stream: &impl IsTerminal) -> Self {
-        if stream.is_terminal() { Self::Apart } else { Self::Plain }
+    /// The form of numbers in answers.
+    pub(crate) fn of_answers() -> Self {
+        if messages::answers_are_seen() { Self::Apart } else { Self::Plain }
+    }
+
+    /// The form of numbers in notes.
+    pub(crate) fn of_notes() -> Self {
+        if messages::notes_are_seen() { Self::Apart } else { Self::Plain }
     }
 
     /// A whole number.

@@ -1,7 +1,5 @@
 //! `corniche tile`: one decoded tile, for other tools to check packages with.
 
-use std::io;
-
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
     AreaRecord, BoundaryRecord, FilePackage, Manifest, Sections, Terrain, TilePayload,
@@ -14,8 +12,10 @@ use crate::{
     documents::{
         areas::TileAreaDocument,
         boundaries::TileBoundaryDocument,
-        tile::{GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal},
-        to_line,
+        tile::{
+            GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, Written,
+            normal,
+        },
     },
     exit::ExitCode,
     failure::Failure,
@@ -34,9 +34,9 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     let layers = PlanLayers::read(&package, payload.id)?;
     if args.json {
         let document = document(package.manifest(), &payload, layers, args.coordinates)?;
-        messages::answer(&format!("{}\n", to_line(&document)))?;
+        messages::answer_document(&document)?;
     } else {
-        messages::answer(&to_text(&payload, &layers, Digits::on(&io::stdout())))?;
+        messages::answer(&to_text(&payload, &layers, Digits::of_answers()))?;
     }
     Ok(ExitCode::Done)
 }
@@ -176,6 +176,7 @@ fn to_text(payload: &TilePayload, layers: &PlanLayers, digits: Digits) -> String
 }
 
 /// Makes coordinates of one kind from working metres.
+#[derive(Clone, Copy)]
 struct Places {
     /// What working metres are divided by.
     unit: [f64; 2],
@@ -192,12 +193,12 @@ impl Places {
     }
 }
 
-fn document(
-    manifest: &Manifest,
-    payload: &TilePayload,
+fn document<'a>(
+    manifest: &'a Manifest,
+    payload: &'a TilePayload,
     layers: PlanLayers,
     coordinates: Coordinates,
-) -> Result<TileDocument, Failure> {
+) -> Result<TileDocument<'a>, Failure> {
     let frame = &manifest.frame;
     let id = payload.id;
     let (word, unit) = match coordinates {
@@ -228,8 +229,8 @@ fn document(
         uncovered_nodes: terrain.map(|terrain| terrain.uncovered_nodes),
         tin: terrain.map(|terrain| tin(manifest, id, terrain, &places)).unwrap_or_default(),
         roads_geo,
-        roads_sv: roads_sv(manifest, payload, &places),
-        attributes: payload.attributes.iter().map(WayDocument::from).collect(),
+        roads_sv: Written::of(&payload.roads_sv, move |road| sv_road(manifest, road, places)),
+        attributes: Written::of(&payload.attributes, WayDocument::from),
         areas: layers
             .areas
             .into_iter()
@@ -284,14 +285,13 @@ fn roads_geo(
     payload.roads_geo.iter().map(road).collect()
 }
 
-fn roads_sv(manifest: &Manifest, payload: &TilePayload, places: &Places) -> Vec<SvRoadDocument> {
+fn sv_road(manifest: &Manifest, road: &corniche_tileset::SvRoad, places: Places) -> SvRoadDocument {
     let place = |&point: &_| places.of(manifest.frame.position_m(point));
-    let road = |road: &corniche_tileset::SvRoad| SvRoadDocument {
+    SvRoadDocument {
         way_id: road.way_id,
         part: road.part,
         frc: road.class.number(),
         line: road.line.points.iter().map(place).collect(),
         ground_range_m: road.line.ground_range_m.clone(),
-    };
-    payload.roads_sv.iter().map(road).collect()
+    }
 }

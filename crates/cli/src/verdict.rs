@@ -5,7 +5,8 @@ use std::path::Path;
 use corniche_tileset::{AreasRecord, BoundariesRecord, Counts, Manifest, VerticalRecord};
 
 use crate::{
-    info::{plain, rounded, sides},
+    escaped::in_line,
+    info::{rounded, sides},
     table::{Digits, bytes, length},
 };
 
@@ -74,14 +75,17 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
         what: format!(
             "{} {}",
             if loss.roads > 0 { "whole roads" } else { "parts of roads" },
-            plain(&loss.reason)
+            in_line(&loss.reason)
         ),
         remedy: remedy(&loss.reason),
     });
     let ways = counts.highways_left_out.iter().map(|(reason, number)| {
         let of_reason: Vec<_> =
             counts.left_out.iter().filter(|left_out| &left_out.reason == reason).collect();
-        let values = of_reason.iter().take(MOST_VALUES).map(|left_out| plain(&left_out.highway));
+        let values = of_reason
+            .iter()
+            .take(MOST_VALUES)
+            .map(|left_out| in_line(&left_out.highway).into_owned());
         let mut values: Vec<String> = values.collect();
         if of_reason.len() > MOST_VALUES {
             values.push("…".to_owned());
@@ -91,7 +95,7 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
         LeftOut {
             number: *number,
             length_um: of_reason.iter().map(|left_out| left_out.length_um).sum(),
-            what: format!("ways, {}{values}", plain(reason)),
+            what: format!("ways, {}{values}", in_line(reason)),
             remedy: remedy(reason),
         }
     });
@@ -164,9 +168,9 @@ fn defects(counts: &Counts, digits: Digits) -> Option<String> {
     let number: u64 = defects.iter().map(|(_, number)| number).sum();
     let (name, _) = defects.iter().max_by_key(|(_, number)| number)?;
     let more = if defects.len() > 1 {
-        format!(", most of all: {}", plain(name))
+        format!(", most of all: {}", in_line(name))
     } else {
-        format!(": {}", plain(name))
+        format!(": {}", in_line(name))
     };
     Some(format!("defects      {}{more}; --defects FILE lists them", digits.count(number)))
 }

@@ -1,6 +1,6 @@
 //! `corniche verify`: whether a package keeps its promises.
 
-use std::{fmt::Write as _, io, path::PathBuf};
+use std::{fmt::Write as _, path::PathBuf};
 
 use corniche_areas::AreaTable;
 use corniche_pipeline::{
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
         let missing = Missing::of(&report, Holds::of(package.manifest()));
-        let digits = Digits::on(&io::stdout());
+        let digits = Digits::of_answers();
         if messages::voice().is_quiet {
             to_short_text(&report, &missing, digits)
         } else {

@@ -99,12 +99,19 @@ impl Near<'_> {
             (bounds, end) = (wider, end + 1);
         }
         // A corner of a segment's rectangle is √2 margins from its end.
-        let around = bounds.expanded(margin + margin / 2 + 1);
+        let around = margin + margin / 2 + 1;
         let mut triangles = Vec::new();
-        self.surface.visit_triangles_near(around, |triangle| triangles.push(triangle));
-        self.work.add(triangles.len());
-        triangles.sort_unstable();
-        triangles.dedup();
+        if end == first + 1 {
+            let ends = [points[first], points[end]].map(LatticePoint::in_steps);
+            self.surface.triangles_along(ends, around as f64, &mut triangles);
+            self.work.add(triangles.len());
+        } else {
+            let visit = |triangle| triangles.push(triangle);
+            self.surface.visit_triangles_near(bounds.expanded(around), visit);
+            self.work.add(triangles.len());
+            triangles.sort_unstable();
+            triangles.dedup();
+        }
         let surface = self.surface;
         let by = |pick: fn(f64, f64) -> f64| -> Vec<(f64, u32)> {
             let corner_m = |&triangle: &u32| {

@@ -1,6 +1,6 @@
 //! Bounds on the heights of the ground near a segment, which grow with the distance from it.
 
-use corniche_geom::{LatticeBounds, LatticePoint, Work};
+use corniche_geom::Work;
 use corniche_tin::Surface;
 
 use crate::height_range::padded;
@@ -33,7 +33,7 @@ pub struct NearGround {
 /// Bounds on the ground within `reach` of a segment; `None` without any there.
 ///
 /// The ends and the reach are in lattice steps. *Within* is as for [`extrude`](crate::extrude): a rectangle, which holds
-/// the caps. Looking at a triangle is a step of `work`.
+/// the caps. Looking at a triangle is a step of `work`, and another when some of it lies within.
 #[must_use]
 pub fn near_ground(
     ends: [[f64; 2]; 2],
@@ -44,10 +44,9 @@ pub fn near_ground(
     let (near, beneath) =
         (SegmentRectangle::new(ends, reach), SegmentRectangle::new(ends, reach.min(1.0)));
     let mut triangles = Vec::new();
-    surface.triangles_near(bounds(ends, reach), &mut triangles);
+    // A corner of the rectangle is √2 · reach away from the end of the segment.
+    surface.triangles_along(ends, 1.5 * reach + 1.0, &mut triangles);
     work.add(triangles.len());
-    triangles.sort_unstable();
-    triangles.dedup();
     let (mut near_range_m, mut beneath_range_m) = (NOTHING, NOTHING);
     let (mut covered, mut rise_m) = (0.0, 0.0_f64);
     for triangle in triangles {
@@ -55,6 +54,7 @@ pub fn near_ground(
         if part.corners().is_empty() {
             continue;
         }
+        work.add(1);
         widen(&mut near_range_m, part.corners());
         widen(&mut beneath_range_m, beneath.part_of(triangle, surface).corners());
         covered += part.area();
@@ -80,18 +80,6 @@ fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {
     for &[.., height_m] in corners {
         *lowest_m = lowest_m.min(height_m);
         *highest_m = highest_m.max(height_m);
-    }
-}
-
-/// Whatever lies in the rectangle around a segment, and more.
-fn bounds([p, q]: [[f64; 2]; 2], reach: f64) -> LatticeBounds {
-    // A corner of the rectangle is √2 · reach away from the end of the segment.
-    let around = 1.5 * reach + 1.0;
-    let least = |axis: usize| (p[axis].min(q[axis]) - around).floor() as i64;
-    let most = |axis: usize| (p[axis].max(q[axis]) + around).ceil() as i64;
-    LatticeBounds {
-        min: LatticePoint::new(least(0), least(1)),
-        max: LatticePoint::new(most(0), most(1)),
     }
 }
 

@@ -1,5 +1,6 @@
 //! No ground near a segment lies beyond the bounds.
 
+use corniche_geom::LatticePoint;
 use proptest::prelude::*;
 
 use super::*;

@@ -44,4 +44,4 @@ pub use projection::{ProjectError, Projection};
 pub use seam::{OnSeamedMap, Seam, split_at_seam};
 pub use tile_id::{TileId, TileIdError};
 pub use tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};
-pub use work::{TooMuchWork, Work};
+pub use work::{MOST_TILE_STEPS, TooMuchWork, Work};

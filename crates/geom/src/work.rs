@@ -2,6 +2,13 @@
 
 use std::cell::Cell;
 
+/// Steps that laying lines on one tile, or placing its roads, may take: looking at a triangle is one, and a vertex where a line crosses an edge
+/// of the ground counts for 32.
+///
+/// Real tiles take some hundred thousand. The limit is two million vertices, some 500 MiB of them, and a few seconds. How many points a file
+/// of lines may have follows from it.
+pub const MOST_TILE_STEPS: u64 = 1 << 26;
+
 /// More steps were taken than are allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("it takes more than the limit of {limit} steps")]

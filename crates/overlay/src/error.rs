@@ -40,6 +40,10 @@ pub enum OverlayError {
         "{path:?} has more than {limit} points in its lines; simplify it (ogr2ogr -simplify), or cut it to the package (ogr2ogr -clipsrc)"
     )]
     TooManyPoints { path: PathBuf, limit: usize },
+    #[error(
+        "{path:?} and the files named before it have more than {limit} points in their lines; simplify them (ogr2ogr -simplify), cut them to the package (ogr2ogr -clipsrc), or show fewer files"
+    )]
+    TooManyTogether { path: PathBuf, limit: usize },
     #[error("cannot read {path:?}")]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{path:?} is larger than {limit} bytes, which is no file of lines that were drawn")]

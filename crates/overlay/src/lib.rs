@@ -17,4 +17,4 @@ pub use error::OverlayError;
 pub use heights::EllipsoidHeights;
 pub use line_file::{LineFile, SavedLine, Shape};
 pub use place_lines::{Placed, place};
-pub use read::{VectorLine, VectorLines, read};
+pub use read::{MOST_POINTS, VectorLine, VectorLines, read};

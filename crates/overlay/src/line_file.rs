@@ -5,7 +5,7 @@ use std::{fs, io::Read as _, path::Path};
 use geo::{LineString, Winding as _};
 use serde_json::{Map, Value, json};
 
-use crate::OverlayError;
+use crate::{OverlayError, read::MOST_POINTS};
 
 /// Far more than a person draws.
 const MOST_BYTES: u64 = 256 << 20;
@@ -57,8 +57,13 @@ impl LineFile {
         if text.len() as u64 > MOST_BYTES {
             return Err(OverlayError::TooLarge { path: path.to_path_buf(), limit: MOST_BYTES });
         }
-        Self::parse(&text)
-            .map_err(|reason| OverlayError::GeoJson { path: path.to_path_buf(), reason })
+        let file = Self::parse(&text)
+            .map_err(|reason| OverlayError::GeoJson { path: path.to_path_buf(), reason })?;
+        if file.lines().iter().map(|(_, _, points)| points.len()).sum::<usize>() > MOST_POINTS {
+            let (path, limit) = (path.to_path_buf(), MOST_POINTS);
+            return Err(OverlayError::TooManyPoints { path, limit });
+        }
+        Ok(file)
     }
 
     fn parse(text: &str) -> Result<Self, String> {

@@ -3,14 +3,18 @@
 use std::{collections::HashMap, path::Path};
 
 use corniche_dem::{DemError, FileDatums, NotOpened, ToWgs84, failure, forget, open_vectors};
+use corniche_geom::MOST_TILE_STEPS;
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten,
 };
 
 use crate::OverlayError;
 
-/// Each is drawn on every tile that it comes near; the limit keeps memory and time bounded.
-const MOST_POINTS: usize = 4_000_000;
+/// Steps of work for a point of a line that crosses little ground, as a track of a walker does.
+const STEPS_OF_POINT: u64 = 64;
+
+/// Points that the lines of a file may have, a million: as many as one tile can show, for they may all lie on one.
+pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 
 /// A line of a file.
 #[derive(Debug, Clone, PartialEq)]

@@ -185,7 +185,7 @@ fn secret_in(address: &str) -> Option<usize> {
         return Some(at);
     }
     if !is_cut(host) {
-        return None;
+        return behind_number(address, host);
     }
     // A password with a slash, a blank or a quotation mark in it would have to be written otherwise, but may have been typed so.
     let length = address_length(address);
@@ -197,6 +197,22 @@ fn is_cut(host: &str) -> bool {
     let bare = host.trim_end_matches([',', ';', '.', ':', '!', ')', ']']);
     let port = if host.starts_with('[') { bare.rsplit_once("]:") } else { bare.split_once(':') };
     port.is_some_and(|(_, port)| !is_number(port))
+}
+
+/// The `@` behind a password of digits and a blank, such as `me:12 34@host`. A host without a dot may have such a port, but seldom is a word
+/// with an `@` among the next three.
+fn behind_number(address: &str, host: &str) -> Option<usize> {
+    let (name, port) = host.split_once(':')?;
+    let is_host = name.is_empty() || name == "localhost" || name.contains(['.', '[']);
+    if is_host
+        || port.is_empty()
+        || !is_number(port)
+        || !address[host.len()..].starts_with([' ', '\t'])
+    {
+        return None;
+    }
+    let at = next_at(address, host.len())?;
+    (address[host.len()..at].split_whitespace().count() <= 3).then_some(at)
 }
 
 /// The `@` before the next host in the same line, and in JSON in the same text.

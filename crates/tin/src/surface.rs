@@ -211,6 +211,15 @@ impl Surface {
         self.triangle_buckets.visit(bounds, visit);
     }
 
+    /// All triangles of which some may lie within `around` steps of a segment along each axis, and perhaps others, in ascending order, without
+    /// repetition, put into `out` in place of what it held. `around` is 1 at least, for rounding.
+    pub fn triangles_along(&self, ends: [[f64; 2]; 2], around: f64, out: &mut Vec<u32>) {
+        out.clear();
+        self.triangle_buckets.visit_along(ends, around, |triangle| out.push(triangle));
+        out.sort_unstable();
+        out.dedup();
+    }
+
     /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
     /// repetition, put into `out` in place of what it held.
     pub fn boundary_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {

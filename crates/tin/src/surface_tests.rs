@@ -86,6 +86,27 @@ proptest! {
         prop_assert_eq!(found, expected);
     }
 
+    /// Searching along a segment finds every triangle with a corner, or a middle, near it.
+    #[test]
+    fn along_finds_all_that_lie_near((surface, bounds, _) in any_surface(), ends in prop::array::uniform4(-100_i64..400), around in 1_i64..60) {
+        let at = |k: usize| [(bounds.min.u + ends[k]) as f64, (bounds.min.v + ends[k + 1]) as f64];
+        let (p, q) = (at(0), at(2));
+        let mut found = Vec::new();
+        surface.triangles_along([p, q], around as f64, &mut found);
+        prop_assert!(found.is_sorted_by(|a, b| a < b));
+        let is_near = |[u, v]: [f64; 2]| (0..=1000).any(|k| {
+            let share = f64::from(k) / 1000.0;
+            let on = [0, 1].map(|axis| p[axis] + share * (q[axis] - p[axis]));
+            (u - on[0]).abs() <= around as f64 && (v - on[1]).abs() <= around as f64
+        });
+        for (number, corners) in (0..).zip(surface.triangles()) {
+            let at = corners.map(|vertex| surface.points()[vertex as usize].in_steps());
+            let middle = [0, 1].map(|axis| at.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
+            let is_wanted = is_near(middle) || at.into_iter().any(is_near);
+            prop_assert!(!is_wanted || found.contains(&number), "{:?} near {:?} {:?}", at, p, q);
+        }
+    }
+
     /// Corners have their own height to the last bit, and both sides of an edge agree along it.
     #[test]
     fn heights_agree_along_edges((surface, _, _) in any_surface(), part in 0.0..1.0_f64) {

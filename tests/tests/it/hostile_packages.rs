@@ -15,11 +15,10 @@ use std::{
 use corniche_testing::hostile::{COMMANDING, Case, FAMILIES, Outcome, commanding_texts};
 use e2e::{Ran, binary, corniche, ended_with_peak, json, text};
 
-/// Seconds of computing that a command may take; the shell ends it then. The aim is ten; slow machines and software drivers get more.
-const MOST_SECONDS: u32 = 40;
+/// Seconds of computing that a command may take; the shell ends it then. On a machine of 2026 all stay below ten, those on a software driver
+/// included; slower machines get more.
+const MOST_SECONDS: u32 = 20;
 const MOST_MIB: u64 = 1024;
-/// `tile --json` holds its text: all tags of a million ways.
-const MOST_MIB_OF_TEXT: u64 = 1536;
 
 /// What is done with a package: the words before its name, and those after.
 const COMMANDS: [(&str, &[&str], &[&str]); 13] = [
@@ -31,6 +30,8 @@ const COMMANDS: [(&str, &[&str], &[&str]); 13] = [
         &["export", "roads", "-q", "--crs", "EPSG:4979", "--heights", "as-is"],
         &["-o", "OUT.gpkg"],
     ),
+    // As people call it: what it refuses without a system for its heights, it refuses soon.
+    ("export roads plain", &["export", "roads", "-q"], &["-o", "OUT.gpkg"]),
     ("export areas", &["export", "areas", "-q"], &["-o", "OUT.gpkg"]),
     ("export boundaries", &["export", "boundaries", "-q"], &["-o", "OUT.gpkg"]),
     ("export mesh", &["export", "mesh", "-q"], &["-o", "OUT.glb"]),
@@ -82,10 +83,9 @@ fn check(families: &[&str], commands: &[&str], is_asked: impl Fn(&Case) -> bool)
                     peak >> 20
                 );
                 println!("{line}");
-                let most_mib = if command.0 == "tile" { MOST_MIB_OF_TEXT } else { MOST_MIB };
                 let is_known = matches!(ran.code, 0..=2);
                 let is_refused = ran.code != 0 || matches!(case.outcome, Outcome::Read);
-                if !is_known || !is_refused || peak >> 20 > most_mib || ran.err.contains("panicked")
+                if !is_known || !is_refused || peak >> 20 > MOST_MIB || ran.err.contains("panicked")
                 {
                     broken.push(line);
                 }
@@ -121,7 +121,7 @@ fn no_text_of_a_package_commands_the_terminal() {
     let package = text(&package);
     let out = |name: &str| folder.path().join(format!("\u{9b}{name}")).to_str().unwrap().to_owned();
     let [gpkg, tif, mesh, svg] = ["a.gpkg", "a.tif", "a.glb", "a.svg"].map(out);
-    let other = folder.path().join("no\u{1b}]0;such\u{7}.pmtiles");
+    let other = folder.path().join("no\u{1b}]0;such\u{7}\ncorniche: forged.pmtiles");
     for words in [
         &["info", package][..],
         &["info", package, "--json"],
@@ -146,6 +146,8 @@ fn no_text_of_a_package_commands_the_terminal() {
                     || ('\u{2066}'..='\u{2069}').contains(&one)
             };
             assert!(!said.contains(unseen), "{words:?}: {said:?}");
+            let is_forged = |line: &str| line.trim_start().starts_with("corniche: forged");
+            assert!(!said.lines().any(is_forged), "{words:?}: {said}");
         }
     }
     let told = json(&["info", package, "--json"]);

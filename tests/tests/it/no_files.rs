@@ -96,9 +96,13 @@ fn a_pipe_as_input_is_refused_with_the_way_out() {
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
     let [package, pipe, free, picture, new_package, dem, osm] =
         [&package, &pipe, &free, &picture, &new_package, &dem, &osm].map(|path| text(path));
+    let list = format!("@{pipe}");
     let before = names(folder.path());
-    let lines: [&[&str]; 16] = [
+    let lines: [&[&str]; 19] = [
         &["build", "--dem", pipe, "-o", new_package],
+        &["build", "--dem", &list, "-o", new_package],
+        &["verify", package, "--dem", &list],
+        &["render", package, "--overlay", pipe, "-o", picture],
         &["build", "--dem", dem, pipe, "-o", new_package],
         &["build", "--dem", dem, "--osm", pipe, "-o", new_package],
         &["build", "--dem", dem, "--config", pipe, "-o", new_package],
@@ -118,8 +122,10 @@ fn a_pipe_as_input_is_refused_with_the_way_out() {
     for line in lines {
         let ran = run(line);
         assert_eq!(ran.code, 2, "{line:?}: {}", ran.err);
-        let tells =
-            ran.err.contains("save it to a file first") || ran.err.contains("copy it to one");
+        let tells = ["it", "them"]
+            .iter()
+            .any(|what| ran.err.contains(&format!("save {what} to a file first")))
+            || ran.err.contains("copy it to one");
         assert!(tells && ran.err.contains("pipe"), "{line:?}: {}", ran.err);
         assert_eq!(names(folder.path()), before, "{line:?} left something behind");
     }

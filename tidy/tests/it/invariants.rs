@@ -52,12 +52,20 @@ const FILES: [(&str, &str); 10] = [
     ("window", "pictures and flights that a person saves"),
 ];
 
+/// Files that write to the terminal, or ask what it is.
+const PRINTERS: [(&str, &str); 3] = [
+    ("crates/cli/src/main.rs", "help and what the parser of the command line says, in its colours"),
+    ("crates/cli/src/messages.rs", "answers, notes, warnings and errors"),
+    ("crates/cli/src/progress.rs", "bars, whose texts are our own"),
+];
+
 /// Things that only some crates do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Deed {
     StartsThreads,
     IsUnsafe,
     OpensFiles,
+    Prints,
 }
 
 /// Methods of GDAL's drivers that make a file.
@@ -91,6 +99,9 @@ fn deed_of(path: &[&str]) -> Option<Deed> {
         ["rustix", "fs", "open" | "openat"]
         | ["gdal", "Dataset", "open" | "open_ex"]
         | ["gdal_sys", "VSIFOpenL"] => Some(Deed::OpensFiles),
+        ["std", "io", "stdout" | "stderr" | "Stdout" | "Stderr", ..] | ["indicatif", ..] => {
+            Some(Deed::Prints)
+        }
         _ => None,
     }
 }
@@ -199,6 +210,10 @@ impl<'ast> Visit<'ast> for Finder {
     }
 
     fn visit_expr_method_call(&mut self, call: &'ast syn::ExprMethodCall) {
+        // Of the parser of the command line.
+        if call.method == "print" && call.args.is_empty() {
+            self.found.insert(Deed::Prints);
+        }
         if self.uses_gdal && DRIVER_METHODS.iter().any(|name| call.method == name) {
             self.found.insert(Deed::OpensFiles);
         }
@@ -287,13 +302,14 @@ fn flatten(
     }
 }
 
-/// What each crate of the workspace does in its own code, with one of the files that do it.
-static DEEDS: LazyLock<BTreeMap<(Deed, String), String>> = LazyLock::new(deeds_of_crates);
+/// What each crate of the workspace does in its own code, with the files that do it, from the workspace's root.
+static DEEDS: LazyLock<BTreeMap<(Deed, String), BTreeSet<String>>> = LazyLock::new(deeds_of_crates);
 
 /// Reads all crates but `testing`, which is there for tests.
-fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
-    let mut found = BTreeMap::new();
-    for folder in crates_of(&root()).unwrap() {
+fn deeds_of_crates() -> BTreeMap<(Deed, String), BTreeSet<String>> {
+    let mut found: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
+    let root = root();
+    for folder in crates_of(&root).unwrap() {
         let read = read_crate(&folder).unwrap();
         if read.name == "testing" {
             continue;
@@ -303,7 +319,8 @@ fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
             let path = folder.join("src").join(file);
             let text = fs::read_to_string(&path).unwrap();
             for deed in Finder::deeds(&text) {
-                found.entry((deed, read.name.clone())).or_insert(path.display().to_string());
+                let name = path.strip_prefix(&root).unwrap_or(&path).display().to_string();
+                found.entry((deed, read.name.clone())).or_default().insert(name);
             }
         }
     }
@@ -313,11 +330,11 @@ fn deeds_of_crates() -> BTreeMap<(Deed, String), String> {
 /// Compares what crates do with a list of those that may.
 fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
     let doers = DEEDS.iter().filter(|((what, _), _)| *what == deed);
-    for ((_, name), file) in doers {
+    for ((_, name), files) in doers {
         let is_listed = allowed.iter().any(|(listed, _)| listed == name);
         assert!(
             is_listed,
-            "{name} {deed:?} in {file}: do it elsewhere, or add it to {list} with a reason"
+            "{name} {deed:?} in {files:?}: do it elsewhere, or add it to {list} with a reason"
         );
     }
     for (name, reason) in allowed {
@@ -340,6 +357,15 @@ fn crates_with_unsafe_code_are_listed() {
 #[test]
 fn crates_that_open_files_are_listed() {
     check(Deed::OpensFiles, &FILES, "FILES");
+}
+
+/// What others wrote is escaped in one module, so no other writes to the terminal.
+#[test]
+fn one_module_prints_and_others_that_write_to_the_terminal_are_listed() {
+    let printing = DEEDS.iter().filter(|((deed, _), _)| *deed == Deed::Prints);
+    let found: BTreeSet<&str> = printing.flat_map(|(_, files)| files).map(String::as_str).collect();
+    assert_eq!(found, PRINTERS.iter().map(|(file, _)| *file).collect());
+    assert!(PRINTERS.iter().all(|(_, reason)| !reason.is_empty()));
 }
 
 /// Each way to do it is seen, whatever the imports are.
@@ -366,6 +392,8 @@ fn what_is_planted_is_found() {
         ("use tempfile::NamedTempFile; struct S(NamedTempFile);", Deed::OpensFiles),
         ("use gdal::Dataset; fn f() { Dataset::open(path); }", Deed::OpensFiles),
         ("use gdal::Driver; fn f(d: Driver) { d.create_vector_only(p); }", Deed::OpensFiles),
+        ("use std::io; fn f() { writeln!(io::stderr(), \"a\"); }", Deed::Prints),
+        ("fn f(error: clap::Error) { error.print(); }", Deed::Prints),
     ];
     for (text, deed) in planted {
         assert_eq!(Finder::deeds(text), BTreeSet::from([deed]), "{text}");

@@ -33,7 +33,7 @@ fn schemas() -> [(&'static str, &'static str, Schema); 8] {
         ("job", "a line of corniche jobs", schema::<JobDocument>()),
         ("plan", "corniche plan --json", schema::<PlanDocument>()),
         ("progress", "a line of --json-progress", schema::<ProgressRecord<'_>>()),
-        ("tile", "corniche tile --json", schema::<TileDocument>()),
+        ("tile", "corniche tile --json", schema::<TileDocument<'_>>()),
         ("verify", "corniche verify --json", schema::<VerifyDocument>()),
     ]
 }

@@ -1,14 +1,32 @@
 //! The JSON document of `corniche tile`.
 
 use corniche_tileset::RoadRecord;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::{areas::TileAreaDocument, boundaries::TileBoundaryDocument};
 
+/// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
+pub(crate) struct Written<'a, Item>(Box<dyn Fn() -> Items<'a, Item> + 'a>);
+
+type Items<'a, Item> = Box<dyn Iterator<Item = Item> + 'a>;
+
+impl<'a, Item: 'a> Written<'a, Item> {
+    /// Each of these as an item.
+    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + Copy + 'a) -> Self {
+        Self(Box::new(move || Box::new(all.iter().map(item))))
+    }
+}
+
+impl<Item: Serialize> Serialize for Written<'_, Item> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq((self.0)())
+    }
+}
+
 /// A tile, decoded.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct TileDocument {
+pub(crate) struct TileDocument<'a> {
     /// Level, column from the west, row from the north: "z/x/y".
     pub(crate) id: String,
     /// CRS of the package.
@@ -34,9 +52,11 @@ pub(crate) struct TileDocument {
     /// Roads as geometry, on the triangles.
     pub(crate) roads_geo: Vec<GeoRoadDocument>,
     /// Roads as plan lines, for shadow volumes.
-    pub(crate) roads_sv: Vec<SvRoadDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<SvRoadDocument>"))]
+    pub(crate) roads_sv: Written<'a, SvRoadDocument>,
     /// What is known of each way that occurs in the tile, sorted by way id.
-    pub(crate) attributes: Vec<WayDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<WayDocument>"))]
+    pub(crate) attributes: Written<'a, WayDocument>,
     /// Parts of areas that lie in the tile; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) areas: Vec<TileAreaDocument>,

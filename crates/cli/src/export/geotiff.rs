@@ -1,9 +1,6 @@
 //! `corniche export geotiff`: heights as a raster.
 
-use std::{
-    io::stderr,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use corniche_export::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
 use corniche_pipeline::RecordedElevation;
@@ -11,6 +8,7 @@ use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
 
 use crate::{
     args::ExportGeoTiffArgs,
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -65,7 +63,7 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             summary.heights
         ));
     }
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -88,7 +86,7 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let error = summary.sample_error.map_or_else(String::new, |error| {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
         let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
@@ -100,7 +98,7 @@ fn to_text(
     });
     format!(
         "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
-        args.file.output.display(),
+        in_line(&args.file.output.to_string_lossy()),
         summary.level,
         count(summary.columns),
         count(summary.rows),
@@ -108,8 +106,8 @@ fn to_text(
         summary.pixels,
         bytes(size),
         summary.error_bound_m,
-        manifest.crs,
-        summary.heights,
-        manifest.attribution.join("; "),
+        in_line(&manifest.crs),
+        in_line(&summary.heights),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

@@ -2,7 +2,6 @@
 
 use std::{
     fs,
-    io::stderr,
     path::{Path, PathBuf},
 };
 
@@ -12,6 +11,7 @@ use corniche_tileset::Manifest;
 use super::unknown_ending::unknown_ending;
 use crate::{
     args::{ExportMeshArgs, OnOrNone},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
             let _ = fs::remove_file(path);
         }
     })?;
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -107,7 +107,7 @@ fn file_name(path: &Path) -> String {
 }
 
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let [x, y] = summary.origin;
     let roads = match ModelRoads::from(args.roads) {
         ModelRoads::Surfaces => format!("{} of them of roads", count(summary.road_triangles)),
@@ -115,13 +115,13 @@ fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, si
     };
     format!(
         "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})\nto be shown with it: {}",
-        args.file.output.display(),
+        in_line(&args.file.output.to_string_lossy()),
         summary.level,
         count(summary.tiles),
         count(summary.triangles),
         bytes(size),
-        manifest.crs,
-        manifest.vertical.datum,
-        manifest.attribution.join("; "),
+        in_line(&manifest.crs),
+        in_line(&manifest.vertical.datum),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

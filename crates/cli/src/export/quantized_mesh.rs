@@ -1,7 +1,5 @@
 //! `corniche export quantized-mesh`: terrain tiles of the globe.
 
-use std::io::stderr;
-
 use corniche_export::{
     Availability, Coordinates, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary,
     Tiling, export_quantized_mesh,
@@ -10,6 +8,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     args::{ExportQuantizedMeshArgs, TerrainCompress},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     folder_output::FolderOutput,
@@ -43,7 +42,7 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     progress.finish();
     let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("quantized-mesh")?;
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -53,7 +52,7 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let level = |level: &QuantizedMeshLevel| {
         let deviation = if level.places == 0 {
             "not measured: no place with ground is on its raster".to_owned()
@@ -79,11 +78,11 @@ fn to_text(
     let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
     format!(
         "{}: {} tiles, {}\n{}heights: {}\nto be shown with it: {}",
-        args.folder.output.display(),
+        in_line(&args.folder.output.to_string_lossy()),
         count(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),
-        summary.heights,
-        manifest.attribution.join("; "),
+        in_line(&summary.heights),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

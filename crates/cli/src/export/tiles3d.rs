@@ -1,7 +1,5 @@
 //! `corniche export 3dtiles`: a package as 3D Tiles.
 
-use std::io::stderr;
-
 use corniche_export::{
     Coordinates, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
 };
@@ -9,6 +7,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     args::{Compress, ExportTiles3dArgs, OnOrNone},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     folder_output::FolderOutput,
@@ -46,7 +45,7 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     progress.finish();
     let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("3D Tiles")?;
-    messages::note(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -56,7 +55,7 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::on(&stderr()).count(number);
+    let count = |number| Digits::of_notes().count(number);
     let level = |level: &Tiles3dLevel| {
         format!(
             "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
@@ -73,12 +72,12 @@ fn to_text(
     let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
     format!(
         "{}: {} tiles, {}, {} tileset documents\n{}heights: {}\nto be shown with it: {}",
-        args.folder.output.display(),
+        in_line(&args.folder.output.to_string_lossy()),
         count(total(|level| level.tiles)),
         bytes(size),
         count(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
-        summary.heights,
-        manifest.attribution.join("; "),
+        in_line(&summary.heights),
+        in_line(&manifest.attribution.join("; ")),
     )
 }

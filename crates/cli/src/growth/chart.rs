@@ -6,6 +6,7 @@ use plotters::prelude::RGBColor;
 use super::{compare::Compared, factors::of_level};
 use crate::{
     chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw},
+    escaped::in_line,
     failure::Failure,
 };
 
@@ -142,7 +143,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
 /// The file's name without folders and ending, cut if it is long.
 fn short_name(path: &str) -> String {
     let stem = std::path::Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
-    let stem = crate::info::plain(&stem);
+    let stem = in_line(&stem).into_owned();
     if stem.chars().count() <= LONGEST_NAME {
         return stem;
     }

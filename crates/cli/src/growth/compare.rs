@@ -15,7 +15,8 @@ use crate::{
     documents::growth::{
         ComparedDocument, ComparisonDocument, DifferenceDocument, DifferentValueDocument,
     },
-    info::{datum_operation, plain, rounded, sides},
+    escaped::in_line,
+    info::{datum_operation, rounded, sides},
     table::{Digits, Table, wrapped},
 };
 
@@ -131,7 +132,7 @@ fn properties(manifest: &Manifest) -> [Property; 18] {
         ("classes", classes([frc_table, frc_table_sha256], chosen.as_deref())),
         ("classes by level", classes_by_level(class_max_cell_m)),
         ("simplification", simplification(*simplify_cells)),
-        ("CRS", plain(&manifest.crs)),
+        ("CRS", in_line(&manifest.crs).into_owned()),
         ("scale latitude", scale_latitude(*scale_latitude_deg)),
         ("bounds", bounds(*bounds_deg)),
         ("polygon", polygon.as_ref().map_or_else(|| "none".to_owned(), polygon_text)),
@@ -140,7 +141,7 @@ fn properties(manifest: &Manifest) -> [Property; 18] {
 
 /// What was given, else what holds without it.
 fn given(value: Option<&str>, without: &str) -> String {
-    value.map_or_else(|| without.to_owned(), plain)
+    value.map_or_else(|| without.to_owned(), |text| in_line(text).into_owned())
 }
 
 /// How positions came from one datum to another.
@@ -180,7 +181,7 @@ fn bounds(bounds_deg: Option<[f64; 4]>) -> String {
 /// A polygon by name and hash.
 fn polygon_text(polygon: &PolygonRecord) -> String {
     let hash = polygon.sha256.get(..12).unwrap_or_default();
-    format!("{} ({}…)", plain(&polygon.name), plain(hash))
+    format!("{} ({}…)", in_line(&polygon.name), in_line(hash))
 }
 
 /// The inputs of some kinds by name and hash.
@@ -188,7 +189,7 @@ fn inputs(manifest: &Manifest, kinds: &[&str]) -> String {
     let of_kind = |input: &&InputRecord| kinds.contains(&input.kind.as_str());
     let name = |input: &InputRecord| {
         let hash = input.sha256.get(..12).map_or("not used".to_owned(), |hash| format!("{hash}…"));
-        format!("{} ({})", plain(&input.name), plain(&hash))
+        format!("{} ({})", in_line(&input.name), in_line(&hash))
     };
     manifest.inputs.iter().filter(of_kind).map(name).collect::<Vec<_>>().join(", ")
 }
@@ -200,7 +201,7 @@ fn classes([table, sha256]: [&str; 2], chosen: Option<&[u8]>) -> String {
         || "its classes".to_owned(),
         |classes| format!("classes {}", list(classes.iter())),
     );
-    format!("table {} ({}…), {chosen}", plain(table), plain(hash))
+    format!("table {} ({}…), {chosen}", in_line(table), in_line(hash))
 }
 
 /// Which classes coarse levels show.
@@ -235,7 +236,7 @@ fn list_of(parts: impl Iterator<Item = String>) -> String {
 pub(crate) fn to_text(packages: &[Compared<'_>], digits: Digits) -> String {
     let mut text = String::new();
     for Compared { label, name, .. } in packages {
-        let _ = writeln!(text, "{label}  {}", plain(name));
+        let _ = writeln!(text, "{label}  {}", in_line(name));
     }
     let differences = differences(packages);
     if !differences.is_empty() {

@@ -42,7 +42,7 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
         output.write_all(format!(",{class},,{points}{empty}\n").as_bytes()).map_err(cannot)?;
     }
     output.finish()?;
-    messages::note(&note(path, ways, off_ground, Digits::on(&std::io::stderr())));
+    messages::note(&note(path, ways, off_ground, Digits::of_notes()));
     Ok(())
 }
 

@@ -11,6 +11,8 @@ use tracing_subscriber::{
     registry::{LookupSpan, Scope},
 };
 
+use crate::escaped::in_line;
+
 /// Errors and warnings with the program's name in front, notes as they are. What only `-v` shows has its level, its spans and its
 /// fields.
 pub(crate) struct Lines;
@@ -45,7 +47,8 @@ where
                     }
                     writer.write_str(": ")?;
                 }
-                writeln!(writer, "{message}{fields}")
+                // A library may write what a server said.
+                writeln!(writer, "{}{fields}", in_line(&message))
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Which files a name on the command line means: those of a folder, a pattern, a list or an archive.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use gdal::Dataset;
 
@@ -79,6 +79,13 @@ fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
 
 fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     let unreadable = |source| DemError::List { path: list.to_path_buf(), source };
+    // A pipe that nobody writes to would be waited for, and a device has no end.
+    if !fs::metadata(list).map_err(unreadable)?.is_file() {
+        return Err(unreadable(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is a folder, a pipe or a device; save it to a file first",
+        )));
+    }
     let text = fs::read_to_string(list).map_err(unreadable)?;
     // Editors of Windows begin text with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);

@@ -72,6 +72,7 @@ fn names_without_a_file_are_refused() {
     let list = at.join("list.txt");
     fs::write(&list, "# nothing\n").unwrap();
     refuse(Path::new(&format!("@{}", list.display())), &["names no file"]);
+    refuse(Path::new(&format!("@{}", at.display())), &["was to name files"]);
 }
 
 #[test]

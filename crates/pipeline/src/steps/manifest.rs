@@ -6,7 +6,7 @@ use corniche_tileset::{
     SampleErrorRecord, ScaleRecord, VerticalRecord,
 };
 
-use super::sums::{LevelSums, TileSums};
+use super::sums::TileSums;
 use crate::{
     context::Context,
     heights::pyramid::HeightSums,

@@ -77,9 +77,9 @@ pub(crate) fn verify_lines(
         }
         for &segment in &way.sv {
             let bare = bare_pieces(view.place, segment, &way.geo);
-            let bare = bare
-                .into_iter()
-                .find(|&piece| view.ground.meets(piece.map(|point| view.place.cells(point))));
+            let bare = bare.into_iter().find(|&piece| {
+                view.ground.meets(piece.map(|point| view.place.cells(point)), &work)
+            });
             findings.look(CheckId::Methods, bare.is_none(), || {
                 format!(
                     "{}: ground without a GEO line beneath the SV line from {:?}",

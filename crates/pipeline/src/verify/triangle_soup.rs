@@ -24,13 +24,28 @@ pub(crate) struct TriangleSoup {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     buckets: Vec<Vec<u32>>,
-    /// Column and row of each triangle's first bucket.
-    first: Vec<[u8; 2]>,
+    /// First row, and first and last column of each triangle's buckets.
+    boxes: Vec<BucketBox>,
+    /// Lowest and highest corner of the triangles of each bucket.
+    heights_m: Vec<[f64; 2]>,
     /// Lattice steps to a cell, east and north.
     steps: [f64; 2],
 }
 
 type Corners = [[f64; 3]; 3];
+
+#[derive(Clone, Copy)]
+struct BucketBox {
+    row: u8,
+    columns: [u8; 2],
+}
+
+/// A segment, and how far what is looked for may lie from it along each axis, in cells.
+#[derive(Clone, Copy)]
+struct Strip {
+    ends: [[f64; 2]; 2],
+    reach: [f64; 2],
+}
 
 impl TriangleSoup {
     pub(crate) fn new(tin: &Tin, quantum_m: f64) -> Self {
@@ -51,23 +66,29 @@ impl TriangleSoup {
             })
             .collect();
         let mut buckets = vec![Vec::new(); BUCKETS * BUCKETS];
-        let mut first = Vec::with_capacity(triangles.len());
+        let mut boxes = Vec::with_capacity(triangles.len());
+        let mut heights_m = vec![[f64::INFINITY, f64::NEG_INFINITY]; BUCKETS * BUCKETS];
         for (index, corners) in triangles.iter().enumerate() {
-            let range = |axis: usize| {
+            let extent = |axis: usize| {
                 let values = corners.map(|corner| corner[axis]);
                 let low = values.into_iter().fold(f64::INFINITY, f64::min);
-                let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                bucket(low - SLACK_CELLS)..=bucket(high + SLACK_CELLS)
+                [low, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
             };
-            let [columns, rows] = [range(0), range(1)];
-            first.push([*columns.start() as u8, *rows.start() as u8]);
+            let [columns, rows] = [0, 1].map(|axis| buckets_of(extent(axis)));
+            let [low_m, high_m] = extent(2);
+            boxes.push(BucketBox {
+                row: *rows.start() as u8,
+                columns: [*columns.start() as u8, *columns.end() as u8],
+            });
             for row in rows {
                 for column in columns.clone() {
-                    buckets[row * BUCKETS + column].push(index as u32);
+                    let at = row * BUCKETS + column;
+                    buckets[at].push(index as u32);
+                    heights_m[at] = [heights_m[at][0].min(low_m), heights_m[at][1].max(high_m)];
                 }
             }
         }
-        Self { triangles, buckets, first, steps }
+        Self { triangles, buckets, boxes, heights_m, steps }
     }
 
     /// All triangles that hold the point, borders included.
@@ -98,28 +119,40 @@ impl TriangleSoup {
             .reduce(f64::min)
     }
 
-    /// Triangles whose boxes meet a box, each once.
-    fn near(&self, [low, high]: [[f64; 2]; 2]) -> impl Iterator<Item = &Corners> + '_ {
-        let [columns, rows]: [RangeInclusive<usize>; 2] =
-            [0, 1].map(|axis| bucket(low[axis] - SLACK_CELLS)..=bucket(high[axis] + SLACK_CELLS));
-        let first = [*columns.start(), *rows.start()];
-        rows.flat_map(move |row| columns.clone().map(move |column| [column, row])).flat_map(
-            move |at| {
-                self.buckets[at[1] * BUCKETS + at[0]]
-                    .iter()
-                    .map(|&triangle| triangle as usize)
-                    // A triangle is given only in the first bucket that it shares with the box.
-                    .filter(move |&triangle| {
-                        let own = self.first[triangle].map(usize::from);
-                        [own[0].max(first[0]), own[1].max(first[1])] == at
-                    })
-                    .map(|triangle| &self.triangles[triangle])
-            },
-        )
+    /// The buckets of a strip, and of each the triangles that no bucket before it had.
+    ///
+    /// A strip is convex, so the rows in which a triangle's columns meet those of the strip follow each other. A triangle is given in the
+    /// first of them, in the first bucket there.
+    fn near(
+        &self,
+        strip: Strip,
+    ) -> impl Iterator<Item = (usize, impl Iterator<Item = &Corners> + '_)> + '_ {
+        let rows = strip.rows();
+        let first_row = *rows.start();
+        rows.flat_map(move |row| {
+            let above = if row > first_row { strip.columns(row - 1) } else { None };
+            let own = strip.columns(row);
+            own.into_iter().flat_map(move |[begin, end]| {
+                (begin..=end).map(move |column| {
+                    let is_first = move |triangle: &usize| {
+                        let own = &self.boxes[*triangle];
+                        let [first, last] = own.columns.map(usize::from);
+                        let was_above = usize::from(own.row) < row
+                            && above.is_some_and(|[begin, end]| begin <= last && first <= end);
+                        !was_above && column == first.max(begin)
+                    };
+                    let bucket = row * BUCKETS + column;
+                    let triangles = self.buckets[bucket].iter().map(|&triangle| triangle as usize);
+                    let given =
+                        triangles.filter(is_first).map(|triangle| &self.triangles[triangle]);
+                    (bucket, given)
+                })
+            })
+        })
     }
 
     /// Lowest and highest ground in the rectangle along a segment that reaches `margin` lattice steps beyond it on
-    /// every side. `None` without ground there. Looking at a triangle is a step of `work`.
+    /// every side. `None` without ground there. Looking at a bucket or a triangle is a step of `work`.
     pub(crate) fn range_near(
         &self,
         [a, b]: [[f64; 2]; 2],
@@ -136,16 +169,8 @@ impl TriangleSoup {
         };
         // The rectangle's corners are at most this far from the ends along an axis.
         let reach = [0, 1].map(|axis| margin * (way[0].abs() + way[1].abs()) / self.steps[axis]);
-        let low = [0, 1].map(|axis| a[axis].min(b[axis]) - reach[axis]);
-        let high = [0, 1].map(|axis| a[axis].max(b[axis]) + reach[axis]);
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for corners in self.near([low, high]) {
-            work.add(1);
-            let heights = corners.map(|corner| corner[2]);
-            // A triangle whose heights are all within the range cannot widen it.
-            if heights.iter().all(|height| (lowest..=highest).contains(height)) {
-                continue;
-            }
+        let mut widen = |corners: &Corners| {
             let turned = corners.map(|[column, row, height]| {
                 let at = in_steps([column, row]);
                 let (du, dv) = (at[0] - p[0], at[1] - p[1]);
@@ -166,18 +191,36 @@ impl TriangleSoup {
                 lowest = lowest.min(height);
                 highest = highest.max(height);
             }
+            [lowest, highest]
+        };
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        // What lies within the range cannot widen it.
+        let is_within =
+            |[low, high]: [f64; 2], range: [f64; 2]| range[0] <= low && high <= range[1];
+        for (bucket, triangles) in self.near(Strip { ends: [a, b], reach }) {
+            work.add(1);
+            if is_within(self.heights_m[bucket], range) {
+                continue;
+            }
+            for corners in triangles {
+                work.add(1);
+                let [a, b, c] = corners.map(|corner| corner[2]);
+                if !is_within([a.min(b).min(c), a.max(b).max(c)], range) {
+                    range = widen(corners);
+                }
+            }
         }
-        (lowest <= highest).then_some([lowest, highest])
+        (range[0] <= range[1]).then_some(range)
     }
 
-    /// Whether the segment runs inside a triangle for more than a few lattice steps.
-    pub(crate) fn meets(&self, [a, b]: [[f64; 2]; 2]) -> bool {
-        let low = [0, 1].map(|axis| a[axis].min(b[axis]));
-        let high = [0, 1].map(|axis| a[axis].max(b[axis]));
+    /// Whether the segment runs inside a triangle for more than a few lattice steps. Looking at a triangle is a step of `work`.
+    pub(crate) fn meets(&self, [a, b]: [[f64; 2]; 2], work: &Work) -> bool {
         let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
         let (p, q) = (in_steps(a), in_steps(b));
         let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-        self.near([low, high]).any(|corners| {
+        let strip = Strip { ends: [a, b], reach: [0.0; 2] };
+        self.near(strip).flat_map(|(_, triangles)| triangles).any(|corners| {
+            work.add(1);
             let at = corners.map(|corner| in_steps(flat(corner)));
             let (mut from, mut to) = (0.0_f64, 1.0_f64);
             for k in 0..3 {
@@ -204,8 +247,10 @@ impl TriangleSoup {
     pub(crate) fn raster(&self, first: [f64; 2], step: f64, side: usize) -> Vec<f64> {
         let mut heights = vec![f64::NAN; side * side];
         let last = (side - 1) as f64;
-        let far = first.map(|cells| cells + last * step);
-        for corners in self.near([first, far]) {
+        let half = last * step / 2.0;
+        let middle = first.map(|cells| cells + half);
+        let square = Strip { ends: [middle; 2], reach: [half.abs(); 2] };
+        for corners in self.near(square).flat_map(|(_, triangles)| triangles) {
             let at = corners.map(|c| [(c[0] - first[0]) / step, (c[1] - first[1]) / step, c[2]]);
             let [a, b, c] = at;
             let whole = area(flat(a), flat(b), flat(c));
@@ -247,6 +292,44 @@ impl TriangleSoup {
     }
 }
 
+impl Strip {
+    /// What rounding may hide of the segment's place.
+    fn slack(&self) -> f64 {
+        let size = self.ends.as_flattened().iter().fold(0.0_f64, |size, at| size.max(at.abs()));
+        SLACK_CELLS + size * 1e-12
+    }
+
+    /// Rows of buckets that it may touch.
+    fn rows(&self) -> RangeInclusive<usize> {
+        let [a, b] = self.ends.map(|end| end[1]);
+        let reach = self.reach[1] + self.slack();
+        bucket(a.min(b) - reach)..=bucket(a.max(b) + reach)
+    }
+
+    /// The first and the last column that it may touch in a row of buckets. What lies beyond the tile counts for the buckets at its border.
+    fn columns(&self, row: usize) -> Option<[usize; 2]> {
+        let [a, b] = self.ends;
+        let slack = self.slack();
+        let border = |row: usize| row as f64 * TILE_CELLS / BUCKETS as f64;
+        let low = if row == 0 { f64::NEG_INFINITY } else { border(row) - self.reach[1] - slack };
+        let is_last = row + 1 == BUCKETS;
+        let high = if is_last { f64::INFINITY } else { border(row + 1) + self.reach[1] + slack };
+        let fall = b[1] - a[1];
+        let shares = if fall == 0.0 {
+            (low <= a[1] && a[1] <= high).then_some([0.0, 1.0])?
+        } else {
+            let [one, other] = [low, high].map(|at| (at - a[1]) / fall);
+            [one.min(other).max(0.0), one.max(other).min(1.0)]
+        };
+        if shares[0] > shares[1] {
+            return None;
+        }
+        let [from, to] = shares.map(|share| a[0] + share * (b[0] - a[0]));
+        let reach = self.reach[0] + slack;
+        Some([bucket(from.min(to) - reach), bucket(from.max(to) + reach)])
+    }
+}
+
 /// What of a convex polygon lies where `inside`, an affine function, is at least 0.
 fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
@@ -262,6 +345,11 @@ fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> 
         }
     }
     kept
+}
+
+/// The rows or columns of the buckets that hold what reaches from one place to another, in cells.
+fn buckets_of([low, high]: [f64; 2]) -> RangeInclusive<usize> {
+    bucket(low - SLACK_CELLS)..=bucket(high + SLACK_CELLS)
 }
 
 fn bucket(cells: f64) -> usize {

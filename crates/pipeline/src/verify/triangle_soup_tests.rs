@@ -1,5 +1,6 @@
 //! Heights and edges of plain triangles are those of closed forms.
 
+use corniche_testing::Random;
 use corniche_tin::TinVertex;
 
 use super::*;
@@ -56,9 +57,9 @@ fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
 fn a_line_meets_ground_where_it_runs_inside_it() {
     let roof = roof();
     let ground = TriangleSoup::placed(&roof, 0.5, [1000.0, 1000.0]);
-    assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]]));
-    assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]]));
-    assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]]), "along the boundary");
+    assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]], &Work::unlimited()));
+    assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]], &Work::unlimited()));
+    assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]], &Work::unlimited()), "along the boundary");
 }
 
 #[test]
@@ -71,6 +72,48 @@ fn a_raster_has_the_heights_of_its_nodes() {
         match ground.height_m(at) {
             Some(expected_m) => assert!((height_m - expected_m).abs() < 1e-9, "{at:?}"),
             None => assert!(height_m.is_nan(), "{at:?}"),
+        }
+    }
+}
+
+/// Every triangle with a corner or its middle in the strip is given, each once, and on fine ground no more than lie around the segment.
+#[test]
+fn what_lies_near_a_segment_is_found_once_and_little_else() {
+    let mut random = Random::new(38);
+    let fine = corniche_testing::package::full_tin();
+    for tin in [&fine, &roof()] {
+        let ground = TriangleSoup::new(tin, 0.5);
+        for _ in 0..60 {
+            let mut place = || [0, 1].map(|_| random.below(400) as f64 / 1.25 - 30.0);
+            let ends = [place(), place()];
+            let reach = [0, 1].map(|_| random.below(9) as f64 / 2.0);
+            let given: Vec<*const Corners> = ground
+                .near(Strip { ends, reach })
+                .flat_map(|(_, triangles)| triangles)
+                .map(std::ptr::from_ref)
+                .collect();
+            let once: std::collections::BTreeSet<_> = given.iter().copied().collect();
+            assert_eq!(once.len(), given.len(), "twice near {ends:?}");
+            let [a, b] = ends;
+            let is_near = |at: [f64; 2]| {
+                (0..=2000).any(|k| {
+                    let share = f64::from(k) / 2000.0;
+                    (0..2).all(|axis| {
+                        let on = a[axis] + share * (b[axis] - a[axis]);
+                        (at[axis] - on).abs() <= reach[axis]
+                    })
+                })
+            };
+            for corners in ground.triangles.iter().step_by(97) {
+                let middle = [0, 1].map(|axis| corners.iter().map(|c| c[axis]).sum::<f64>() / 3.0);
+                let is_wanted =
+                    is_near(middle) || corners.iter().any(|&corner| is_near(flat(corner)));
+                assert!(
+                    !is_wanted || once.contains(&std::ptr::from_ref(corners)),
+                    "{corners:?} near {ends:?}"
+                );
+            }
+            assert!(given.len() < 64 * 9 * 32 + 4, "{} near {ends:?}, {reach:?}", given.len());
         }
     }
 }

@@ -87,7 +87,9 @@ fn on_grid(corner: NodeIndex, max_level: u8, values: &[(&str, Value)]) -> Vec<u8
 }
 
 /// A text that a terminal obeys: it clears the screen, goes back to the begin of the line and turns what follows around; and no XML 1.0.
-pub const COMMANDING: &str = "a\u{1b}[2J\u{9b}31m\rb\u{7}\u{8}\u{202e}c\u{2066}<&>\u{fffe}\"'";
+/// Its second line imitates one of ours.
+pub const COMMANDING: &str =
+    "a\u{1b}[2J\u{9b}31m\rb\u{7}\u{8}\u{202e}c\u{2066}<&>\u{fffe}\"'\ncorniche: forged";
 
 /// The sound package with such texts wherever it has texts that are told.
 #[must_use]
@@ -113,7 +115,9 @@ pub(crate) fn all() -> Vec<Case> {
     let far = |steps: i64| LatticePoint::new(from.u + steps, from.v + steps / 3);
     let read = |name, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib: 64 };
     let back = (0..50).map(|k| if k % 2 == 0 { far(-(1 << 40)) } else { far(1 << 40) });
-    let across = (0..400).map(|k| if k % 2 == 0 { from } else { bounds.max });
+    let across = |segments: i64| {
+        (0..segments).map(move |k| if k % 2 == 0 { from } else { bounds.max }).collect()
+    };
     let bounds_at = |x: f64| json!({ "min_x": x, "min_y": 0, "max_x": 2.0 * x, "max_y": 1000 });
     let mut table = metadata()["corniche"]["coordinates"].clone();
     table["bounds"] = bounds_at(1e17);
@@ -127,7 +131,11 @@ pub(crate) fn all() -> Vec<Case> {
         read("fifty segments of 2^41 steps", sv_roads([back.collect()])),
         read(
             "four hundred segments over a hundred thousand triangles",
-            sv_roads_on(full_tile(), [across.collect()]),
+            sv_roads_on(full_tile(), [across(400)]),
+        ),
+        read(
+            "a hundred thousand segments over a hundred thousand triangles",
+            sv_roads_on(full_tile(), [across(100_000)]),
         ),
         read("a raster of 2^40 nodes", on_grid(package::frame().root_corner(), 12, &[])),
         read("degrees of a micrometre", around_the_earth("EPSG:4326")),

@@ -90,6 +90,51 @@ impl Buckets {
         }
     }
 
+    /// Visits the boxes in squares that lie within `around` steps of a segment along each axis, square by square: of a long segment that runs
+    /// askew far fewer than meet its bounding box.
+    pub(crate) fn visit_along(
+        &self,
+        [p, q]: [[f64; 2]; 2],
+        around: f64,
+        mut visit: impl FnMut(u32),
+    ) {
+        if self.items.is_empty() {
+            return;
+        }
+        let (min, max) = (self.bounds.min.in_steps(), self.bounds.max.in_steps());
+        let side = (1_i64 << self.shift) as f64;
+        let (low, high) = (p[1].min(q[1]) - around, p[1].max(q[1]) + around);
+        if high < min[1] || low > max[1] {
+            return;
+        }
+        let row_of = |v: f64| (((v - min[1]) / side).floor().max(0.0) as usize).min(self.rows - 1);
+        for row in row_of(low)..=row_of(high) {
+            // The part of the segment that comes near this row.
+            let south = min[1] + row as f64 * side;
+            let band = [south - around, south + side + around];
+            let rise = q[1] - p[1];
+            let shares = if rise == 0.0 {
+                [0.0, 1.0]
+            } else {
+                let [one, other] = band.map(|v| (v - p[1]) / rise);
+                [one.min(other).max(0.0), one.max(other).min(1.0)]
+            };
+            if shares[0] > shares[1] {
+                continue;
+            }
+            let [from, to] = shares.map(|share| p[0] + share * (q[0] - p[0]));
+            let (west, east) = (from.min(to) - around, from.max(to) + around);
+            if east < min[0] || west > max[0] {
+                continue;
+            }
+            let column_of =
+                |u: f64| (((u - min[0]) / side).floor().max(0.0) as usize).min(self.columns - 1);
+            for column in column_of(west)..=column_of(east) {
+                self.bucket(column, row).iter().for_each(|&item| visit(item));
+            }
+        }
+    }
+
     /// Column and row of the square of a point within the bounds.
     fn square(&self, point: LatticePoint) -> [usize; 2] {
         [point.u - self.bounds.min.u, point.v - self.bounds.min.v]

@@ -19,14 +19,16 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use corniche_areas::{AreaClass, AreaObject};
-use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId, TooMuchWork, Work};
+use corniche_geom::{
+    GridFrame, LatticeBounds, LatticePoint, MOST_TILE_STEPS, TileId, TooMuchWork, Work,
+};
 use corniche_tileset::{AreaRecord, AreaRings};
 
 use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
 };
-use super::{GroundMesh, blocks, ground_mesh::relative, line_layers::MOST_STEPS};
+use super::{GroundMesh, blocks, ground_mesh::relative};
 
 /// How far volumes reach beyond the ground in them, below and above, as a share of a cell of the tile's level. The ground's heights
 /// are rounded when they are drawn; this is far more.
@@ -122,7 +124,7 @@ impl AreaVolumes {
         reference_m: [f64; 3],
     ) -> Result<Self, BadAreas> {
         let mut volumes = Self::default();
-        let work = Work::new(MOST_STEPS);
+        let work = Work::new(MOST_TILE_STEPS);
         let site = Site::new(id, frame, ground, reference_m);
         for class in AreaClass::ALL {
             let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());

@@ -189,5 +189,5 @@ fn too_many_areas_over_too_many_triangles_are_refused() {
     let laid =
         |count: usize| AreaVolumes::new(&areas[..count], TileId::ROOT, &frame, &full, reference_m);
     assert!(laid(20).is_ok());
-    assert_eq!(laid(40_000), Err(BadAreas::TooMuch(TooMuchWork { limit: MOST_STEPS })));
+    assert_eq!(laid(40_000), Err(BadAreas::TooMuch(TooMuchWork { limit: MOST_TILE_STEPS })));
 }

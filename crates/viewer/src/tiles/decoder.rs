@@ -16,10 +16,13 @@ use crate::options::RoadMethod;
 /// The lines of people's own files take too much work on a tile.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "the lines of the files given as overlays cannot all be laid on its ground; simplify them (ogr2ogr -simplify), or cut them to what is shown \
+    "the lines of {files} cross too much of its ground with too many points; simplify them (ogr2ogr -simplify), or cut them to what is shown \
      (ogr2ogr -clipsrc)"
 )]
-struct TooManyOverlays(#[source] TooMuchWork);
+struct TooManyOverlays {
+    files: String,
+    source: TooMuchWork,
+}
 
 /// What every picture needs of a tile.
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
@@ -155,7 +158,10 @@ impl TileDecoder {
         let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
         let overlays = self.overlays.near(id, frame, margin);
         let tile = tile.with_lines(LineLayer::Overlays, &overlays, &on, methods);
-        let tile = tile.map_err(TooManyOverlays)?;
+        let tile = tile.map_err(|source| TooManyOverlays {
+            files: self.overlays.names_of(&overlays),
+            source,
+        })?;
         let areas = match self.areas {
             Layer::Read => decode_areas(payload, id, frame)?,
             Layer::LeftOut => Vec::new(),

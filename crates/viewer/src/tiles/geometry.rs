@@ -1,6 +1,6 @@
 //! A decoded tile that is ready for the graphics card.
 
-use corniche_geom::{Bounds, GridFrame, TileId, TooMuchWork, Work, barycentric};
+use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, TileId, TooMuchWork, Work, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, Terrain, TilePayload};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     AreaVolumes, BadAreas, BadRoads, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
     PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
-    line_layers::{MOST_STEPS, TileGround, lay},
+    line_layers::{TileGround, lay},
     relief::Relief,
 };
 use crate::lod::GroundSummary;
@@ -182,7 +182,7 @@ impl TileGeometry {
         let lines = TileLines { scale, ..lines };
         let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
         let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
-        let work = Work::new(MOST_STEPS);
+        let work = Work::new(MOST_TILE_STEPS);
         let ground = (id, terrain, surface.as_ref());
         let tile = Self::on_surface(ground, &lines, frame, quantum_m, &work);
         work.check()?;
@@ -219,7 +219,7 @@ impl TileGeometry {
                 width_margin_m: self.width_margin_m,
                 scale,
                 vertical_scale,
-                most_steps: MOST_STEPS,
+                most_steps: MOST_TILE_STEPS,
             };
             self.lines.set(layer, lay(lines, &ground, methods)?);
         }

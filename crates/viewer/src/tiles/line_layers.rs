@@ -12,7 +12,7 @@ use corniche_geom::LatticePoint;
 use corniche_tileset::BoundaryRecord;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use self::lay::{MOST_STEPS, TileGround, lay};
+pub(crate) use self::lay::{TileGround, lay};
 pub use self::overlays::Overlays;
 use super::{RoadSegments, RoadVolumes};
 

@@ -1,12 +1,12 @@
 //! The ground of a tile that is shown, on which lines can be laid later.
 
-use corniche_geom::{GridFrame, LatticePoint, TileId, TooMuchWork};
+use corniche_geom::{GridFrame, LatticePoint, MOST_TILE_STEPS, TileId, TooMuchWork};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use super::{
     LayerLine, LineMethods, PlanScale, TileGeometry, TileLayer,
-    line_layers::{MOST_STEPS, TileGround, lay},
+    line_layers::{TileGround, lay},
 };
 
 /// The ground of a tile that is shown, on which lines can be laid at any time.
@@ -69,7 +69,7 @@ impl TileSurface {
             width_margin_m: self.width_margin_m,
             scale: &self.scale,
             vertical_scale: self.vertical_scale,
-            most_steps: MOST_STEPS,
+            most_steps: MOST_TILE_STEPS,
         };
         lay(lines, &on, methods)
     }

@@ -22,6 +22,8 @@ pub(crate) struct Drawing {
     laid: LaidLines,
     /// The state of the document that was laid last.
     laid_revision: u64,
+    /// How many lines cannot be laid on one of the tiles that are there.
+    not_laid: usize,
     /// How often a line was laid on a tile for the last change, and how long that took.
     pub(crate) last: Option<(usize, f64)>,
     pub(crate) modifiers: Modifiers,
@@ -56,6 +58,7 @@ impl Drawing {
             unplaced,
             laid: LaidLines::default(),
             laid_revision: 0,
+            not_laid: 0,
             last: None,
             modifiers: Modifiers::default(),
             save,
@@ -69,17 +72,18 @@ impl Drawing {
         self.document.revision()
     }
 
-    /// Lays what has changed on the tiles that are there; `is_new` says that some of them were not there before.
+    /// Lays what has changed on the tiles that are there; `is_new` says that some of them were not there before. Tells how many lines and
+    /// outlines cannot be laid on one of them, when that has changed.
     pub(crate) fn lay(
         &mut self,
         canvas: &mut Canvas,
         tiles: &Tiles,
         manifest: &Manifest,
         is_new: bool,
-    ) {
+    ) -> Option<usize> {
         let is_changed = self.laid_revision != self.document.revision();
         if !is_changed && !is_new {
-            return;
+            return None;
         }
         self.laid_revision = self.document.revision();
         let begun_s = (self.clock_s)();
@@ -90,6 +94,8 @@ impl Drawing {
         if is_changed {
             self.last = Some((relaid.laid, ((self.clock_s)() - begun_s) * 1e3));
         }
+        let not_laid = relaid.not_laid.len();
+        (std::mem::replace(&mut self.not_laid, not_laid) != not_laid).then_some(not_laid)
     }
 
     /// Tiles are gone.

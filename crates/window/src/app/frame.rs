@@ -32,6 +32,10 @@ const CLOCK_S: f64 = 0.1;
 const PICTURE_S: f64 = 0.02;
 /// The panel's toolkit asks for a repaint after a very long time when it means never; this is the longest that counts.
 const LONGEST_WISH_S: f64 = 3600.0;
+/// The beginning of the notice that drawn lines are not shown.
+const NOT_LAID: &str =
+    "drawn lines that cannot be laid on the ground, and are not shown on all of it: ";
+
 /// What a frame is given. Times are seconds of one clock.
 pub(crate) struct FrameInput {
     pub(crate) now_s: f64,
@@ -156,7 +160,8 @@ impl App {
         let is_new = !changes.upload.is_empty();
         self.tiles.keep_ground(changes.upload);
         self.drawing.evict(&changes.evict);
-        self.drawing.lay(canvas, &self.tiles, self.package.manifest(), is_new);
+        let not_laid = self.drawing.lay(canvas, &self.tiles, self.package.manifest(), is_new);
+        self.tell_not_laid(not_laid);
         if self.tiles.take_first_time_full() {
             self.notices.warn(
                 "the graphics memory allowed is full: this view is drawn more coarsely than asked; allow more with \
@@ -165,6 +170,18 @@ impl App {
             );
         }
         changes.is_under_way
+    }
+
+    /// Tells how many drawn lines cannot be laid, when that has changed.
+    fn tell_not_laid(&mut self, not_laid: Option<usize>) {
+        let Some(number) = not_laid else { return };
+        self.notices.retract(NOT_LAID);
+        if number > 0 {
+            self.notices.warn(format!(
+                "{NOT_LAID}{number}. They cross too much ground with too many points, and stay in the file; simplify them (ogr2ogr \
+                 -simplify), or divide them"
+            ));
+        }
     }
 
     /// Whether the map is drawn coarsely for a moment, because a processor draws and the camera moves.

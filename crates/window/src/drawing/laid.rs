@@ -44,6 +44,8 @@ struct LaidLine {
     line: Arc<Line>,
     outline: TileLayer,
     inside: AreaVolumes,
+    /// Laying it here takes more work than a tile may take: it has no outline here.
+    is_too_much: bool,
 }
 
 impl LaidLine {
@@ -59,6 +61,8 @@ pub(crate) struct Relaid {
     pub(crate) changed: Vec<(TileId, TileLayer, AreaVolumes)>,
     /// How often a line was laid on a tile.
     pub(crate) laid: usize,
+    /// Lines that take too much work on one of the tiles.
+    pub(crate) not_laid: BTreeSet<u64>,
 }
 
 impl LaidLines {
@@ -90,6 +94,8 @@ impl LaidLines {
                 let (outlines, areas) = laid.joined();
                 relaid.changed.push((tile.id, outlines, areas));
             }
+            let too_much = laid.lines.iter().filter(|(_, line)| line.is_too_much);
+            relaid.not_laid.extend(too_much.map(|(id, _)| *id));
         }
         relaid
     }
@@ -144,17 +150,17 @@ impl LaidTile {
                 self.surface = TileSurface::of(tile, manifest);
             }
             let outline = match &self.surface {
-                // A line drawn by hand is never so long that it cannot be laid.
-                Some(surface) if !near.is_empty() => {
-                    surface.lay(&near, frame, LineMethods::Both).unwrap_or_default()
-                }
-                _ => TileLayer::default(),
+                Some(surface) if !near.is_empty() => surface.lay(&near, frame, LineMethods::Both),
+                _ => Ok(TileLayer::default()),
             };
+            let is_too_much = outline.is_err();
+            let outline = outline.unwrap_or_default();
             let inside = prepared
                 .area
                 .as_ref()
                 .map_or_else(AreaVolumes::default, |area| area.over(tile, frame));
-            let now = LaidLine { line: Arc::clone(&prepared.line), outline, inside };
+            let line = Arc::clone(&prepared.line);
+            let now = LaidLine { line, outline, inside, is_too_much };
             *laid += usize::from(!now.is_empty());
             is_changed |= had_some || !now.is_empty();
             self.lines.insert(*id, now);

@@ -119,3 +119,36 @@ fn a_tile_inside_an_area_is_filled() {
         assert!(outlines.is_empty() && areas.classes[0].polygons == 1, "{id}");
     }
 }
+
+/// A line that crosses too much of the ground of a tile has no outline there, which is told; other lines are laid.
+#[test]
+fn lines_that_take_too_much_work_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("full.pmtiles");
+    let cases = corniche_testing::hostile::FAMILIES[4].1();
+    let full = cases
+        .into_iter()
+        .find(|case| case.name == "four hundred segments over a hundred thousand triangles");
+    std::fs::write(&path, full.unwrap().bytes).unwrap();
+    let source = PackageSource::open(&path).unwrap();
+    let manifest = source.manifest();
+    let tile = [source.load(TileId::ROOT).unwrap().without_roads()];
+    let bounds = manifest.frame.tile_bounds(TileId::ROOT);
+    let at = |x: f64, y: f64| {
+        point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
+    };
+    // From west to east and back, each time elsewhere, so that it is not simplified.
+    let across = |k: u32| at(f64::from(k % 2), f64::from(k * 7919 % 10_000) / 1e4);
+    let mut document = Document::of(vec![
+        (None, false, (0..10_000).map(across).collect()),
+        (None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+    ]);
+    let long = document.lines()[0].id;
+    let mut laid = LaidLines::default();
+    let first = laid.update(&document, tile.iter(), manifest);
+    assert_eq!((first.laid, &first.not_laid), (1, &BTreeSet::from([long])));
+    let again = laid.update(&document, tile.iter(), manifest);
+    assert_eq!(again.not_laid, BTreeSet::from([long]), "nothing has changed");
+    document.remove_line(long);
+    assert!(laid.update(&document, tile.iter(), manifest).not_laid.is_empty());
+}

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+
+import numpy as np
 
 from .codes import Cursor
 from .errors import PayloadError
@@ -38,22 +40,40 @@ class Attributes:
     tracktype: str | None
 
 
-def read_attributes(data: bytes, what: str) -> list[Attributes]:
-    """Decodes the section of attributes, a record of bincode. The tags are in another one."""
+@dataclass(frozen=True)
+class _Tags:
+    """Columns of the section of tags, a value for each way."""
+
+    highway: list[str | None]
+    maxspeed: list[str | None]
+    sac_scale: list[str | None]
+    tracktype: list[str | None]
+    lanes: list[int | None]
+    width: list[float | None]
+
+
+def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) -> list[Attributes]:
+    """Decodes the section of attributes, a record of bincode, and the one of tags."""
     cursor = Cursor(data, what)
     texts = [cursor.take(_word(cursor, 8)) for _ in range(_length(cursor))]
-    steps, forms, structures, layers, oneways, *names = ([_word(cursor, width) for _ in range(_length(cursor))] for width in (8, 1, 1, 1, 1, 4, 4, 4))
+    steps, forms, structures, layers, oneways, *names = (_words(cursor, width) for width in (8, 1, 1, 1, 1, 4, 4, 4))
     cursor.end()
     found, way = [], 0
+    of_tags = _read_tags(tags, len(steps), tags_what) if tags is not None else _Tags(*([None] * len(steps) for _ in range(6)))
+    columns = zip(
+        steps, forms, structures, layers, oneways, *names,
+        of_tags.highway, of_tags.lanes, of_tags.width, of_tags.maxspeed, of_tags.sac_scale, of_tags.tracktype,
+        strict=True,
+    )  # fmt: skip
     try:
         text = [content.decode() or None for content in texts]
-        for step, form, structure, layer, oneway, name, reference, surface in zip(steps, forms, structures, layers, oneways, *names, strict=True):
+        for step, form, structure, layer, oneway, name, reference, surface, highway, lanes, width, maxspeed, sac_scale, tracktype in columns:
             way += step - (step >> 63 << 64)
             lies = STRUCTURES[structure]
             found.append(
                 Attributes(
                     way_id=way,
-                    highway=None,
+                    highway=highway,
                     form=FORMS[form],
                     name=text[name],
                     ref=text[reference],
@@ -62,11 +82,11 @@ def read_attributes(data: bytes, what: str) -> list[Attributes]:
                     layer=layer - (layer >> 7 << 8),
                     oneway=ONEWAYS[oneway],
                     surface=text[surface],
-                    lanes=None,
-                    width=None,
-                    maxspeed=None,
-                    sac_scale=None,
-                    tracktype=None,
+                    lanes=lanes,
+                    width=width,
+                    maxspeed=maxspeed,
+                    sac_scale=sac_scale,
+                    tracktype=tracktype,
                 )
             )
     except (ValueError, IndexError) as cause:
@@ -74,8 +94,8 @@ def read_attributes(data: bytes, what: str) -> list[Attributes]:
     return found
 
 
-def with_tags(ways: list[Attributes], data: bytes, what: str) -> list[Attributes]:
-    """The same ways with what the section of tags says of them."""
+def _read_tags(data: bytes, ways: int, what: str) -> _Tags:
+    """What the section of tags says of so many ways."""
     cursor = Cursor(data, what)
     count = cursor.varint()
     if count > len(data):
@@ -83,7 +103,7 @@ def with_tags(ways: list[Attributes], data: bytes, what: str) -> list[Attributes
     contents = [cursor.take(cursor.varint()) for _ in range(count)]
     if not all(contents) or any(one >= other for one, other in zip(contents, contents[1:], strict=False)):
         raise PayloadError(f"{what}: texts are empty or not sorted")
-    columns = [cursor.planes(len(ways)) for _ in range(6)]
+    columns = [cursor.planes(ways) for _ in range(6)]
     cursor.end()
     try:
         texts = [None, *(content.decode() for content in contents)]
@@ -93,22 +113,15 @@ def with_tags(ways: list[Attributes], data: bytes, what: str) -> list[Attributes
     lanes, widths = columns[4:]
     if max(lanes, default=0) > 255 or max(widths, default=0) >= 1 << 32:
         raise PayloadError(f"{what}: lanes or a width beyond their limits")
-    return [
-        replace(
-            way,
-            highway=highway[i],
-            maxspeed=maxspeed[i],
-            sac_scale=sac_scale[i],
-            tracktype=tracktype[i],
-            lanes=lanes[i] or None,
-            width=widths[i] / 1000 if widths[i] else None,
-        )
-        for i, way in enumerate(ways)
-    ]
+    return _Tags(highway, maxspeed, sac_scale, tracktype, [one or None for one in lanes], [one / 1000 if one else None for one in widths])
 
 
 def _word(cursor: Cursor, width: int) -> int:
     return int.from_bytes(cursor.take(width), "little")
+
+
+def _words(cursor: Cursor, width: int) -> list[int]:
+    return np.frombuffer(cursor.take(width * _length(cursor)), dtype=f"<u{width}").tolist()
 
 
 def _length(cursor: Cursor) -> int:

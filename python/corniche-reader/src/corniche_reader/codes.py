@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .errors import PayloadError
 
 #: A model: how likely a 0 is, as two estimates (fast, slow) in 65536ths.
@@ -70,11 +72,10 @@ class Cursor:
         width = self.byte()
         if width > 8:
             raise PayloadError(f"{self.what}: planes of {width} bytes")
-        values = [0] * count
+        values = np.zeros(count, np.uint64)
         for plane in range(width):
-            for i, byte in enumerate(self.take(count)):
-                values[i] |= byte << 8 * plane
-        return values
+            values |= np.frombuffer(self.take(count), np.uint8).astype(np.uint64) << np.uint64(8 * plane)
+        return values.tolist()
 
     def end(self) -> None:
         """Refuses bytes that are left."""

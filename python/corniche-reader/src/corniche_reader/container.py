@@ -102,12 +102,12 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
     if metadata[1] > 16 * MIB:
         raise ContainerError("the metadata are larger than 16 MiB")
     found: dict[int, Place] = {}
-    _directory(file, root[0], root[1], leaves, 1, None, found)
+    _directory(file, root[0], root[1], (leaves, tiles[1]), 1, None, found)
     at = 0
     for number in sorted(found):
         place = found[number]
-        if place.offset < at or place.offset + place.length > tiles[1]:
-            raise ContainerError(f"tile {tile_of(number)} overlaps another or lies outside the tiles")
+        if place.offset < at:
+            raise ContainerError(f"tile {tile_of(number)} overlaps another")
         at = place.offset + place.length
     if addressed and addressed != len(found):
         raise ContainerError(f"the header names {addressed} tiles, the directories {len(found)}")
@@ -120,8 +120,15 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
 
 
 def _directory(
-    file: BinaryIO, offset: int, length: int, leaves: list[int], depth: int, first: int | None, found: dict[int, Place]
+    file: BinaryIO,
+    offset: int,
+    length: int,
+    ends: tuple[list[int], int],
+    depth: int,
+    first: int | None,
+    found: dict[int, Place],
 ) -> None:
+    """Reads a directory and those beneath it. `ends` are the region of the leaves and the length of that of the tiles."""
     what = f"the directory at byte {offset}"
     if length > 4 * MIB or depth > 4:
         raise ContainerError(f"{what} is too large, or nested too deep")
@@ -146,8 +153,11 @@ def _directory(
         if run:
             if number in found or number >= ((1 << 64) - 1) // 3:
                 raise ContainerError(f"{what} names a tile twice, or a level that is too deep")
+            # At once: a few bytes may list millions of tiles that are not there.
+            if after > ends[1]:
+                raise ContainerError(f"tile {tile_of(number)} lies outside the tiles")
             found[number] = Place(start, size)
         else:
-            if after > leaves[1]:
+            if after > ends[0][1]:
                 raise ContainerError(f"{what} points beyond the leaf directories")
-            _directory(file, leaves[0] + start, size, leaves, depth + 1, number, found)
+            _directory(file, ends[0][0] + start, size, ends, depth + 1, number, found)

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .attributes import Attributes, read_attributes, with_tags
+from .attributes import Attributes, read_attributes
 from .container import Place, parts, read_at
 from .coordinates import Coordinates
 from .errors import ContainerError, PayloadError, UnknownTile
@@ -106,9 +106,10 @@ class Package:
             if terrain is None or {2, 10} <= found.keys():
                 raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground, or twice")
             roads = read_roads(found[kind], kind == 10, terrain, self.grid, (z, x, y))
-        attributes = read_attributes(found[4], f"attributes of tile {z}/{x}/{y}") if 4 in found else []
-        if 5 in found:
-            attributes = with_tags(attributes, found[5], f"tags of tile {z}/{x}/{y}")
+        what = f"tile {z}/{x}/{y}"
+        if 5 in found and 4 not in found:
+            raise PayloadError(f"{what} has tags without attributes")
+        attributes = read_attributes(found[4], f"attributes of {what}", found.get(5), f"tags of {what}") if 4 in found else []
         return Tile(z, x, y, terrain, roads, attributes, found)
 
     def _sections(self, name: tuple[int, int, int]) -> dict[int, bytes]:

@@ -17,12 +17,6 @@ use crate::tiles::{
 /// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
 const LONGEST_CELLS: f64 = 8.0;
 
-/// Steps that laying lines on one tile, or placing its roads, may take: looking at a triangle is one, and a vertex where a line crosses an edge
-/// of the ground counts for 32.
-///
-/// Real tiles take some hundred thousand. The limit is two million vertices, some 500 MiB of them, and a few seconds.
-pub(crate) const MOST_STEPS: u64 = 1 << 26;
-
 /// The ground of a tile as lines need it.
 pub(crate) struct TileGround<'a> {
     pub(crate) id: TileId,

@@ -15,6 +15,8 @@ const RUN: usize = 64;
 pub struct Overlays {
     /// The lines of each level.
     levels: Vec<Vec<LevelLine>>,
+    /// The files that they come from, by the styles of the lines.
+    names: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +39,20 @@ impl Overlays {
             let tolerance = tolerance_m / frame.lattice_step_m();
             lines.iter().filter_map(|line| LevelLine::new(line, tolerance)).collect()
         });
-        Self { levels: levels.collect() }
+        Self { levels: levels.collect(), names: Vec::new() }
+    }
+
+    /// The same lines, with the names of the files that they come from: one for each style.
+    #[must_use]
+    pub fn of_files(self, names: Vec<String>) -> Self {
+        Self { names, ..self }
+    }
+
+    /// The names of the files that some lines come from.
+    pub(crate) fn names_of(&self, lines: &[LayerLine]) -> String {
+        let has_some = |style: usize| lines.iter().any(|line| usize::from(line.style) == style);
+        let named = self.names.iter().enumerate().filter(|(style, _)| has_some(*style));
+        named.map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether there are none.
