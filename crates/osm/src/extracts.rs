@@ -125,10 +125,11 @@ impl<R: Read + Seek> Extracts<R> {
         let [file] = self.files.as_mut_slice() else { return BlobOrder::NONE };
         // Where ways come first nothing is sought.
         let is_node = |block: &Block<'_>| !block.has_others_than_nodes();
+        let has_relation = |block: &Block<'_>| block.has_relations();
         let most = if file.seems(0, is_node) { file.len() } else { 0 };
         let nodes = first(0..most, |number| !file.seems(number, is_node));
         let relations = if has_outlines {
-            first(nodes..file.len(), |number| file.seems(number, |block| block.has_relations()))
+            first(nodes..file.len(), |number| file.seems(number, has_relation))
         } else {
             0
         };

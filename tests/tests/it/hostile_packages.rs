@@ -21,7 +21,7 @@ const MOST_SECONDS: u32 = 20;
 const MOST_MIB: u64 = 1024;
 
 /// What is done with a package: the words before its name, and those after.
-const COMMANDS: [(&str, &[&str], &[&str]); 13] = [
+const COMMANDS: [(&str, &[&str], &[&str]); 14] = [
     ("verify", &["verify", "-q"], &[]),
     ("render geo", &["render", "-q", "--size", "200x150", "--roads", "geo"], &["-o", "OUT.png"]),
     ("render sv", &["render", "-q", "--size", "200x150", "--roads", "sv"], &["-o", "OUT.png"]),

@@ -20,12 +20,10 @@ pub(crate) fn hand_parts<'a>(
     let failed = |error| reading.scratch_failed(error);
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
     let mut way: Option<LocatedWay> = None;
-    let mut count = 0;
-    for record in members {
+    for (count, record) in (0..).zip(members) {
         let MemberRecord { member, object_number } = record.map_err(failed)?;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;
-        count += 1;
         while way.as_ref().is_none_or(|way| way.way_id < way_id) {
             way = located.next(reading)?;
             if way.is_none() {

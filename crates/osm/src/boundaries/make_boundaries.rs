@@ -49,7 +49,9 @@ pub(crate) fn make_boundaries(
         match made {
             Ok(parts) => {
                 *summary.kept.entry(class).or_default() += 1;
-                parts.into_iter().for_each(|part| sink.take(part));
+                for part in parts {
+                    sink.take(part);
+                }
             }
             Err(loss) => {
                 *summary.lost.entry(loss).or_default() += 1;

@@ -97,12 +97,11 @@ pub fn read_kept_roads(
     let located = Merged::new(located.collect());
     let on_conflict = &mut |_, defect| defects.push(&defect);
     let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)?;
-    for nodes in answers {
-        let (ways, summary) = ((ways.read(), ways_count, duplicates), summary);
-        let found = RoadWays::of(&reading, ways, nodes, summary, defects)?;
-        return hand_out_roads(&reading, found, sink, on_defect);
-    }
-    Ok(())
+    // There is one for each question.
+    let Some(nodes) = answers.into_iter().next() else { return Ok(()) };
+    let ways = (ways.read(), ways_count, duplicates);
+    let found = RoadWays::of(&reading, ways, nodes, summary, defects)?;
+    hand_out_roads(&reading, found, sink, on_defect)
 }
 
 /// The places that all shares of nodes found.

@@ -81,15 +81,11 @@ impl<'a> TileLayer for AreaLayer<'a> {
 
     fn take(&mut self, split: SplitArea) -> Result<(), BuildError> {
         let SplitArea { number, object, class, area_m2, parts } = split;
-        match parts {
-            Ok(mut parts) => {
-                parts.drain(..).try_for_each(|(id, bytes)| self.parts.push(id, number, bytes))
-            }
-            Err(_) => {
-                self.intricate.push((object, class, area_m2));
-                Ok(())
-            }
-        }
+        let Ok(parts) = parts else {
+            self.intricate.push((object, class, area_m2));
+            return Ok(());
+        };
+        parts.into_iter().try_for_each(|(id, bytes)| self.parts.push(id, number, bytes))
     }
 
     /// Closes the sea, and keeps the sections of all tiles and last the totals.
