@@ -11,7 +11,7 @@ use i_overlay::{
     i_float::int::point::IntPoint,
 };
 
-use crate::{OutlineError, Polygon, Ring};
+use crate::{OutlineError, Polygon, surrounded};
 
 /// The parts of polygons, whose points are whole multiples of `step`, in what rings wind around. So are the points of the parts: those of the
 /// rings, and those where outlines cross, go to the nearest multiples.
@@ -33,26 +33,19 @@ pub fn intersection<'a>(
         };
         points.iter().map(point).collect()
     };
-    let mut overlay = Overlay::new_custom(0, IntOverlayOptions::ogc(), Solver::default());
+    let mut overlay = Overlay::new_custom(0, IntOverlayOptions::default(), Solver::default());
     for ring in polygons.iter().flat_map(Polygon::rings) {
         overlay.add_contour(&coarse(ring.points())?, ShapeType::Subject);
     }
     for ring in region {
         overlay.add_contour(&coarse(ring)?, ShapeType::Clip);
     }
-    let fine = |ring: Vec<IntPoint>| {
-        let point =
-            |at: IntPoint| LatticePoint::new(i64::from(at.x) * step, i64::from(at.y) * step);
-        Ring::new(ring.into_iter().map(point).collect())
-    };
-    let polygon = |shape: Vec<Vec<IntPoint>>| {
-        let mut rings = shape.into_iter().map(fine);
-        Some(Polygon::new(rings.next()?, rings.collect()))
-    };
+    let fine = |at: IntPoint| LatticePoint::new(i64::from(at.x) * step, i64::from(at.y) * step);
     let shapes = overlay.overlay(OverlayRule::Intersect, FillRule::NonZero);
-    let mut found: Vec<Polygon> = shapes.into_iter().filter_map(polygon).collect();
-    found.sort_unstable();
-    Ok(found)
+    let rings: Vec<Vec<LatticePoint>> =
+        shapes.into_iter().flatten().map(|ring| ring.into_iter().map(fine).collect()).collect();
+    // Where rounding joins points, rings of the library may touch in ways that a polygon's may not.
+    surrounded(&rings.iter().map(Vec::as_slice).collect::<Vec<_>>(), step)
 }
 
 #[cfg(test)]

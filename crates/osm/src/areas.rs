@@ -6,12 +6,11 @@
 //!                                                                               Area, ways first, by id ◄─────────┘
 //! ```
 
+mod hand_out_areas;
 mod hand_parts;
 mod make_areas;
 mod over_seam;
-mod read_areas;
 mod summary;
 
-pub(crate) use read_areas::hand_out_areas;
-pub use read_areas::read_areas;
+pub(crate) use hand_out_areas::hand_out_areas;
 pub use summary::{AreaSummary, KeptAreas};

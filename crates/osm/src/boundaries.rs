@@ -7,11 +7,10 @@
 //! ```
 
 mod boundary;
+mod hand_out_boundaries;
 mod make_boundaries;
-mod read_boundaries;
 mod summary;
 
 pub use boundary::Boundary;
-pub(crate) use read_boundaries::hand_out_boundaries;
-pub use read_boundaries::read_boundaries;
+pub(crate) use hand_out_boundaries::hand_out_boundaries;
 pub use summary::BoundarySummary;

@@ -4,15 +4,14 @@ use std::io::{Read, Seek};
 
 use corniche_roads::FrcTable;
 use corniche_store::Sorter;
-use serde::{Deserialize, Serialize};
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::Decoding,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
-    id_range::IdRange,
     location::Location,
+    looked::{Looked, LookedAt, check_held},
     outlines::{
         found::Outlines,
         judge::{self, OwnTags, WantedWays},
@@ -21,14 +20,8 @@ use crate::{
     reading::{Reading, Step},
     records::{Located, WayRecord, age},
     search::Search,
-    versions::{History, Versions},
     ways::{Counted, Judge, Ways, add_summary},
 };
-
-/// What may be kept of any file, in memory or in scratch space, …
-const HELD_BYTES: u64 = 64 << 20;
-/// … and on top of it for each of its bytes.
-const HELD_BYTES_PER_BYTE: u64 = 64;
 
 /// What the first pass finds of roads, and of ways and blobs of all layers.
 pub(crate) struct FoundWays<'a> {
@@ -42,72 +35,6 @@ pub(crate) struct FoundWays<'a> {
     pub(crate) way_blobs: Vec<usize>,
     roads_count: u64,
     located_count: u64,
-}
-
-/// A blob with nodes.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(crate) struct NodeBlob {
-    pub(crate) number: usize,
-    pub(crate) ids: IdRange,
-}
-
-/// What is asked of each block once, whatever else is read of it.
-pub(crate) struct Looked {
-    versions: Versions,
-    ids: Option<IdRange>,
-    pub(crate) has_relations: bool,
-    has_ways: bool,
-}
-
-impl Looked {
-    pub(crate) fn scan(message: &[u8], block: &Block<'_>) -> Self {
-        Self {
-            versions: Versions::scan(message),
-            ids: IdRange::scan(message),
-            has_relations: block.has_relations(),
-            has_ways: block.ways().next().is_some(),
-        }
-    }
-}
-
-/// What is known of all blobs that were looked at.
-#[derive(Default)]
-pub(crate) struct LookedAt {
-    pub(crate) versions: Versions,
-    pub(crate) node_blobs: Vec<NodeBlob>,
-    /// Numbers of those with nodes or ways.
-    pub(crate) with_others_than_relations: Vec<usize>,
-    pub(crate) has_relations: bool,
-}
-
-impl LookedAt {
-    /// Takes what a later blob of an extract holds; fails if the blobs are of more than one point in time.
-    pub(crate) fn take(
-        &mut self,
-        reading: &Reading<'_>,
-        [file, number]: [usize; 2],
-        looked: Looked,
-    ) -> Result<(), ReadOsmError> {
-        append_versions(reading, &mut self.versions, looked.versions.of_file(file as u32))?;
-        self.node_blobs.extend(looked.ids.map(|ids| NodeBlob { number, ids }));
-        if looked.has_ways || looked.ids.is_some() {
-            self.with_others_than_relations.push(number);
-        }
-        self.has_relations |= looked.has_relations;
-        Ok(())
-    }
-
-    /// Adds what is known of later blobs.
-    pub(crate) fn append(
-        &mut self,
-        reading: &Reading<'_>,
-        later: Self,
-    ) -> Result<(), ReadOsmError> {
-        append_versions(reading, &mut self.versions, later.versions)?;
-        self.node_blobs.extend(later.node_blobs);
-        self.has_relations |= later.has_relations;
-        Ok(())
-    }
 }
 
 /// What is looked for in some blobs.
@@ -263,25 +190,4 @@ impl<'a> FoundWays<'a> {
         }
         Ok(())
     }
-}
-
-/// Adds later blobs; fails if they and those before are of more than one point in time.
-pub(crate) fn append_versions(
-    reading: &Reading<'_>,
-    versions: &mut Versions,
-    later: Versions,
-) -> Result<(), ReadOsmError> {
-    versions.append(later);
-    versions.history.take().map_or(Ok(()), |History { file, reason }| {
-        Err(ReadOsmError::History { path: reading.request.extract(file), reason })
-    })
-}
-
-/// Fails if what is found takes more than a file of this size can plausibly hold.
-pub(crate) fn check_held(reading: &Reading<'_>, held_bytes: u64) -> Result<(), ReadOsmError> {
-    let len_bytes = reading.len_bytes;
-    if held_bytes > HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE)) {
-        return Err(ReadOsmError::TooMuch { path: reading.request.path.to_path_buf(), len_bytes });
-    }
-    Ok(())
 }

@@ -10,7 +10,7 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
     deferred::Deferred,
-    layers::LayerSink,
+    layer_sink::LayerSink,
     locate_nodes::LocatedNodes,
     read_request::Placing,
     reading::Reading,

@@ -6,7 +6,8 @@ use corniche_roads::Road;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
-    layers::{Layers, Only},
+    layer_sink::Only,
+    layers::Layers,
     read_extract::{read_extract, read_extract_from},
     read_request::ReadRequest,
 };

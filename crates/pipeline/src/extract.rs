@@ -1,6 +1,5 @@
 //! What is read of the extract, and kept for tiles.
 
-pub(crate) mod defects;
 pub(crate) mod kept;
 mod no_road;
 pub(crate) mod partition;

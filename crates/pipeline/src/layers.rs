@@ -8,6 +8,7 @@
 //! Roads are laid on the ground of each tile, so what is kept of them are pieces. The parts of other layers are encoded at once, as a section
 //! of their tile.
 
+pub(crate) mod defects;
 pub(crate) mod fixed_points;
 pub(crate) mod layer_totals;
 pub(crate) mod layer_writer;

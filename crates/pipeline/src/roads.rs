@@ -8,6 +8,6 @@ pub(crate) mod overlap;
 pub(crate) mod pieces;
 
 pub(crate) mod shares;
-mod split;
+pub(crate) mod split;
 pub(crate) mod totals;
 mod varints;

@@ -13,8 +13,8 @@ use super::{over_seam, summary::AreaSummary};
 use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
-    find_ways::check_held,
-    layers::LayerSink,
+    layer_sink::LayerSink,
+    looked::check_held,
     outlines::records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
     reading::Reading,

@@ -9,7 +9,7 @@ use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
     boundary_loss::BoundaryLoss,
-    layers::LayerSink,
+    layer_sink::LayerSink,
     location,
     outlines::{
         located_ways::{LocatedWay, LocatedWays},

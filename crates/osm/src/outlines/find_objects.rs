@@ -11,7 +11,7 @@ use crate::{
     blobs::{Decoding, decode},
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
-    find_ways::{Looked, LookedAt},
+    looked::{Looked, LookedAt},
     reading::{Reading, Step},
 };
 

@@ -7,7 +7,7 @@ use crate::{
     AreaLoss, Defect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
     deferred::Deferred,
-    find_ways::check_held,
+    looked::check_held,
     reading::Reading,
     records::{SoughtId, WayRecord, age},
     way_facts::WayFacts,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::kept::Kept;
 use crate::{
-    blobs::Header, counts::Counts, find_ways::NodeBlob, kept_error::KeptError, share::Share,
+    blobs::Header, counts::Counts, kept_error::KeptError, looked::NodeBlob, share::Share,
     versions::Versions,
 };
 

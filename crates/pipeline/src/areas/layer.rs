@@ -15,7 +15,7 @@ use crate::{
     layers::{
         SectionLayer,
         layer_totals::AreaTotals,
-        layer_writer::{LayerContext, Splitting, TileLayer},
+        layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
         tile_section::TileSection,
     },
@@ -51,7 +51,7 @@ pub(crate) struct SplitArea {
     parts: Result<Vec<(TileId, Vec<u8>)>, OutlineError>,
 }
 
-impl Splitting for AreaSplitting<'_> {
+impl TileSplitting for AreaSplitting<'_> {
     type Object = Area;
     type Split = SplitArea;
 

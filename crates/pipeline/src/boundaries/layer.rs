@@ -16,7 +16,7 @@ use crate::{
     layers::{
         SectionLayer,
         layer_totals::BoundaryTotals,
-        layer_writer::{LayerContext, Splitting, TileLayer},
+        layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
         tile_section::TileSection,
     },
@@ -59,7 +59,7 @@ pub(crate) struct SplitBoundary {
     parts: Vec<(TileId, PartOrder, Vec<u8>)>,
 }
 
-impl Splitting for MeasuredSplitting<'_> {
+impl TileSplitting for MeasuredSplitting<'_> {
     type Object = Boundary;
     type Split = SplitBoundary;
 

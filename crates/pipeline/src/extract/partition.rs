@@ -24,7 +24,6 @@ use corniche_store::{Artifacts, Scratch};
 use corniche_work::Stage;
 
 use super::{
-    defects::{DefectsWriter, replay_defects},
     kept::{kept_in, not_read},
     no_road,
 };
@@ -37,10 +36,14 @@ use crate::{
         split::BoundarySplitting,
     },
     heights::data_tiles::DataTiles,
-    layers::layer_writer::{LayerContext, LayerWriter},
+    layers::{
+        defects::{DefectsWriter, replay_defects},
+        layer_writer::{LayerContext, LayerWriter},
+    },
     levels::Levels,
     roads::{
         layer::RoadLayer,
+        split::RoadSplitting,
         totals::{ExtractCounts, RoadTotals},
     },
     true_lengths::TrueLengths,
@@ -124,7 +127,7 @@ fn read(
         input.areas.map(|table| (table, LayerWriter::new(area_layer(input, places), told)));
     let boundaries = input.boundaries.then(|| boundary_layer(input, places));
     let mut boundaries = boundaries.map(|layer| LayerWriter::new(layer, told));
-    let mut roads = LayerWriter::new(RoadLayer::new(input, places), told);
+    let mut roads = LayerWriter::new(road_layer(input, places), told);
     let kept = kept_in(store);
     let of = kept.complete();
     if of.is_none() && kept.has_any() {
@@ -166,6 +169,21 @@ fn area_layer<'a>(
     let sea =
         SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)
+}
+
+fn road_layer<'a>(
+    input: &ExtractInput<'a>,
+    places: (&'a dyn Artifacts, &'a dyn Scratch),
+) -> RoadLayer<'a> {
+    let splitting = RoadSplitting {
+        levels: input.levels,
+        lengths: input.lengths,
+        data_bounds: input.data_bounds,
+        node_bounds: input.node_bounds,
+        clip: input.clip,
+        polygon: input.polygon,
+    };
+    RoadLayer::new(splitting, places, input.memory_bytes)
 }
 
 fn boundary_layer<'a>(

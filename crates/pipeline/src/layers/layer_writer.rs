@@ -6,14 +6,15 @@ use corniche_osm::LayerSink;
 use corniche_work::Stage;
 use rayon::prelude::*;
 
-use crate::{BuildError, Defect, Observer, extract::defects::DefectsWriter};
+use super::defects::DefectsWriter;
+use crate::{BuildError, Defect, Observer};
 
 /// Objects, and points of objects, that are split at once.
 pub(crate) const BATCH_OBJECTS: usize = 1024;
 const BATCH_POINTS: usize = 1 << 16;
 
 /// How the objects of a layer are split by tile.
-pub(crate) trait Splitting: Sync {
+pub(crate) trait TileSplitting: Sync {
     type Object: Send;
     /// The parts of an object, and what is counted of it.
     type Split: Send;
@@ -29,7 +30,7 @@ pub(crate) trait Splitting: Sync {
 pub(crate) trait TileLayer {
     /// What is told while its objects are split.
     const STAGE: Stage;
-    type Splitting: Splitting;
+    type Splitting: TileSplitting;
     /// What the reader counted.
     type Summary;
     /// What is known of the layer at the end.
@@ -50,9 +51,9 @@ pub(crate) trait TileLayer {
 }
 
 /// An object of a layer.
-pub(crate) type ObjectOf<L> = <<L as TileLayer>::Splitting as Splitting>::Object;
+pub(crate) type ObjectOf<L> = <<L as TileLayer>::Splitting as TileSplitting>::Object;
 /// What splitting makes of it.
-pub(crate) type SplitOf<L> = <<L as TileLayer>::Splitting as Splitting>::Split;
+pub(crate) type SplitOf<L> = <<L as TileLayer>::Splitting as TileSplitting>::Split;
 
 /// Who is told of all layers, and where they are split.
 pub(crate) struct LayerContext<'a> {

@@ -13,7 +13,7 @@ pub(crate) trait PartKey: Ord + Send + Serialize + DeserializeOwned {}
 impl<K: Ord + Send + Serialize + DeserializeOwned> PartKey for K {}
 
 /// Sorts parts by tile, and within a tile by their keys; what does not fit in memory goes to scratch space.
-pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, Part<K>>);
+pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, ObjectPart<K>>);
 
 impl<'a, K: PartKey> PartsByTile<'a, K> {
     /// `memory_bytes` is all that there is for the extract.
@@ -23,7 +23,7 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 
     pub(crate) fn push(&mut self, id: TileId, key: K, bytes: Vec<u8>) -> Result<(), BuildError> {
-        let part = Part { tile: pmtiles_order(id), key, bytes };
+        let part = ObjectPart { tile: pmtiles_order(id), key, bytes };
         self.0.push(part).map_err(BuildError::Storage)
     }
 
@@ -39,7 +39,7 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
         };
         let mut current: Option<(u64, T)> = None;
         for part in self.0.finish().map_err(BuildError::Storage)? {
-            let Part { tile, key, bytes } = part.map_err(BuildError::Storage)?;
+            let ObjectPart { tile, key, bytes } = part.map_err(BuildError::Storage)?;
             if let Some(done) = current.take_if(|(own, _)| *own != tile) {
                 put(done)?;
             }
@@ -52,14 +52,14 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
 
 /// A part, encoded.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Part<K> {
+struct ObjectPart<K> {
     /// The tile's place in the order of the package.
     tile: u64,
     key: K,
     bytes: Vec<u8>,
 }
 
-impl<K: PartKey> SortRecord for Part<K> {
+impl<K: PartKey> SortRecord for ObjectPart<K> {
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Self { tile, key, bytes: own } = self;
         // Writing to a list cannot fail, and keys are numbers.

@@ -17,7 +17,7 @@ use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
     build::destination,
     context::Context,
-    extract::defects::replay_defects,
+    layers::defects::replay_defects,
     objects::ObjectAccess,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
     terrain::ground::GroundSource,

@@ -14,9 +14,8 @@ use super::{
 use crate::{
     BuildError,
     artifacts::Kind,
-    extract::partition::ExtractInput,
     layers::{
-        layer_writer::{LayerContext, SplitOf, Splitting, TileLayer},
+        layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
     },
 };
@@ -32,30 +31,24 @@ pub(crate) struct RoadLayer<'a> {
 
 impl<'a> RoadLayer<'a> {
     pub(crate) fn new(
-        input: &ExtractInput<'a>,
+        splitting: RoadSplitting<'a>,
         (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        memory_bytes: u64,
     ) -> Self {
         Self {
-            splitting: RoadSplitting {
-                levels: input.levels,
-                lengths: input.lengths,
-                data_bounds: input.data_bounds,
-                node_bounds: input.node_bounds,
-                clip: input.clip,
-                polygon: input.polygon,
-            },
+            splitting,
             store,
             totals: RoadTotals {
                 classes: vec![(0, 0); FunctionalRoadClass::COUNT],
                 ..RoadTotals::default()
             },
             lengths: LengthsWriter::new(store),
-            pieces: PartsByTile::new(scratch, input.memory_bytes),
+            pieces: PartsByTile::new(scratch, memory_bytes),
         }
     }
 }
 
-impl Splitting for RoadSplitting<'_> {
+impl TileSplitting for RoadSplitting<'_> {
     type Object = Road;
     type Split = (SplitRoad, Vec<(TileId, u32, Vec<u8>)>);
 

@@ -1,0 +1,43 @@
+//! Who is handed what is in a layer of an extract.
+
+/// Who is handed the objects of a layer. What is wrong with a layer is told between its beginning and its end.
+pub trait LayerSink<T, S> {
+    /// The extract was read; all objects of this layer follow.
+    fn begin(&mut self) {}
+
+    /// Takes an object.
+    fn take(&mut self, object: T);
+
+    /// `done` of `all` ways or objects of this layer were looked at.
+    fn reached(&mut self, _done: u64, _all: u64) {}
+
+    /// All objects of this layer were handed out.
+    fn end(&mut self, summary: S);
+}
+
+/// Hands a layer of which all objects go to one function.
+pub(crate) struct Only<'a, T, S> {
+    sink: &'a mut dyn FnMut(T),
+    summary: Option<S>,
+}
+
+impl<'a, T, S: Default> Only<'a, T, S> {
+    pub(crate) fn new(sink: &'a mut dyn FnMut(T)) -> Self {
+        Self { sink, summary: None }
+    }
+
+    /// What the layer holds, once it was handed out.
+    pub(crate) fn summary(self) -> S {
+        self.summary.unwrap_or_default()
+    }
+}
+
+impl<T, S> LayerSink<T, S> for Only<'_, T, S> {
+    fn take(&mut self, object: T) {
+        (self.sink)(object);
+    }
+
+    fn end(&mut self, summary: S) {
+        self.summary = Some(summary);
+    }
+}
