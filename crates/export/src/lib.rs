@@ -16,7 +16,7 @@
 //!
 //! [`profile`] follows some ways and tells height and grade along them.
 //!
-//! Each layer goes this way ([`features`]). What tiles hold of an area is joined where both sides of a border have the same segments; parts of
+//! Each layer goes this way (`features`). What tiles hold of an area is joined where both sides of a border have the same segments; parts of
 //! boundaries overlap, and each of their segments is taken once.
 //!
 //! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
