@@ -1,6 +1,6 @@
 //! What polygons have in common with a region of any outline.
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{LatticeBounds, LatticePoint};
 use i_overlay::{
     core::{
         fill_rule::FillRule,
@@ -13,7 +13,7 @@ use i_overlay::{
 
 use crate::{OutlineError, Polygon, surrounded};
 
-/// The parts of polygons, whose points are whole multiples of `step`, in what rings wind around. So are the points of the parts: those of the
+/// The parts of polygons, whose points are whole multiples of `step`, in what rings wind around more often counter-clockwise than clockwise. So are the points of the parts: those of the
 /// rings, and those where outlines cross, go to the nearest multiples.
 ///
 /// Source: the crate `i_overlay`, which splits all outlines at their crossings and asks of each piece what is on its sides.
@@ -37,15 +37,44 @@ pub fn intersection<'a>(
     for ring in polygons.iter().flat_map(Polygon::rings) {
         overlay.add_contour(&coarse(ring.points())?, ShapeType::Subject);
     }
+    let points: Vec<LatticePoint> =
+        polygons.iter().flat_map(|polygon| polygon.outer().points()).copied().collect();
+    // Outlines are put on the lattice, too, and move by half a step at most.
+    let Some(near) = LatticeBounds::of(&points).map(|bounds| bounds.expanded(step)) else {
+        return Ok(Vec::new());
+    };
     for ring in region {
-        overlay.add_contour(&coarse(ring)?, ShapeType::Clip);
+        overlay.add_contour(&coarse(&without_far_points(ring, &near))?, ShapeType::Clip);
     }
     let fine = |at: IntPoint| LatticePoint::new(i64::from(at.x) * step, i64::from(at.y) * step);
-    let shapes = overlay.overlay(OverlayRule::Intersect, FillRule::NonZero);
+    let shapes = overlay.overlay(OverlayRule::Intersect, FillRule::Positive);
     let rings: Vec<Vec<LatticePoint>> =
         shapes.into_iter().flatten().map(|ring| ring.into_iter().map(fine).collect()).collect();
     // Where rounding joins points, rings of the library may touch in ways that a polygon's may not.
     surrounded(&rings.iter().map(Vec::as_slice).collect::<Vec<_>>(), step)
+}
+
+/// A ring without the points that say nothing of a rectangle: those that lie on the same side of it as the points before and after them. All
+/// segments that meet the rectangle stay as they are, and what is left winds around its places as often as the whole ring.
+fn without_far_points(ring: &[LatticePoint], near: &LatticeBounds) -> Vec<LatticePoint> {
+    let sides = |point: &LatticePoint| {
+        let LatticeBounds { min, max } = near;
+        [point.u < min.u, point.u > max.u, point.v < min.v, point.v > max.v]
+    };
+    let is_far = |three: [&LatticePoint; 3]| {
+        let [one, two, three] = three.map(sides);
+        (0..4).any(|side| one[side] && two[side] && three[side])
+    };
+    let mut kept: Vec<LatticePoint> = Vec::new();
+    for point in ring {
+        while let [.., before, last] = &kept[..]
+            && is_far([before, last, point])
+        {
+            kept.pop();
+        }
+        kept.push(*point);
+    }
+    kept
 }
 
 #[cfg(test)]

@@ -47,6 +47,17 @@ fn a_region_of_polygons_that_overlap_is_their_union_and_holes_are_left_out() {
 }
 
 #[test]
+fn where_two_holes_lie_over_each_other_nothing_is_inside() {
+    let mut holes = [square([2, 2], 4, 1), square([4, 4], 4, 1)];
+    holes.iter_mut().for_each(|hole| hole.reverse());
+    let region = [square([0, 0], 10, 1), holes[0].clone(), holes[1].clone()];
+    let found =
+        intersection(&polygon(&square([-5, -5], 40, 1)), region.iter().map(Vec::as_slice), 1)
+            .unwrap();
+    assert_eq!(doubled_area(&found), 2 * (100 - 16 - 16 + 4));
+}
+
+#[test]
 fn what_lies_beside_the_region_is_nothing() {
     let found = intersection(
         &polygon(&square([0, 0], 10, 1)),
@@ -65,6 +76,33 @@ fn more_steps_than_can_be_counted_are_refused() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Far points of the region change nothing of what is near.
+    #[test]
+    fn a_ring_without_its_far_points_winds_as_often(
+        corners in prop::collection::vec([-60_i64..60, -60_i64..60], 3..30),
+        [west, south] in [-50_i64..40, -50_i64..40],
+        side in 0_i64..12,
+    ) {
+        let ring = ring(&corners, 1);
+        let [min, max] = [[west, south], [west + side, south + side]].map(|[u, v]| LatticePoint::new(u, v));
+        let fewer = without_far_points(&ring, &LatticeBounds { min, max });
+        let winding = |ring: &[LatticePoint], [u, v]: [f64; 2]| -> i32 {
+            let next = ring.iter().cycle().skip(1);
+            let crossing = |(a, b): (&LatticePoint, &LatticePoint)| {
+                let [au, av, bu, bv] = [a.u, a.v, b.u, b.v].map(|part| part as f64);
+                if (av > v) == (bv > v) || u >= au + (v - av) / (bv - av) * (bu - au) { 0 } else if bv > av { 1 } else { -1 }
+            };
+            ring.iter().zip(next).map(crossing).sum()
+        };
+        for du in 0..side {
+            for dv in 0..side {
+                // No place on a segment: these have whole ends below 60.
+                let place = [(west + du) as f64 + 0.500_137, (south + dv) as f64 + 0.500_071];
+                prop_assert_eq!(winding(&ring, place), winding(&fewer, place));
+            }
+        }
+    }
 
     /// What is inside of a triangle and what is outside of it are the whole, but for rounding at each crossing.
     #[test]

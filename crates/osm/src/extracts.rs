@@ -170,4 +170,5 @@ fn first(range: Range<usize>, mut is_such: impl FnMut(usize) -> bool) -> usize {
 }
 
 /// Why a block is refused in which a scan found more than it may.
-pub(crate) const TOO_MUCH_FOUND: &str = "its roads take more memory than those of a block may";
+pub(crate) const TOO_MUCH_FOUND: &str =
+    "what is found in it takes more memory than that of a block may";

@@ -73,9 +73,6 @@ impl OfBlock {
         let mut found =
             Self { looked, roads: Ways::default(), outlines: Vec::new(), has_ways: false };
         let roads = wanted.roads.map(|table| Judge::new(&texts, table));
-        if roads.is_some() {
-            found.roads.summary.nodes_seen = block.nodes_count();
-        }
         let judges: Vec<judge::Judge<'_>> =
             outlines.iter().map(|&wanted| judge::Judge::new(&texts, wanted)).collect();
         let mut wanted_ways: Vec<WantedWays<'_>> = wanted
@@ -148,9 +145,13 @@ impl<'a> FoundWays<'a> {
             if of_block.has_ways {
                 self.way_blobs.push(number);
             }
-            self.take_roads(reading, file as u32, of_block.roads, on_defect)?;
-            for (outlines, mut own) in outlines.iter_mut().zip(of_block.outlines) {
-                self.take_located(reading, std::mem::take(&mut own.located))?;
+            // Layers are numbered in their order: roads come last.
+            let place = [file as u32, of_outlines.len() as u32];
+            self.take_roads(reading, place, of_block.roads, on_defect)?;
+            for (layer, (outlines, mut own)) in
+                (0..).zip(outlines.iter_mut().zip(of_block.outlines))
+            {
+                self.take_located(reading, layer, std::mem::take(&mut own.located))?;
                 outlines.take(reading, file as u32, own, false)?;
             }
             Ok(())
@@ -160,7 +161,7 @@ impl<'a> FoundWays<'a> {
     fn take_roads(
         &mut self,
         reading: &Reading<'_>,
-        file: u32,
+        [file, layer]: [u32; 2],
         of_block: Ways,
         on_defect: &mut dyn FnMut(Defect),
     ) -> Result<(), ReadOsmError> {
@@ -175,16 +176,17 @@ impl<'a> FoundWays<'a> {
             self.roads_count += 1;
             self.ways.push(way).map_err(|error| reading.scratch_failed(error))?;
         }
-        self.take_located(reading, of_block.located)
+        self.take_located(reading, layer as u8, of_block.located)
     }
 
     fn take_located(
         &mut self,
         reading: &Reading<'_>,
+        layer: u8,
         located: Vec<(i64, Location)>,
     ) -> Result<(), ReadOsmError> {
         for (node_id, location) in located {
-            let located = Located { node_id, order: self.located_count, location };
+            let located = Located { node_id, order: self.located_count, location, layer };
             self.located_count += 1;
             self.located.push(located).map_err(|error| reading.scratch_failed(error))?;
         }

@@ -1,6 +1,6 @@
-//! Pass 2: where the nodes of roads lie.
+//! Where the nodes lie that ways name.
 //!
-//! The nodes that roads name come in ascending order of id. As many as fit in memory are a chunk; for each chunk the blobs are
+//! The nodes that ways of all layers name come in ascending order of id. As many as fit in memory are a chunk; for each chunk the blobs are
 //! read that may hold its nodes. In a file that is sorted by id these are a few neighbours, so a blob is read once, or twice where
 //! a chunk ends within it. In a file that is not sorted all blobs with nodes are read for each chunk.
 
@@ -78,9 +78,11 @@ pub(crate) fn locate_nodes<'a>(
         let mut places = NodePlaces::new(chunk.ids.ids().len(), reading.precedence());
         let own = chunk.mentions_count();
         source.read(reading, &chunk.ids, &ShareOfNodes { before: done, own, all }, &mut places)?;
-        chunk.take_located(reading, &mut located, &mut places)?;
+        let mut by_ways = chunk.take_located(reading, &mut located, &places)?.into_iter();
         done += own;
         for (layer, (asked, nodes)) in chunk.layers.into_iter().zip(&mut nodes).enumerate() {
+            let by_ways = by_ways.next().flatten();
+            let places = by_ways.as_ref().unwrap_or(&places);
             // What only ways name that are left out is needed for their lengths alone.
             let is_needed = |&number: &usize| asked.named[number] > Named::LeftOut;
             let needed = (0..asked.named.len()).filter(is_needed);
@@ -90,7 +92,7 @@ pub(crate) fn locate_nodes<'a>(
                 let node_id = chunk.ids.ids()[number];
                 on_defect(layer, Defect::ConflictingNode { node_id });
             }
-            asked.answer(reading, &places, &mut nodes.stops)?;
+            asked.answer(reading, places, &mut nodes.stops)?;
         }
     }
     if done == 0 {
@@ -219,27 +221,31 @@ impl<'a> Chunk<'a> {
         self.layers.iter().map(|asked| asked.mentions_count).sum()
     }
 
-    /// Takes the places that ways give for nodes of the chunk, in the order of the file.
+    /// Takes the places that ways give for nodes of the chunk, in the order of the file: the places that hold for each layer whose ways give
+    /// some. A layer does not depend on what ways of others say.
     fn take_located(
         &self,
         reading: &Reading<'_>,
         located: &mut Ahead<impl Iterator<Item = io::Result<Located>>>,
-        places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError> {
+        places: &NodePlaces,
+    ) -> Result<Vec<Option<NodePlaces>>, ReadOsmError> {
+        let mut by_layer: Vec<Option<NodePlaces>> = self.layers.iter().map(|_| None).collect();
         let mut count = 0;
         while let Some(next) = located.peek().map_err(|error| reading.scratch_failed(error))? {
             if self.ids.ids().last().is_some_and(|&last| next.node_id > last) {
                 break;
             }
             // Not there: a duplicate named the node, and was left out.
-            if let Some(number) = self.ids.number(next.node_id) {
-                places.set(number, next.location, 0);
+            if let (Some(number), Some(own)) =
+                (self.ids.number(next.node_id), by_layer.get_mut(usize::from(next.layer)))
+            {
+                own.get_or_insert_with(|| places.clone()).set(number, next.location, 0);
             }
             located.take();
             reading.check_stop_at(count)?;
             count += 1;
         }
-        Ok(())
+        Ok(by_layer)
     }
 }
 

@@ -28,6 +28,7 @@ pub(crate) struct Looked {
     ids: Option<IdRange>,
     pub(crate) has_relations: bool,
     has_ways: bool,
+    nodes: u64,
 }
 
 impl Looked {
@@ -37,6 +38,7 @@ impl Looked {
             ids: IdRange::scan(message),
             has_relations: block.has_relations(),
             has_ways: block.ways().next().is_some(),
+            nodes: block.nodes_count(),
         }
     }
 }
@@ -46,8 +48,10 @@ impl Looked {
 pub(crate) struct LookedAt {
     pub(crate) versions: Versions,
     pub(crate) node_blobs: Vec<NodeBlob>,
-    /// Numbers of those with nodes or ways.
-    pub(crate) with_others_than_relations: Vec<usize>,
+    /// Numbers of those with ways.
+    pub(crate) with_ways: Vec<usize>,
+    /// How many nodes there are.
+    pub(crate) nodes_seen: u64,
     pub(crate) has_relations: bool,
 }
 
@@ -61,9 +65,10 @@ impl LookedAt {
     ) -> Result<(), ReadOsmError> {
         append_versions(reading, &mut self.versions, looked.versions.of_file(file as u32))?;
         self.node_blobs.extend(looked.ids.map(|ids| NodeBlob { number, ids }));
-        if looked.has_ways || looked.ids.is_some() {
-            self.with_others_than_relations.push(number);
+        if looked.has_ways {
+            self.with_ways.push(number);
         }
+        self.nodes_seen += looked.nodes;
         self.has_relations |= looked.has_relations;
         Ok(())
     }
@@ -77,6 +82,7 @@ impl LookedAt {
         append_versions(reading, &mut self.versions, later.versions)?;
         self.node_blobs.extend(later.node_blobs);
         self.has_relations |= later.has_relations;
+        self.nodes_seen += later.nodes_seen;
         Ok(())
     }
 }

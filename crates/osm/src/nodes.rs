@@ -16,7 +16,7 @@ pub(crate) struct NodeIds {
 
 /// Places by number. They are separate from the ids, so that several threads can look up ids while one thread writes
 /// places.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct NodePlaces {
     locations: Vec<Location>,
     /// Marks nodes to which the file gives different places.

@@ -12,6 +12,7 @@ pub(crate) mod find_objects;
 pub(crate) mod found;
 pub(crate) mod judge;
 pub(crate) mod located_ways;
+pub(crate) mod member_ways;
 pub(crate) mod number_objects;
 pub(crate) mod records;
 pub(crate) mod wanted;

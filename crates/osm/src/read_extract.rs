@@ -8,7 +8,7 @@
 //! Relations name ways, and ways name nodes, so what is read later is known to be wanted or not. Where the kinds begin is found by bisection,
 //! which is right only if the extract is sorted by kind. Whether it is, is known when its nodes are read. Until then nothing is told, and if
 //! it is not, it is read once more: all blobs for relations and objects, those with ways, those with nodes. Several extracts are read so
-//! from the beginning. Without objects that ways outline, relations are read with the ways, and looked at for their versions alone.
+//! from the beginning. So a blob is unpacked once, but for those that the bisections look at. Without objects that ways outline, relations are read with the ways, and looked at for their versions alone.
 
 use std::{
     cell::Cell,
@@ -18,7 +18,7 @@ use std::{
 use corniche_roads::FrcTable;
 
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
+    Defect, ReadOsmError,
     areas::hand_out_areas,
     blobs::BlobFile,
     boundaries::hand_out_boundaries,
@@ -32,7 +32,7 @@ use crate::{
     number_nodes::{NumberedNodes, number_nodes},
     outlines::{
         find_objects::find_objects,
-        found::{Outlines, WayIds},
+        found::{OutlineObjects, Outlines, WayIds},
         judge::OwnTags,
         located_ways::LocatedWays,
         wanted::Wanted,
@@ -47,7 +47,7 @@ use crate::{
 /// told what is wrong with a layer between its beginning and its end.
 ///
 /// # Memory and limits
-/// As for [`read_roads`], all layers together. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
+/// As for [`read_roads`], all layers together; what may be kept of a file holds for each layer. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
 /// each object that makes ways boundaries, and 16 bytes for each point of coastlines.
 ///
 /// # Errors
@@ -145,7 +145,7 @@ impl LayersWanted<'_> {
 
 /// All that an extract holds of some layers, with the places of nodes, to be handed out.
 struct Found<'a> {
-    outlines: Vec<(Outlines<'a>, LocatedWays<'a>)>,
+    outlines: Vec<(OutlineObjects<'a>, LocatedWays<'a>)>,
     roads: Option<RoadWays<'a>>,
 }
 
@@ -166,14 +166,14 @@ impl<'a> Found<'a> {
             return Ok(None);
         };
         let FoundWays { ways, located, mut summary, looked_at, .. } = found;
+        let looked_nodes = looked_at.nodes_seen;
 
         let (mut numbered, mut questions) = (Vec::new(), Vec::new());
-        for own in &mut outlines {
-            let ways = own.take_ways(reading)?;
-            // What these count is of roads.
-            let none = &mut ExtractSummary::default();
-            let ways = number_nodes(reading, ways, none, &mut |defect| own.defects.push(&defect))?;
-            numbered.push(ways);
+        let mut objects = Vec::new();
+        for own in outlines {
+            let (own, nodes) = own.number(reading)?;
+            objects.push(own);
+            numbered.push(nodes);
         }
         if wanted.roads.is_some() {
             let ways = ways.finish().map_err(failed)?;
@@ -197,21 +197,21 @@ impl<'a> Found<'a> {
         let located = located.finish().map_err(failed)?;
         let answers =
             locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
-                outlines.get_mut(layer).map_or(&mut of_roads, |own| &mut own.defects).push(&defect);
+                objects.get_mut(layer).map_or(&mut of_roads, |own| &mut own.defects).push(&defect);
             });
         if nodes.is_out_of_order {
             return Ok(None);
         }
-        let nodes_seen = nodes.nodes_seen;
+        let nodes_seen = looked_nodes + nodes.nodes_seen;
         let mut layers = layers.into_iter().zip(answers?);
         let mut found = Self { outlines: Vec::new(), roads: None };
-        for own in outlines {
-            let Some(((ways, ..), nodes)) = layers.next() else { break };
+        for own in objects {
+            let Some(((ways, count, _), nodes)) = layers.next() else { break };
             let stops = nodes.stops.finish().map_err(failed)?;
-            found.outlines.push((own, LocatedWays { ways, stops }));
+            found.outlines.push((own, LocatedWays { ways, stops, count }));
         }
         if let Some((ways, nodes)) = layers.next() {
-            summary.nodes_seen += nodes_seen;
+            summary.nodes_seen = nodes_seen;
             found.roads = Some(RoadWays::of(reading, ways, nodes, summary, of_roads)?);
         }
         Ok(Some(found))
@@ -241,7 +241,7 @@ fn read_ways<'a, R: Read + Seek>(
     let mut next_ids = || -> Result<Vec<Vec<i64>>, ReadOsmError> {
         way_ids.iter_mut().map(|ids| ids.next(reading)).collect()
     };
-    let rest_bytes = file.bytes_of(&before.with_others_than_relations);
+    let rest_bytes = file.bytes_of(&before.with_ways);
     let all_bytes = relations_bytes + file.bytes_of(&ways) + rest_bytes;
     let mut wanted = WaysWanted {
         roads: wanted.roads,
@@ -255,7 +255,7 @@ fn read_ways<'a, R: Read + Seek>(
         return Ok(None);
     }
     wanted = WaysWanted { is_first: false, bytes: [all_bytes - rest_bytes, all_bytes], ..wanted };
-    let rest = &before.with_others_than_relations;
+    let rest = &before.with_ways;
     found.read(reading, file, rest, &wanted, outlines, on_defect)?;
     // Ways that relations name, where their ids did not fit in memory together.
     let blobs = found.way_blobs.clone();

@@ -33,7 +33,7 @@ pub struct ReadRequest<'a> {
     pub seam: Option<Seam>,
     /// Where blobs are decoded and points placed.
     pub pool: &'a rayon::ThreadPool,
-    /// About how much the ways and nodes of all roads may take, bytes; what does not fit goes to `scratch`. The blobs that
+    /// About how much the ways and nodes of all layers may take, bytes; what does not fit goes to `scratch`. The blobs that
     /// are being decoded come on top. The result is the same with any number.
     pub memory_bytes: u64,
     /// Where ways and nodes are sorted that do not fit.

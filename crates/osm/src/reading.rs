@@ -12,7 +12,7 @@ use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request
 ///
 /// | | ways | mentions | located | defects | spool | ids | visits | stops | objects | all |
 /// |---|---|---|---|---|---|---|---|---|---|---|
-/// | ways are read | 8 | 4 or (ids of ways) 4 | ½ | ½ | | | | | 4 | 17 |
+/// | ways are read | 8 | (ids of ways, twice) 8 | ½ | ½ | | | | | 4 | 21, for a moment |
 /// | nodes are numbered | 8 | 4 | ½ | ½ | 1 | | | | 4 | 18 |
 /// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 4 | 20 |
 /// | a layer is handed out | (parts) 4 | (members) 4 | | | 1 | | | 4 | 4 | 17 |
@@ -20,7 +20,7 @@ use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request
 /// What is there for each layer has its part of that, in equal parts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
-    /// Road ways that are sorted by id, bytes; so are all of these.
+    /// Ways that are sorted by id, bytes; so are all of these.
     pub(crate) ways: u64,
     /// Ways that objects name and that are looked for, and later whose they are.
     pub(crate) way_ids: u64,

@@ -12,7 +12,7 @@ use crate::{
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
-/// A way with a `highway` tag, as it stands in the file.
+/// A way that a layer wants, as it stands in the file.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct WayRecord {
     pub(crate) way_id: i64,
@@ -137,6 +137,8 @@ pub(crate) struct Located {
     /// How many of these come before it in the file.
     pub(crate) order: u64,
     pub(crate) location: Location,
+    /// The number of the layer whose way says so.
+    pub(crate) layer: u8,
 }
 
 impl SortRecord for Located {
@@ -144,12 +146,16 @@ impl SortRecord for Located {
         push_varint(bytes, to_zigzag(self.node_id));
         push_varint(bytes, self.order);
         push_location(bytes, self.location);
+        bytes.push(self.layer);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         let node_id = zigzag(varint(bytes).ok()?);
         let order = varint(bytes).ok()?;
-        Some(Self { node_id, order, location: take_location(bytes)? })
+        let location = take_location(bytes)?;
+        let (&layer, rest) = bytes.split_first()?;
+        *bytes = rest;
+        Some(Self { node_id, order, location, layer })
     }
 }
 

@@ -34,7 +34,7 @@ proptest! {
         let facts = facts.collect();
         check(&WayRecord { way_id: id, age, order, version, file, bytes: bytes.into(), facts });
         check(&Mention::new(id, order >> 2, !mark, mark));
-        check(&Located { node_id: id, order, location });
+        check(&Located { node_id: id, order, location, layer: 2 });
         check(&Stop::new(order >> 1, mark, location));
     }
 

@@ -1,6 +1,6 @@
 //! Gives each object the ways of its outline, with their places.
 
-use corniche_store::{Sorted, Sorter};
+use corniche_store::{SortRecord as _, Sorter};
 
 use crate::{
     ReadOsmError,
@@ -9,21 +9,24 @@ use crate::{
         records::{MemberRecord, OutlineLine, OutlineWayRecord},
     },
     reading::Reading,
+    spool::SpoolReader,
 };
 
 /// Members and ways come in order of way ids. A member whose way is not in the file gets a part that says so.
 pub(crate) fn hand_parts<'a>(
     reading: &Reading<'a>,
-    members: Sorted<'a, MemberRecord>,
+    mut members: SpoolReader<'a>,
     mut located: LocatedWays<'a>,
 ) -> Result<Sorter<'a, OutlineWayRecord>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
     let mut way: Option<LocatedWay> = None;
-    for (count, record) in (0..).zip(members) {
-        let MemberRecord { member, object_number } = record.map_err(failed)?;
+    let mut count = 0;
+    while let Some(record) = members.next(MemberRecord::decode).map_err(failed)? {
+        let MemberRecord { member, object_number } = record;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;
+        count += 1;
         while way.as_ref().is_none_or(|way| way.way_id < way_id) {
             way = located.next(reading)?;
             if way.is_none() {

@@ -1,8 +1,10 @@
 //! Boundaries are made of ways and of the relations that hold them.
 
+use std::{io, iter};
+
 use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, split_at_seam};
-use corniche_store::Sorted;
+use corniche_store::SortRecord as _;
 
 use super::{boundary::Boundary, summary::BoundarySummary};
 use crate::{
@@ -16,21 +18,30 @@ use crate::{
         records::{MemberRecord, degrees_of, to_point},
     },
     reading::Reading,
+    spool::SpoolReader,
 };
+
+/// It is told every so many ways how far the layer is.
+const WAYS_TO_TELL: u64 = 1 << 10;
 
 /// Members and ways come in order of way ids; `classes` are those of objects by their numbers.
 pub(crate) fn make_boundaries(
     reading: &Reading<'_>,
-    (members, classes): (Sorted<'_, MemberRecord>, &[Option<BoundaryClass>]),
+    (mut members, classes): (SpoolReader<'_>, &[Option<BoundaryClass>]),
     mut located: LocatedWays<'_>,
     summary: &mut BoundarySummary,
     (sink, on_defect): (&mut dyn LayerSink<Boundary, BoundarySummary>, &mut dyn FnMut(Defect)),
 ) -> Result<(), ReadOsmError> {
-    let mut members = Members(Ahead::new(members));
+    let mut members =
+        Members(Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose())));
     let mut way: Option<LocatedWay> = None;
-    let mut count = 0;
+    let (mut count, all) = (0, located.count);
     while let Some((way_id, class)) = members.next_way(reading, classes)? {
         reading.check_stop_at(count)?;
+        if count.is_multiple_of(WAYS_TO_TELL) {
+            // Relations name ways, too, that the file does not have.
+            sink.reached(count.min(all), all);
+        }
         count += 1;
         let Some(class) = class else { continue };
         summary.ways += 1;
@@ -59,13 +70,14 @@ pub(crate) fn make_boundaries(
             }
         }
     }
+    sink.reached(all, all);
     Ok(())
 }
 
 /// The members of all objects by way.
-struct Members<'a>(Ahead<Sorted<'a, MemberRecord>>);
+struct Members<I: Iterator>(Ahead<I>);
 
-impl Members<'_> {
+impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
     /// The next way and the most important of the classes that objects give it.
     fn next_way(
         &mut self,

@@ -2,31 +2,39 @@
 
 use corniche_store::{Sorted, Sorter};
 
-use super::{judge::OfBlock, records::ObjectRecord, wanted::Wanted};
+use super::{
+    judge::OfBlock,
+    member_ways::MemberWays,
+    number_objects::{NumberedObjects, number_objects},
+    records::ObjectRecord,
+    wanted::Wanted,
+};
 use crate::{
     AreaLoss, Defect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
     deferred::Deferred,
     looked::check_held,
+    number_nodes::{NumberedNodes, number_nodes},
     reading::Reading,
     records::{SoughtId, WayRecord, age},
+    spool::{Spool, SpoolReader},
     way_facts::WayFacts,
 };
 
 /// The objects and ways of one kind that were found so far.
 pub(crate) struct Outlines<'a> {
     pub(crate) wanted: Wanted<'a>,
-    pub(crate) objects: Sorter<'a, ObjectRecord>,
+    objects: Sorter<'a, ObjectRecord>,
     objects_count: u64,
     ways: Sorter<'a, WayRecord>,
     ways_count: u64,
     /// The ways that are still to be looked for, by the objects that were found before them.
     way_ids: Sorter<'a, SoughtId>,
     /// Ways with the tags of an area that are not closed.
-    pub(crate) open_ways: u64,
-    pub(crate) defects: Deferred<'a>,
+    open_ways: u64,
+    defects: Deferred<'a>,
     /// What all this takes, by an estimate that is not too low.
-    pub(crate) held_bytes: u64,
+    held_bytes: u64,
     /// What goes with each way where it may be in several extracts: of those that have it, the newest version counts.
     facts: Box<[u8]>,
 }
@@ -92,13 +100,27 @@ impl<'a> Outlines<'a> {
         Ok(())
     }
 
-    /// The ways that were found, in order of their ids; from now on none is added.
-    pub(crate) fn take_ways(
-        &mut self,
+    /// Numbers the objects, and the nodes of the ways that those name which count.
+    pub(crate) fn number(
+        self,
         reading: &Reading<'a>,
-    ) -> Result<Sorted<'a, WayRecord>, ReadOsmError> {
-        let ways = std::mem::replace(&mut self.ways, reading.sorter(0));
-        ways.finish().map_err(|error| reading.scratch_failed(error))
+    ) -> Result<(OutlineObjects<'a>, NumberedNodes<'a>), ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let Self { objects, ways, open_ways, mut defects, held_bytes, .. } = self;
+        let on_defect = &mut |defect: Defect| defects.push(&defect);
+        let NumberedObjects { known, count, duplicates, members } =
+            number_objects(reading, objects, on_defect)?;
+        let kept = Spool::new(reading.request.scratch, reading.shares().spool);
+        let members = members.finish().map_err(failed)?;
+        let mut ways = MemberWays::new(ways.finish().map_err(failed)?, members, kept);
+        // What these count is of roads.
+        let none = &mut ExtractSummary::default();
+        let numbered = number_nodes(reading, &mut ways, none, on_defect)?;
+        let members = ways.into_members().map_err(failed)?.read();
+        let known = known.read();
+        let objects =
+            OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes };
+        Ok((objects, numbered))
     }
 
     /// The ways that are to be looked for; from now on none is added.
@@ -111,6 +133,22 @@ impl<'a> Outlines<'a> {
     }
 }
 
+/// Objects of one kind, all that is known of them but for the places of their ways.
+pub(crate) struct OutlineObjects<'a> {
+    /// [`super::records::Known`] of each object, in the order of their numbers.
+    pub(crate) known: SpoolReader<'a>,
+    pub(crate) count: u64,
+    /// How many more have the id of another one.
+    pub(crate) duplicates: u64,
+    /// [`super::records::MemberRecord`] of each way that they need, in order of the ids of ways.
+    pub(crate) members: SpoolReader<'a>,
+    /// Ways with the tags of an area that are not closed.
+    pub(crate) open_ways: u64,
+    pub(crate) defects: Deferred<'a>,
+    /// What all this takes, by an estimate that is not too low.
+    pub(crate) held_bytes: u64,
+}
+
 /// Ids of ways that are looked for, as many at a time as fit in memory.
 pub(crate) struct WayIds<'a>(Ahead<Sorted<'a, SoughtId>>);
 
@@ -119,12 +157,16 @@ impl WayIds<'_> {
     pub(crate) fn next(&mut self, reading: &Reading<'_>) -> Result<Vec<i64>, ReadOsmError> {
         let failed = |error| reading.scratch_failed(error);
         let most = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
-        let mut ids = Vec::new();
+        let mut ids: Vec<i64> = Vec::new();
         let mut count = 0;
         while let Some(&SoughtId(id)) = self.0.peek().map_err(failed)? {
             if ids.last() != Some(&id) {
                 if ids.len() == most {
                     break;
+                }
+                if ids.len() == ids.capacity() {
+                    // Doubling as lists do it would take up to three times the memory.
+                    ids.reserve_exact(ids.len().max(1 << 10).min(most - ids.len()));
                 }
                 ids.push(id);
             }

@@ -15,6 +15,8 @@ use crate::{
 pub(crate) struct LocatedWays<'a> {
     pub(crate) ways: SpoolReader<'a>,
     pub(crate) stops: Sorted<'a, Stop>,
+    /// How many ways there are.
+    pub(crate) count: u64,
 }
 
 pub(crate) struct LocatedWay {

@@ -58,7 +58,8 @@ pub fn keep_ways(
         }
     })?;
     not_kept.map_or(Ok(()), Err).map_err(kept_failed)?;
-    let FoundWays { ways, located, summary, looked_at, held_bytes, .. } = found;
+    let FoundWays { ways, located, mut summary, looked_at, held_bytes, .. } = found;
+    summary.nodes_seen = looked_at.nodes_seen;
 
     let mut blocks = BlockWriter::<WayRecord>::new(kept, kept.kinds.ways, share);
     for (count, way) in (0..).zip(ways.finish().map_err(failed)?) {

@@ -165,3 +165,17 @@ fn little_memory_changes_nothing() {
     assert_eq!(one.summary, other.summary);
     assert_eq!(one.boundaries.len(), 90);
 }
+
+/// Of two relations with one id the first counts; what the other names is not read, and makes no junction.
+#[test]
+fn ways_of_a_relation_that_does_not_count_are_not_looked_at() {
+    let ways: [(i64, Tags<'_>, &[i64]); 2] = [(1, &[], &[1, 2, 3]), (2, &[], &[2, 12, 22])];
+    let once: [(i64, Tags<'_>, Members<'_>); 1] = [(1, COUNTRY, &[(1, "outer")])];
+    let twice: [(i64, Tags<'_>, Members<'_>); 2] =
+        [once[0], (1, COUNTRY, &[(1, "outer"), (2, "outer")])];
+    let [expected, found] =
+        [&once[..], &twice].map(|relations| read(&made(&ways, relations), 1 << 24));
+    assert_eq!(found.boundaries, expected.boundaries);
+    assert_eq!(found.boundaries[0].fixed, [0, 2]);
+    assert_eq!(found.summary.ways, 1);
+}

@@ -301,7 +301,7 @@ fn blocks_that_would_fill_the_memory_are_damage() {
         &[1, 2],
     );
     block.groups.push(times(400_000, &field(3, &message)));
-    check(&block, "its roads take more memory than those of a block may");
+    check(&block, "what is found in it takes more memory than that of a block may");
 }
 
 #[test]

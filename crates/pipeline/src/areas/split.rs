@@ -37,12 +37,13 @@ impl AreaSplitting<'_> {
                 let [east, north] = self.frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
+            // Before other cuts: lines of bounds are not on the lattice of coarse levels.
+            if let Some(region) = self.polygon {
+                coarse = inside(coarse, region, step)?;
+            }
             let mut coarse = cut_out(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
             if let Some(clip) = &self.clip {
                 coarse = cut_out(&coarse, clip)?;
-            }
-            if let Some(region) = self.polygon {
-                coarse = inside(coarse, region, step)?;
             }
             let mut tiles = Vec::new();
             let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };

@@ -10,7 +10,7 @@
 
 use std::{
     path::PathBuf,
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, PoisonError, atomic::Ordering},
 };
 
 use corniche_areas::AreaTable;
@@ -133,7 +133,8 @@ fn read(
     if of.is_none() && kept.has_any() {
         told.observer.warning(SOME_SHARES);
     }
-    let should_stop = || told.observer.is_cancelled();
+    let (observer, has_failed) = (told.observer, &told.has_failed);
+    let should_stop = || observer.is_cancelled() || has_failed.load(Ordering::Relaxed);
     let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
     let layers = Layers {
         areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
@@ -141,19 +142,30 @@ fn read(
         // Shares keep roads alone.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
-    if of.is_none() || input.areas.is_some() || input.boundaries {
+    let read = if of.is_none() || input.areas.is_some() || input.boundaries {
         on_extract(input, scratch, told, |request| {
             read_extract(request, layers, on_defect, &should_stop)
-        })?;
+        })
+    } else {
+        Ok(())
+    };
+    // What could not be kept ended the reading.
+    if let Some((_, areas)) = &mut areas {
+        areas.check()?;
     }
+    boundaries.as_mut().map_or(Ok(()), LayerWriter::check)?;
+    roads.check()?;
+    read?;
     let has_areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
     let has_boundaries = boundaries.map_or(Ok(None), LayerWriter::done)?;
     let has_others = has_areas.is_some_and(|totals| totals.has_any())
         || has_boundaries.is_some_and(|totals| totals.has_any());
     if let Some(of) = of {
-        on_extract(input, scratch, told, |request| {
+        let read = on_extract(input, scratch, told, |request| {
             read_kept_roads(request, of, kept, &mut roads, on_defect, &should_stop)
-        })?;
+        });
+        roads.check()?;
+        read?;
     }
     let roads = roads.done()?.ok_or(BuildError::Interrupted)?;
     Ok(Found { roads, has_others })

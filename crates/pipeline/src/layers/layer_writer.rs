@@ -1,6 +1,9 @@
 //! Objects of a layer as the reader hands them out: split side by side, and taken in their order.
 
-use std::cell::{Cell, RefCell};
+use std::{
+    cell::{Cell, RefCell},
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use corniche_osm::LayerSink;
 use corniche_work::Stage;
@@ -62,6 +65,8 @@ pub(crate) struct LayerContext<'a> {
     pub(crate) defects: RefCell<DefectsWriter<'a>>,
     /// The stage that is under way.
     stage: Cell<Stage>,
+    /// Whether what a layer makes could not be kept: then the rest need not be read.
+    pub(crate) has_failed: AtomicBool,
 }
 
 impl<'a> LayerContext<'a> {
@@ -72,7 +77,13 @@ impl<'a> LayerContext<'a> {
         defects: DefectsWriter<'a>,
     ) -> Self {
         observer.begin(Stage::Extract, None);
-        Self { pool, observer, defects: RefCell::new(defects), stage: Cell::new(Stage::Extract) }
+        Self {
+            pool,
+            observer,
+            defects: RefCell::new(defects),
+            stage: Cell::new(Stage::Extract),
+            has_failed: AtomicBool::new(false),
+        }
     }
 
     pub(crate) fn on_defect(&self, defect: Defect) {
@@ -119,6 +130,19 @@ impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
         Self { layer: Some(layer), told, batch, batch_points, count: 0, done: Ok(None) }
     }
 
+    fn fail(&mut self, error: BuildError) {
+        self.done = Err(error);
+        self.told.has_failed.store(true, Ordering::Relaxed);
+    }
+
+    /// Why what the layer makes could not be kept, if so.
+    pub(crate) fn check(&mut self) -> Result<(), BuildError> {
+        if self.done.is_ok() {
+            return Ok(());
+        }
+        std::mem::replace(&mut self.done, Ok(None)).map(drop)
+    }
+
     /// What is known of the layer; `None` if it was not read to its end.
     pub(crate) fn done(self) -> Result<Option<L::Done>, BuildError> {
         self.done
@@ -156,7 +180,7 @@ impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L>
         if (self.batch.len() >= BATCH_OBJECTS || self.batch_points >= BATCH_POINTS)
             && let Err(error) = self.split_batch()
         {
-            self.done = Err(error);
+            self.fail(error);
         }
     }
 
@@ -171,7 +195,10 @@ impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L>
         let split = self.split_batch();
         if let Some(layer) = self.layer.take() {
             let done = split.and_then(|()| layer.finish(self.count, summary, self.told));
-            self.done = done.map(Some);
+            match done {
+                Ok(done) => self.done = Ok(Some(done)),
+                Err(error) => self.fail(error),
+            }
         }
     }
 }

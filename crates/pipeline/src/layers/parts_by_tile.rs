@@ -18,7 +18,7 @@ pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, ObjectPart<K>>);
 impl<'a, K: PartKey> PartsByTile<'a, K> {
     /// `memory_bytes` is all that there is for the extract.
     pub(crate) fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
-        // The reader keeps a third of it while it hands out objects.
+        // The reader keeps a third of it while it hands out roads.
         Self(Sorter::new(scratch, memory_bytes / 3 * 2))
     }
 

@@ -1,0 +1,64 @@
+//! The ways that objects name which count: those of older versions of an object name ways, too, that nothing needs.
+
+use std::io;
+
+use corniche_store::{SortRecord as _, Sorted};
+
+use super::records::MemberRecord;
+use crate::{ahead::Ahead, records::WayRecord, spool::Spool};
+
+/// The ways, in order of their ids, that members name; members are kept in the same order.
+pub(crate) struct MemberWays<'a> {
+    ways: Sorted<'a, WayRecord>,
+    members: Ahead<Sorted<'a, MemberRecord>>,
+    kept: Spool<'a>,
+}
+
+impl<'a> MemberWays<'a> {
+    pub(crate) fn new(
+        ways: Sorted<'a, WayRecord>,
+        members: Sorted<'a, MemberRecord>,
+        kept: Spool<'a>,
+    ) -> Self {
+        Self { ways, members: Ahead::new(members), kept }
+    }
+
+    /// Whether a member names a way. Ways are asked for in ascending order of their ids.
+    fn is_member(&mut self, way_id: i64) -> io::Result<bool> {
+        while let Some(&record) = self.members.peek()? {
+            if record.member.way_id >= way_id {
+                return Ok(record.member.way_id == way_id);
+            }
+            self.kept.push(|bytes| record.encode(bytes))?;
+            self.members.take();
+        }
+        Ok(false)
+    }
+
+    /// All members, in order of the ids of their ways.
+    pub(crate) fn into_members(mut self) -> io::Result<Spool<'a>> {
+        while let Some(&record) = self.members.peek()? {
+            self.kept.push(|bytes| record.encode(bytes))?;
+            self.members.take();
+        }
+        Ok(self.kept)
+    }
+}
+
+impl Iterator for MemberWays<'_> {
+    type Item = io::Result<WayRecord>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let way = match self.ways.next()? {
+                Ok(way) => way,
+                Err(error) => return Some(Err(error)),
+            };
+            match self.is_member(way.way_id) {
+                Ok(true) => return Some(Ok(way)),
+                Ok(false) => {}
+                Err(error) => return Some(Err(error)),
+            }
+        }
+    }
+}
