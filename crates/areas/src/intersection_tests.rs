@@ -49,7 +49,9 @@ fn a_region_of_polygons_that_overlap_is_their_union_and_holes_are_left_out() {
 #[test]
 fn where_two_holes_lie_over_each_other_nothing_is_inside() {
     let mut holes = [square([2, 2], 4, 1), square([4, 4], 4, 1)];
-    holes.iter_mut().for_each(|hole| hole.reverse());
+    for hole in &mut holes {
+        hole.reverse();
+    }
     let region = [square([0, 0], 10, 1), holes[0].clone(), holes[1].clone()];
     let found =
         intersection(&polygon(&square([-5, -5], 40, 1)), region.iter().map(Vec::as_slice), 1)

@@ -43,15 +43,15 @@ use crate::{
 
 /// Reads an extract once, and hands out all layers that are wanted, one after the other.
 ///
-/// Each layer is handed out as [`read_areas`], [`read_boundaries`] and [`read_roads`] do it, whatever other layers are wanted. `on_defect` is
+/// Each layer is handed out as [`read_areas`](crate::read_areas), [`read_boundaries`](crate::read_boundaries) and [`read_roads`](crate::read_roads) do it, whatever other layers are wanted. `on_defect` is
 /// told what is wrong with a layer between its beginning and its end.
 ///
 /// # Memory and limits
-/// As for [`read_roads`], all layers together; what may be kept of a file holds for each layer. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
+/// As for [`read_roads`](crate::read_roads), all layers together; what may be kept of a file holds for each layer. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
 /// each object that makes ways boundaries, and 16 bytes for each point of coastlines.
 ///
 /// # Errors
-/// As for [`read_roads`]. What was handed out before is to be forgotten then.
+/// As for [`read_roads`](crate::read_roads). What was handed out before is to be forgotten then.
 pub fn read_extract(
     request: &ReadRequest<'_>,
     layers: Layers<'_>,

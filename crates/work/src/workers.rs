@@ -8,10 +8,10 @@ use std::{
 
 use crate::{Interrupted, Observer, Stage};
 
-/// Does the same as [`in_order`], and asks `observer` before each item whether the run is cancelled.
+/// Does the same as `in_order`, and asks `observer` before each item whether the run is cancelled.
 ///
 /// # Errors
-/// Those of [`in_order`], or [`Interrupted`].
+/// Those of `in_order`, or [`Interrupted`].
 pub fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     threads: usize,
@@ -192,7 +192,7 @@ fn in_order<S, R: Send, E: Send>(
     })
 }
 
-/// Does the same as [`in_order`] without other threads.
+/// Does the same as `in_order` without other threads.
 fn on_this_thread<S, R, E>(
     count: usize,
     start: impl Fn() -> Result<S, E>,
