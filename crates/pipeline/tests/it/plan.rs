@@ -188,7 +188,7 @@ fn what_is_no_plan_is_refused() {
     let later = text.replace("\"plan_version\": 6", "\"plan_version\": 7");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
     assert!(error.contains("version 7") && error.contains("version 6"), "{error}");
-    for bad in ["", "{}", "[5]", &text[..text.len() / 2], "\"plan\""] {
+    for bad in ["", "{}", "[6]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");
     }
