@@ -31,8 +31,6 @@ pub(crate) struct FoundWays<'a> {
     pub(crate) looked_at: LookedAt,
     /// What the ways of roads take, by an estimate that is not too low.
     pub(crate) held_bytes: u64,
-    /// Numbers of the blobs with ways.
-    pub(crate) way_blobs: Vec<usize>,
     roads_count: u64,
     located_count: u64,
 }
@@ -56,7 +54,6 @@ struct OfBlock {
     looked: Option<Looked>,
     roads: Ways,
     outlines: Vec<judge::OfBlock>,
-    has_ways: bool,
 }
 
 impl OfBlock {
@@ -70,8 +67,7 @@ impl OfBlock {
         let block = Block::new(message);
         let texts = block.texts();
         let looked = wanted.is_first.then(|| Looked::scan(message, &block));
-        let mut found =
-            Self { looked, roads: Ways::default(), outlines: Vec::new(), has_ways: false };
+        let mut found = Self { looked, roads: Ways::default(), outlines: Vec::new() };
         let roads = wanted.roads.map(|table| Judge::new(&texts, table));
         let judges: Vec<judge::Judge<'_>> =
             outlines.iter().map(|&wanted| judge::Judge::new(&texts, wanted)).collect();
@@ -82,7 +78,6 @@ impl OfBlock {
             .collect();
         found.outlines.resize_with(judges.len(), judge::OfBlock::default);
         for way in block.ways() {
-            found.has_ways = true;
             if let Some(judge) = &roads {
                 found.roads.look_at(&way, judge, counted);
             }
@@ -109,7 +104,6 @@ impl<'a> FoundWays<'a> {
             summary: ExtractSummary::default(),
             looked_at: LookedAt::default(),
             held_bytes: 0,
-            way_blobs: Vec::new(),
             roads_count: 0,
             located_count: 0,
         }
@@ -138,12 +132,9 @@ impl<'a> FoundWays<'a> {
             Ok(OfBlock::scan(&block, wanted, how, most_bytes).ok_or(TOO_MUCH_FOUND)?)
         };
         file.for_each_block(numbers, &decoding, scan, |place, of_block| {
-            let [file, number] = place;
+            let [file, _] = place;
             if let Some(looked) = of_block.looked {
                 self.looked_at.take(reading, place, looked)?;
-            }
-            if of_block.has_ways {
-                self.way_blobs.push(number);
             }
             // Layers are numbered in their order: roads come last.
             let place = [file as u32, of_outlines.len() as u32];

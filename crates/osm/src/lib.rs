@@ -62,6 +62,7 @@ mod location;
 mod nodes;
 mod search;
 mod self_crossings;
+mod sought_ids;
 mod versions;
 mod ways;
 

@@ -32,13 +32,14 @@ use crate::{
     number_nodes::{NumberedNodes, number_nodes},
     outlines::{
         find_objects::find_objects,
-        found::{OutlineObjects, Outlines, WayIds},
+        found::{OutlineObjects, Outlines},
         judge::OwnTags,
         located_ways::LocatedWays,
         wanted::Wanted,
     },
     read_request::ReadRequest,
     reading::{LayerCount, Reading},
+    sought_ids::SoughtIds,
 };
 
 /// Reads an extract once, and hands out all layers that are wanted, one after the other.
@@ -236,10 +237,11 @@ fn read_ways<'a, R: Read + Seek>(
     let [relations_bytes, ways_bytes] =
         [&relations, if is_sorted { &ways } else { &relations }].map(|blobs| file.bytes_of(blobs));
     let before = find_objects(reading, file, &relations, outlines, !is_sorted, ways_bytes)?;
-    let mut way_ids: Vec<WayIds<'_>> =
+    let mut way_ids: Vec<SoughtIds<'_>> =
         outlines.iter_mut().map(|own| own.take_way_ids(reading)).collect::<Result<_, _>>()?;
+    let most_ids = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
     let mut next_ids = || -> Result<Vec<Vec<i64>>, ReadOsmError> {
-        way_ids.iter_mut().map(|ids| ids.next(reading)).collect()
+        way_ids.iter_mut().map(|ids| ids.next(reading, most_ids)).collect()
     };
     let rest_bytes = file.bytes_of(&before.with_ways);
     let all_bytes = relations_bytes + file.bytes_of(&ways) + rest_bytes;
@@ -258,7 +260,7 @@ fn read_ways<'a, R: Read + Seek>(
     let rest = &before.with_ways;
     found.read(reading, file, rest, &wanted, outlines, on_defect)?;
     // Ways that relations name, where their ids did not fit in memory together.
-    let blobs = found.way_blobs.clone();
+    let blobs = [&found.looked_at.with_ways[..], rest].concat();
     loop {
         let way_ids = next_ids()?;
         if way_ids.iter().all(Vec::is_empty) {

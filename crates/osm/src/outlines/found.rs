@@ -1,6 +1,6 @@
 //! What is found of one kind of outlined objects while an extract is read.
 
-use corniche_store::{Sorted, Sorter};
+use corniche_store::Sorter;
 
 use super::{
     judge::OfBlock,
@@ -11,12 +11,12 @@ use super::{
 };
 use crate::{
     AreaLoss, Defect, ExtractSummary, ReadOsmError,
-    ahead::Ahead,
     deferred::Deferred,
     looked::check_held,
     number_nodes::{NumberedNodes, number_nodes},
     reading::Reading,
     records::{SoughtId, WayRecord, age},
+    sought_ids::SoughtIds,
     spool::{Spool, SpoolReader},
     way_facts::WayFacts,
 };
@@ -127,9 +127,8 @@ impl<'a> Outlines<'a> {
     pub(crate) fn take_way_ids(
         &mut self,
         reading: &Reading<'a>,
-    ) -> Result<WayIds<'a>, ReadOsmError> {
-        let ids = std::mem::replace(&mut self.way_ids, reading.sorter(0));
-        Ok(WayIds(Ahead::new(ids.finish().map_err(|error| reading.scratch_failed(error))?)))
+    ) -> Result<SoughtIds<'a>, ReadOsmError> {
+        SoughtIds::of(reading, std::mem::replace(&mut self.way_ids, reading.sorter(0)))
     }
 }
 
@@ -147,33 +146,4 @@ pub(crate) struct OutlineObjects<'a> {
     pub(crate) defects: Deferred<'a>,
     /// What all this takes, by an estimate that is not too low.
     pub(crate) held_bytes: u64,
-}
-
-/// Ids of ways that are looked for, as many at a time as fit in memory.
-pub(crate) struct WayIds<'a>(Ahead<Sorted<'a, SoughtId>>);
-
-impl WayIds<'_> {
-    /// The next different ids, ascending; empty after the last.
-    pub(crate) fn next(&mut self, reading: &Reading<'_>) -> Result<Vec<i64>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
-        let most = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
-        let mut ids: Vec<i64> = Vec::new();
-        let mut count = 0;
-        while let Some(&SoughtId(id)) = self.0.peek().map_err(failed)? {
-            if ids.last() != Some(&id) {
-                if ids.len() == most {
-                    break;
-                }
-                if ids.len() == ids.capacity() {
-                    // Doubling as lists do it would take up to three times the memory.
-                    ids.reserve_exact(ids.len().max(1 << 10).min(most - ids.len()));
-                }
-                ids.push(id);
-            }
-            self.0.take();
-            reading.check_stop_at(count)?;
-            count += 1;
-        }
-        Ok(ids)
-    }
 }

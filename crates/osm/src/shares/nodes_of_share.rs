@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     ReadOsmError,
-    ahead::Ahead,
     extracts::Extracts,
     id_range::IdRange,
     kept_error::KeptError,
@@ -21,6 +20,7 @@ use crate::{
     reading::{LayerCount, Reading, Step},
     records::{SoughtId, WayRecord},
     share::Share,
+    sought_ids::SoughtIds,
     way_bytes::take_node_ids,
 };
 
@@ -117,30 +117,13 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
     needed: Sorter<'_, SoughtId>,
     blocks: &mut BlockWriter<'_, PlaceRecord>,
 ) -> Result<(), ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
     let most =
         (reading.shares().ids / (bytes_per_node(reading.precedence(), 1) + 1)).max(1) as usize;
     let all_bytes: u64 = own.iter().map(|blob| file.size(blob.number)).sum();
-    let mut needed = Ahead::new(needed.finish().map_err(failed)?);
+    let mut needed = SoughtIds::of(reading, needed)?;
     let mut done_bytes = 0;
     loop {
-        let mut ids: Vec<i64> = Vec::new();
-        let mut count = 0;
-        while let Some(&SoughtId(id)) = needed.peek().map_err(failed)? {
-            if ids.last() != Some(&id) {
-                if ids.len() == most {
-                    break;
-                }
-                if ids.len() == ids.capacity() {
-                    // Doubling as lists do it would take up to three times the memory.
-                    ids.reserve_exact(ids.len().max(1 << 10).min(most - ids.len()));
-                }
-                ids.push(id);
-            }
-            needed.take();
-            reading.check_stop_at(count)?;
-            count += 1;
-        }
+        let ids = needed.next(reading, most)?;
         if ids.is_empty() {
             return Ok(());
         }
