@@ -72,6 +72,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                 table,
                 place: &place,
                 seam: None,
+                node_ids: false,
                 pool,
                 memory_bytes,
                 scratch: &scratch,

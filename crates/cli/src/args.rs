@@ -32,8 +32,8 @@ pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
     Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
-    ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs,
-    Format, InPlanArgs, OnOrNone, TerrainCompress,
+    ExportEdgesArgs, ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs,
+    Format, InPlanArgs, OnOrNone, TerrainCompress, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, Roads};
@@ -45,7 +45,7 @@ pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{DatumArg, FileArgs};
+pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};

@@ -1,8 +1,10 @@
 //! `corniche export`: what a package holds, for other programs.
 
+mod edges;
 mod geotiff;
 mod mesh;
 mod quantized_mesh;
+mod roads;
 mod tiles3d;
 mod unknown_ending;
 
@@ -10,16 +12,16 @@ use std::path::Path;
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
-    Coordinates, ExportError, ExportSummary, FeatureRequest, RoadFeatures, VectorFormat,
-    export_areas, export_boundaries, export_roads,
+    Coordinates, ExportError, FeatureRequest, VectorFormat, export_areas, export_boundaries,
 };
+use corniche_pipeline::RecordedElevation;
 use corniche_tileset::{FilePackage, Manifest};
 
 use self::unknown_ending::unknown_ending;
 use crate::{
     args::{
-        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, ExportRoadsArgs,
-        FileArgs, Format, InPlanArgs,
+        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, FileArgs, Format,
+        InPlanArgs, VectorArgs,
     },
     escaped::in_line,
     exit::ExitCode,
@@ -37,7 +39,8 @@ pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {
-        Export::Roads(args) => roads(args),
+        Export::Roads(args) => roads::run(args),
+        Export::Edges(args) => edges::run(args),
         Export::Areas(args) => areas(args),
         Export::Boundaries(args) => boundaries(args),
         Export::Mesh(args) => mesh::run(args),
@@ -45,37 +48,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         Export::Tiles3d(args) => tiles3d::run(args),
         Export::QuantizedMesh(args) => quantized_mesh::run(args),
     }
-}
-
-fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let format = format(args.format, &args.file.output)?;
-    let coordinates = match (args.crs, args.heights) {
-        (ExportCrs::Package, None) => Coordinates::Package,
-        (ExportCrs::Wgs84, None) => Coordinates::Wgs84,
-        (ExportCrs::Wgs84, Some(_)) => Coordinates::Wgs84WithPackageHeights,
-        (ExportCrs::Package, Some(_)) => {
-            return Err(Failure::unusable(
-                "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
-            ));
-        }
-    };
-    let package = packages::open_with_datum(&args.from.package, &args.datum)?;
-    let request = FeatureRequest {
-        format,
-        level: args.at.level,
-        classes: args.filter.classes.classes(),
-        bounds: args.within.bounds,
-        coordinates,
-        memory_bytes: MEMORY_BYTES,
-    };
-    let features = if args.pieces { RoadFeatures::Pieces } else { RoadFeatures::Ways };
-    let export = |path: &Path, progress: &Progress| {
-        export_roads(&package, &request, features, path, progress)
-    };
-    let name = format!("roads.{}", format.ending());
-    let (summary, size) = write(&args.file, name, args.from.package.name(), export)?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
-    Ok(ExitCode::Done)
 }
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
@@ -154,9 +126,21 @@ fn write<T>(
     export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
 ) -> Result<(T, u64), Failure> {
     let output = NamedOutput::create(&file.output, existing_of(file.overwrite), name, &[package])?;
+    fill(file, output, None, export)
+}
+
+/// Writes a file that was begun, and puts it into its place unless elevation files have changed meanwhile. Gives its size, too.
+fn fill<T>(
+    file: &FileArgs,
+    output: NamedOutput,
+    elevation: Option<&RecordedElevation>,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
+) -> Result<(T, u64), Failure> {
     let progress = Progress::new();
     let exported = export(&output.path(), &progress);
     progress.finish();
+    // A file that changed may be the cause of any other error.
+    elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let summary = exported.map_err(|error| named(error, &file.output))?;
     Ok((summary, output.place()?))
 }
@@ -185,32 +169,29 @@ fn format(format: Option<Format>, output: &Path) -> Result<VectorFormat, Failure
     })
 }
 
-fn to_text(
-    args: &ExportRoadsArgs,
-    summary: &ExportSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
-    let count = |number| Digits::of_notes().count(number);
+/// The coordinates of lines with heights that are asked for.
+fn coordinates(args: &VectorArgs) -> Result<Coordinates, Failure> {
+    match (args.crs, args.heights) {
+        (ExportCrs::Package, None) => Ok(Coordinates::Package),
+        (ExportCrs::Wgs84, None) => Ok(Coordinates::Wgs84),
+        (ExportCrs::Wgs84, Some(_)) => Ok(Coordinates::Wgs84WithPackageHeights),
+        (ExportCrs::Package, Some(_)) => Err(Failure::unusable(
+            "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
+        )),
+    }
+}
+
+/// What coordinates and heights of exported lines are, and what is to be shown with them, a line each.
+fn facts(args: &VectorArgs, heights: &str, manifest: &Manifest) -> String {
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, _) => &manifest.crs,
         (ExportCrs::Wgs84, None) => "EPSG:4979",
         (ExportCrs::Wgs84, Some(_)) => "EPSG:4326",
     };
-    let what = if args.pieces {
-        format!("{} pieces of {} ways", count(summary.features), count(summary.ways))
-    } else {
-        format!("{} ways", count(summary.features))
-    };
     format!(
-        "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
-        in_line(&args.file.output.to_string_lossy()),
-        summary.level,
-        length((summary.length_2d_m * 1e6).round() as u64),
-        count(summary.vertices),
-        bytes(size),
+        "coordinates: {}\nheights: {}\nto be shown with it: {}",
         in_line(coordinates),
-        in_line(&summary.heights),
+        in_line(heights),
         in_line(&manifest.attribution.join("; ")),
     )
 }

@@ -37,6 +37,7 @@ mod plan;
 mod presets;
 mod profile;
 mod progress;
+mod recorded;
 mod render;
 mod report_files;
 mod serve;

@@ -2,8 +2,9 @@
 
 use std::{fmt::Write as _, path::Path};
 
-use corniche_export::{Profile, ProfilePoint, profile, profile_of_lines};
+use corniche_export::{Profile, ProfileGrades, ProfilePoint, profile, profile_of_lines};
 use corniche_geom::LatticePoint;
+use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
 use plotters::prelude::RGBColor;
 
@@ -16,6 +17,7 @@ use crate::{
     output::existing_of,
     overlays, packages,
     progress::Progress,
+    recorded,
     report_files::ReportFiles,
 };
 
@@ -23,21 +25,30 @@ const HEIGHT: RGBColor = RGBColor(90, 60, 30);
 const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
-    let package = packages::open(&args.from.package)?;
+    let usage = "corniche profile PACKAGE --way ID --dem FILE...";
+    let (place, [dem, _]) = args.from.files(&[], usage)?;
+    let package = packages::open(&place)?;
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
     // Both places are looked at before any work is done.
-    let inputs: Vec<&Path> =
-        [args.from.package.name()].into_iter().chain(args.line.as_deref()).collect();
+    let inputs: Vec<&Path> = [place.name()]
+        .into_iter()
+        .chain(args.line.as_deref())
+        .chain(dem.iter().map(AsRef::as_ref))
+        .collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
     let placed = |path| placed_lines(path, args.allow_ballpark, &package);
     let lines = args.line.as_deref().map(placed).transpose()?;
+    let recorded = recorded::elevation(&args.from, &dem, &package)?;
+    let elevation = recorded.as_ref().map(recorded::for_export);
     let progress = Progress::new();
     let found = match &lines {
-        Some(lines) => profile_of_lines(&package, lines, args.at.level, &progress),
-        None => profile(&package, &args.way, args.at.level, &progress),
+        Some(lines) => profile_of_lines(&package, lines, args.at.level, elevation, &progress),
+        None => profile(&package, &args.way, args.at.level, elevation, &progress),
     };
     progress.finish();
+    // A file that changed may be the cause of any other error.
+    recorded.as_ref().map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let found = found?;
     if let Some(output) = files.list {
         output.write_whole(to_csv(&found).as_bytes())?;
@@ -78,46 +89,80 @@ fn to_text(found: &Profile) -> String {
     let heights = || points(found).map(|point| point.height_m);
     let [lowest, highest] =
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
-    let steepest = found.steepest.map_or_else(
-        || "no part is 20 m long".to_owned(),
-        |grade| format!("{:.1} % over 20 m", 100.0 * grade),
-    );
     let gaps = match found.parts.len() {
         0 | 1 => String::new(),
         parts => format!(", in {parts} parts with gaps between them"),
     };
-    format!(
+    let mut text = format!(
         "Length   {:.1} m in plan, {:.1} m on the ground{gaps}\n\
-         Heights  {lowest:.1} to {highest:.1} m ({})\n\
-         Up       {:.1} m\n\
-         Down     {:.1} m\n\
-         Steepest {steepest}\n\
-         Level    {}, {} vertices\n",
-        found.length_2d_m,
-        found.length_3d_m,
-        found.heights,
-        found.ascent_m,
-        found.descent_m,
-        found.level,
-        points(found).count(),
+         Heights  {lowest:.1} to {highest:.1} m ({})\n",
+        found.length_2d_m, found.length_3d_m, found.heights,
+    );
+    // Writing to a String cannot fail.
+    let _ = if found.smooth.is_some() {
+        let within_m = found.height_tolerance_m;
+        writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices")
+    } else {
+        let within_m = found.height_tolerance_m;
+        writeln!(text, "         within {within_m:.1} m of the DEM; --dem FILE gives the DEM's own")
+    };
+    if let Some((smooth, most_off_m)) = found.smooth {
+        text.push_str(&grades_text(&smooth, "50 m"));
+        let _ = writeln!(
+            text,
+            "         of a smooth line, which is up to {most_off_m:.1} m from the ground; of the ground itself:"
+        );
+    }
+    text.push_str(&grades_text(&found.grades, "20 m"));
+    if found.on_structures_m > 0.0 {
+        let _ = writeln!(
+            text,
+            "         without {:.1} m of bridges and tunnels: heights there are those of the ground below or above",
+            found.on_structures_m
+        );
+    }
+    let _ =
+        writeln!(text, "Level    {}, {} vertices", found.level, points(found).count());
+    text
+}
+
+fn grades_text(grades: &ProfileGrades, over: &str) -> String {
+    let steepest = grades.steepest.map_or_else(
+        || format!("no part is {over} long"),
+        |grade| format!("{:.1} % over {over}", 100.0 * grade),
+    );
+    format!(
+        "Up       {:.1} m\nDown     {:.1} m\nSteepest {steepest}\n",
+        grades.ascent_m, grades.descent_m
     )
 }
 
 /// A line for each vertex; parts are numbered from 0.
 fn to_csv(found: &Profile) -> String {
-    let mut text = "part,way_id,distance_m,height_m,grade_pct,lon,lat\n".to_owned();
+    let mut text = "part,way_id,distance_m,height_m,grade_pct,lon,lat,height_source".to_owned();
+    if found.smooth.is_some() {
+        text.push_str(",smooth_m,smooth_grade_pct");
+    }
+    text.push('\n');
     for (part, points) in found.parts.iter().enumerate() {
         for point in &points.points {
             let [lon, lat] = point.position_deg;
             // Writing to a String cannot fail.
-            let _ = writeln!(
+            let _ = write!(
                 text,
-                "{part},{},{:.3},{:.3},{:.2},{lon:.8},{lat:.8}",
+                "{part},{},{:.3},{:.3},{:.2},{lon:.8},{lat:.8},{}",
                 point.way_id,
                 point.distance_m,
                 point.height_m,
-                100.0 * point.grade
+                100.0 * point.grade,
+                point.height_source,
             );
+            let _ = match point.smooth {
+                Some([height_m, grade]) => write!(text, ",{height_m:.3},{:.2}", 100.0 * grade),
+                None if found.smooth.is_some() => write!(text, ",,"),
+                None => Ok(()),
+            };
+            text.push('\n');
         }
     }
     text

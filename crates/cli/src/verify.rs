@@ -6,7 +6,7 @@ use corniche_areas::AreaTable;
 use corniche_pipeline::{
     Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
 };
-use corniche_presets::{area_preset, frc_preset};
+use corniche_presets::area_preset;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
@@ -17,6 +17,7 @@ use crate::{
     info::or_dash,
     messages, packages, presets,
     progress::Progress,
+    recorded::{MEMORY_BYTES, frc_table},
     settings::{polygon, threads},
     table::{Digits, Table},
 };
@@ -54,9 +55,6 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Memory for sorting roads by tile.
-const MEMORY_BYTES: u64 = 256 << 20;
-
 /// The extracts to read again, with the FRC table that the package names: given, or the preset of that name.
 fn extract(
     args: &VerifyArgs,
@@ -71,18 +69,7 @@ fn extract(
     if !names_extract(manifest) {
         return Err(VerifyError::NoExtract.into());
     }
-    let table = if let Some(table) = &args.frc_table {
-        presets::frc_table(table)?
-    } else {
-        let name = &manifest.settings.frc_table;
-        if frc_preset(name).is_none() {
-            return Err(Failure::unusable(format!(
-                "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
-                package.path().display()
-            )));
-        }
-        presets::frc_table(name)?
-    };
+    let table = frc_table(args.frc_table.as_deref(), package)?;
     let areas = areas(args, package)?;
     Ok(Some(VerifyOsm { paths, table, areas, memory_bytes: MEMORY_BYTES }))
 }

@@ -118,7 +118,7 @@ impl Features for Areas {
     }
 
     fn pieces(
-        &self,
+        &mut self,
         FeatureSource { package, request, .. }: &FeatureSource<'_, AreaClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, ExportError> {

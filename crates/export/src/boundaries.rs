@@ -114,7 +114,7 @@ impl Features for Boundaries {
     }
 
     fn pieces(
-        &self,
+        &mut self,
         FeatureSource { package, request, .. }: &FeatureSource<'_, BoundaryClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, ExportError> {

@@ -4,18 +4,20 @@ use corniche_geom::TileId;
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 
 use crate::{
+    grades::SmoothGrades,
     measures::Measures,
+    piece::PieceHeights,
     vector::{Field, FieldKind, Value},
 };
 
-/// Declares the fields together with what is in them, in one order.
+/// Declares fields together with what is in them, in one order.
 macro_rules! fields {
-    ($road:ident: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
-        const FIELDS: &[Field] = &[
+    ($fields:ident, $values:ident, $road:ident: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
+        const $fields: &[Field] = &[
             $(Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },)+
         ];
 
-        fn values($road: &Road<'_>) -> Vec<Value> {
+        fn $values($road: &Road<'_>) -> Vec<Value> {
             vec![$($value),+]
         }
     };
@@ -28,11 +30,46 @@ pub(crate) struct Road<'a> {
     pub(crate) attributes: &'a RoadAttributes,
     pub(crate) parts: usize,
     pub(crate) measures: Measures,
+    pub(crate) heights: PieceHeights,
+    /// With heights of the elevation files: what is measured of the smooth line.
+    pub(crate) smooth: Option<Smooth>,
     /// The tile of a feature of one piece, and the piece's number there.
     pub(crate) piece: Option<(TileId, u32)>,
 }
 
-fields! { road:
+/// The grades of a road without the noise of its heights.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Smooth {
+    /// `None` for bridges and tunnels.
+    pub(crate) grades: Option<SmoothGrades>,
+    /// Whether the smooth line is that of a chain from junction to junction, not of the way alone.
+    pub(crate) is_of_chain: bool,
+    /// The grade that roads of its kind are built with at most, percent.
+    pub(crate) limit_pct: Option<f64>,
+}
+
+/// Where the heights of exported roads come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeightSource {
+    /// The ground of the package: its triangles.
+    Ground,
+    /// The elevation files that the package was made from.
+    Dem,
+}
+
+impl HeightSource {
+    /// What it is called in features of roads that a structure carries.
+    pub(crate) fn text(self, structure: Structure) -> &'static str {
+        match (structure, self) {
+            (Structure::Bridge, _) => "ground_under_bridge",
+            (Structure::Tunnel, _) => "ground_over_tunnel",
+            (Structure::Ground, Self::Ground) => "ground",
+            (Structure::Ground, Self::Dem) => "dem",
+        }
+    }
+}
+
+fields! { FIELDS, values, road:
     "way_id", Integer64, "", "id of the way in OpenStreetMap", Value::Integer(road.way_id);
     "class", Integer, "", "functional road class, 0 (motorway) to 8 (other road)",
         Value::Integer(road.class.number().into());
@@ -54,24 +91,59 @@ fields! { road:
         text(&road.attributes.max_speed);
     "sac_scale", Text, "", "OSM's `sac_scale`; null without", text(&road.attributes.sac_scale);
     "tracktype", Text, "", "OSM's `tracktype`; null without", text(&road.attributes.tracktype);
-    "length_2d_m", Real, "m", "true length in plan, on the ellipsoid of WGS84",
-        Value::Real(to_micro(road.measures.length_2d_m));
-    "length_3d_m", Real, "m", "true length with the ground's ups and downs",
-        Value::Real(to_micro(road.measures.length_3d_m));
-    "ascent_m", Real, "m", "sum of all that the line rises, in its direction",
-        Value::Real(to_micro(road.measures.ascent_m));
-    "descent_m", Real, "m", "sum of all that it falls", Value::Real(to_micro(road.measures.descent_m));
-    "steepest_pct", Real, "%", "steepest grade over 20 m or more, up or down; null where no part is as long",
-        road.measures.steepest.map_or(Value::Null, |grade| Value::Real(to_micro(100.0 * grade)));
+    "length_2d_m", Real, "m", "true length in plan, on the ellipsoid of WGS84", real(road.measures.length_2d_m);
+    "length_3d_m", Real, "m", "true length with the ups and downs of the line", real(road.measures.length_3d_m);
+}
+
+fields! { GROUND_FIELDS, ground_values, road:
+    "ascent_m", Real, "m", "sum of all that the line rises, in its direction; null for bridges and tunnels",
+        on_ground(road, road.measures.ascent_m);
+    "descent_m", Real, "m", "sum of all that it falls; null for bridges and tunnels",
+        on_ground(road, road.measures.descent_m);
+    "steepest_pct", Real, "%", "steepest grade over 20 m or more, up or down; null where no part is as long, and for bridges and tunnels",
+        percent_on_ground(road, road.measures.steepest);
+}
+
+fields! { DEM_FIELDS, dem_values, road:
+    "ascent_m", Real, "m", "sum of all that the smooth line rises, in the way's direction; null for bridges and tunnels",
+        smooth(road, |grades| Some(grades.ascent_m));
+    "descent_m", Real, "m", "sum of all that the smooth line falls; null for bridges and tunnels",
+        smooth(road, |grades| Some(grades.descent_m));
+    "steepest_pct", Real, "%", "steepest grade of the smooth line over 50 m or more, up or down; null where no part is as long, and for bridges and tunnels",
+        smooth(road, |grades| grades.steepest.map(|grade| 100.0 * grade));
+    "ground_ascent_m", Real, "m", "sum of all that the line itself rises, with the noise of the heights; null for bridges and tunnels",
+        on_ground(road, road.measures.ascent_m);
+    "ground_descent_m", Real, "m", "sum of all that the line itself falls; null for bridges and tunnels",
+        on_ground(road, road.measures.descent_m);
+    "ground_steepest_pct", Real, "%", "steepest grade of the line itself over 20 m or more; null where no part is as long, and for bridges and tunnels",
+        percent_on_ground(road, road.measures.steepest);
+    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line; null for bridges and tunnels",
+        smooth(road, |grades| Some(grades.most_off_m));
+    "smoothed_by", Text, "", "`chain`: from junction to junction, as --osm allows; `way`: by the way alone; null for bridges and tunnels",
+        smoothed_by(road);
+    "grade_over_limit", Integer, "", "1 where `steepest_pct` is more than roads of that `highway` are built with, else 0; null where either is unknown",
+        over_limit(road);
+}
+
+fields! { LAST_FIELDS, last_values, road:
     "vertices_in", Integer64, "", "points of the level's line before it was laid on the ground",
         Value::Integer(road.measures.vertices_in as i64);
     "vertices_out", Integer64, "", "vertices of the line on the ground",
         Value::Integer(road.measures.vertices_out as i64);
     "parts", Integer, "", "lines without a gap between them", Value::Integer(road.parts as i64);
+    "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `ground_under_bridge`, `ground_over_tunnel`: heights of what the road does not lie on",
+        Value::Text(road.height_source().text(road.attributes.structure).to_owned());
+    "height_tolerance_m", Real, "m", "how far the heights of the line are from the DEM at most, over the whole line; against the DEM, not against the world",
+        real(road.heights.tolerance_m);
+}
+
+fields! { MEASURED_FIELDS, measured_values, road:
+    "ground_tolerance_m", Real, "m", "how far the package's triangles are from the DEM along the line at most; null where they were not compared",
+        road.heights.ground_m.map_or(Value::Null, real);
 }
 
 /// The fields of features that are pieces, beside the others.
-const PIECE_FIELDS: [Field; 2] = [
+const PIECE_FIELDS: &[Field] = &[
     Field {
         name: "tile",
         kind: FieldKind::Text,
@@ -86,29 +158,85 @@ const PIECE_FIELDS: [Field; 2] = [
     },
 ];
 
-/// The fields of features, in their order: of ways, or of pieces.
+/// The fields of features, in their order: of ways, or of pieces; with heights of the ground or of the elevation files.
 #[must_use]
-pub fn road_fields(pieces: bool) -> Vec<Field> {
-    let of_pieces = PIECE_FIELDS.iter().filter(|_| pieces);
-    FIELDS.iter().chain(of_pieces).copied().collect()
+pub fn road_fields(pieces: bool, heights: HeightSource) -> Vec<Field> {
+    let of_pieces = if pieces { PIECE_FIELDS } else { &[] };
+    let groups: &[&[Field]] = match heights {
+        HeightSource::Ground => &[FIELDS, GROUND_FIELDS, LAST_FIELDS, of_pieces],
+        HeightSource::Dem => &[FIELDS, DEM_FIELDS, LAST_FIELDS, MEASURED_FIELDS, of_pieces],
+    };
+    groups.concat()
 }
 
 /// The values of a road, one for each of [`road_fields`].
 pub(crate) fn road_values(road: &Road<'_>) -> Vec<Value> {
     let mut values = values(road);
+    match road.height_source() {
+        HeightSource::Ground => {
+            values.extend(ground_values(road));
+            values.extend(last_values(road));
+        }
+        HeightSource::Dem => {
+            values.extend(dem_values(road));
+            values.extend(last_values(road));
+            values.extend(measured_values(road));
+        }
+    }
     if let Some((tile, part)) = road.piece {
         values.extend([Value::Text(tile.to_string()), Value::Integer(part.into())]);
     }
     values
 }
 
-/// Rounds to whole micrometres, so that sums of rounding do not fill files with digits.
-fn to_micro(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
+impl Road<'_> {
+    fn height_source(&self) -> HeightSource {
+        if self.smooth.is_some() { HeightSource::Dem } else { HeightSource::Ground }
+    }
+
+    fn grades(&self) -> Option<SmoothGrades> {
+        self.smooth.and_then(|smooth| smooth.grades)
+    }
+}
+
+/// A number rounded to whole micrometres, so that sums of rounding do not fill files with digits.
+pub(crate) fn real(value: f64) -> Value {
+    Value::Real((value * 1e6).round() / 1e6)
+}
+
+/// A measure of the ground; none where the road does not lie on it.
+fn on_ground(road: &Road<'_>, value: f64) -> Value {
+    if road.attributes.structure == Structure::Ground { real(value) } else { Value::Null }
+}
+
+fn percent_on_ground(road: &Road<'_>, grade: Option<f64>) -> Value {
+    grade.map_or(Value::Null, |grade| on_ground(road, 100.0 * grade))
+}
+
+fn smooth(road: &Road<'_>, value: impl Fn(SmoothGrades) -> Option<f64>) -> Value {
+    road.grades().and_then(value).map_or(Value::Null, real)
+}
+
+fn smoothed_by(road: &Road<'_>) -> Value {
+    match road.smooth {
+        Some(Smooth { grades: Some(_), is_of_chain, .. }) => {
+            Value::Text(if is_of_chain { "chain" } else { "way" }.to_owned())
+        }
+        _ => Value::Null,
+    }
+}
+
+fn over_limit(road: &Road<'_>) -> Value {
+    let steepest = road.grades().and_then(|grades| grades.steepest);
+    let limit_pct = road.smooth.and_then(|smooth| smooth.limit_pct);
+    match (steepest, limit_pct) {
+        (Some(grade), Some(limit_pct)) => Value::Integer((100.0 * grade > limit_pct).into()),
+        _ => Value::Null,
+    }
 }
 
 /// GDAL's texts end at a zero byte, which OpenStreetMap's never have and damaged ones may.
-fn text(text: &str) -> Value {
+pub(crate) fn text(text: &str) -> Value {
     if text.is_empty() { Value::Null } else { Value::Text(text.replace('\0', "\u{fffd}")) }
 }
 
@@ -125,7 +253,7 @@ fn form(form: Form) -> &'static str {
     }
 }
 
-fn oneway(oneway: Oneway) -> &'static str {
+pub(crate) fn oneway(oneway: Oneway) -> &'static str {
     match oneway {
         Oneway::No => "no",
         Oneway::Forward => "yes",

@@ -34,7 +34,7 @@ pub(crate) trait Features {
 
     /// What a tile holds of the objects that are wanted.
     fn pieces(
-        &self,
+        &mut self,
         source: &FeatureSource<'_, Self::Class>,
         tile: TileId,
     ) -> Result<Vec<Self::Piece>, ExportError>;
@@ -84,6 +84,29 @@ impl<'a, C> FeatureSource<'a, C> {
         Ok(Self { package, request, level, places })
     }
 
+    /// The layer of a file that is made from it.
+    pub(crate) fn layer(&self, name: &'static str, shapes: ShapeKind, about: About) -> Layer {
+        let Self { package, level, places, .. } = self;
+        let manifest = package.manifest();
+        let About { fields, description, metadata } = about;
+        let of_package = [
+            ("GENERATOR", manifest.generator.clone()),
+            ("PACKAGE", package.file_name().to_owned()),
+            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+            ("LEVEL", level.to_string()),
+            ("FIELDS", meanings(&fields)),
+        ];
+        Layer {
+            name,
+            fields,
+            shapes,
+            crs: places.crs().to_owned(),
+            description,
+            attribution: manifest.attribution.join("; "),
+            metadata: of_package.into_iter().chain(metadata).collect(),
+        }
+    }
+
     /// The spacing of the level's nodes, in words.
     pub(crate) fn cells(&self) -> String {
         let [east_m, north_m] = self.package.manifest().frame.level_cell(self.level).to_array();
@@ -99,7 +122,7 @@ pub(crate) fn write_features<F: Features>(
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<(), ExportError> {
-    let FeatureSource { package, request, level, places } = source;
+    let FeatureSource { package, request, level, .. } = source;
     let folder = corniche_store::folder_of(path);
     let scratch = FileScratch::create(folder)
         .map_err(|source| ExportError::Sort { folder: folder.to_path_buf(), source })?;
@@ -107,23 +130,7 @@ pub(crate) fn write_features<F: Features>(
     let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
     let pieces =
         SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
-    let manifest = package.manifest();
-    let About { fields, description, metadata } = features.about(source);
-    let of_package = [
-        ("GENERATOR", manifest.generator.clone()),
-        ("PACKAGE", package.file_name().to_owned()),
-        ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
-        ("LEVEL", level.to_string()),
-    ];
-    let layer = Layer {
-        name: F::NAME,
-        fields,
-        shapes: F::SHAPES,
-        crs: places.crs().to_owned(),
-        description,
-        attribution: manifest.attribution.join("; "),
-        metadata: of_package.into_iter().chain(metadata).collect(),
-    };
+    let layer = source.layer(F::NAME, F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
     pieces.for_each(observer, F::object, |pieces| {
         features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
@@ -131,4 +138,13 @@ pub(crate) fn write_features<F: Features>(
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(())
+}
+
+/// What fields say and in which unit, a line for each.
+fn meanings(fields: &[Field]) -> String {
+    let line = |field: &Field| match field.unit {
+        "" => format!("{}: {}", field.name, field.meaning),
+        unit => format!("{} ({unit}): {}", field.name, field.meaning),
+    };
+    fields.iter().map(line).collect::<Vec<_>>().join("\n")
 }

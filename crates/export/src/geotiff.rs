@@ -18,6 +18,6 @@ mod grid;
 mod write_raster;
 
 pub use self::{
-    geotiff_request::{Elevation, GeoTiffRequest},
+    geotiff_request::GeoTiffRequest,
     write_raster::{GeoTiffSummary, export_geotiff},
 };

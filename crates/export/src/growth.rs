@@ -13,7 +13,7 @@ use crate::{
     error::ExportError,
     feature_request::Coordinates,
     join::lines,
-    measures::Measures,
+    measures::{Measures, Profiled},
     piece::{Piece, Vertex},
     places::Places,
     read,
@@ -95,7 +95,10 @@ fn growth_of(
         }
     }
     let joined = lines(&of_finest);
-    let measures = Measures::of(&joined, &|from, to| places.distance_m(from, to));
+    let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+    let profiled: Vec<Profiled<'_>> =
+        joined.iter().map(|line| Profiled::of(line, &distance_m)).collect();
+    let measures = Measures::of(&profiled);
     let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
     let cuts = cut_ends(&of_finest, clip(manifest)).saturating_sub(2 * joins as u64);
     Ok(Some(WayGrowth {

@@ -37,6 +37,9 @@ mod bounds;
 mod cut;
 mod cut_polygon;
 mod datum;
+mod dem_ground;
+mod edges;
+mod elevation;
 mod error;
 mod feature;
 mod feature_request;
@@ -45,6 +48,7 @@ mod gdal_settings;
 mod geotiff;
 mod globe;
 mod gltf;
+mod grades;
 mod growth;
 mod join;
 mod laid_lines;
@@ -70,17 +74,21 @@ pub use areas::{AreasSummary, export_areas};
 pub use boundaries::{BoundariesSummary, export_boundaries};
 pub use bounds::DegreeBounds;
 pub use datum::with_vertical_crs;
+pub use edges::{EdgesSummary, edge_fields, export_edges};
+pub use elevation::Elevation;
 pub use error::{CutError, ExportError};
-pub use feature::road_fields;
+pub use feature::{HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
-pub use geotiff::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
+pub use geotiff::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
-pub use profile::{Profile, ProfilePart, ProfilePoint, profile, profile_of_lines};
+pub use profile::{
+    Profile, ProfileGrades, ProfilePart, ProfilePoint, profile, profile_of_lines,
+};
 pub use quantized_mesh::{
     Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,
     export_quantized_mesh,
 };
-pub use roads::{ExportSummary, export_roads};
+pub use roads::{ExportSummary, RoadHeights, export_roads};
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 pub use vector::{Field, FieldKind, VectorFormat, cell_text};

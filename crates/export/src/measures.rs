@@ -26,25 +26,39 @@ pub(crate) struct Measures {
     pub(crate) vertices_out: u64,
 }
 
+/// A line with its profile: true distances in plan from its beginning, and heights, of all its vertices.
+pub(crate) struct Profiled<'a> {
+    pub(crate) line: &'a Line,
+    pub(crate) profile: Vec<[f64; 2]>,
+}
+
+impl<'a> Profiled<'a> {
+    /// A line with its profile. `distance_m` gives the true distance in plan between two places on the lattice.
+    pub(crate) fn of(line: &'a Line, distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
+        let mut profile = Vec::with_capacity(line.vertices.len());
+        let mut along_m = 0.0;
+        profile.extend(line.vertices.first().map(|first| [0.0, first.z_m]));
+        for [from, to] in line.vertices.array_windows::<2>() {
+            along_m += distance_m(from.at, to.at);
+            profile.push([along_m, to.z_m]);
+        }
+        Self { line, profile }
+    }
+}
+
 impl Measures {
-    /// The measures of some lines. `distance_m` gives the true distance in plan between two places on the lattice.
-    pub(crate) fn of(lines: &[Line], distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
+    /// The measures of some lines.
+    pub(crate) fn of(lines: &[Profiled<'_>]) -> Self {
         let mut all = Self::default();
-        for line in lines {
-            let mut profile = Vec::with_capacity(line.vertices.len());
-            let mut along_m = 0.0;
-            profile.extend(line.vertices.first().map(|first| [0.0, first.z_m]));
-            for pair in line.vertices.windows(2) {
-                let run_m = distance_m(pair[0].at, pair[1].at);
-                let rise_m = pair[1].z_m - pair[0].z_m;
-                along_m += run_m;
+        for Profiled { line, profile } in lines {
+            for [from, to] in profile.array_windows::<2>() {
+                let [run_m, rise_m] = [to[0] - from[0], to[1] - from[1]];
                 all.length_3d_m += run_m.hypot(rise_m);
                 all.ascent_m += rise_m.max(0.0);
                 all.descent_m += (-rise_m).max(0.0);
-                profile.push([along_m, pair[1].z_m]);
             }
-            all.length_2d_m += along_m;
-            let grades = [all.steepest, steepest(&profile, LEAST_GRADE_LENGTH_M)];
+            all.length_2d_m += profile.last().map_or(0.0, |last| last[0]);
+            let grades = [all.steepest, steepest(profile, LEAST_GRADE_LENGTH_M)];
             all.steepest = grades.into_iter().flatten().reduce(f64::max);
             all.vertices_in += source_points(line);
             all.vertices_out += line.vertices.len() as u64;
@@ -61,7 +75,7 @@ impl Measures {
 ///   a .-'''    b     is between two vertices, or over exactly the least length with a vertex at one end. Between vertices,
 ///                    twice the least length is enough: a longer stretch has a part, long enough, that is not less steep.
 /// ```
-fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
+pub(crate) fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
     let [last_m, _] = *profile.last()?;
     if last_m < least_m {
         return None;

@@ -21,13 +21,19 @@ fn near(found: f64, expected: f64) {
 
 /// A straight road of 300 m on a plane that rises 1 in 10 along it, then 100 m down again on one that falls 1 in 4: every
 /// number is known.
+fn measures(lines: &[Line]) -> Measures {
+    let profiled: Vec<Profiled<'_>> =
+        lines.iter().map(|line| Profiled::of(line, &flat_m)).collect();
+    Measures::of(&profiled)
+}
+
 #[test]
 fn a_road_on_planes_is_measured_in_closed_form() {
     let up: Vec<_> =
         (0..=30).map(|k| ([10.0 * f64::from(k), 0.0], f64::from(k), k % 30 == 0)).collect();
     let down = [([300.0, 60.0], 15.0, false), ([300.0, 100.0], 5.0, true)];
     let all = line(&[&up[..], &down].concat(), &[]);
-    let found = Measures::of(&[all], &flat_m);
+    let found = measures(&[all]);
     near(found.length_2d_m, 400.0);
     near(found.length_3d_m, 300.0 * 1.01_f64.sqrt() + 100.0 * 1.0625_f64.sqrt());
     near(found.ascent_m, 30.0);
@@ -41,12 +47,12 @@ fn a_road_on_planes_is_measured_in_closed_form() {
 fn a_gap_has_no_grade() {
     let first = line(&[([0.0, 0.0], 0.0, true), ([19.0, 0.0], 10.0, true)], &[]);
     let second = line(&[([40.0, 0.0], 100.0, true), ([59.0, 0.0], 100.0, true)], &[]);
-    let found = Measures::of(&[first.clone(), second], &flat_m);
+    let found = measures(&[first.clone(), second]);
     assert_eq!(found.steepest, None, "no part is 20 m long");
     near(found.length_2d_m, 38.0);
     near(found.ascent_m, 10.0);
     let third = line(&[([100.0, 0.0], 0.0, true), ([120.0, 0.0], 1.0, true)], &[]);
-    near(Measures::of(&[first, third], &flat_m).steepest.unwrap(), 0.05);
+    near(measures(&[first, third]).steepest.unwrap(), 0.05);
 }
 
 /// A step of 5 m within 1 m counts over 20 m.
@@ -58,7 +64,7 @@ fn a_short_step_is_spread_over_the_least_length() {
         ([51.0, 0.0], 5.0, true),
         ([100.0, 0.0], 5.0, true),
     ];
-    near(Measures::of(&[line(&steps, &[])], &flat_m).steepest.unwrap(), 0.25);
+    near(measures(&[line(&steps, &[])]).steepest.unwrap(), 0.25);
 }
 
 /// A straight line that a border cut has the points it had before; one that bends on the border has one more.

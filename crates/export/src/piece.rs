@@ -37,6 +37,27 @@ pub(crate) struct Piece {
     /// Whether the line may go on from its first vertex, and from its last, in another tile: they are points on the tile's
     /// border.
     pub(crate) goes_on: [bool; 2],
+    pub(crate) heights: PieceHeights,
+}
+
+/// How far heights of a piece are from those of the elevation files, at most, over the whole line, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PieceHeights {
+    /// The piece's own heights.
+    pub(crate) tolerance_m: f64,
+    /// The ground of its tile; `None` where it was not measured.
+    pub(crate) ground_m: Option<f64>,
+}
+
+impl PieceHeights {
+    /// What holds for two pieces together.
+    pub(crate) fn with(self, other: Self) -> Self {
+        let both = [self.ground_m, other.ground_m].into_iter().flatten();
+        Self {
+            tolerance_m: self.tolerance_m.max(other.tolerance_m),
+            ground_m: both.reduce(f64::max),
+        }
+    }
 }
 
 /// No two pieces have the same key.
@@ -59,13 +80,16 @@ const VERTEX_BYTES: usize = 25;
 impl SortRecord for Piece {
     /// Numbers in little-endian order; a text has its length before it; vertices come last.
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Piece { key, class, attributes, vertices, goes_on } = self;
+        let Piece { key, class, attributes, vertices, goes_on, heights } = self;
         let AttributeParts { codes, width_mm, texts } = attributes.parts();
         bytes.extend(key.way_id.to_le_bytes());
         bytes.extend(key.tile.to_le_bytes());
         bytes.extend(key.part.to_le_bytes());
         bytes.extend(key.cut.to_le_bytes());
         bytes.extend([class.number(), u8::from(goes_on[0]), u8::from(goes_on[1])]);
+        for number in [heights.tolerance_m, heights.ground_m.unwrap_or(f64::NAN)] {
+            bytes.extend(number.to_le_bytes());
+        }
         bytes.extend(codes);
         bytes.extend(width_mm.to_le_bytes());
         for text in texts {
@@ -89,6 +113,9 @@ impl SortRecord for Piece {
             cut: u32::from_le_bytes(array(bytes)?),
         };
         let [class, first, last] = array(bytes)?;
+        let [tolerance_m, ground_m] = [number(bytes)?, number(bytes)?];
+        let ground_m = Some(ground_m).filter(|ground_m| !ground_m.is_nan());
+        let heights = PieceHeights { tolerance_m, ground_m };
         let (codes, width_mm) = (array(bytes)?, u32::from_le_bytes(array(bytes)?));
         let attributes = RoadAttributes::from_parts(codes, width_mm, || text(bytes))?;
         let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);
@@ -98,7 +125,8 @@ impl SortRecord for Piece {
             vertices.push(Vertex { at: [u, v], z_m, is_source: is_source == 1 });
         }
         let class = FunctionalRoadClass::new(class)?;
-        Some(Self { key, class, attributes, vertices, goes_on: [first == 1, last == 1] })
+        let goes_on = [first == 1, last == 1];
+        Some(Self { key, class, attributes, vertices, goes_on, heights })
     }
 
     fn extra_bytes(&self) -> usize {

@@ -1,16 +1,22 @@
 //! Heights and grades along ways.
 
+use std::{collections::BTreeMap, ops::Range};
+
 use corniche_geom::LatticePoint;
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
+    dem_ground::{DemLine, DemNodes, lay},
+    elevation::Elevation,
     error::ExportError,
+    feature::HeightSource,
     feature_request::Coordinates,
+    grades::{SmoothGrades, SmoothLine, Smoothing},
     join::{Line, lines},
     laid_lines::laid_lines,
-    measures::{LEAST_GRADE_LENGTH_M, Measures},
+    measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
     piece::{Piece, Vertex},
     places::Places,
     read,
@@ -26,17 +32,30 @@ pub struct Profile {
     pub level: u8,
     /// What heights are, in words.
     pub heights: String,
+    /// How far heights are from the elevation files at most, metres.
+    pub height_tolerance_m: f64,
     /// Parts without gaps, in order.
     pub parts: Vec<ProfilePart>,
     /// True length in plan of all parts, metres.
     pub length_2d_m: f64,
     /// True length with heights, metres.
     pub length_3d_m: f64,
+    /// What bridges and tunnels have of the length in plan: what follows is told without them.
+    pub on_structures_m: f64,
+    /// The ups and downs of the line itself.
+    pub grades: ProfileGrades,
+    /// With heights of the elevation files: those of a smooth line, and the largest distance of it from the line, metres.
+    pub smooth: Option<(ProfileGrades, f64)>,
+}
+
+/// The ups and downs along a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfileGrades {
     /// Metres upwards, all of them together.
     pub ascent_m: f64,
     /// The same downwards.
     pub descent_m: f64,
-    /// Steepest grade over at least 20 m, rise over run without sign; `None` where no part is as long.
+    /// Steepest grade over at least 20 m, of a smooth line 50 m, rise over run without sign; `None` where no part is as long.
     pub steepest: Option<f64>,
 }
 
@@ -60,10 +79,14 @@ pub struct ProfilePoint {
     pub grade: f64,
     /// Longitude and latitude, degrees.
     pub position_deg: [f64; 2],
+    /// Where the height is from, as in exported roads.
+    pub height_source: &'static str,
+    /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels, and without elevation files.
+    pub smooth: Option<[f64; 2]>,
 }
 
 /// Follows ways over the ground of a level, in the order in which they are named. Each is turned so that it goes on where the one before
-/// it ends, if it has an end there; the first so that it ends at the second.
+/// it ends, if it has an end there; the first so that it ends at the second. With elevation files, heights are theirs.
 ///
 /// # Errors
 /// When the package has no such way or level, or is damaged.
@@ -71,6 +94,7 @@ pub fn profile(
     package: &FilePackage,
     way_ids: &[i64],
     level: Option<u8>,
+    elevation: Option<Elevation<'_>>,
     observer: &dyn Observer,
 ) -> Result<Profile, ExportError> {
     let manifest = package.manifest();
@@ -81,16 +105,21 @@ pub fn profile(
     let places = Places::new(manifest, Coordinates::Package)?;
     let mut of_ways: Vec<Vec<Line>> = Vec::with_capacity(way_ids.len());
     let pieces = pieces(package, way_ids, level, observer)?;
+    let mut structures = BTreeMap::new();
+    let mut tolerance_m = 0.0_f64;
     for &way_id in way_ids {
         let own: Vec<Piece> =
             pieces.iter().filter(|piece| piece.key.way_id == way_id).cloned().collect();
-        if own.is_empty() {
+        let Some(first) = own.first() else {
             let package = package.path().to_path_buf();
             return Err(ExportError::NoWay { package, way_id, level });
-        }
+        };
+        structures.insert(way_id, first.attributes.structure);
+        tolerance_m = own.iter().map(|piece| piece.heights.tolerance_m).fold(tolerance_m, f64::max);
         of_ways.push(lines(&own));
     }
-    Ok(told(&in_a_row(way_ids, of_ways), level, &places))
+    let parts = in_a_row(way_ids, of_ways);
+    Telling { level, places, structures, tolerance_m }.tell(parts, elevation)
 }
 
 /// Follows lines that are no ways of the package over the ground of a level, one after the other. Parts of the line with index 0 have the
@@ -102,10 +131,12 @@ pub fn profile_of_lines(
     package: &FilePackage,
     lines: &[Vec<LatticePoint>],
     level: Option<u8>,
+    elevation: Option<Elevation<'_>>,
     observer: &dyn Observer,
 ) -> Result<Profile, ExportError> {
     let level = read::level(package, level)?;
-    let places = Places::new(package.manifest(), Coordinates::Package)?;
+    let manifest = package.manifest();
+    let places = Places::new(manifest, Coordinates::Package)?;
     let laid = laid_lines(package, lines, level, observer)?;
     let numbered = (1..).zip(laid).flat_map(|(number, parts)| {
         let of_line = move |part: Vec<Vertex>| -> ProfileLine {
@@ -117,32 +148,173 @@ pub fn profile_of_lines(
     if parts.is_empty() {
         return Err(ExportError::NoLineOnGround { package: package.path().to_path_buf() });
     }
-    Ok(told(&parts, level, &places))
+    let tolerance_m = manifest.levels.get(usize::from(level));
+    let tolerance_m = tolerance_m.map_or(0.0, |record| record.geometric_error_m);
+    Telling { level, places, structures: BTreeMap::new(), tolerance_m }.tell(parts, elevation)
 }
 
-fn told(parts: &[ProfileLine], level: u8, places: &Places<'_>) -> Profile {
-    let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
-    let all: Vec<Line> = parts
-        .iter()
-        .map(|part| Line { vertices: part.iter().map(|(_, at)| *at).collect(), joins: Vec::new() })
-        .collect();
-    let measures = Measures::of(&all, &distance_m);
-    let mut begin_m = 0.0;
-    let mut told = Vec::with_capacity(parts.len());
-    for part in parts {
-        let points = points(part, begin_m, places);
-        begin_m = points.last().map_or(begin_m, |last| last.distance_m);
-        told.push(ProfilePart { points });
+/// What a profile is told from.
+struct Telling<'a> {
+    level: u8,
+    places: Places<'a>,
+    /// What carries each way.
+    structures: BTreeMap<i64, Structure>,
+    /// How far the ground is from the elevation files at most, metres.
+    tolerance_m: f64,
+}
+
+impl Telling<'_> {
+    fn tell(
+        mut self,
+        mut parts: Vec<ProfileLine>,
+        elevation: Option<Elevation<'_>>,
+    ) -> Result<Profile, ExportError> {
+        let frame = &self.places.manifest().frame;
+        let smoothing = elevation.map(|_| Smoothing::of_frame(frame));
+        if let Some(elevation) = elevation {
+            parts = self.on_dem(&parts, &mut DemNodes::new(elevation, frame))?;
+        }
+        let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
+        let mut whole = Measures::default();
+        let mut on_ground = Vec::new();
+        let mut smooth = Vec::new();
+        let mut told = Vec::with_capacity(parts.len());
+        let mut on_structures_m = 0.0;
+        let mut begin_m = 0.0;
+        for part in &parts {
+            let line =
+                Line { vertices: part.iter().map(|(_, at)| *at).collect(), joins: Vec::new() };
+            let profile = Profiled::of(&line, &distance_m).profile;
+            let own = Measures::of(&[Profiled { line: &line, profile: profile.clone() }]);
+            whole.length_2d_m += own.length_2d_m;
+            whole.length_3d_m += own.length_3d_m;
+            let runs = self.runs_on_ground(part);
+            let lengths_m = runs.iter().map(|run| profile[run.end - 1][0] - profile[run.start][0]);
+            on_structures_m += own.length_2d_m - lengths_m.sum::<f64>();
+            let smooth_of_runs: Vec<SmoothLine> = match smoothing {
+                Some(smoothing) => {
+                    let of = |run: &Range<usize>| {
+                        SmoothLine::of_profile(&profile[run.clone()], smoothing)
+                    };
+                    runs.iter().map(of).collect()
+                }
+                None => Vec::new(),
+            };
+            told.push(ProfilePart {
+                points: self.points(part, (&profile, begin_m), (&runs, &smooth_of_runs)),
+            });
+            begin_m += own.length_2d_m;
+            smooth.extend(smooth_of_runs);
+            for run in runs {
+                let vertices = line.vertices[run].to_vec();
+                on_ground.push(Line { vertices, joins: Vec::new() });
+            }
+        }
+        let on_ground: Vec<Profiled<'_>> =
+            on_ground.iter().map(|line| Profiled::of(line, &distance_m)).collect();
+        let own = Measures::of(&on_ground);
+        let smooth = smoothing.map(|_| {
+            let SmoothGrades { ascent_m, descent_m, steepest, most_off_m } =
+                SmoothGrades::of(&smooth);
+            (ProfileGrades { ascent_m, descent_m, steepest }, most_off_m)
+        });
+        Ok(Profile {
+            level: self.level,
+            heights: self.places.heights().to_owned(),
+            height_tolerance_m: self.tolerance_m,
+            parts: told,
+            length_2d_m: whole.length_2d_m,
+            length_3d_m: whole.length_3d_m,
+            on_structures_m,
+            grades: ProfileGrades {
+                ascent_m: own.ascent_m,
+                descent_m: own.descent_m,
+                steepest: own.steepest,
+            },
+            smooth,
+        })
     }
-    Profile {
-        level,
-        heights: places.heights().to_owned(),
-        parts: told,
-        length_2d_m: measures.length_2d_m,
-        length_3d_m: measures.length_3d_m,
-        ascent_m: measures.ascent_m,
-        descent_m: measures.descent_m,
-        steepest: measures.steepest,
+
+    /// The same parts on the ground of the elevation files.
+    fn on_dem(
+        &mut self,
+        parts: &[ProfileLine],
+        nodes: &mut DemNodes<'_>,
+    ) -> Result<Vec<ProfileLine>, ExportError> {
+        self.tolerance_m = 0.0;
+        let mut laid_parts: Vec<ProfileLine> = Vec::new();
+        for part in parts {
+            // Way by way, so that each vertex knows its own.
+            let mut first = 0;
+            while first + 1 < part.len() {
+                let way_id = part[first + 1].0;
+                let own = part[first + 1..].iter().take_while(|(of, _)| *of == way_id).count();
+                let run: Vec<Vertex> =
+                    part[first..=first + own].iter().map(|(_, vertex)| *vertex).collect();
+                for DemLine { vertices, tolerance_m, .. } in lay(nodes, &run)? {
+                    self.tolerance_m = self.tolerance_m.max(tolerance_m);
+                    let begin = vertices.first().map(|vertex| vertex.at);
+                    let goes_on = |before: &&mut ProfileLine| {
+                        before.last().map(|(_, vertex)| vertex.at) == begin
+                    };
+                    let vertices = vertices.into_iter().map(|vertex| (way_id, vertex));
+                    match laid_parts.last_mut().filter(goes_on) {
+                        Some(before) => before.extend(vertices.skip(1)),
+                        None => laid_parts.push(vertices.collect()),
+                    }
+                }
+                first += own;
+            }
+        }
+        Ok(laid_parts)
+    }
+
+    fn structure(&self, way_id: i64) -> Structure {
+        self.structures.get(&way_id).copied().unwrap_or_default()
+    }
+
+    /// The vertices between which a part lies on the ground, not on a bridge or in a tunnel. A segment belongs to the way of its second vertex.
+    fn runs_on_ground(&self, part: &ProfileLine) -> Vec<Range<usize>> {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for end in 1..part.len() {
+            if self.structure(part[end].0) != Structure::Ground {
+                continue;
+            }
+            match runs.last_mut() {
+                Some(run) if run.end == end => run.end = end + 1,
+                _ => runs.push(end - 1..end + 1),
+            }
+        }
+        runs
+    }
+
+    fn points(
+        &self,
+        part: &ProfileLine,
+        (profile, begin_m): (&[[f64; 2]], f64),
+        (runs, smooth): (&[Range<usize>], &[SmoothLine]),
+    ) -> Vec<ProfilePoint> {
+        let from = if smooth.is_empty() { HeightSource::Ground } else { HeightSource::Dem };
+        let smooth_at = |index: usize, along_m: f64| {
+            let run = runs.iter().position(|run| run.contains(&index))?;
+            let line = smooth.get(run)?;
+            Some([line.height_m(along_m), line.grade(along_m)])
+        };
+        let point = |(index, ((way_id, vertex), (at, grade)))| {
+            let (way_id, vertex): (&i64, &Vertex) = (way_id, vertex);
+            let &[along_m, height_m]: &[f64; 2] = at;
+            ProfilePoint {
+                way_id: *way_id,
+                distance_m: begin_m + along_m,
+                height_m,
+                grade,
+                position_deg: self.places.wgs84(vertex.at),
+                height_source: from.text(self.structure(*way_id)),
+                smooth: smooth_at(index, along_m),
+            }
+        };
+        let measured = profile.iter().zip(grades(profile));
+        part.iter().map(|(way_id, vertex)| (way_id, vertex)).zip(measured).enumerate().map(point).collect()
     }
 }
 
@@ -220,29 +392,6 @@ fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<
         }
     }
     parts
-}
-
-fn points(part: &ProfileLine, begin_m: f64, places: &Places<'_>) -> Vec<ProfilePoint> {
-    let mut along_m = begin_m;
-    let mut profile = Vec::with_capacity(part.len());
-    for (index, (_, vertex)) in part.iter().enumerate() {
-        if let Some((_, before)) = index.checked_sub(1).map(|before| part[before]) {
-            along_m += places.distance_m(before.at, vertex.at);
-        }
-        profile.push([along_m, vertex.z_m]);
-    }
-    let grades = grades(&profile);
-    part.iter()
-        .zip(&profile)
-        .zip(grades)
-        .map(|(((way_id, vertex), [distance_m, height_m]), grade)| ProfilePoint {
-            way_id: *way_id,
-            distance_m: *distance_m,
-            height_m: *height_m,
-            grade,
-            position_deg: places.wgs84(vertex.at),
-        })
-        .collect()
 }
 
 /// The grade at each point of a profile, whose distances ascend.

@@ -9,7 +9,7 @@ use corniche_tin::{Placement, Surface};
 use crate::{
     bounds::DegreeBounds,
     error::ExportError,
-    piece::{Piece, PieceKey, Vertex},
+    piece::{Piece, PieceHeights, PieceKey, Vertex},
 };
 
 /// What pieces of roads are read from.
@@ -131,6 +131,7 @@ pub(crate) fn pieces_of(
             class: road.class,
             attributes: attributes.attributes.clone(),
             goes_on: goes_on(road, frame, id),
+            heights: PieceHeights { tolerance_m: terrain.geometric_error_m, ground_m: None },
             vertices,
         });
     }

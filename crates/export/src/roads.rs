@@ -4,19 +4,25 @@ use std::path::Path;
 
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
-use corniche_roads::FunctionalRoadClass;
+use corniche_network::Network;
+use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{FilePackage, tile_of_order};
 use corniche_work::Observer;
 
 use crate::{
     cut::cut_at_bounds,
+    dem_ground::{DemLine, DemNodes, lay, off_dem_m},
+    elevation::Elevation,
     error::ExportError,
-    feature::{Road, road_fields, road_values},
+    feature::{HeightSource, Road, Smooth, road_fields, road_values},
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
+    grades::{
+        MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, stretch_of_way,
+    },
     join::{Line, lines},
-    measures::Measures,
-    piece::Piece,
+    measures::{Measures, Profiled},
+    piece::{Piece, PieceHeights, PieceKey},
     places::Places,
     read,
     vector::{Record, Shape, ShapeKind},
@@ -37,6 +43,19 @@ pub struct ExportSummary {
     pub vertices: u64,
     /// What the heights of the features are, in words.
     pub heights: String,
+    /// How far heights are from the elevation files at most, metres.
+    pub height_tolerance_m: f64,
+    /// How far the package's triangles are from the elevation files along the lines at most, metres; `None` where they were not compared.
+    pub ground_tolerance_m: Option<f64>,
+}
+
+/// Where heights of roads are taken from.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RoadHeights<'a> {
+    /// The elevation files; without them heights are those of the package's triangles.
+    pub elevation: Option<Elevation<'a>>,
+    /// The roads of the package's extract: with them, and the elevation files, grades are those of chains from junction to junction.
+    pub network: Option<&'a Network>,
 }
 
 /// Writes the roads of a package to a new file at `path`. Beside it, in the same folder, are unnamed files for sorting, and
@@ -47,17 +66,33 @@ pub struct ExportSummary {
 /// written.
 pub fn export_roads(
     package: &FilePackage,
-    request: &FeatureRequest<FunctionalRoadClass>,
-    features: RoadFeatures,
+    (request, features): (&FeatureRequest<FunctionalRoadClass>, RoadFeatures),
+    heights: RoadHeights<'_>,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<ExportSummary, ExportError> {
-    if package.manifest().inputs.iter().all(|input| input.kind != "osm") {
+    let manifest = package.manifest();
+    if manifest.inputs.iter().all(|input| input.kind != "osm") {
         return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
     }
     let source = FeatureSource::new(package, request, Roads::SHAPES)?;
+    let frame = &manifest.frame;
+    let dem = match heights.elevation {
+        None => None,
+        Some(elevation) => {
+            let mut nodes = DemNodes::new(elevation, frame);
+            let smoothing = Smoothing::of_frame(frame);
+            let measure = |network| {
+                let places = &source.places;
+                MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)
+            };
+            let chains = heights.network.map(measure).transpose()?;
+            Some(OnDem { nodes, smoothing, chains })
+        }
+    };
     let mut roads = Roads {
         by_piece: features == RoadFeatures::Pieces,
+        dem,
         summary: ExportSummary {
             level: source.level,
             features: 0,
@@ -65,6 +100,8 @@ pub fn export_roads(
             length_2d_m: 0.0,
             vertices: 0,
             heights: source.places.heights().to_owned(),
+            height_tolerance_m: 0.0,
+            ground_tolerance_m: None,
         },
     };
     write_features(&mut roads, &source, path, observer)?;
@@ -72,12 +109,20 @@ pub fn export_roads(
 }
 
 /// Roads on their way into a file.
-struct Roads {
+struct Roads<'a> {
     by_piece: bool,
+    dem: Option<OnDem<'a>>,
     summary: ExportSummary,
 }
 
-impl Features for Roads {
+/// What heights and grades of the elevation files are made from.
+struct OnDem<'a> {
+    nodes: DemNodes<'a>,
+    smoothing: Smoothing,
+    chains: Option<MeasuredChains<'a>>,
+}
+
+impl Features for Roads<'_> {
     type Class = FunctionalRoadClass;
     type Piece = Piece;
     const NAME: &'static str = "roads";
@@ -86,9 +131,14 @@ impl Features for Roads {
     fn about(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> About {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
         let (cells, heights) = (source.cells(), source.places.heights());
+        let from = if self.dem.is_some() { HeightSource::Dem } else { HeightSource::Ground };
+        let laid = match from {
+            HeightSource::Ground => format!("laid on terrain with {cells}"),
+            HeightSource::Dem => "laid on the elevation files".to_owned(),
+        };
         About {
-            fields: road_fields(self.by_piece),
-            description: format!("{what} laid on terrain with {cells}. Heights: {heights}."),
+            fields: road_fields(self.by_piece, from),
+            description: format!("{what} {laid}. Heights: {heights}."),
             metadata: vec![
                 ("HEIGHTS", heights.to_owned()),
                 ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
@@ -97,14 +147,22 @@ impl Features for Roads {
     }
 
     fn pieces(
-        &self,
+        &mut self,
         FeatureSource { package, request, places, .. }: &FeatureSource<'_, FunctionalRoadClass>,
         tile: TileId,
     ) -> Result<Vec<Piece>, ExportError> {
-        let pieces = read::pieces(package, tile, &request.classes)?;
-        let Some(bounds) = &request.bounds else { return Ok(pieces) };
-        let cut = |piece| cut_at_bounds(piece, bounds, &|at| places.wgs84(at));
-        Ok(pieces.iter().flat_map(cut).collect())
+        let mut found = Vec::new();
+        for piece in read::pieces(package, tile, &request.classes)? {
+            let cut = match &request.bounds {
+                None => vec![piece],
+                Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
+            };
+            match &mut self.dem {
+                None => found.extend(cut),
+                Some(dem) => found.extend(dem.laid(cut)?),
+            }
+        }
+        Ok(found)
     }
 
     fn object(piece: &Piece) -> AreaObject {
@@ -123,29 +181,91 @@ impl Features for Roads {
             return Err(ExportError::Differs { object: Self::object(first) });
         }
         self.summary.ways += 1;
+        let way = self.dem.as_ref().and_then(|dem| dem.chains.as_ref()).map(|chains| {
+            if first.attributes.structure == Structure::Ground {
+                chains.of_way(first.key.way_id)
+            } else {
+                Vec::new()
+            }
+        });
+        let way = way.unwrap_or_default();
         if !self.by_piece {
-            return Ok(vec![self.record(&source.places, first, &lines(pieces))?]);
+            let heights = pieces.iter().map(|piece| piece.heights).reduce(PieceHeights::with);
+            let of = Piece { heights: heights.unwrap_or(first.heights), ..first.clone() };
+            return Ok(vec![self.record(&source.places, &of, &lines(pieces), &way)?]);
         }
         let of_piece = |piece: &Piece| {
             let line = Line { vertices: piece.vertices.clone(), joins: Vec::new() };
-            self.record(&source.places, piece, &[line])
+            self.record(&source.places, piece, &[line], &way)
         };
         pieces.iter().map(of_piece).collect()
     }
 }
 
-impl Roads {
+impl OnDem<'_> {
+    /// What is left of a piece, on the ground of the elevation files.
+    fn laid(&mut self, cut: Vec<Piece>) -> Result<Vec<Piece>, ExportError> {
+        let mut laid = Vec::new();
+        for piece in cut {
+            let ground_m = off_dem_m(&mut self.nodes, &piece.vertices)?;
+            let [first_end, last_end] = piece.goes_on;
+            for DemLine { vertices, tolerance_m, has_end: [first, last] } in
+                lay(&mut self.nodes, &piece.vertices)?
+            {
+                laid.push(Piece {
+                    key: PieceKey { cut: laid.len() as u32, ..piece.key },
+                    vertices,
+                    goes_on: [first && first_end, last && last_end],
+                    heights: PieceHeights { tolerance_m, ground_m },
+                    ..piece.clone()
+                });
+            }
+        }
+        Ok(laid)
+    }
+
+    /// The grades of lines of a way, of which `way` are the smooth lines where these are known.
+    fn smooth(&self, of: &Piece, lines: &[Profiled<'_>], way: &[SmoothLine]) -> Smooth {
+        let limit_pct = grade_limit(&of.attributes.highway);
+        if of.attributes.structure != Structure::Ground {
+            return Smooth { grades: None, is_of_chain: false, limit_pct };
+        }
+        let mut parts = Vec::new();
+        let mut is_of_chain = !way.is_empty();
+        for Profiled { line, profile } in lines {
+            let length_m = profile.last().map_or(0.0, |last| last[0]);
+            let found = stretch_of_way(way, &line.vertices, length_m);
+            is_of_chain &= found.is_some();
+            match found {
+                Some(stretch) => parts.extend(way.iter().map(|line| line.part(stretch))),
+                None => parts.push(SmoothLine::of_profile(profile, self.smoothing)),
+            }
+        }
+        let grades = Some(SmoothGrades::of(&parts));
+        Smooth { grades, is_of_chain, limit_pct }
+    }
+}
+
+impl Roads<'_> {
     fn record(
         &mut self,
         places: &Places<'_>,
         of: &Piece,
         lines: &[Line],
+        way: &[SmoothLine],
     ) -> Result<Record, ExportError> {
-        let Piece { key, class, attributes, .. } = of;
-        let measures = Measures::of(lines, &|from, to| places.distance_m(from, to));
-        self.summary.features += 1;
-        self.summary.length_2d_m += measures.length_2d_m;
-        self.summary.vertices += measures.vertices_out;
+        let Piece { key, class, attributes, heights, .. } = of;
+        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+        let profiled: Vec<Profiled<'_>> =
+            lines.iter().map(|line| Profiled::of(line, &distance_m)).collect();
+        let measures = Measures::of(&profiled);
+        let summary = &mut self.summary;
+        summary.features += 1;
+        summary.length_2d_m += measures.length_2d_m;
+        summary.vertices += measures.vertices_out;
+        summary.height_tolerance_m = summary.height_tolerance_m.max(heights.tolerance_m);
+        summary.ground_tolerance_m =
+            [summary.ground_tolerance_m, heights.ground_m].into_iter().flatten().reduce(f64::max);
         let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
         let road = Road {
             way_id: key.way_id,
@@ -153,6 +273,8 @@ impl Roads {
             attributes,
             parts: lines.len(),
             measures,
+            heights: *heights,
+            smooth: self.dem.as_ref().map(|dem| dem.smooth(of, &profiled, way)),
             piece,
         };
         let mut carried = Vec::with_capacity(lines.len());

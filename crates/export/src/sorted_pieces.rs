@@ -23,7 +23,7 @@ impl<'a, P: SortRecord> SortedPieces<'a, P> {
         tiles: &[TileId],
         (mut sorter, folder): (Sorter<'a, P>, &'a Path),
         observer: &dyn Observer,
-        pieces: impl Fn(TileId) -> Result<Vec<P>, ExportError>,
+        mut pieces: impl FnMut(TileId) -> Result<Vec<P>, ExportError>,
     ) -> Result<Self, ExportError> {
         let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
         let mut count = 0;

@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         table: &table,
         place: &to_lattice,
         seam: None,
+        node_ids: false,
         pool: &pool,
         memory_bytes: memory_mib.parse::<u64>()? << 20,
         scratch: &scratch,

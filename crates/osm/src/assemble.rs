@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use corniche_geom::{LatticePoint, Polyline, Seam, split_at_seam, wgs84};
+use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, split_at_seam, wgs84};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
@@ -15,6 +15,8 @@ use crate::{
 pub(crate) struct PlainWay {
     pub(crate) way_id: i64,
     pub(crate) kind: WayKind,
+    /// The ids of its nodes; empty where they are not wanted.
+    pub(crate) node_ids: Vec<i64>,
     /// Which of the stops that it was read with are its own.
     pub(crate) stops: Range<usize>,
 }
@@ -45,7 +47,8 @@ pub(crate) fn assemble(
     let mut points = points.into_iter();
     let assemble = |way: &PlainWay| match &way.kind {
         WayKind::Road(class, attributes) => {
-            let what = What { way_id: way.way_id, class: *class, attributes };
+            let node_ids = &way.node_ids;
+            let what = What { way_id: way.way_id, class: *class, attributes, node_ids };
             assemble_way(&what, stops_of(way), &mut points, placing.seam)
         }
         WayKind::LeftOut(reason, highway) => {
@@ -70,6 +73,36 @@ struct What<'a> {
     way_id: i64,
     class: FunctionalRoadClass,
     attributes: &'a RoadAttributes,
+    /// One for each stop, or none.
+    node_ids: &'a [i64],
+}
+
+/// A node of a way on the lattice.
+#[derive(Clone, Copy)]
+struct PlacedNode {
+    point: LatticePoint,
+    /// Two roads name it, or one does twice; a cut at the seam must stay, too.
+    is_fixed: bool,
+    /// `None` for a cut at the seam, and where ids are not wanted.
+    id: Option<i64>,
+}
+
+impl OnSeamedMap for PlacedNode {
+    fn x(&self) -> f64 {
+        self.point.x()
+    }
+
+    fn with_x(self, x: f64) -> Self {
+        Self { point: self.point.with_x(x), ..self }
+    }
+
+    fn towards(self, other: Self, share: f64) -> Self {
+        Self { point: self.point.towards(other.point, share), is_fixed: true, id: None }
+    }
+
+    fn is_at(&self, other: &Self) -> bool {
+        self.point == other.point
+    }
 }
 
 /// Cuts the way where points are missing, merges equal neighbours, and makes a road of each piece.
@@ -89,18 +122,24 @@ fn assemble_way(
     let way_id = way.way_id;
     let mut assembled = Assembled::default();
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
-    let mut pieces: Vec<Vec<(LatticePoint, bool)>> = vec![Vec::new()];
-    for stop in stops {
+    let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::new()];
+    for (index, stop) in stops.iter().enumerate() {
         // The node has a position: the next one of the placed points.
         let is_known = location::degrees(stop.location).is_some();
         let point = if is_known { points.next().flatten() } else { None };
         match (point, pieces.last_mut()) {
             (Some(point), Some(piece)) => match piece.last_mut() {
-                Some((last, is_fixed)) if *last == point => {
+                Some(last) if last.point == point => {
                     duplicates += 1;
-                    *is_fixed |= stop.is_shared();
+                    // Of several nodes at one place, that counts at which other roads may join.
+                    if stop.is_shared() && !last.is_fixed {
+                        (last.is_fixed, last.id) = (true, way.node_ids.get(index).copied());
+                    }
                 }
-                _ => piece.push((point, stop.is_shared())),
+                _ => {
+                    let id = way.node_ids.get(index).copied();
+                    piece.push(PlacedNode { point, is_fixed: stop.is_shared(), id });
+                }
             },
             _ if is_known => outside += 1,
             _ if stop.location == location::OUT_OF_RANGE => out_of_range += 1,
@@ -142,20 +181,24 @@ fn assemble_way(
 }
 
 /// One road of a piece of a way; `None` when the piece has less than two points.
-fn road(way: &What<'_>, piece: Vec<(LatticePoint, bool)>) -> Option<Road> {
+fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
     let last = piece.len().checked_sub(1)?;
-    let is_kept = |(index, is_fixed): (usize, bool)| {
-        (is_fixed || index == 0 || index == last).then_some(index as u32)
+    let is_kept = |&index: &usize| piece[index].is_fixed || index == 0 || index == last;
+    let fixed: Vec<usize> = (0..piece.len()).filter(is_kept).collect();
+    let node_id = |&index: &usize| piece[index].id;
+    let node_ids = match way.node_ids {
+        [] => Vec::new(),
+        _ => fixed.iter().map(node_id).collect(),
     };
-    let fixed =
-        piece.iter().map(|&(_, is_fixed)| is_fixed).enumerate().filter_map(is_kept).collect();
+    let fixed = fixed.into_iter().map(|index| index as u32).collect();
     // Equal neighbours are merged already, so the indices stay true.
-    let line = Polyline::new(piece.into_iter().map(|(point, _)| point).collect()).ok()?;
+    let line = Polyline::new(piece.into_iter().map(|node| node.point).collect()).ok()?;
     Some(Road {
         way_id: way.way_id,
         class: way.class,
         attributes: way.attributes.clone(),
         line,
         fixed,
+        node_ids,
     })
 }

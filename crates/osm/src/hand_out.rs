@@ -16,7 +16,7 @@ use crate::{
     reading::Reading,
     records::Stop,
     spool::{SpoolReader, damaged},
-    way_bytes::take_way,
+    way_bytes::{take_node_ids, take_way},
     wire::{varint, zigzag},
 };
 
@@ -90,6 +90,7 @@ fn hand_out(
 ) -> Result<(), ReadOsmError> {
     let pool = reading.request.pool;
     let placing = reading.request.placing();
+    let with_ids = reading.request.node_ids;
     let mut done = 0;
     let mut next = || Batch::read(reading, ways, stops, pool.current_num_threads());
     let mut batch = next()?;
@@ -100,7 +101,7 @@ fn hand_out(
         let following = pool.in_place_scope(|scope| {
             scope.spawn(|_| {
                 let tasks = batch.ways.par_chunks(WAYS_PER_TASK);
-                assembled = tasks.map(|some| batch.assemble(some, placing)).collect();
+                assembled = tasks.map(|some| batch.assemble(some, with_ids, placing)).collect();
             });
             let following = next();
             before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
@@ -183,11 +184,21 @@ impl Batch {
     fn assemble(
         &self,
         some: &[PackedWay],
+        with_ids: bool,
         placing: Placing<'_>,
     ) -> Result<Vec<Assembled>, HandOutError> {
         let plain = |way: &PackedWay| {
-            let kind = take_way(&mut &self.kinds[way.kind.clone()])?;
-            Some(PlainWay { way_id: way.way_id, kind, stops: way.stops.clone() })
+            let mut bytes = &self.kinds[way.kind.clone()];
+            let mut node_ids = Vec::new();
+            if with_ids {
+                let mut take = |id| {
+                    node_ids.push(id);
+                    Ok(())
+                };
+                take_node_ids(&mut bytes, &mut take).ok()?;
+            }
+            let kind = take_way(&mut bytes)?;
+            Some(PlainWay { way_id: way.way_id, kind, node_ids, stops: way.stops.clone() })
         };
         let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
         assemble(&ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)

@@ -18,7 +18,8 @@ use crate::{
 
 /// What is left of the ways, and the nodes that they name.
 pub(crate) struct NumberedNodes<'a> {
-    /// Per way its id, how many nodes it has and what it is, in ascending order of way id; see [`crate::hand_out`].
+    /// Per way its id, how many nodes it has, their ids where they are wanted, and what it is, in ascending order of way id; see
+    /// [`crate::hand_out`].
     pub(crate) ways: Spool<'a>,
     pub(crate) mentions: Sorter<'a, Mention>,
     pub(crate) ways_count: u64,
@@ -65,7 +66,7 @@ pub(crate) fn number_nodes<'a>(
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
         if way.is_left_out().map_err(failed)? {
-            numbered.add(&way).map_err(failed)?;
+            numbered.add(&way, request.node_ids).map_err(failed)?;
             continue;
         }
         let version = known_version(way.version);
@@ -83,7 +84,7 @@ pub(crate) fn number_nodes<'a>(
             }
             _ => {
                 last = Some((way.way_id, version));
-                numbered.add(&way).map_err(failed)?;
+                numbered.add(&way, request.node_ids).map_err(failed)?;
             }
         }
     }
@@ -126,7 +127,8 @@ impl WayRecord {
 }
 
 impl NumberedNodes<'_> {
-    fn add(&mut self, way: &WayRecord) -> io::Result<()> {
+    /// `with_ids`: the ids of its nodes stay before what the way is.
+    fn add(&mut self, way: &WayRecord, with_ids: bool) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
         let mut road = &*way.bytes;
         let mut previous = None;
@@ -138,11 +140,12 @@ impl NumberedNodes<'_> {
             Ok(())
         })?;
         *ways_count += 1;
+        let kept = if with_ids { &*way.bytes } else { road };
         ways.push(|bytes| {
             push_varint(bytes, to_zigzag(way.way_id));
             push_varint(bytes, nodes);
-            push_varint(bytes, road.len() as u64);
-            bytes.extend(road);
+            push_varint(bytes, kept.len() as u64);
+            bytes.extend(kept);
         })
     }
 }

@@ -31,6 +31,8 @@ pub struct ReadRequest<'a> {
     pub place: &'a ToLattice<'a>,
     /// Where the lattice's map of the earth is cut open, if it is: lines over it are cut there.
     pub seam: Option<Seam>,
+    /// Whether roads come with the ids of their fixed nodes, which takes a few bytes more for each node.
+    pub node_ids: bool,
     /// Where blobs are decoded and points placed.
     pub pool: &'a rayon::ThreadPool,
     /// About how much the ways and nodes of all layers may take, bytes; what does not fit goes to `scratch`. The blobs that

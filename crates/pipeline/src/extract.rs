@@ -3,3 +3,4 @@
 pub(crate) mod kept;
 mod no_road;
 pub(crate) mod partition;
+pub(crate) mod placed_reading;

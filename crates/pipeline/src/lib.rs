@@ -69,5 +69,5 @@ pub use terrain::recorded::TerrainRecord;
 pub use terrain::recorded_grid::grid_of;
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, RecordedElevation, VerifyError, VerifyOsm,
-    VerifyReport, VerifySettings, verify,
+    VerifyReport, VerifySettings, network, verify,
 };

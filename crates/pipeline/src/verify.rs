@@ -19,6 +19,7 @@ mod grid;
 mod header;
 mod layer_sums;
 mod manifest_sums;
+mod network;
 mod one_tile;
 mod osm;
 mod osm_layers;
@@ -50,6 +51,7 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     elevation::RecordedElevation,
     error::VerifyError,
+    network::network,
     report::{ErrorFigures, GapFigures, VerifyReport},
     verify_settings::{VerifyOsm, VerifySettings},
 };

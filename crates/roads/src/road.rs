@@ -208,6 +208,9 @@ pub struct Road {
     /// Indices into the line's points that no simplification may remove: its ends and every node that
     /// another road shares (junctions). Ascending.
     pub fixed: Vec<u32>,
+    /// For each of `fixed` OSM's id of the node there, by which roads are joined; `None` for a place that is no node. Empty where ids were not
+    /// asked for.
+    pub node_ids: Vec<Option<i64>>,
 }
 
 #[cfg(test)]

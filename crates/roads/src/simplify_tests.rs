@@ -17,6 +17,7 @@ fn road(points: Vec<LatticePoint>, inner_fixed: &[u32]) -> Option<Road> {
         attributes: RoadAttributes::default(),
         line,
         fixed,
+        node_ids: Vec::new(),
     })
 }
 

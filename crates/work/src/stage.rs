@@ -55,6 +55,8 @@ pub enum Stage {
     ExportTiles,
     /// An export makes blocks of a raster.
     ExportBlocks,
+    /// An export reads heights along the roads of an extract.
+    ExportChains,
     /// An export joins the pieces of each way and writes features.
     ExportFeatures,
     /// Compare roads with an image.
@@ -65,7 +67,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Hash,
         Self::Extract,
         Self::MapAreas,
@@ -82,6 +84,7 @@ impl Stage {
         Self::Verify,
         Self::ExportTiles,
         Self::ExportBlocks,
+        Self::ExportChains,
         Self::ExportFeatures,
         Self::Match,
         Self::Fly,
@@ -108,6 +111,9 @@ impl Stage {
             Self::Verify => ("verify", "verifying", TILES),
             Self::ExportTiles => ("export-tiles", "reading tiles", TILES),
             Self::ExportBlocks => ("export-blocks", "writing blocks", Unit::Things("blocks")),
+            Self::ExportChains => {
+                ("export-chains", "heights along roads", Unit::Things("stretches"))
+            }
             Self::ExportFeatures => ("export-features", "writing features", Unit::Things("pieces")),
             Self::Match => ("match", "comparing tiles", TILES),
             Self::Fly => ("fly", "drawing frames", Unit::Things("frames")),

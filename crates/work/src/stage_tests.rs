@@ -25,13 +25,14 @@ fn every_stage_is_listed_once_in_order() {
             Stage::Verify => 13,
             Stage::ExportTiles => 14,
             Stage::ExportBlocks => 15,
-            Stage::ExportFeatures => 16,
-            Stage::Match => 17,
-            Stage::Fly => 18,
+            Stage::ExportChains => 16,
+            Stage::ExportFeatures => 17,
+            Stage::Match => 18,
+            Stage::Fly => 19,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 19);
+    assert_eq!(Stage::ALL.len(), 20);
 }
 
 #[test]

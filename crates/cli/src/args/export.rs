@@ -1,22 +1,18 @@
 //! Commands that give what a package holds to other programs.
 
-use std::path::PathBuf;
-
-use clap::{Args, Subcommand, ValueEnum, ValueHint};
+use clap::{Args, Subcommand, ValueEnum};
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
     Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
-use corniche_remote::PackagePlace;
 
 use super::{
     ReportArgs,
     shared::{
-        BoundsArg, ClassesArg, DatumArg, FileArgs, FolderArgs, LevelArg, PackageArg, ThreadsArg,
+        BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
+        RecordedArgs, ThreadsArg,
     },
-    values::{package_among, package_place},
 };
-use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -28,6 +24,8 @@ pub(crate) struct ExportArgs {
 pub(crate) enum Export {
     /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
     Roads(Box<ExportRoadsArgs>),
+    /// Write the roads of a package's extract from junction to junction, with ascents and grades, for routers
+    Edges(Box<ExportEdgesArgs>),
     /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
     Areas(Box<ExportAreasArgs>),
     /// Write the boundaries of a package (administrative, protected) as lines for GIS programs
@@ -46,15 +44,18 @@ pub(crate) enum Export {
 }
 
 #[derive(Debug, Args)]
-#[command(mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")))]
+#[command(
+    override_usage = "corniche export roads [OPTIONS] --output <FILE> <PACKAGE>",
+    mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")),
+    mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, not those of the package's triangles")),
+)]
 pub(crate) struct ExportRoadsArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub(crate) from: RecordedArgs,
     #[command(flatten)]
-    pub(crate) file: FileArgs,
-    /// The format of a file with another ending
-    #[arg(short, long, value_enum, value_name = "FORMAT")]
-    pub(crate) format: Option<Format>,
+    pub(crate) extract: ExtractArgs,
+    #[command(flatten)]
+    pub(crate) vector: VectorArgs,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     /// One feature for each piece of a road as the tiles have them, in place of one for each way
@@ -64,6 +65,39 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) filter: ClassesArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    override_usage = "corniche export edges [OPTIONS] --output <FILE> --dem <FILE>... --osm <FILE>... <PACKAGE>",
+    mut_arg("dem", |arg| arg.required(true)),
+    mut_arg("osm", |arg| arg.required(true).help("The extracts the package was made from: roads join where they name the same node")),
+)]
+pub(crate) struct ExportEdgesArgs {
+    #[command(flatten)]
+    pub(crate) from: RecordedArgs,
+    #[command(flatten)]
+    pub(crate) extract: ExtractArgs,
+    #[command(flatten)]
+    pub(crate) vector: VectorArgs,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+// What exports of lines with heights have.
+#[derive(Debug, Args)]
+pub(crate) struct VectorArgs {
+    #[command(flatten)]
+    pub(crate) file: FileArgs,
+    /// The format of a file with another ending
+    #[arg(short, long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
     /// The coordinates: "package" (its CRS and heights, exactly) or "EPSG:4979" (longitude, latitude and height above the
     /// ellipsoid of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_crs)]
@@ -73,8 +107,6 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) heights: Option<Heights>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 // What exports of layers without heights have.
@@ -170,45 +202,25 @@ pub(crate) struct ExportMeshArgs {
 #[command(
     override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("output", |arg| arg.help("The file to write: .tif or .tiff")),
+    mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM")),
     mut_arg("level", |arg| arg.help("The level whose triangles are taken [default: the finest]; pixels are the nodes of the finest level in any case")),
     mut_arg("bounds", |arg| arg.help("Take the nodes in a rectangle of WGS84 degrees, rounded outwards; a west beyond the east crosses 180°")),
 )]
 pub(crate) struct ExportGeoTiffArgs {
-    /// The package: a file, or an address on a web server (https://…)
-    #[arg(required_unless_present = "dem", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    package: Option<PackagePlace>,
+    #[command(flatten)]
+    pub(crate) from: RecordedArgs,
     #[command(flatten)]
     pub(crate) file: FileArgs,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    dem: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
-    /// With --dem: the polygon that the package was cut with
-    #[arg(long, value_name = "FILE", requires = "dem")]
-    pub(crate) polygon: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
-}
-
-impl ExportGeoTiffArgs {
-    /// The package and its elevation rasters. `--dem` takes all that follows it, also a package, which is told from other files by its name.
-    ///
-    /// # Errors
-    /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        package_among(
-            self.package.as_ref(),
-            &self.dem,
-            "corniche export geotiff PACKAGE --dem FILE...",
-        )
-    }
 }
 
 #[derive(Debug, Args)]
@@ -335,6 +347,7 @@ impl Export {
     pub(crate) fn report(&self) -> ReportArgs {
         match self {
             Self::Roads(args) => args.report,
+            Self::Edges(args) => args.report,
             Self::Areas(args) => args.plan.report,
             Self::Boundaries(args) => args.plan.report,
             Self::Mesh(args) => args.report,

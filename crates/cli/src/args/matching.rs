@@ -59,7 +59,9 @@ impl MatchArgs {
     /// # Errors
     /// When no package is named, or several may be meant.
     pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        package_among(self.package.as_ref(), &self.photo, "corniche match PACKAGE --photo FILE...")
+        let usage = "corniche match PACKAGE --photo FILE...";
+        let (package, [photo]) = package_among(self.package.as_ref(), [&self.photo], usage)?;
+        Ok((package, photo))
     }
 }
 

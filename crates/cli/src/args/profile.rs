@@ -4,17 +4,19 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use super::shared::{LevelArg, PackageArg};
+use super::shared::{LevelArg, RecordedArgs};
 
 #[derive(Debug, Args)]
 #[command(
     group = ArgGroup::new("drawn").args(["csv", "svg"]).multiple(true),
     group = ArgGroup::new("what").args(["way", "line"]).required(true),
+    override_usage = "corniche profile [OPTIONS] <--way <ID>|--line <FILE>> <PACKAGE>",
+    mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, and grades those of a smooth line")),
     mut_arg("level", |arg| arg.help("The level on whose ground they lie [default: the finest]")),
 )]
 pub(crate) struct ProfileArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub(crate) from: RecordedArgs,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
     #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) way: Vec<i64>,

@@ -10,7 +10,7 @@ use corniche_remote::PackagePlace;
 use super::{
     ReportArgs,
     shared::{PackageArg, ThreadsArg},
-    values::{may_be_package, package_place, parse_position, place_of},
+    values::{package_among, package_place, parse_position},
 };
 use crate::failure::Failure;
 
@@ -76,27 +76,10 @@ impl VerifyArgs {
     /// # Errors
     /// When no package is named, or several may be meant.
     pub(crate) fn files(&self) -> Result<VerifyFiles, Failure> {
-        if let Some(package) = &self.package {
-            let [dem, photo, osm] = [&self.dem, &self.photo, &self.osm].map(Clone::clone);
-            return Ok(VerifyFiles { package: package.clone(), dem, photo, osm });
-        }
-        let split = |files: &[PathBuf]| -> (Vec<PathBuf>, Vec<PathBuf>) {
-            files.iter().cloned().partition(|file| may_be_package(file))
-        };
-        let [(mut packages, dem), (of_photo, photo), (of_osm, osm)] =
-            [split(&self.dem), split(&self.photo), split(&self.osm)];
-        packages.extend(of_photo.into_iter().chain(of_osm));
-        match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) => {
-                Ok(VerifyFiles { package: place_of(package)?, dem, photo, osm })
-            }
-            (Some(_), false) => Err(Failure::unusable(
-                "several files end in .pmtiles; write the package first: corniche verify PACKAGE --dem FILE...",
-            )),
-            (None, _) => Err(Failure::unusable(
-                "no package is named: none of the files ends in .pmtiles; write it first: corniche verify PACKAGE --dem FILE...",
-            )),
-        }
+        let lists = [&*self.dem, &*self.photo, &*self.osm];
+        let usage = "corniche verify PACKAGE --dem FILE...";
+        let (package, [dem, photo, osm]) = package_among(self.package.as_ref(), lists, usage)?;
+        Ok(VerifyFiles { package, dem, photo, osm })
     }
 }
 

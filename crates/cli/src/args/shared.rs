@@ -8,7 +8,8 @@ use corniche_presets::{BoundsChoice, Classes, parse_bytes};
 use corniche_remote::PackagePlace;
 use corniche_viewer::stream::StreamBudget;
 
-use super::values::package_place;
+use super::values::{package_among, package_place};
+use crate::failure::Failure;
 
 // The package that is read.
 #[derive(Debug, Args)]
@@ -16,6 +17,46 @@ pub(crate) struct PackageArg {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
     pub(crate) package: PackagePlace,
+}
+
+// The package that is read, with the elevation files that it was made from.
+#[derive(Debug, Args)]
+pub(crate) struct RecordedArgs {
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(required_unless_present = "dem", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    package: Option<PackagePlace>,
+    /// The elevation rasters the package was made from, in the same order: heights are theirs
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    dem: Vec<PathBuf>,
+    /// With --dem: the polygon that the package was cut with
+    #[arg(long, value_name = "FILE", requires = "dem")]
+    pub(crate) polygon: Option<PathBuf>,
+}
+
+impl RecordedArgs {
+    /// The package, its elevation rasters, and other files. `--dem` takes all that follows it, as others do, also a package, which is told from other
+    /// files by its name.
+    ///
+    /// # Errors
+    /// When no package is named, or several may be meant.
+    pub(crate) fn files(
+        &self,
+        others: &[PathBuf],
+        usage: &str,
+    ) -> Result<(PackagePlace, [Vec<PathBuf>; 2]), Failure> {
+        package_among(self.package.as_ref(), [&self.dem, others], usage)
+    }
+}
+
+// The extracts that a package was made from.
+#[derive(Debug, Args)]
+pub(crate) struct ExtractArgs {
+    /// With --dem: the extracts the package was made from; grades are then those of lines from junction to junction
+    #[arg(long, value_name = "FILE", num_args = 1.., requires = "dem")]
+    pub(crate) osm: Vec<PathBuf>,
+    /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
+    #[arg(long, value_name = "NAME|FILE", requires = "osm")]
+    pub(crate) frc_table: Option<String>,
 }
 
 // The file that an export writes.

@@ -47,24 +47,32 @@ pub(crate) fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
-/// The package, and the files of an option that takes all that follows it, among which it may be if it is not named by itself. `usage` shows how to name it.
+/// The package, and the files of options that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
+/// name it.
 ///
 /// # Errors
-/// When no package is named, several may be meant, or nothing is left for the option.
-pub(crate) fn package_among(
+/// When no package is named, or several may be meant.
+pub(crate) fn package_among<const N: usize>(
     named: Option<&PackagePlace>,
-    files: &[PathBuf],
+    lists: [&[PathBuf]; N],
     usage: &str,
-) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
+) -> Result<(PackagePlace, [Vec<PathBuf>; N]), Failure> {
     if let Some(package) = named {
-        return Ok((package.clone(), files.to_vec()));
+        return Ok((package.clone(), lists.map(<[PathBuf]>::to_vec)));
     }
-    let (mut packages, others): (Vec<PathBuf>, Vec<PathBuf>) =
-        files.iter().cloned().partition(|file| may_be_package(file));
+    let mut packages: Vec<PathBuf> = Vec::new();
+    let others = lists.map(|files| {
+        let (own, others) = files.iter().cloned().partition(|file| may_be_package(file));
+        packages.extend::<Vec<PathBuf>>(own);
+        others
+    });
     match (packages.pop(), packages.is_empty()) {
-        (Some(package), true) if !others.is_empty() => Ok((place_of(package)?, others)),
-        _ => Err(Failure::unusable(format!(
-            "which file is the package is not clear; write it first: {usage}"
+        (Some(package), true) => Ok((place_of(package)?, others)),
+        (Some(_), false) => Err(Failure::unusable(format!(
+            "several files end in .pmtiles; write the package first: {usage}"
+        ))),
+        (None, _) => Err(Failure::unusable(format!(
+            "no package is named: none of the files ends in .pmtiles; write it first: {usage}"
         ))),
     }
 }

@@ -1,22 +1,22 @@
 //! `corniche export geotiff`: heights as a raster.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use corniche_export::{Elevation, GeoTiffRequest, GeoTiffSummary, export_geotiff};
-use corniche_pipeline::RecordedElevation;
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
+use corniche_export::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
+use corniche_tileset::{Manifest, SampleErrorRecord};
 
+use super::fill;
 use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
-    named_output::{NamedOutput, named},
+    named_output::NamedOutput,
     output::existing_of,
     packages,
-    progress::Progress,
-    settings::{polygon, threads},
+    recorded,
+    settings::threads,
     table::{Digits, bytes},
 };
 
@@ -31,31 +31,24 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             args.file.output.display()
         )));
     }
-    let (place, dem) = args.files()?;
+    let (place, [dem, _]) =
+        args.from.files(&[], "corniche export geotiff PACKAGE --dem FILE...")?;
     let package = packages::open_with_datum(&place, &args.datum)?;
     let existing = existing_of(args.file.overwrite);
     let inputs: Vec<&Path> =
         [place.name()].into_iter().chain(dem.iter().map(AsRef::as_ref)).collect();
     let output =
         NamedOutput::create(&args.file.output, existing, "heights.tif".to_owned(), &inputs)?;
-    let elevation = elevation(args, &dem, &package)?;
+    let elevation = recorded::elevation(&args.from, &dem, &package)?;
     let request = GeoTiffRequest {
         level: args.at.level,
         bounds: args.within.bounds,
-        elevation: elevation
-            .as_ref()
-            .map(|RecordedElevation { dem, plan, .. }| Elevation { dem, plan }),
+        elevation: elevation.as_ref().map(recorded::for_export),
         threads: threads(args.cpu.threads),
     };
-    let progress = Progress::new();
-    let exported = export_geotiff(&package, &request, &output.path(), &progress);
-    progress.finish();
-    if let Some(elevation) = &elevation {
-        // A file that changed may be the cause of any other error.
-        elevation.check_unchanged()?;
-    }
-    let summary = exported.map_err(|error| named(error, &args.file.output))?;
-    let size = output.place()?;
+    let (summary, size) = fill(&args.file, output, elevation.as_ref(), |path, progress| {
+        export_geotiff(&package, &request, path, progress)
+    })?;
     if !summary.has_same_crs {
         messages::warning(&format!(
             "GeoTIFF has no words for all of the package's coordinate system ({}, heights: {}); what programs read of it may differ",
@@ -65,19 +58,6 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
     }
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
-}
-
-fn elevation(
-    args: &ExportGeoTiffArgs,
-    dem: &[PathBuf],
-    package: &FilePackage,
-) -> Result<Option<RecordedElevation>, Failure> {
-    if dem.is_empty() {
-        return Ok(None);
-    }
-    let files = corniche_pipeline::elevation_names(dem)?;
-    let polygon = args.polygon.clone().map(polygon).transpose()?;
-    Ok(Some(RecordedElevation::open(package, &files, polygon, &Progress::new())?))
 }
 
 fn to_text(

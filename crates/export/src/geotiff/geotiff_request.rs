@@ -1,8 +1,6 @@
 //! What a user asks for when a package becomes a raster.
 
-use corniche_dem::{Dem, GridPlan};
-
-use crate::bounds::DegreeBounds;
+use crate::{bounds::DegreeBounds, elevation::Elevation};
 
 /// What of a package becomes a raster, and with what it is compared.
 pub struct GeoTiffRequest<'a> {
@@ -14,13 +12,4 @@ pub struct GeoTiffRequest<'a> {
     pub elevation: Option<Elevation<'a>>,
     /// How many blocks are made at the same time.
     pub threads: usize,
-}
-
-/// The elevation files that a package was made from.
-#[derive(Debug, Clone, Copy)]
-pub struct Elevation<'a> {
-    /// Opened as the build did.
-    pub dem: &'a Dem,
-    /// The package's grid.
-    pub plan: &'a GridPlan,
 }

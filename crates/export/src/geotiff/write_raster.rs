@@ -9,10 +9,12 @@ use corniche_work::{Observer, Stage, workers::make_all};
 use super::{
     block::{self, Block, Tins},
     file::{Number, RasterFacts, RasterFile},
-    geotiff_request::{Elevation, GeoTiffRequest},
+    geotiff_request::GeoTiffRequest,
     grid::RasterGrid,
 };
-use crate::{error::ExportError, feature_request::Coordinates, places::Places, read};
+use crate::{
+    elevation::Elevation, error::ExportError, feature_request::Coordinates, places::Places, read,
+};
 
 /// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
 const BLOCKS_AT_ONCE: usize = 64;

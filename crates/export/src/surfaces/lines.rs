@@ -233,6 +233,7 @@ fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
             attributes: (*line.attributes).clone(),
             line: whole,
             fixed,
+            node_ids: Vec::new(),
         };
         line.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
     }

@@ -35,6 +35,7 @@ fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
         table: &frc_table,
         place: &to_lattice,
         seam: None,
+        node_ids: false,
         pool: &pool,
         memory_bytes,
         scratch: &scratch,

@@ -82,6 +82,7 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, Area
         table: &default_table(),
         place: &to_lattice,
         seam: None,
+        node_ids: false,
         pool: &pool,
         memory_bytes: 1 << 26,
         scratch: &scratch,

@@ -30,6 +30,7 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         table: &frc_table,
         place: &to_lattice,
         seam: None,
+        node_ids: false,
         pool: &pool,
         memory_bytes,
         scratch: &scratch,

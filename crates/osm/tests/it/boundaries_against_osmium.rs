@@ -83,6 +83,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             table: &default_table(),
             place: &to_lattice,
             seam: None,
+            node_ids: false,
             pool: &pool,
             memory_bytes: 1 << 26,
             scratch: &MemoryScratch::default(),

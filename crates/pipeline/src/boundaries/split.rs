@@ -117,6 +117,7 @@ impl BoundarySplitting<'_> {
             attributes: RoadAttributes::default(),
             line,
             fixed: boundary.fixed.clone(),
+            node_ids: Vec::new(),
         };
         let step = self.step(level);
         let on_lattice = |part: i64| (part + step / 2).div_euclid(step) * step;

@@ -10,23 +10,18 @@
 
 use std::{
     path::PathBuf,
-    sync::{Mutex, PoisonError, atomic::Ordering},
+    sync::atomic::Ordering,
 };
 
 use corniche_areas::AreaTable;
-use corniche_geom::{
-    GridFrame, LatticeBounds, LatticePoint, LatticeRegion, ProjectError, Projection,
-};
+use corniche_geom::{LatticeBounds, LatticeRegion, Projection};
 use corniche_osm::{
     ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
 };
 use corniche_store::{Artifacts, Scratch};
 use corniche_work::Stage;
 
-use super::{
-    kept::{kept_in, not_read},
-    no_road,
-};
+use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
 use crate::{
     BuildError, Defect, Observer, RoadSettings,
     areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
@@ -212,51 +207,24 @@ fn boundary_layer<'a>(
     BoundaryLayer::new(splitting, places, input.memory_bytes)
 }
 
-/// Reads the extract. Points that cannot be projected make it fail.
+/// Reads the extract.
 fn on_extract(
     input: &ExtractInput<'_>,
     scratch: &dyn Scratch,
     told: &LayerContext<'_>,
     read: impl FnOnce(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
 ) -> Result<(), BuildError> {
-    let unprojected = Mutex::new(None);
-    let place = |positions_deg: &[[f64; 2]]| {
-        place(positions_deg, input.levels.frame(), input.projection).unwrap_or_else(|error| {
-            // The points are not at fault: the run fails with this error after reading.
-            *unprojected.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-            vec![None; positions_deg.len()]
-        })
-    };
-    let Some((path, others)) = input.osm.split_first() else { return Ok(()) };
-    let done = read(&ReadRequest {
-        path,
-        others,
+    let reading = PlacedReading {
+        osm: input.osm,
         table: &input.settings.table,
-        place: &place,
-        seam: input.projection.seam().map(|seam| seam.on_lattice(input.levels.frame())),
+        frame: input.levels.frame(),
+        projection: input.projection,
+        node_ids: false,
         pool: input.pool,
         memory_bytes: input.memory_bytes,
-        scratch,
-        on_progress: Some(&|done, total| told.reached(Stage::Extract, done, total)),
-    });
-    if told.observer.is_cancelled() {
-        return Err(BuildError::Interrupted);
-    }
-    done.map_err(not_read)?;
-    if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        return Err(BuildError::Project(error));
-    }
-    Ok(())
-}
-
-fn place(
-    positions_deg: &[[f64; 2]],
-    frame: &GridFrame,
-    projection: &dyn Projection,
-) -> Result<Vec<Option<LatticePoint>>, ProjectError> {
-    let mut positions = positions_deg.to_vec();
-    projection.working_from_wgs84(&mut positions)?;
-    Ok(positions.into_iter().map(|position_m| frame.snap(position_m)).collect())
+    };
+    let on_progress = |done, total| told.reached(Stage::Extract, done, total);
+    reading.read(scratch, (told.observer, &on_progress), read)
 }
 
 #[cfg(test)]

@@ -180,6 +180,7 @@ impl RoadPart<'_> {
             attributes: road.attributes.clone(),
             line,
             fixed,
+            node_ids: Vec::new(),
         };
         Self { road: Cow::Owned(own), segments_um: own_um }
     }

@@ -222,6 +222,7 @@ impl World {
             attributes: RoadAttributes { name: format!("{ordinal}"), ..RoadAttributes::default() },
             line,
             fixed: vec![0, last / 2, last],
+            node_ids: Vec::new(),
         }
     }
 }
@@ -324,6 +325,7 @@ impl Large {
             attributes: RoadAttributes::default(),
             line: Polyline::new(points).unwrap(),
             fixed: vec![0, last],
+            node_ids: Vec::new(),
         };
         let lengths = self.lengths();
         RoadSplitting {

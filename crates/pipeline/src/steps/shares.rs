@@ -58,6 +58,7 @@ fn read(
         // Places on the lattice are the business of the step that makes roads.
         place: &|positions_deg| vec![None; positions_deg.len()],
         seam: None,
+        node_ids: false,
         pool: &pool(context)?,
         memory_bytes: context.memory().sorting,
         scratch,

@@ -114,7 +114,7 @@ fn compare_all(
 }
 
 /// The table with the classes on that the package has chosen.
-fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
+pub(crate) fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
     let classes = manifest.settings.classes.as_deref();
     // Classes that make no choice are not those of the table's hash either.
     let chosen = classes.and_then(|classes| table.clone().with_classes(classes).ok());
@@ -123,7 +123,7 @@ fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
 
 /// Checks that the extracts and the table of classes are those of the build. Returns the extracts in the order in which they were
 /// read: where versions are the same, the first one counts, and files may have other names now.
-fn check_inputs(
+pub(crate) fn check_inputs(
     manifest: &Manifest,
     osm: &VerifyOsm,
     inputs: &Inputs,

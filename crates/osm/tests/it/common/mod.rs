@@ -124,6 +124,7 @@ pub(crate) fn request<'a>(
         table,
         place,
         seam: None,
+        node_ids: false,
         pool,
         memory_bytes,
         scratch,

@@ -82,6 +82,7 @@ impl LevelLine {
             attributes: RoadAttributes::default(),
             line: path,
             fixed: vec![0, last],
+            node_ids: Vec::new(),
         };
         let points = simplify(&road, tolerance).points().to_vec();
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {

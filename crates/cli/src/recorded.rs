@@ -1,0 +1,68 @@
+//! The inputs that a package was made from, opened again for commands that measure with them.
+
+use std::path::PathBuf;
+
+use corniche_export::Elevation;
+use corniche_pipeline::{RecordedElevation, VerifyOsm};
+use corniche_presets::frc_preset;
+use corniche_roads::FrcTable;
+use corniche_tileset::FilePackage;
+
+use crate::{
+    args::{ExtractArgs, RecordedArgs},
+    failure::Failure,
+    presets,
+    progress::Progress,
+    settings::polygon,
+};
+
+/// Memory for sorting what extracts hold.
+pub(crate) const MEMORY_BYTES: u64 = 256 << 20;
+
+/// The elevation files of a package, if some are named; those of another package are refused.
+pub(crate) fn elevation(
+    args: &RecordedArgs,
+    dem: &[PathBuf],
+    package: &FilePackage,
+) -> Result<Option<RecordedElevation>, Failure> {
+    if dem.is_empty() {
+        return Ok(None);
+    }
+    let files = corniche_pipeline::elevation_names(dem)?;
+    let polygon = args.polygon.clone().map(polygon).transpose()?;
+    Ok(Some(RecordedElevation::open(package, &files, polygon, &Progress::new())?))
+}
+
+/// Elevation files for an export.
+pub(crate) fn for_export(recorded: &RecordedElevation) -> Elevation<'_> {
+    Elevation { dem: &recorded.dem, plan: &recorded.plan }
+}
+
+/// The extracts of a package, with the FRC table that it was made with.
+pub(crate) fn extract(
+    args: &ExtractArgs,
+    osm: &[PathBuf],
+    package: &FilePackage,
+) -> Result<VerifyOsm, Failure> {
+    Ok(VerifyOsm {
+        paths: corniche_pipeline::extract_names(osm)?,
+        table: frc_table(args.frc_table.as_deref(), package)?,
+        areas: None,
+        memory_bytes: MEMORY_BYTES,
+    })
+}
+
+/// The FRC table that is named, or the preset whose name the package has.
+pub(crate) fn frc_table(named: Option<&str>, package: &FilePackage) -> Result<FrcTable, Failure> {
+    if let Some(table) = named {
+        return presets::frc_table(table);
+    }
+    let name = &package.manifest().settings.frc_table;
+    if frc_preset(name).is_none() {
+        return Err(Failure::unusable(format!(
+            "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
+            package.path().display()
+        )));
+    }
+    presets::frc_table(name)
+}

@@ -1,0 +1,104 @@
+//! Heights of the elevation files at any place, from blocks of nodes.
+
+use std::{
+    collections::{HashMap, VecDeque},
+    rc::Rc,
+};
+
+use corniche_dem::Reader;
+use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
+
+use crate::{elevation::Elevation, error::ExportError};
+
+/// Cells along each side of a block.
+const BLOCK_CELLS: i64 = 64;
+/// Blocks that are kept: 17 MB.
+const MOST_BLOCKS: usize = 1024;
+
+/// Heights at the nodes of a block, row by row from the north.
+type Block = Rc<[f32]>;
+
+/// The surface over the nodes of a package's grid, as its elevation files have them: bilinear in each cell.
+pub(crate) struct DemNodes<'a> {
+    reader: Reader<'a>,
+    /// Lattice steps from node to node, east and north.
+    steps: [f64; 2],
+    kept: HashMap<[i64; 2], Block>,
+    /// The blocks that are kept, the oldest first.
+    order: VecDeque<[i64; 2]>,
+}
+
+impl<'a> DemNodes<'a> {
+    pub(crate) fn new(elevation: Elevation<'a>, frame: &GridFrame) -> Self {
+        Self {
+            reader: elevation.dem.reader(elevation.plan),
+            steps: frame.node_steps(frame.max_level()).map(|steps| steps as f64),
+            kept: HashMap::new(),
+            order: VecDeque::new(),
+        }
+    }
+
+    /// Lattice steps from node to node, east and north.
+    pub(crate) fn steps(&self) -> [f64; 2] {
+        self.steps
+    }
+
+    /// The height at a place on the lattice; `None` where a node that it needs has none. The same place has the same height to the last bit, from
+    /// whatever cell a line comes.
+    pub(crate) fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ExportError> {
+        let in_cells = [at[0] / self.steps[0], at[1] / self.steps[1]];
+        let cell = in_cells.map(f64::floor);
+        let [east, north] = [in_cells[0] - cell[0], in_cells[1] - cell[1]];
+        let [i, j] = cell.map(|index| index as i64);
+        let mut row = |j: i64| -> Result<f64, ExportError> {
+            let west = if east < 1.0 { self.node_m([i, j])? } else { 0.0 };
+            let beyond = if east > 0.0 { self.node_m([i + 1, j])? } else { 0.0 };
+            Ok(mix(west, beyond, east))
+        };
+        let south = if north < 1.0 { row(j)? } else { 0.0 };
+        let beyond = if north > 0.0 { row(j + 1)? } else { 0.0 };
+        let height_m = mix(south, beyond, north);
+        Ok(height_m.is_finite().then_some(height_m))
+    }
+
+    /// The height of a node; NaN where there is none.
+    fn node_m(&mut self, [i, j]: [i64; 2]) -> Result<f64, ExportError> {
+        let number = [i, j].map(|index| index.div_euclid(BLOCK_CELLS));
+        let block = match self.kept.get(&number) {
+            Some(block) => Rc::clone(block),
+            None => self.read(number)?,
+        };
+        let [column, row] = [i - number[0] * BLOCK_CELLS, j - number[1] * BLOCK_CELLS];
+        let from_north = BLOCK_CELLS - 1 - row;
+        Ok(f64::from(block[(from_north * BLOCK_CELLS + column) as usize]))
+    }
+
+    fn read(&mut self, number: [i64; 2]) -> Result<Block, ExportError> {
+        let side = BLOCK_CELLS as usize;
+        let [i, j] = number.map(|number| number * BLOCK_CELLS);
+        let corner = NodeIndex { i, j: j + BLOCK_CELLS - 1 };
+        let window = NodeWindow { corner, stride: 1, columns: side, rows: side };
+        let read = self.reader.window(window);
+        let read = read.map_err(|source| ExportError::Elevation(Box::new(source)))?;
+        let block: Block = read.heights.raw().into();
+        if self.order.len() >= MOST_BLOCKS
+            && let Some(oldest) = self.order.pop_front()
+        {
+            self.kept.remove(&oldest);
+        }
+        self.order.push_back(number);
+        self.kept.insert(number, Rc::clone(&block));
+        Ok(block)
+    }
+}
+
+/// A height between two, of which one counts alone at its own place.
+fn mix(from: f64, to: f64, share: f64) -> f64 {
+    if share <= 0.0 {
+        from
+    } else if share >= 1.0 {
+        to
+    } else {
+        from + share * (to - from)
+    }
+}

@@ -1,0 +1,258 @@
+//! The stretches of an extract's roads from junction to junction, as a router reads them.
+
+use std::{collections::BTreeMap, fmt::Write as _, path::Path};
+
+use corniche_areas::AreaObject;
+use corniche_network::{Breaks, Chain, Chains, Network};
+use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
+use corniche_tileset::FilePackage;
+use corniche_work::{Observer, Stage};
+
+use crate::{
+    dem_ground::{DemNodes, lay},
+    elevation::Elevation,
+    error::ExportError,
+    feature::{oneway, real, text},
+    feature_request::FeatureRequest,
+    features::{About, FeatureSource},
+    grades::{GRADE_LENGTH_M, MeasuredChains, Smoothing},
+    measures::steepest,
+    piece::Vertex,
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile},
+};
+
+/// Edges are told of after so many.
+const TOLD_EDGES: u64 = 1024;
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgesSummary {
+    /// Edges written.
+    pub edges: u64,
+    /// Edges of which no part lies on ground; they are left out.
+    pub without_ground: u64,
+    /// Edges with a height that is not known, because they leave the ground or end on a bridge or in a tunnel: they have no ascent.
+    pub without_ascent: u64,
+    /// True length in plan, metres.
+    pub length_m: f64,
+    /// What heights are, in words.
+    pub heights: String,
+}
+
+/// What is known of an edge.
+struct Edge<'a> {
+    ends: [Option<i64>; 2],
+    ways: String,
+    shares: Shares<'a>,
+    profile: Option<Vec<[f64; 2]>>,
+}
+
+/// What an edge is made of, by length in metres.
+#[derive(Default)]
+struct Shares<'a> {
+    length_m: f64,
+    kinds: BTreeMap<(FunctionalRoadClass, &'a str), f64>,
+    bridge_m: f64,
+    tunnel_m: f64,
+    /// Permitted directions, relative to the edge.
+    oneways: Vec<Oneway>,
+}
+
+const FIELDS: &[Field] = &[
+    field("from_node", FieldKind::Integer64, "", "id of the node where it begins; null where a way is cut"),
+    field("to_node", FieldKind::Integer64, "", "id of the node where it ends; null where a way is cut"),
+    field("ways", FieldKind::Text, "", "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it"),
+    field("class", FieldKind::Integer, "", "functional road class of the largest part"),
+    field("highway", FieldKind::Text, "", "OSM's `highway` of the largest part"),
+    field("oneway", FieldKind::Text, "", "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`"),
+    field("length_m", FieldKind::Real, "m", "true length in plan, on the ellipsoid of WGS84"),
+    field("ascent_m", FieldKind::Real, "m", "sum of all that the smooth line rises from the first to the last node; null where a height is not known"),
+    field("descent_m", FieldKind::Real, "m", "sum of all that it falls from the first to the last node"),
+    field("ascent_back_m", FieldKind::Real, "m", "sum of all that it rises on the way back"),
+    field("descent_back_m", FieldKind::Real, "m", "sum of all that it falls on the way back"),
+    field("weighted_grade_pct", FieldKind::Real, "%", "size of the grade, up or down, weighted by length"),
+    field("steepest_pct", FieldKind::Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter"),
+    field("from_height_m", FieldKind::Real, "m", "height of the smooth line at the first node: the same for all edges there"),
+    field("to_height_m", FieldKind::Real, "m", "height of the smooth line at the last node"),
+    field("bridge_share", FieldKind::Real, "", "part of its length on bridges, 0 to 1"),
+    field("tunnel_share", FieldKind::Real, "", "part of its length in tunnels, 0 to 1"),
+];
+
+const fn field(name: &'static str, kind: FieldKind, unit: &'static str, meaning: &'static str) -> Field {
+    Field { name, kind, unit, meaning }
+}
+
+/// The fields of edges, in their order.
+#[must_use]
+pub fn edge_fields() -> Vec<Field> {
+    FIELDS.to_vec()
+}
+
+/// Writes the edges of a network to a new file at `path`: each is there once, from the node with the smaller id. Their lines lie on the elevation
+/// files; ascents and grades are those of smooth lines, straight over bridges and through tunnels. After an error the file at `path` is of no use.
+///
+/// # Errors
+/// When the request cannot be met, an elevation file cannot be read, or something cannot be written.
+pub fn export_edges(
+    package: &FilePackage,
+    request: &FeatureRequest<FunctionalRoadClass>,
+    (elevation, network): (Elevation<'_>, &Network),
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<EdgesSummary, ExportError> {
+    let source = FeatureSource::new(package, request, ShapeKind::Lines)?;
+    let frame = &package.manifest().frame;
+    let mut nodes = DemNodes::new(elevation, frame);
+    let smoothing = Smoothing::of_frame(frame);
+    let places = &source.places;
+    let measured = MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)?;
+    let about = About {
+        fields: edge_fields(),
+        description: format!("Roads from junction to junction. Heights: {}.", places.heights()),
+        metadata: vec![("HEIGHTS", places.heights().to_owned())],
+    };
+    let layer = source.layer("edges", ShapeKind::Lines, about);
+    let mut file = VectorFile::create(path, request.format, layer)?;
+    let mut summary = EdgesSummary {
+        edges: 0,
+        without_ground: 0,
+        without_ascent: 0,
+        length_m: 0.0,
+        heights: places.heights().to_owned(),
+    };
+    let edges = Chains::of(network, Breaks::Junctions);
+    observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
+    for (done, number) in (1..).zip(edges.numbers()) {
+        if done % TOLD_EDGES == 0 {
+            observer.check()?;
+            observer.advance(Stage::ExportFeatures, TOLD_EDGES);
+        }
+        let chain = edges.get(number);
+        let line: Vec<Vertex> = network
+            .points_of_chain(&chain)
+            .into_iter()
+            .map(|point| Vertex { at: point.in_steps(), z_m: f64::NAN, is_source: true })
+            .collect();
+        let laid = lay(&mut nodes, &line)?;
+        if laid.is_empty() {
+            summary.without_ground += 1;
+            continue;
+        }
+        let edge = Edge {
+            ends: chain.ends.map(|node| network.node_id(node)),
+            ways: ways_text(network, &chain),
+            shares: Shares::of(&measured, &chain),
+            profile: measured.profile(chain.links),
+        };
+        summary.edges += 1;
+        summary.length_m += edge.shares.length_m;
+        summary.without_ascent += u64::from(edge.profile.is_none());
+        let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
+        let mut carried = Vec::new();
+        for line in laid {
+            carried.extend(places.carry(object, &line.vertices)?);
+        }
+        file.push(Record { values: edge.values(), shape: Shape::Lines(carried) })?;
+    }
+    file.finish()?;
+    observer.end(Stage::ExportFeatures);
+    Ok(summary)
+}
+
+impl Edge<'_> {
+    /// A value for each of [`edge_fields`].
+    fn values(&self) -> Vec<Value> {
+        let Shares { length_m, bridge_m, tunnel_m, .. } = self.shares;
+        let share = |part_m: f64| real(if length_m > 0.0 { part_m / length_m } else { 0.0 });
+        let (class, highway) = self.shares.largest();
+        let profile = self.profile.as_deref();
+        let sum = |sign: f64| {
+            let rise = |pair: &[[f64; 2]; 2]| (sign * (pair[1][1] - pair[0][1])).max(0.0);
+            profile.map(|profile| profile.array_windows().map(rise).sum::<f64>())
+        };
+        let (ascent_m, descent_m) = (sum(1.0), sum(-1.0));
+        let both = ascent_m.zip(descent_m).map(|(up_m, down_m)| up_m + down_m);
+        let weighted = both.filter(|_| length_m > 0.0).map(|both_m| 100.0 * both_m / length_m);
+        let steepest = profile.and_then(|profile| steepest(profile, GRADE_LENGTH_M));
+        let height = |end: Option<&[f64; 2]>| optional(end.map(|end| end[1]));
+        let node = |id: Option<i64>| id.map_or(Value::Null, Value::Integer);
+        vec![
+            node(self.ends[0]),
+            node(self.ends[1]),
+            Value::Text(self.ways.clone()),
+            class.map_or(Value::Null, |class| Value::Integer(class.number().into())),
+            text(highway),
+            Value::Text(self.shares.oneway().to_owned()),
+            real(length_m),
+            optional(ascent_m),
+            optional(descent_m),
+            optional(descent_m),
+            optional(ascent_m),
+            optional(weighted),
+            optional(steepest.map(|grade| 100.0 * grade)),
+            height(profile.and_then(<[_]>::first)),
+            height(profile.and_then(<[_]>::last)),
+            share(bridge_m),
+            share(tunnel_m),
+        ]
+    }
+}
+
+fn optional(value: Option<f64>) -> Value {
+    value.map_or(Value::Null, real)
+}
+
+/// The ways of an edge, each once in a row, with their directions.
+fn ways_text(network: &Network, chain: &Chain<'_>) -> String {
+    let mut ways: Vec<(i64, bool)> =
+        chain.links.iter().map(|link| (network.way_of(*link).way_id, link.is_against)).collect();
+    ways.dedup();
+    let mut text = String::new();
+    for (way_id, is_against) in ways {
+        let space = if text.is_empty() { "" } else { " " };
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{space}{way_id}{}", if is_against { 'b' } else { 'f' });
+    }
+    text
+}
+
+impl<'a> Shares<'a> {
+    fn of(measured: &MeasuredChains<'a>, chain: &Chain<'_>) -> Self {
+        let network = measured.network();
+        let mut shares = Self::default();
+        for &link in chain.links {
+            let (way, own_m) = (network.way_of(link), measured.link_m(link));
+            shares.length_m += own_m;
+            *shares.kinds.entry((way.class, network.highway_of(way))).or_default() += own_m;
+            match way.structure {
+                Structure::Ground => {}
+                Structure::Bridge => shares.bridge_m += own_m,
+                Structure::Tunnel => shares.tunnel_m += own_m,
+            }
+            shares.oneways.push(match (way.oneway, link.is_against) {
+                (Oneway::Forward, true) => Oneway::Backward,
+                (Oneway::Backward, true) => Oneway::Forward,
+                (oneway, _) => oneway,
+            });
+        }
+        shares
+    }
+
+    /// What most of it is; of equal parts the more important class.
+    fn largest(&self) -> (Option<FunctionalRoadClass>, &'a str) {
+        let mut most: Option<((FunctionalRoadClass, &'a str), f64)> = None;
+        for (&kind, &own_m) in &self.kinds {
+            if most.is_none_or(|(_, most_m)| own_m > most_m) {
+                most = Some((kind, own_m));
+            }
+        }
+        most.map_or((None, ""), |((class, highway), _)| (Some(class), highway))
+    }
+
+    fn oneway(&self) -> &'static str {
+        match self.oneways.split_first() {
+            Some((first, others)) if others.iter().all(|other| other == first) => oneway(*first),
+            _ => "mixed",
+        }
+    }
+}

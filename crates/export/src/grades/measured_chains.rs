@@ -1,0 +1,418 @@
+//! The chains of a network with heights of the elevation files, and smooth lines along them.
+
+use std::ops::Range;
+
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_network::{Breaks, ChainNumber, Chains, Link, Network};
+use corniche_roads::Structure;
+use corniche_work::{Observer, Stage};
+
+use super::{
+    junctions::{Leg, Legs, node_heights},
+    smooth_line::{SmoothLine, Station, between, stations},
+    smoothing::Smoothing,
+};
+use crate::{dem_ground::DemNodes, error::ExportError, places::Places};
+
+/// Chains are told of after so many.
+const TOLD_CHAINS: u64 = 1024;
+
+/// The chains of a network, cut where bridges and tunnels begin, with what their heights are.
+pub(crate) struct MeasuredChains<'a> {
+    network: &'a Network,
+    places: &'a Places<'a>,
+    chains: Chains,
+    smoothing: Smoothing,
+    lengths_m: Vec<f64>,
+    /// Where the stations of each chain begin, and the end of all. Bridges and tunnels have none.
+    starts: Vec<usize>,
+    /// The ground at all stations, NaN where there is none.
+    grounds_m: Vec<f32>,
+    /// The height at each node, NaN where there is none that is shared.
+    nodes_m: Vec<f64>,
+}
+
+/// A chain with its points and their distances from its beginning.
+struct Along {
+    points: Vec<LatticePoint>,
+    distances_m: Vec<f64>,
+}
+
+impl Along {
+    fn length_m(&self) -> f64 {
+        self.distances_m.last().copied().unwrap_or_default()
+    }
+
+    /// The place at a distance, which ascends from call to call; `after` is the point after the one before.
+    fn at(&self, along_m: f64, after: &mut usize) -> [f64; 2] {
+        while *after + 1 < self.points.len() && self.distances_m[*after] < along_m {
+            *after += 1;
+        }
+        let [from, to] = [after.saturating_sub(1), *after];
+        let ends = [from, to].map(|index| self.points[index].in_steps());
+        let coordinate = |axis: usize| {
+            let of = |index: usize| [self.distances_m[index], ends[index - from][axis]];
+            between(of(from), of(to), along_m)
+        };
+        [coordinate(0), coordinate(1)]
+    }
+}
+
+impl<'a> MeasuredChains<'a> {
+    /// Reads the ground along all chains, and finds one height for each junction.
+    pub(crate) fn measure(
+        network: &'a Network,
+        places: &'a Places<'a>,
+        nodes: &mut DemNodes<'_>,
+        smoothing: Smoothing,
+        observer: &dyn Observer,
+    ) -> Result<Self, ExportError> {
+        let chains = Chains::of(network, Breaks::JunctionsAndStructures);
+        let mut measured = Self {
+            network,
+            places,
+            smoothing,
+            lengths_m: Vec::with_capacity(chains.len()),
+            starts: vec![0],
+            grounds_m: Vec::new(),
+            nodes_m: Vec::new(),
+            chains,
+        };
+        let mut order = Vec::with_capacity(measured.chains.len());
+        for number in measured.chains.numbers() {
+            let along = measured.along(number);
+            let length_m = along.length_m();
+            measured.lengths_m.push(length_m);
+            let own = if measured.is_on_ground(number) { stations(length_m) } else { 0 };
+            measured.starts.push(measured.starts[number.0] + own);
+            if own > 0 {
+                let steps = nodes.steps();
+                let first = along.points[0].in_steps();
+                // Neighbours are read one after the other, so that each height is read once or twice.
+                let block = [0, 1].map(|axis| (first[axis] / steps[axis] / 64.0).floor() as i64);
+                order.push((block, number));
+            }
+        }
+        order.sort_unstable();
+        let count = measured.starts.last().copied().unwrap_or_default();
+        measured.grounds_m = vec![f32::NAN; count];
+        observer.begin(Stage::ExportChains, Some(order.len() as u64));
+        for (done, &(_, number)) in (1..).zip(&order) {
+            measured.read_ground(number, nodes)?;
+            if done % TOLD_CHAINS == 0 {
+                observer.check()?;
+                observer.advance(Stage::ExportChains, TOLD_CHAINS);
+            }
+        }
+        measured.nodes_m = node_heights(&measured, observer)?;
+        observer.end(Stage::ExportChains);
+        Ok(measured)
+    }
+
+    fn read_ground(
+        &mut self,
+        number: ChainNumber,
+        nodes: &mut DemNodes<'_>,
+    ) -> Result<(), ExportError> {
+        let along = self.along(number);
+        let own = self.stations_of(number);
+        let (mut after, last) = (0, own.len() - 1);
+        for k in 0..own.len() {
+            let along_m = along.length_m() * k as f64 / last as f64;
+            let at = along.at(along_m, &mut after);
+            if let Some(height_m) = nodes.height_m(at)? {
+                self.grounds_m[own.start + k] = height_m as f32;
+            }
+        }
+        Ok(())
+    }
+
+    fn stations_of(&self, ChainNumber(number): ChainNumber) -> Range<usize> {
+        self.starts[number]..self.starts[number + 1]
+    }
+
+    fn is_on_ground(&self, number: ChainNumber) -> bool {
+        let links = self.chains.get(number).links;
+        self.network.way_of(links[0]).structure == Structure::Ground
+    }
+
+    fn along(&self, number: ChainNumber) -> Along {
+        let points = self.network.points_of_chain(&self.chains.get(number));
+        Along { distances_m: self.distances(points.iter().copied()), points }
+    }
+
+    /// The distance of each point of a line from its beginning.
+    fn distances(&self, points: impl Iterator<Item = LatticePoint>) -> Vec<f64> {
+        let mut before: Option<[f64; 2]> = None;
+        let mut along_m = 0.0;
+        points
+            .map(|point| {
+                let at = point.in_steps();
+                if let Some(before) = before.replace(at) {
+                    along_m += self.places.distance_m(before, at);
+                }
+                along_m
+            })
+            .collect()
+    }
+
+    /// What the smooth line of a chain is, at its stations; NaN where there is no ground. Empty for bridges and tunnels.
+    fn smooth(&self, number: ChainNumber) -> Vec<f64> {
+        let own = self.stations_of(number);
+        if own.is_empty() {
+            return Vec::new();
+        }
+        let grounds_m: Vec<f64> =
+            self.grounds_m[own].iter().map(|&height_m| f64::from(height_m)).collect();
+        let spacing_m = self.lengths_m[number.0] / (grounds_m.len() - 1) as f64;
+        let held_m = self.chains.get(number).ends.map(|node| {
+            Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
+        });
+        let mut smooth_m = vec![f64::NAN; grounds_m.len()];
+        let mut first = 0;
+        while first < grounds_m.len() {
+            let count = grounds_m[first..].iter().take_while(|height_m| height_m.is_finite()).count();
+            let end = first + count;
+            if count > 0 {
+                let held = [
+                    held_m[0].filter(|_| first == 0),
+                    held_m[1].filter(|_| end == grounds_m.len()),
+                ];
+                let solved = self.smoothing.solve(spacing_m, &grounds_m[first..end], held);
+                smooth_m[first..end].copy_from_slice(&solved);
+            }
+            first = end.max(first + 1);
+        }
+        smooth_m
+    }
+
+    /// The smooth lines of a way, with distances along it; in parts where it has a bridge, a tunnel or no ground.
+    pub(crate) fn of_way(&self, way_id: i64) -> Vec<SmoothLine> {
+        let mut lines = vec![SmoothLine::default()];
+        let mut known: Option<(ChainNumber, Vec<f64>)> = None;
+        let mut begin_m = 0.0;
+        for road in self.network.roads_of(way_id) {
+            // The parts of a way that is cut do not go on.
+            lines.push(SmoothLine::default());
+            for (number, index) in self.chains.of_road(&self.network.ways()[road]) {
+                if known.as_ref().is_none_or(|(of, _)| *of != number) {
+                    known = Some((number, self.smooth(number)));
+                }
+                let smooth_m = known.as_ref().map_or(&[][..], |(_, smooth_m)| smooth_m);
+                begin_m += self.add_stretch(number, index, (smooth_m, begin_m), &mut lines);
+            }
+        }
+        lines.retain(|line| line.stations.len() >= 2);
+        lines
+    }
+
+    /// Adds the smooth line of a stretch, in the direction of its way. Returns its length.
+    fn add_stretch(
+        &self,
+        number: ChainNumber,
+        index: usize,
+        (smooth_m, begin_m): (&[f64], f64),
+        lines: &mut Vec<SmoothLine>,
+    ) -> f64 {
+        let links = self.chains.get(number).links;
+        let from_m: f64 = links[..index].iter().map(|link| self.link_m(*link)).sum();
+        let link = links[index];
+        let points: Vec<LatticePoint> = self.network.points_of_link(link).collect();
+        let along = Along { distances_m: self.distances(points.iter().copied()), points };
+        let own_m = along.length_m();
+        if smooth_m.is_empty() {
+            lines.push(SmoothLine::default());
+            return own_m;
+        }
+        let grounds_m: Vec<f64> =
+            self.grounds_m[self.stations_of(number)].iter().copied().map(f64::from).collect();
+        // Its own points, and the stations of the chain between them.
+        let stations = self.distances_within(number, smooth_m.len(), [from_m, from_m + own_m]);
+        let mut distances_m = along.distances_m.clone();
+        let inner = stations.len() - 1;
+        distances_m.extend(stations[1..inner].iter().map(|at_m| at_m - from_m));
+        distances_m.sort_by(f64::total_cmp);
+        distances_m.dedup();
+        let mut after = 0;
+        let mut own: Vec<Station> = distances_m
+            .into_iter()
+            .map(|at_m| Station {
+                at: along.at(at_m, &mut after),
+                along_m: begin_m + if link.is_against { own_m - at_m } else { at_m },
+                height_m: self.height_at(number, smooth_m, from_m + at_m),
+                ground_m: self.height_at(number, &grounds_m, from_m + at_m),
+            })
+            .collect();
+        if link.is_against {
+            own.reverse();
+        }
+        for station in own {
+            let is_known = station.height_m.is_finite();
+            match lines.last_mut() {
+                Some(line) if is_known => {
+                    let last = line.stations.last().map(|last| last.along_m);
+                    if last.is_none_or(|last| last < station.along_m) {
+                        line.stations.push(station);
+                    }
+                }
+                _ => lines.push(SmoothLine::default()),
+            }
+        }
+        own_m
+    }
+
+    /// The smooth line of some links in a row: distances from their beginning, and heights. Over a bridge or through a tunnel a straight line between
+    /// its ends; `None` where a height is not known.
+    pub(crate) fn profile(&self, links: &[Link]) -> Option<Vec<[f64; 2]>> {
+        let mut profile: Vec<[f64; 2]> = Vec::new();
+        let mut known: Option<(ChainNumber, Vec<f64>)> = None;
+        let mut begin_m = 0.0;
+        for &link in links {
+            let (number, index) = self.chains.of_link(link);
+            if known.as_ref().is_none_or(|(of, _)| *of != number) {
+                known = Some((number, self.smooth_or_straight(number)));
+            }
+            let smooth_m = known.as_ref().map_or(&[][..], |(_, smooth_m)| smooth_m);
+            let in_chain = self.chains.get(number).links;
+            let from_m: f64 = in_chain[..index].iter().map(|link| self.link_m(*link)).sum();
+            let own_m = self.link_m(link);
+            let is_turned = in_chain[index].is_against != link.is_against;
+            let mut own: Vec<[f64; 2]> = self
+                .distances_within(number, smooth_m.len(), [from_m, from_m + own_m])
+                .into_iter()
+                .map(|at_m| {
+                    let height_m = self.height_at(number, smooth_m, at_m);
+                    let at_m = at_m - from_m;
+                    [begin_m + if is_turned { own_m - at_m } else { at_m }, height_m]
+                })
+                .collect();
+            if is_turned {
+                own.reverse();
+            }
+            profile.extend(own.into_iter().skip(usize::from(!profile.is_empty())));
+            begin_m += own_m;
+        }
+        profile.iter().all(|[_, height_m]| height_m.is_finite()).then_some(profile)
+    }
+
+    fn smooth_or_straight(&self, number: ChainNumber) -> Vec<f64> {
+        if self.is_on_ground(number) {
+            return self.smooth(number);
+        }
+        let ends = self.chains.get(number).ends;
+        ends.map(|node| self.nodes_m[self.network.index_of(node)]).to_vec()
+    }
+
+    /// The true length of a link in plan.
+    pub(crate) fn link_m(&self, link: Link) -> f64 {
+        self.distances(self.network.points_of_link(link)).last().copied().unwrap_or_default()
+    }
+
+    /// Two distances along a chain, and those of the stations between them.
+    fn distances_within(
+        &self,
+        ChainNumber(number): ChainNumber,
+        stations: usize,
+        [from_m, to_m]: [f64; 2],
+    ) -> Vec<f64> {
+        let last = stations.max(2) - 1;
+        let spacing_m = self.lengths_m[number] / last as f64;
+        let first = (from_m / spacing_m).floor() as usize + 1;
+        let between = (first..=last).map(|k| k as f64 * spacing_m);
+        let between = between.take_while(|&at_m| at_m < to_m);
+        [from_m].into_iter().chain(between).chain([to_m]).collect()
+    }
+
+    /// A height along a chain, between its stations.
+    fn height_at(&self, ChainNumber(number): ChainNumber, heights_m: &[f64], at_m: f64) -> f64 {
+        let last = heights_m.len().max(2) - 1;
+        let place = (at_m / self.lengths_m[number] * last as f64).clamp(0.0, last as f64);
+        let station = (place.floor() as usize).min(last - 1);
+        let share = place - station as f64;
+        match heights_m.get(station..station + 2) {
+            Some(&[from, to]) => from + share * (to - from),
+            _ => f64::NAN,
+        }
+    }
+
+    /// The network.
+    pub(crate) fn network(&self) -> &'a Network {
+        self.network
+    }
+
+    /// The ends of chains on the ground, by the node at which they lie.
+    fn legs_by_node(&self) -> IndexLists {
+        let ends = 2 * self.chains.len();
+        IndexLists::new(self.network.node_count(), ends, |end| {
+            let number = ChainNumber(end / 2);
+            let node = self.network.index_of(self.chains.get(number).ends[end % 2]);
+            self.is_on_ground(number).then_some(node).into_iter()
+        })
+    }
+}
+
+impl Legs for MeasuredChains<'_> {
+    fn by_node(&self) -> IndexLists {
+        self.legs_by_node()
+    }
+
+    fn is_dead_end(&self, node: usize) -> bool {
+        self.network.degree_at(node) < 2
+    }
+
+    fn smoothing(&self) -> Smoothing {
+        self.smoothing
+    }
+
+    fn leg(&self, Leg { chain, is_last }: Leg) -> (f64, Box<dyn Iterator<Item = f32> + '_>) {
+        let grounds_m = &self.grounds_m[self.stations_of(ChainNumber(chain))];
+        let spacing_m = self.lengths_m[chain] / (grounds_m.len().max(2) - 1) as f64;
+        if is_last {
+            (spacing_m, Box::new(grounds_m.iter().rev().copied()))
+        } else {
+            (spacing_m, Box::new(grounds_m.iter().copied()))
+        }
+    }
+
+    fn direction(&self, Leg { chain, is_last }: Leg) -> [f64; 2] {
+        let links = self.chains.get(ChainNumber(chain)).links;
+        let of_link = |link: &Link| self.network.points_of_link(*link).collect::<Vec<_>>();
+        let mut points: Vec<LatticePoint> = Vec::new();
+        let steps = self.direction_steps();
+        let is_far = |points: &[LatticePoint]| match points {
+            [first, .., last] => first.distance_steps(*last) >= steps,
+            _ => false,
+        };
+        for k in 0..links.len() {
+            let link = &links[if is_last { links.len() - 1 - k } else { k }];
+            let mut own = of_link(link);
+            if is_last {
+                own.reverse();
+            }
+            for point in own {
+                points.push(point);
+                if is_far(&points) {
+                    break;
+                }
+            }
+            if is_far(&points) {
+                break;
+            }
+        }
+        match points[..] {
+            [first, .., last] => {
+                let run = [(last.u - first.u) as f64, (last.v - first.v) as f64];
+                let length = run[0].hypot(run[1]);
+                if length > 0.0 { run.map(|part| part / length) } else { [0.0; 2] }
+            }
+            _ => [0.0; 2],
+        }
+    }
+}
+
+impl MeasuredChains<'_> {
+    /// The direction of a leg is that of its first ten metres or so.
+    fn direction_steps(&self) -> f64 {
+        10.0 / self.places.manifest().frame.lattice_step_m()
+    }
+}

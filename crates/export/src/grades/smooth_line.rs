@@ -1,0 +1,179 @@
+//! A smooth line, and what is measured of a part of it.
+
+use super::smoothing::{MOST_SPACING_M, Smoothing};
+use crate::measures::steepest;
+
+/// The steepest grade of a smooth line is taken over this length, metres.
+pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
+
+/// A place of a smooth line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Station {
+    /// Steps of the lattice east and north.
+    pub(crate) at: [f64; 2],
+    /// True distance in plan from the beginning of the way, metres.
+    pub(crate) along_m: f64,
+    /// Height of the smooth line.
+    pub(crate) height_m: f64,
+    /// Height of the ground.
+    pub(crate) ground_m: f64,
+}
+
+/// A smooth line without a gap: stations in order of their distances. Between them it is straight.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct SmoothLine {
+    pub(crate) stations: Vec<Station>,
+}
+
+/// What is measured of smooth lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct SmoothGrades {
+    /// Metres upwards, all of them together.
+    pub(crate) ascent_m: f64,
+    /// The same downwards.
+    pub(crate) descent_m: f64,
+    /// Steepest grade over [`GRADE_LENGTH_M`] or more, rise over run without sign; `None` where no line is as long.
+    pub(crate) steepest: Option<f64>,
+    /// The largest distance of the smooth line from the ground, metres.
+    pub(crate) most_off_m: f64,
+}
+
+impl SmoothLine {
+    /// The smooth line through a profile of distances and heights, which is held at its ends; its stations are nowhere in plan.
+    pub(crate) fn of_profile(profile: &[[f64; 2]], smoothing: Smoothing) -> Self {
+        let (Some(first), Some(last)) = (profile.first(), profile.last()) else {
+            return Self::default();
+        };
+        let count = stations(last[0] - first[0]);
+        let spacing_m = (last[0] - first[0]) / (count - 1) as f64;
+        let mut after = 0;
+        let heights_m: Vec<f64> = (0..count)
+            .map(|k| {
+                let along_m = if k + 1 == count { last[0] } else { first[0] + k as f64 * spacing_m };
+                while after + 1 < profile.len() && profile[after][0] < along_m {
+                    after += 1;
+                }
+                between(profile[after.saturating_sub(1)], profile[after], along_m)
+            })
+            .collect();
+        let smooth_m = smoothing.solve(spacing_m, &heights_m, [Some(first[1]), Some(last[1])]);
+        let station = |(k, (&ground_m, height_m)): (usize, (&f64, f64))| Station {
+            at: [f64::NAN; 2],
+            along_m: first[0] + k as f64 * spacing_m,
+            height_m,
+            ground_m,
+        };
+        Self { stations: heights_m.iter().zip(smooth_m).enumerate().map(station).collect() }
+    }
+
+    /// What lies between two distances; empty where it is nothing.
+    pub(crate) fn part(&self, [from_m, to_m]: [f64; 2]) -> Self {
+        let mut part = Self::default();
+        let mut push = |station: Station| {
+            let is_new = part.stations.last().is_none_or(|last| last.along_m < station.along_m);
+            if is_new {
+                part.stations.push(station);
+            }
+        };
+        for pair in self.stations.array_windows::<2>() {
+            let [from, to] = *pair;
+            if to.along_m <= from_m || from.along_m >= to_m {
+                continue;
+            }
+            push(from.towards(to, from_m.max(from.along_m)));
+            push(from.towards(to, to_m.min(to.along_m)));
+        }
+        part
+    }
+
+    /// Its distances and heights.
+    pub(crate) fn profile(&self) -> Vec<[f64; 2]> {
+        self.stations.iter().map(|station| [station.along_m, station.height_m]).collect()
+    }
+
+    /// The height at a distance; that of the nearest end beyond them, NaN of an empty line.
+    pub(crate) fn height_m(&self, along_m: f64) -> f64 {
+        let after = self.stations.partition_point(|station| station.along_m < along_m);
+        let [from, to] = [after.saturating_sub(1), after.min(self.stations.len().max(1) - 1)];
+        match (self.stations.get(from), self.stations.get(to)) {
+            (Some(from), Some(to)) => {
+                let ends = [from.along_m, to.along_m];
+                from.towards(*to, along_m.clamp(ends[0], ends[1])).height_m
+            }
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl SmoothLine {
+    /// Rise over run of 50 m around a distance, or of what the line has of them.
+    pub(crate) fn grade(&self, along_m: f64) -> f64 {
+        let ends = self.stations.first().zip(self.stations.last());
+        let Some([begin_m, end_m]) = ends.map(|(first, last)| [first.along_m, last.along_m]) else {
+            return f64::NAN;
+        };
+        let half_m = GRADE_LENGTH_M / 2.0;
+        let middle_m = along_m.min(end_m - half_m).max(begin_m + half_m);
+        let [from_m, to_m] = [middle_m - half_m, middle_m + half_m].map(|at_m| at_m.clamp(begin_m, end_m));
+        let rise_m = self.height_m(to_m) - self.height_m(from_m);
+        if to_m > from_m { rise_m / (to_m - from_m) } else { 0.0 }
+    }
+}
+
+impl SmoothGrades {
+    /// The measures of some lines together.
+    pub(crate) fn of(lines: &[SmoothLine]) -> Self {
+        let mut all = Self::default();
+        for line in lines {
+            for [from, to] in line.stations.array_windows::<2>() {
+                let rise_m = to.height_m - from.height_m;
+                all.ascent_m += rise_m.max(0.0);
+                all.descent_m += (-rise_m).max(0.0);
+            }
+            for station in &line.stations {
+                let off_m = (station.height_m - station.ground_m).abs();
+                all.most_off_m = all.most_off_m.max(off_m);
+            }
+            let grades = [all.steepest, steepest(&line.profile(), GRADE_LENGTH_M)];
+            all.steepest = grades.into_iter().flatten().reduce(f64::max);
+        }
+        all
+    }
+}
+
+impl Station {
+    /// The place at a distance on the way to another station.
+    fn towards(self, to: Self, along_m: f64) -> Self {
+        let run_m = to.along_m - self.along_m;
+        let share = if run_m > 0.0 { (along_m - self.along_m) / run_m } else { 0.0 };
+        if share <= 0.0 {
+            return self;
+        }
+        if share >= 1.0 {
+            return to;
+        }
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        Self {
+            at: [0, 1].map(|axis| mix(self.at[axis], to.at[axis])),
+            along_m,
+            height_m: mix(self.height_m, to.height_m),
+            ground_m: mix(self.ground_m, to.ground_m),
+        }
+    }
+}
+
+/// How many stations a line of a length has: two at least.
+pub(crate) fn stations(length_m: f64) -> usize {
+    (length_m / MOST_SPACING_M).ceil().max(1.0) as usize + 1
+}
+
+/// The height at a distance between two places of a profile.
+pub(crate) fn between(from: [f64; 2], to: [f64; 2], along_m: f64) -> f64 {
+    let run_m = to[0] - from[0];
+    let share = if run_m > 0.0 { ((along_m - from[0]) / run_m).clamp(0.0, 1.0) } else { 1.0 };
+    from[1] + share * (to[1] - from[1])
+}
+
+#[cfg(test)]
+#[path = "smooth_line_tests.rs"]
+mod tests;

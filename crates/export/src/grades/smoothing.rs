@@ -1,0 +1,166 @@
+//! The smooth line through heights at even distances.
+//!
+//! Of all lines z it is the one that makes Σ h (z − g)² + (Lc / 2π)⁴ Σ h (z″)² least, where g are the heights, h is the distance between stations and z″
+//! the second difference over h². Straight lines stay as they are; of a sine of wavelength Lc half is left, of shorter ones less. Source: Whittaker
+//! 1922, *On a New Method of Graduation*, with the penalty on second differences; Reinsch 1967, *Smoothing by Spline Functions*.
+
+use std::f64::consts::TAU;
+
+use corniche_geom::GridFrame;
+
+/// Stations are no farther apart, metres.
+pub(crate) const MOST_SPACING_M: f64 = 10.0;
+
+/// How much is smoothed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Smoothing {
+    /// Of waves of this length half is left, metres.
+    pub(crate) length_m: f64,
+}
+
+impl Smoothing {
+    /// What suits an elevation model with cells as long as this: 4.5 cells, and at least 100 m and at most 400 m.
+    pub(crate) fn of_cell(cell_m: f64) -> Self {
+        Self { length_m: (4.5 * cell_m).clamp(100.0, 400.0) }
+    }
+
+    /// What suits the grid of a package.
+    pub(crate) fn of_frame(frame: &GridFrame) -> Self {
+        let [east_m, north_m] = frame.cell().to_array();
+        Self::of_cell(east_m.max(north_m))
+    }
+
+    /// The smooth line through heights that are so far apart. Ends that are held have that height; others are free.
+    pub(crate) fn solve(
+        self,
+        spacing_m: f64,
+        heights_m: &[f64],
+        held_m: [Option<f64>; 2],
+    ) -> Vec<f64> {
+        let mut system = System::new(heights_m.len(), self.stiffness(spacing_m));
+        let mut right = heights_m.to_vec();
+        let last = heights_m.len().saturating_sub(1);
+        for (at, held_m) in [(0, held_m[0]), (last, held_m[1])] {
+            if let Some(height_m) = held_m {
+                system.hold(at, height_m, &mut right);
+            }
+        }
+        system.factor();
+        system.solve(&mut right);
+        right
+    }
+
+    /// The height of the free smooth line at one station, and how much it weighs: by how much the sum grows if the height there is another one, over
+    /// the square of the difference.
+    pub(crate) fn estimate(self, spacing_m: f64, heights_m: &[f64], at: usize) -> Estimate {
+        let mut system = System::new(heights_m.len(), self.stiffness(spacing_m));
+        system.factor();
+        let mut smooth_m = heights_m.to_vec();
+        system.solve(&mut smooth_m);
+        let mut influence = vec![0.0; heights_m.len()];
+        influence[at] = 1.0;
+        system.solve(&mut influence);
+        Estimate { height_m: smooth_m[at], weight: spacing_m / influence[at] }
+    }
+
+    /// The weight of squared second differences beside that of squared distances.
+    fn stiffness(self, spacing_m: f64) -> f64 {
+        if spacing_m > 0.0 { (self.length_m / TAU / spacing_m).powi(4) } else { 0.0 }
+    }
+}
+
+/// A height with its weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Estimate {
+    pub(crate) height_m: f64,
+    pub(crate) weight: f64,
+}
+
+/// A symmetric matrix with two bands beside its diagonal; factored, L D Lᵀ.
+struct System {
+    diagonal: Vec<f64>,
+    /// Entry k couples stations k and k + 1.
+    next: Vec<f64>,
+    /// Entry k couples stations k and k + 2.
+    after_next: Vec<f64>,
+}
+
+impl System {
+    /// The identity, and `stiffness` times the sum of squared second differences.
+    fn new(stations: usize, stiffness: f64) -> Self {
+        let mut system = Self {
+            diagonal: vec![1.0; stations],
+            next: vec![0.0; stations],
+            after_next: vec![0.0; stations],
+        };
+        for middle in 1..stations.saturating_sub(1) {
+            for (at, factor) in [(middle - 1, 1.0), (middle, 4.0), (middle + 1, 1.0)] {
+                system.diagonal[at] += factor * stiffness;
+            }
+            system.next[middle - 1] -= 2.0 * stiffness;
+            system.next[middle] -= 2.0 * stiffness;
+            system.after_next[middle - 1] += stiffness;
+        }
+        system
+    }
+
+    /// Fixes the value at an end.
+    fn hold(&mut self, at: usize, value: f64, right: &mut [f64]) {
+        let stations = self.diagonal.len();
+        self.diagonal[at] = 1.0;
+        right[at] = value;
+        let mut uncouple = |band: &mut Vec<f64>, reach: usize| {
+            if at + reach < stations {
+                right[at + reach] -= std::mem::take(&mut band[at]) * value;
+            }
+            if let Some(before) = at.checked_sub(reach) {
+                right[before] -= std::mem::take(&mut band[before]) * value;
+            }
+        };
+        uncouple(&mut self.next, 1);
+        uncouple(&mut self.after_next, 2);
+        right[at] = value;
+    }
+
+    fn factor(&mut self) {
+        let stations = self.diagonal.len();
+        for k in 0..stations {
+            let pivot = self.diagonal[k];
+            let [one, two] = [self.next[k] / pivot, self.after_next[k] / pivot];
+            if k + 1 < stations {
+                self.diagonal[k + 1] -= one * self.next[k];
+                self.next[k + 1] -= one * self.after_next[k];
+            }
+            if k + 2 < stations {
+                self.diagonal[k + 2] -= two * self.after_next[k];
+            }
+            (self.next[k], self.after_next[k]) = (one, two);
+        }
+    }
+
+    /// Replaces a right side by the solution; after [`System::factor`].
+    fn solve(&self, right: &mut [f64]) {
+        let stations = right.len();
+        for k in 0..stations {
+            let own = right[k];
+            if k + 1 < stations {
+                right[k + 1] -= self.next[k] * own;
+            }
+            if k + 2 < stations {
+                right[k + 2] -= self.after_next[k] * own;
+            }
+        }
+        for (value, pivot) in right.iter_mut().zip(&self.diagonal) {
+            *value /= pivot;
+        }
+        for k in (0..stations).rev() {
+            let next = right.get(k + 1).map_or(0.0, |next| self.next[k] * next);
+            let after_next = right.get(k + 2).map_or(0.0, |next| self.after_next[k] * next);
+            right[k] -= next + after_next;
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "smoothing_tests.rs"]
+mod tests;

@@ -1,0 +1,179 @@
+//! Chains of stretches through nodes at which two of them meet.
+
+use std::ops::Range;
+
+use corniche_geom::LatticePoint;
+
+use crate::network::{Network, NetworkWay, NodeNumber};
+
+/// Where chains end, beside dead ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Breaks {
+    /// At junctions.
+    Junctions,
+    /// At junctions, and where a bridge or a tunnel begins.
+    JunctionsAndStructures,
+}
+
+/// The number of a chain among [`Chains`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ChainNumber(pub usize);
+
+/// A stretch within a chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Link {
+    stretch: u32,
+    /// Whether the chain runs against the way.
+    pub is_against: bool,
+}
+
+/// A sequence of stretches, from node to node.
+#[derive(Debug, Clone, Copy)]
+pub struct Chain<'a> {
+    /// Where it begins and where it ends. Of two different nodes the first has the smaller number.
+    pub ends: [NodeNumber; 2],
+    /// Its stretches, in order; at least one.
+    pub links: &'a [Link],
+}
+
+/// All chains of a network: each stretch is in one of them.
+#[derive(Debug)]
+pub struct Chains {
+    links: Vec<Link>,
+    /// Where the links of each chain begin, and the end of all.
+    starts: Vec<usize>,
+    ends: Vec<[NodeNumber; 2]>,
+    /// Of each stretch its place among the links.
+    places: Vec<u32>,
+}
+
+/// The place of a stretch that is in no chain yet, and of stops that begin no stretch.
+const NO_PLACE: u32 = u32::MAX;
+
+impl Chains {
+    /// The chains of a network, ordered by the nodes at which they begin. What they are does not depend on the order, the direction or the
+    /// splitting of ways.
+    #[must_use]
+    pub fn of(network: &Network, breaks: Breaks) -> Self {
+        let mut chains = Self {
+            links: Vec::new(),
+            starts: vec![0],
+            ends: Vec::new(),
+            places: vec![NO_PLACE; network.stop_points.len()],
+        };
+        let goes_on = |node: u32| {
+            network.ends_at.of(node as usize).len() == 2
+                && (breaks == Breaks::Junctions || network.structure_at(node).is_some())
+        };
+        let nodes = || 0..network.nodes as u32;
+        // Chains with two ends first; what is left are rings without a junction, which begin at the smallest of their nodes.
+        for node in nodes().filter(|&node| !goes_on(node)).chain(nodes()) {
+            for &end in network.ends_at.of(node as usize) {
+                if chains.places[end as usize / 2] == NO_PLACE {
+                    chains.walk(network, node, end, &goes_on);
+                }
+            }
+        }
+        chains
+    }
+
+    /// Adds the chain that leaves a node with an end of a stretch.
+    fn walk(&mut self, network: &Network, from: u32, first: u32, goes_on: &dyn Fn(u32) -> bool) {
+        let mut end = first;
+        let to = loop {
+            let (stretch, is_against) = (end / 2, end % 2 == 1);
+            self.places[stretch as usize] = self.links.len() as u32;
+            self.links.push(Link { stretch, is_against });
+            let arrives = end ^ 1;
+            let node = network.stretch_nodes(stretch)[arrives as usize % 2];
+            if !goes_on(node) || node == from {
+                break node;
+            }
+            let next = network.ends_at.of(node as usize).iter().find(|&&other| other != arrives);
+            match next {
+                Some(&next) if self.places[next as usize / 2] == NO_PLACE => end = next,
+                _ => break node,
+            }
+        };
+        self.starts.push(self.links.len());
+        self.ends.push([NodeNumber(from), NodeNumber(to)]);
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The numbers of all chains.
+    pub fn numbers(&self) -> impl DoubleEndedIterator<Item = ChainNumber> + use<> {
+        (0..self.len()).map(ChainNumber)
+    }
+
+    /// A chain.
+    #[must_use]
+    pub fn get(&self, number: ChainNumber) -> Chain<'_> {
+        let ChainNumber(number) = number;
+        let links = &self.links[self.starts[number]..self.starts[number + 1]];
+        Chain { ends: self.ends[number], links }
+    }
+
+    /// The chain that a stretch of any other chains is in, and the number of its link there.
+    #[must_use]
+    pub fn of_link(&self, link: Link) -> (ChainNumber, usize) {
+        self.of_stretch(link.stretch as usize)
+    }
+
+    fn of_stretch(&self, stretch: usize) -> (ChainNumber, usize) {
+        let place = self.places[stretch] as usize;
+        let chain = self.starts.partition_point(|&start| start <= place) - 1;
+        (ChainNumber(chain), place - self.starts[chain])
+    }
+
+    /// The chains that the stretches of a road are in, in the road's order, each with the number of the link in its chain.
+    pub fn of_road<'a>(
+        &'a self,
+        way: &NetworkWay,
+    ) -> impl Iterator<Item = (ChainNumber, usize)> + 'a {
+        let Range { start, end } = way.stops;
+        (start..end.saturating_sub(1)).map(|stretch| self.of_stretch(stretch))
+    }
+}
+
+impl Network {
+    /// The road of a link.
+    #[must_use]
+    pub fn way_of(&self, link: Link) -> &NetworkWay {
+        &self.ways[self.way_of_stretch(link.stretch)]
+    }
+
+    /// The points of a link, in the direction of the chain: two at least.
+    pub fn points_of_link(&self, link: Link) -> impl DoubleEndedIterator<Item = LatticePoint> + '_ {
+        let way = self.way_of(link);
+        let [first, last] = [link.stretch, link.stretch + 1]
+            .map(|stop| way.points.start + self.stop_points[stop as usize] as usize);
+        let count = last + 1 - first;
+        let at = move |k: usize| if link.is_against { last - k } else { first + k };
+        (0..count).map(move |k| self.points[at(k)])
+    }
+
+    /// The points of a chain, each once.
+    #[must_use]
+    pub fn points_of_chain(&self, chain: &Chain<'_>) -> Vec<LatticePoint> {
+        let mut points: Vec<LatticePoint> = Vec::new();
+        for &link in chain.links {
+            points.extend(self.points_of_link(link).skip(usize::from(!points.is_empty())));
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+#[path = "chains_tests.rs"]
+mod tests;

@@ -1,0 +1,135 @@
+//! Chains are those of small networks drawn by hand, however their ways are split, turned and named.
+
+use corniche_geom::Polyline;
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use proptest::prelude::*;
+
+use super::*;
+use crate::NetworkBuilder;
+
+/// A road through nodes; each node lies at its own place, all are fixed.
+fn road(way_id: i64, node_ids: &[i64], structure: Structure) -> Road {
+    let points = node_ids.iter().map(|&id| LatticePoint::new(id * 1000, id * id)).collect();
+    Road {
+        way_id,
+        class: FunctionalRoadClass::new(5).unwrap(),
+        attributes: RoadAttributes { structure, ..RoadAttributes::default() },
+        line: Polyline::new(points).unwrap(),
+        fixed: (0..node_ids.len() as u32).collect(),
+        node_ids: node_ids.iter().copied().map(Some).collect(),
+    }
+}
+
+fn network(roads: &[Road]) -> Network {
+    let mut builder = NetworkBuilder::default();
+    roads.iter().for_each(|road| builder.push(road));
+    builder.finish()
+}
+
+/// The nodes of each chain, smaller end first; of rings and loops the smaller neighbour second.
+fn nodes_of(network: &Network, breaks: Breaks) -> Vec<Vec<i64>> {
+    let chains = Chains::of(network, breaks);
+    let mut all: Vec<Vec<i64>> = chains
+        .numbers()
+        .map(|number| {
+            let points = network.points_of_chain(&chains.get(number));
+            let mut nodes: Vec<i64> = points.iter().map(|point| point.u / 1000).collect();
+            let mut back = nodes.clone();
+            back.reverse();
+            nodes = nodes.min(back);
+            nodes
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
+    let ground = Structure::Ground;
+    let roads = [
+        road(7, &[1, 2, 3], ground),
+        road(8, &[5, 4, 3], ground),
+        road(9, &[2, 6], ground),
+        // A ring on its own, and one that hangs on node 6.
+        road(10, &[20, 21, 22, 20], ground),
+        road(11, &[6, 31, 30, 6], ground),
+    ];
+    let network = network(&roads);
+    let expected: [&[i64]; 5] =
+        [&[1, 2], &[2, 3, 4, 5], &[2, 6], &[6, 30, 31, 6], &[20, 21, 22, 20]];
+    assert_eq!(nodes_of(&network, Breaks::Junctions), expected);
+    let chains = Chains::of(&network, Breaks::Junctions);
+    let degree = |id: i64| network.degree(NodeNumber(network.node_ids.binary_search(&id).unwrap() as u32));
+    assert_eq!([1, 2, 3, 6, 20].map(degree), [1, 3, 2, 3, 2]);
+    // Way 8 is in the second chain, against its direction.
+    let of_road: Vec<_> = chains.of_road(&network.ways()[1]).collect();
+    assert_eq!(of_road.len(), 2);
+    for (number, link) in of_road {
+        let chain = chains.get(number);
+        assert!(chain.links[link].is_against);
+        assert_eq!(network.way_of(chain.links[link]).way_id, 8);
+    }
+}
+
+#[test]
+fn structures_are_chains_of_their_own_where_that_is_wanted() {
+    let roads = [
+        road(1, &[1, 2], Structure::Ground),
+        road(2, &[2, 3], Structure::Bridge),
+        road(3, &[3, 4], Structure::Bridge),
+        road(4, &[4, 5], Structure::Ground),
+    ];
+    let network = network(&roads);
+    assert_eq!(nodes_of(&network, Breaks::Junctions), [[1, 2, 3, 4, 5]]);
+    let expected: [&[i64]; 3] = [&[1, 2], &[2, 3, 4], &[4, 5]];
+    assert_eq!(nodes_of(&network, Breaks::JunctionsAndStructures), expected);
+}
+
+#[test]
+fn roads_in_the_same_place_meet_only_in_the_same_node() {
+    let mut other = road(2, &[2, 9], Structure::Ground);
+    other.node_ids[0] = Some(77);
+    let mut cut = road(3, &[2, 8], Structure::Ground);
+    cut.node_ids[0] = None;
+    let network = network(&[road(1, &[1, 2, 3], Structure::Ground), other, cut]);
+    let expected: [&[i64]; 3] = [&[1, 2, 3], &[2, 8], &[2, 9]];
+    assert_eq!(nodes_of(&network, Breaks::Junctions), expected);
+    assert_eq!(network.node_id(NodeNumber(network.node_count() as u32 - 1)), None);
+}
+
+proptest! {
+    #[test]
+    fn splitting_turning_and_naming_ways_changes_no_chain(
+        lines in prop::collection::vec(prop::collection::vec(1..14_i64, 2..7), 1..6),
+        cuts in prop::collection::vec((any::<prop::sample::Index>(), any::<bool>()), 30),
+    ) {
+        let lines: Vec<Vec<i64>> = lines
+            .into_iter()
+            .map(|mut line| { line.dedup(); line })
+            .filter(|line| line.len() >= 2)
+            .collect();
+        prop_assume!(!lines.is_empty());
+        let whole: Vec<Road> =
+            (1..).zip(&lines).map(|(id, line)| road(id, line, Structure::Ground)).collect();
+        let mut parts: Vec<Vec<i64>> = Vec::new();
+        for line in &lines {
+            let (at, is_turned) = &cuts[parts.len() % cuts.len()];
+            let at = at.index(line.len());
+            let mut own = vec![line.clone()];
+            if at > 0 && at + 1 < line.len() {
+                own = vec![line[at..].to_vec(), line[..=at].to_vec()];
+            }
+            if *is_turned {
+                own.iter_mut().for_each(|part| part.reverse());
+            }
+            parts.extend(own);
+        }
+        parts.reverse();
+        let split: Vec<Road> =
+            (1..).zip(&parts).map(|(id, line)| road(id, line, Structure::Ground)).collect();
+        let [one, other] = [network(&whole), network(&split)].map(|network| nodes_of(&network, Breaks::Junctions));
+        // A ring without a junction may be walked in either direction, which `nodes_of` evens out.
+        prop_assert_eq!(one, other);
+    }
+}

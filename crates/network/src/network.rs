@@ -1,0 +1,126 @@
+//! The ways of a network with the nodes at which they meet.
+
+use std::ops::Range;
+
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
+
+/// A road of a network. A way that is cut, at missing nodes or at the seam of the map, is several roads with the same id.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NetworkWay {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// What carries it.
+    pub structure: Structure,
+    /// Permitted direction.
+    pub oneway: Oneway,
+    /// Which of the network's points are its own.
+    pub(crate) points: Range<usize>,
+    /// Which of the network's stops are its own: two at least.
+    pub(crate) stops: Range<usize>,
+    /// Which of the network's texts its `highway` is.
+    pub(crate) highway: u32,
+}
+
+/// The number of a node at which roads may meet. Numbers ascend with OSM's ids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeNumber(pub(crate) u32);
+
+/// Roads, and the nodes in which they meet.
+#[derive(Debug)]
+pub struct Network {
+    pub(crate) ways: Vec<NetworkWay>,
+    /// The points of all ways, on the lattice of a package.
+    pub(crate) points: Vec<LatticePoint>,
+    /// Of each stop, which point of its way it is.
+    pub(crate) stop_points: Vec<u32>,
+    /// Of each stop, the number of its node.
+    pub(crate) stop_nodes: Vec<u32>,
+    /// Of each node its id; places that are no nodes come last, without one.
+    pub(crate) node_ids: Vec<i64>,
+    /// How many nodes there are, with places that are none.
+    pub(crate) nodes: usize,
+    /// Of each node the ends of stretches that lie there: twice the number of the stretch, plus one for its second end. A stretch has the number of the
+    /// stop at which it begins.
+    pub(crate) ends_at: IndexLists,
+    pub(crate) highways: Vec<String>,
+}
+
+impl Network {
+    /// The ways, ascending by id.
+    #[must_use]
+    pub fn ways(&self) -> &[NetworkWay] {
+        &self.ways
+    }
+
+    /// The roads of a way: several where it is cut, none where the network does not know it.
+    #[must_use]
+    pub fn roads_of(&self, way_id: i64) -> Range<usize> {
+        let first = self.ways.partition_point(|way| way.way_id < way_id);
+        let end = self.ways.partition_point(|way| way.way_id <= way_id);
+        first..end
+    }
+
+    /// The points of a road.
+    #[must_use]
+    pub fn points_of(&self, way: &NetworkWay) -> &[LatticePoint] {
+        &self.points[way.points.clone()]
+    }
+
+    /// OSM's `highway` of a road.
+    #[must_use]
+    pub fn highway_of(&self, way: &NetworkWay) -> &str {
+        self.highways.get(way.highway as usize).map_or("", String::as_str)
+    }
+
+    /// How many nodes there are at which roads begin, end or meet.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.nodes
+    }
+
+    /// OSM's id of a node; `None` for an end that is no node, where a road is cut.
+    #[must_use]
+    pub fn node_id(&self, node: NodeNumber) -> Option<i64> {
+        self.node_ids.get(node.0 as usize).copied()
+    }
+
+    /// The place of a node in a list of all, from 0.
+    #[must_use]
+    pub fn index_of(&self, node: NodeNumber) -> usize {
+        node.0 as usize
+    }
+
+    /// [`Network::degree`] of the node at a place.
+    #[must_use]
+    pub fn degree_at(&self, index: usize) -> usize {
+        self.ends_at.of(index).len()
+    }
+
+    /// How many ends of stretches lie at a node: 1 at a dead end, 2 where one road goes on, 3 and more at a junction.
+    #[must_use]
+    pub fn degree(&self, node: NodeNumber) -> usize {
+        self.degree_at(self.index_of(node))
+    }
+
+    /// The road of a stretch.
+    pub(crate) fn way_of_stretch(&self, stretch: u32) -> usize {
+        self.ways.partition_point(|way| way.stops.end <= stretch as usize)
+    }
+
+    /// The nodes at both ends of a stretch, in the direction of its way.
+    pub(crate) fn stretch_nodes(&self, stretch: u32) -> [u32; 2] {
+        let first = stretch as usize;
+        [self.stop_nodes[first], self.stop_nodes[first + 1]]
+    }
+
+    /// What carries the stretches that meet at a node, if it is the same for all.
+    pub(crate) fn structure_at(&self, node: u32) -> Option<Structure> {
+        let structure = |end: &u32| self.ways[self.way_of_stretch(end / 2)].structure;
+        let mut all = self.ends_at.of(node as usize).iter().map(structure);
+        let first = all.next()?;
+        all.all(|other| other == first).then_some(first)
+    }
+}

@@ -1,0 +1,82 @@
+//! A network is made of roads, one after the other.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_roads::Road;
+
+use crate::network::{Network, NetworkWay};
+
+/// Takes roads in ascending order of way id, with the ids of their nodes, and makes a network of them.
+#[derive(Debug, Default)]
+pub struct NetworkBuilder {
+    ways: Vec<NetworkWay>,
+    points: Vec<LatticePoint>,
+    stop_points: Vec<u32>,
+    stop_ids: Vec<Option<i64>>,
+    highways: BTreeMap<String, u32>,
+}
+
+impl NetworkBuilder {
+    /// Adds a road. Ends without an id meet nothing.
+    pub fn push(&mut self, road: &Road) {
+        let [first_point, first_stop] = [self.points.len(), self.stop_points.len()];
+        self.points.extend(road.line.points());
+        for (index, &point) in road.fixed.iter().enumerate() {
+            self.stop_points.push(point);
+            self.stop_ids.push(road.node_ids.get(index).copied().flatten());
+        }
+        let count = self.highways.len() as u32;
+        let highway = match self.highways.get(&road.attributes.highway) {
+            Some(&known) => known,
+            None => {
+                self.highways.insert(road.attributes.highway.clone(), count);
+                count
+            }
+        };
+        self.ways.push(NetworkWay {
+            way_id: road.way_id,
+            class: road.class,
+            structure: road.attributes.structure,
+            oneway: road.attributes.oneway,
+            points: first_point..self.points.len(),
+            stops: first_stop..self.stop_points.len(),
+            highway,
+        });
+    }
+
+    /// Finds out which roads meet.
+    #[must_use]
+    pub fn finish(self) -> Network {
+        let Self { ways, points, stop_points, stop_ids, highways } = self;
+        let mut node_ids: Vec<i64> = stop_ids.iter().copied().flatten().collect();
+        node_ids.sort_unstable();
+        node_ids.dedup();
+        let mut nodes = node_ids.len();
+        let mut number = |id: Option<i64>| match id {
+            Some(id) => node_ids.partition_point(|&known| known < id) as u32,
+            None => {
+                nodes += 1;
+                nodes as u32 - 1
+            }
+        };
+        let stop_nodes: Vec<u32> = stop_ids.into_iter().map(&mut number).collect();
+        // The last stop of a road begins no stretch.
+        let mut begins = vec![true; stop_points.len()];
+        for way in &ways {
+            if let Some(last) = way.stops.clone().next_back() {
+                begins[last] = false;
+            }
+        }
+        let ends = |end: usize| {
+            let node = begins[end / 2].then(|| stop_nodes[end / 2 + end % 2] as usize);
+            node.into_iter()
+        };
+        let ends_at = IndexLists::new(nodes, 2 * stop_points.len(), ends);
+        let mut texts = vec![String::new(); highways.len()];
+        for (text, number) in highways {
+            texts[number as usize] = text;
+        }
+        Network { ways, points, stop_points, stop_nodes, node_ids, nodes, ends_at, highways: texts }
+    }
+}
