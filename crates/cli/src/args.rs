@@ -45,7 +45,7 @@ pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs};
+pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs, ThreadsArg};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, path::Path};
 
-use corniche_export::{Profile, ProfileGrades, ProfilePoint, profile, profile_of_lines};
+use corniche_export::{Profile, ProfileGrades, ProfilePoint, RoadHeights, profile, profile_of_lines};
 use corniche_geom::LatticePoint;
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
@@ -26,7 +26,7 @@ const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let usage = "corniche profile PACKAGE --way ID --dem FILE...";
-    let (place, [dem, _]) = args.from.files(&[], usage)?;
+    let (place, [dem, osm]) = args.from.files(&args.extract.osm, usage)?;
     let package = packages::open(&place)?;
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
@@ -34,17 +34,21 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let inputs: Vec<&Path> = [place.name()]
         .into_iter()
         .chain(args.line.as_deref())
-        .chain(dem.iter().map(AsRef::as_ref))
+        .chain(dem.iter().chain(&osm).map(AsRef::as_ref))
         .collect();
     let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
     let placed = |path| placed_lines(path, args.allow_ballpark, &package);
     let lines = args.line.as_deref().map(placed).transpose()?;
     let recorded = recorded::elevation(&args.from, &dem, &package)?;
     let elevation = recorded.as_ref().map(recorded::for_export);
+    let network = recorded::network(&args.extract, &osm, (&args.cpu, &package))?;
     let progress = Progress::new();
     let found = match &lines {
         Some(lines) => profile_of_lines(&package, lines, args.at.level, elevation, &progress),
-        None => profile(&package, &args.way, args.at.level, elevation, &progress),
+        None => {
+            let heights = RoadHeights { elevation, network: network.as_ref() };
+            profile(&package, &args.way, args.at.level, heights, &progress)
+        }
     };
     progress.finish();
     // A file that changed may be the cause of any other error.
@@ -104,7 +108,7 @@ fn to_text(found: &Profile) -> String {
         writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices")
     } else {
         let within_m = found.height_tolerance_m;
-        writeln!(text, "         within {within_m:.1} m of the DEM; --dem FILE gives the DEM's own")
+        writeln!(text, "         within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own")
     };
     if let Some((smooth, most_off_m)) = found.smooth {
         text.push_str(&grades_text(&smooth, "50 m"));

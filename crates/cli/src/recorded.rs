@@ -3,17 +3,18 @@
 use std::path::PathBuf;
 
 use corniche_export::Elevation;
+use corniche_network::Network;
 use corniche_pipeline::{RecordedElevation, VerifyOsm};
 use corniche_presets::frc_preset;
 use corniche_roads::FrcTable;
 use corniche_tileset::FilePackage;
 
 use crate::{
-    args::{ExtractArgs, RecordedArgs},
+    args::{ExtractArgs, RecordedArgs, ThreadsArg},
     failure::Failure,
     presets,
     progress::Progress,
-    settings::polygon,
+    settings::{polygon, threads},
 };
 
 /// Memory for sorting what extracts hold.
@@ -38,18 +39,25 @@ pub(crate) fn for_export(recorded: &RecordedElevation) -> Elevation<'_> {
     Elevation { dem: &recorded.dem, plan: &recorded.plan }
 }
 
-/// The extracts of a package, with the FRC table that it was made with.
-pub(crate) fn extract(
+/// The roads of a package's extracts as a network, if some are named; those of another package are refused.
+pub(crate) fn network(
     args: &ExtractArgs,
     osm: &[PathBuf],
-    package: &FilePackage,
-) -> Result<VerifyOsm, Failure> {
-    Ok(VerifyOsm {
+    (cpu, package): (&ThreadsArg, &FilePackage),
+) -> Result<Option<Network>, Failure> {
+    if osm.is_empty() {
+        return Ok(None);
+    }
+    let extract = VerifyOsm {
         paths: corniche_pipeline::extract_names(osm)?,
         table: frc_table(args.frc_table.as_deref(), package)?,
         areas: None,
         memory_bytes: MEMORY_BYTES,
-    })
+    };
+    let progress = Progress::new();
+    let network = corniche_pipeline::network(package, &extract, threads(cpu.threads), &progress);
+    progress.finish();
+    Ok(Some(network?))
 }
 
 /// The FRC table that is named, or the preset whose name the package has.

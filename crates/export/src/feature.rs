@@ -133,11 +133,16 @@ fields! { LAST_FIELDS, last_values, road:
     "parts", Integer, "", "lines without a gap between them", Value::Integer(road.parts as i64);
     "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `ground_under_bridge`, `ground_over_tunnel`: heights of what the road does not lie on",
         Value::Text(road.height_source().text(road.attributes.structure).to_owned());
-    "height_tolerance_m", Real, "m", "how far the heights of the line are from the DEM at most, over the whole line; against the DEM, not against the world",
+}
+
+fields! { BOUND_FIELDS, bound_values, road:
+    "height_tolerance_m", Real, "m", "how far the heights are from the DEM at its samples at most, as the package promises it; against the DEM, not against the world",
         real(road.heights.tolerance_m);
 }
 
 fields! { MEASURED_FIELDS, measured_values, road:
+    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length; against the DEM, not against the world",
+        real(road.heights.tolerance_m);
     "ground_tolerance_m", Real, "m", "how far the package's triangles are from the DEM along the line at most; null where they were not compared",
         road.heights.ground_m.map_or(Value::Null, real);
 }
@@ -163,7 +168,7 @@ const PIECE_FIELDS: &[Field] = &[
 pub fn road_fields(pieces: bool, heights: HeightSource) -> Vec<Field> {
     let of_pieces = if pieces { PIECE_FIELDS } else { &[] };
     let groups: &[&[Field]] = match heights {
-        HeightSource::Ground => &[FIELDS, GROUND_FIELDS, LAST_FIELDS, of_pieces],
+        HeightSource::Ground => &[FIELDS, GROUND_FIELDS, LAST_FIELDS, BOUND_FIELDS, of_pieces],
         HeightSource::Dem => &[FIELDS, DEM_FIELDS, LAST_FIELDS, MEASURED_FIELDS, of_pieces],
     };
     groups.concat()
@@ -176,6 +181,7 @@ pub(crate) fn road_values(road: &Road<'_>) -> Vec<Value> {
         HeightSource::Ground => {
             values.extend(ground_values(road));
             values.extend(last_values(road));
+            values.extend(bound_values(road));
         }
         HeightSource::Dem => {
             values.extend(dem_values(road));

@@ -13,13 +13,14 @@ use crate::{
     error::ExportError,
     feature::HeightSource,
     feature_request::Coordinates,
-    grades::{SmoothGrades, SmoothLine, Smoothing},
+    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, stretch_of_way},
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
     piece::{Piece, Vertex},
     places::Places,
     read,
+    roads::RoadHeights,
 };
 
 /// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
@@ -94,7 +95,7 @@ pub fn profile(
     package: &FilePackage,
     way_ids: &[i64],
     level: Option<u8>,
-    elevation: Option<Elevation<'_>>,
+    heights: RoadHeights<'_>,
     observer: &dyn Observer,
 ) -> Result<Profile, ExportError> {
     let manifest = package.manifest();
@@ -119,7 +120,14 @@ pub fn profile(
         of_ways.push(lines(&own));
     }
     let parts = in_a_row(way_ids, of_ways);
-    Telling { level, places, structures, tolerance_m }.tell(parts, elevation)
+    let mut smooth_ways = BTreeMap::new();
+    if let (Some(elevation), Some(network)) = (heights.elevation, heights.network) {
+        let mut nodes = DemNodes::new(elevation, &manifest.frame);
+        let smoothing = Smoothing::of_frame(&manifest.frame);
+        let chains = MeasuredChains::measure(network, &places, &mut nodes, smoothing, observer)?;
+        smooth_ways.extend(way_ids.iter().map(|&way_id| (way_id, chains.of_way(way_id))));
+    }
+    Telling { level, places, structures, smooth_ways, tolerance_m }.tell(parts, heights.elevation)
 }
 
 /// Follows lines that are no ways of the package over the ground of a level, one after the other. Parts of the line with index 0 have the
@@ -150,7 +158,8 @@ pub fn profile_of_lines(
     }
     let tolerance_m = manifest.levels.get(usize::from(level));
     let tolerance_m = tolerance_m.map_or(0.0, |record| record.geometric_error_m);
-    Telling { level, places, structures: BTreeMap::new(), tolerance_m }.tell(parts, elevation)
+    let (structures, smooth_ways) = (BTreeMap::new(), BTreeMap::new());
+    Telling { level, places, structures, smooth_ways, tolerance_m }.tell(parts, elevation)
 }
 
 /// What a profile is told from.
@@ -159,6 +168,8 @@ struct Telling<'a> {
     places: Places<'a>,
     /// What carries each way.
     structures: BTreeMap<i64, Structure>,
+    /// The smooth line of each way, where those of chains are known.
+    smooth_ways: BTreeMap<i64, Vec<SmoothLine>>,
     /// How far the ground is from the elevation files at most, metres.
     tolerance_m: f64,
 }
@@ -194,7 +205,9 @@ impl Telling<'_> {
             let smooth_of_runs: Vec<SmoothLine> = match smoothing {
                 Some(smoothing) => {
                     let of = |run: &Range<usize>| {
-                        SmoothLine::of_profile(&profile[run.clone()], smoothing)
+                        let own = &profile[run.clone()];
+                        let of_chains = self.of_chains(&part[run.clone()], own);
+                        of_chains.unwrap_or_else(|| SmoothLine::of_profile(own, smoothing))
                     };
                     runs.iter().map(of).collect()
                 }
@@ -273,15 +286,42 @@ impl Telling<'_> {
         self.structures.get(&way_id).copied().unwrap_or_default()
     }
 
-    /// The vertices between which a part lies on the ground, not on a bridge or in a tunnel. A segment belongs to the way of its second vertex.
+    /// The smooth line of some vertices of a way, where those of chains are known.
+    fn of_chains(&self, run: &[(i64, Vertex)], profile: &[[f64; 2]]) -> Option<SmoothLine> {
+        let way = self.smooth_ways.get(&run.last()?.0)?;
+        let mut vertices: Vec<Vertex> = run.iter().map(|(_, vertex)| *vertex).collect();
+        let [begin_m, end_m] = [profile.first()?[0], profile.last()?[0]];
+        let part = |stretch: [f64; 2]| {
+            let parts = way.iter().map(|line| line.part(stretch));
+            parts.max_by_key(|part| part.stations.len())
+        };
+        if let Some(stretch) = stretch_of_way(way, &vertices, end_m - begin_m) {
+            let mut line = part(stretch)?;
+            line.stations.iter_mut().for_each(|station| station.along_m += begin_m - stretch[0]);
+            return Some(line);
+        }
+        vertices.reverse();
+        let stretch = stretch_of_way(way, &vertices, end_m - begin_m)?;
+        let mut line = part(stretch)?;
+        line.stations.reverse();
+        for station in &mut line.stations {
+            station.along_m = begin_m + stretch[1] - station.along_m;
+        }
+        Some(line)
+    }
+
+    /// The vertices between which a part lies on the ground, not on a bridge or in a tunnel; way by way where smooth lines are those of ways. A segment
+    /// belongs to the way of its second vertex.
     fn runs_on_ground(&self, part: &ProfileLine) -> Vec<Range<usize>> {
         let mut runs: Vec<Range<usize>> = Vec::new();
         for end in 1..part.len() {
             if self.structure(part[end].0) != Structure::Ground {
                 continue;
             }
+            let is_of_same_way =
+                self.smooth_ways.is_empty() || end < 2 || part[end - 1].0 == part[end].0;
             match runs.last_mut() {
-                Some(run) if run.end == end => run.end = end + 1,
+                Some(run) if run.end == end && is_of_same_way => run.end = end + 1,
                 _ => runs.push(end - 1..end + 1),
             }
         }

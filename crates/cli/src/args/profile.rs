@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use super::shared::{LevelArg, RecordedArgs};
+use super::shared::{ExtractArgs, LevelArg, RecordedArgs, ThreadsArg};
 
 #[derive(Debug, Args)]
 #[command(
@@ -17,6 +17,8 @@ use super::shared::{LevelArg, RecordedArgs};
 pub(crate) struct ProfileArgs {
     #[command(flatten)]
     pub(crate) from: RecordedArgs,
+    #[command(flatten)]
+    pub(crate) extract: ExtractArgs,
     /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
     #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) way: Vec<i64>,
@@ -28,6 +30,8 @@ pub(crate) struct ProfileArgs {
     pub(crate) allow_ballpark: bool,
     #[command(flatten)]
     pub(crate) at: LevelArg,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
     /// Also write a line for each vertex (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,

@@ -16,9 +16,7 @@ use crate::{
     named_output::NamedOutput,
     output::existing_of,
     packages,
-    progress::Progress,
     recorded,
-    settings::threads,
     table::{Digits, bytes, length},
 };
 
@@ -37,12 +35,9 @@ pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
     let Some(elevation) = recorded::elevation(&args.from, &dem, &package)? else {
         return Err(Failure::unusable(format!("no elevation file is named: {usage}")));
     };
-    let extract = recorded::extract(&args.extract, &osm, &package)?;
-    let progress = Progress::new();
-    let network =
-        corniche_pipeline::network(&package, &extract, threads(args.cpu.threads), &progress);
-    progress.finish();
-    let network = network?;
+    let Some(network) = recorded::network(&args.extract, &osm, (&args.cpu, &package))? else {
+        return Err(Failure::unusable(format!("no extract is named: {usage}")));
+    };
     let request = FeatureRequest {
         format,
         level: None,

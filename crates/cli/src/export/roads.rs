@@ -17,9 +17,7 @@ use crate::{
     named_output::NamedOutput,
     output::existing_of,
     packages,
-    progress::Progress,
     recorded,
-    settings::threads,
     table::{Digits, bytes, length},
 };
 
@@ -37,16 +35,7 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     let existing = existing_of(vector.file.overwrite);
     let output = NamedOutput::create(&vector.file.output, existing, name, &inputs)?;
     let elevation = recorded::elevation(&args.from, &dem, &package)?;
-    let network = if osm.is_empty() {
-        None
-    } else {
-        let extract = recorded::extract(&args.extract, &osm, &package)?;
-        let threads = threads(args.cpu.threads);
-        let progress = Progress::new();
-        let network = corniche_pipeline::network(&package, &extract, threads, &progress);
-        progress.finish();
-        Some(network?)
-    };
+    let network = recorded::network(&args.extract, &osm, (&args.cpu, &package))?;
     let request = FeatureRequest {
         format,
         level: args.at.level,
@@ -82,7 +71,7 @@ fn to_text(
     let within_m = summary.height_tolerance_m;
     let tolerance = match summary.ground_tolerance_m {
         None => format!(
-            "heights are within {within_m:.1} m of the DEM; --dem FILE gives the DEM's own"
+            "heights are within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own"
         ),
         Some(ground_m) => format!(
             "heights are those of the DEM, within {within_m:.3} m between vertices; the package's triangles are within {ground_m:.1} m of it there"
