@@ -1,6 +1,6 @@
 //! The command line is consistent: its options exclude each other, leave positional arguments alone and give tips.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use corniche_remote::PackagePlace;
 
@@ -143,15 +143,22 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         }
     }
     found.sort();
+    // Of what a line needs beside, files are called `rest`.
+    let measured = |from: &RecordedArgs, osm: &[PathBuf]| {
+        let (package, files) = from.files(osm, "").unwrap();
+        let mut files = files.concat();
+        files.retain(|file| file != Path::new("rest"));
+        (path_of(package), files)
+    };
     let files = |arguments: &Arguments| match &arguments.command {
+        Command::Profile(args) => measured(&args.from, &args.extract.osm),
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
         Command::Export(args) => match &args.what {
-            Export::GeoTiff(args) => {
-                let (package, dem) = args.files().unwrap();
-                (path_of(package), dem)
-            }
+            Export::GeoTiff(args) => measured(&args.from, &[]),
+            Export::Roads(args) => measured(&args.from, &args.extract.osm),
+            Export::Edges(args) => measured(&args.from, &args.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
         Command::Match(args) => {
@@ -166,11 +173,17 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     // What follows the option, what is meant by the positional argument, and what else the command needs.
     let known = [
+        ("export edges --dem", "p.pmtiles", "-o e.csv --osm rest"),
+        ("export edges --osm", "p.pmtiles", "-o e.csv --dem rest"),
         ("export geotiff --dem", "p.pmtiles", "-o h.tif"),
+        ("export roads --dem", "p.pmtiles", "-o r.csv"),
+        ("export roads --osm", "p.pmtiles", "-o r.csv --dem rest"),
         ("jobs --store", "p.json", "--slots 2"),
         ("match --photo", "p.pmtiles", "--radius 20"),
         ("merge --store", "p.json", "-o c.pmtiles"),
         ("part --store", "p.json", "--step top"),
+        ("profile --dem", "p.pmtiles", "--way 7"),
+        ("profile --osm", "p.pmtiles", "--way 7 --dem rest"),
         ("verify --dem", "p.pmtiles", "--threads 1"),
         ("verify --osm", "p.pmtiles", "--threads 1"),
         ("verify --photo", "p.pmtiles", "--threads 1"),

@@ -117,22 +117,42 @@ pub struct Line<'a> {
 /// count from 1. Coordinates are rounded to 1e-7 degrees. `texts` come first in the blocks' table of texts.
 #[must_use]
 pub fn extract(texts: &[&str], lines: &[Line<'_>]) -> Vec<u8> {
+    let (mut nodes, mut ways) = (Vec::new(), Vec::new());
+    for (id, line) in (1..).zip(lines) {
+        let first = nodes.len() as i64 + 1;
+        nodes.extend((first..).zip(line.points_deg.iter().copied()));
+        let node_ids = (first..=nodes.len() as i64).collect();
+        ways.push(Way { id, tags: line.tags.clone(), node_ids });
+    }
+    network(texts, &nodes, &ways)
+}
+
+/// A way to write: its id, its tags and the ids of its nodes.
+#[derive(Debug, Clone)]
+#[expect(missing_docs, reason = "the type's own line tells all")]
+pub struct Way<'a> {
+    pub id: i64,
+    pub tags: Vec<(&'a str, &'a str)>,
+    pub node_ids: Vec<i64>,
+}
+
+/// Nodes, with their longitudes and latitudes, and ways through them, as a file of two blocks; else as [`extract`].
+#[must_use]
+pub fn network(texts: &[&str], nodes: &[(i64, [f64; 2])], ways: &[Way<'_>]) -> Vec<u8> {
     let mut block = Block::new();
     for text in texts {
         block.text(text.as_bytes());
     }
-    let (mut nodes, mut ways) = (Vec::new(), Vec::new());
-    for (way_id, line) in (1..).zip(lines) {
-        let first = nodes.len() as i64 + 1;
-        let round = |deg: f64| (deg * 1e7).round() as i64;
-        let points = (first..).zip(&line.points_deg);
-        nodes.extend(points.map(|(id, &[lon, lat])| (id, round(lat), round(lon))));
-        let node_ids: Vec<i64> = (first..=nodes.len() as i64).collect();
-        ways.extend(field(3, &block.way_message(way_id, &line.tags, &node_ids)));
+    let round = |deg: f64| (deg * 1e7).round() as i64;
+    let nodes: Vec<(i64, i64, i64)> =
+        nodes.iter().map(|&(id, [lon, lat])| (id, round(lat), round(lon))).collect();
+    let mut messages = Vec::new();
+    for way in ways {
+        messages.extend(field(3, &block.way_message(way.id, &way.tags, &way.node_ids)));
     }
     let mut block_of_nodes = block.clone();
     block_of_nodes.plain(&nodes);
-    block.groups.push(ways);
+    block.groups.push(messages);
     let data = [block_of_nodes, block].map(|block| raw(b"OSMData", &block.bytes()));
     [header(&["OsmSchema-V0.6"]), data.concat()].concat()
 }

@@ -46,6 +46,10 @@ fn a_profile_is_as_long_and_as_steep_as_the_exported_road() {
         if checked == 12 {
             break;
         }
+        // Bridges and tunnels have no ups and downs of their own.
+        if field("ascent_m").is_none() {
+            continue;
+        }
         checked += 1;
         let way = way_id.to_string();
         let words = ["profile", text(&package), "--way", &way, "-O", "--csv", text(&list)];

@@ -9,8 +9,8 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ExportError, FeatureRequest, RoadFeatures, VectorFormat, WayGrowth, export_roads,
-    growth_by_way, road_fields,
+    Coordinates, ExportError, ExportSummary, FeatureRequest, Field, HeightSource, RoadFeatures,
+    RoadHeights, VectorFormat, WayGrowth, edge_fields, export_roads, growth_by_way, road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
@@ -44,6 +44,17 @@ fn request(memory_bytes: u64) -> FeatureRequest<FunctionalRoadClass> {
     }
 }
 
+fn export_pieces(
+    package: &FilePackage,
+    memory_bytes: u64,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<ExportSummary, ExportError> {
+    let request = request(memory_bytes);
+    let what = (&request, RoadFeatures::Pieces);
+    export_roads(package, what, RoadHeights::default(), path, observer)
+}
+
 /// However little memory the sorting has, the file is the same.
 #[test]
 fn memory_does_not_change_the_file() {
@@ -52,8 +63,7 @@ fn memory_does_not_change_the_file() {
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
         let path = folder.path().join(format!("{memory_bytes}.csv"));
         let summary =
-            export_roads(&package, &request(memory_bytes), RoadFeatures::Pieces, &path, &Silent)
-                .unwrap();
+            export_pieces(&package, memory_bytes, &path, &Silent).unwrap();
         assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
         fs::read(path).unwrap()
     });
@@ -114,7 +124,7 @@ fn an_export_stops_when_it_is_asked_to() {
     for asks in 0..20 {
         let path = folder.path().join(format!("{asks}.csv"));
         let impatient = Impatient { asks: AtomicU32::new(asks) };
-        match export_roads(&package, &request(1 << 20), RoadFeatures::Pieces, &path, &impatient) {
+        match export_pieces(&package, 1 << 20, &path, &impatient) {
             Err(ExportError::Interrupted) => stopped += 1,
             Ok(_) => break,
             Err(error) => panic!("{error}"),
@@ -135,22 +145,23 @@ fn a_damaged_tile_is_named() {
     fs::write(&path, bytes).unwrap();
     let package = FilePackage::open(&path).unwrap();
     let target = folder.path().join("a.csv");
-    let error = export_roads(&package, &request(1 << 20), RoadFeatures::Pieces, &target, &Silent)
-        .unwrap_err();
+    let error = export_pieces(&package, 1 << 20, &target, &Silent).unwrap_err();
     assert!(error.is_unusable_input() && error.to_string().contains("2/"), "{error}");
 }
 
-/// The table of fields in the documentation is that of the program.
+/// The tables of fields in the documentation are those of the program.
 #[test]
 fn the_documentation_has_every_field() {
     let page = fs::read_to_string(root().join("docs/export-roads.md")).unwrap();
-    let expected: Vec<String> = road_fields(true)
-        .iter()
-        .map(|field| {
+    let ground = road_fields(true, HeightSource::Ground);
+    let dem = road_fields(true, HeightSource::Dem);
+    let only_dem = dem.into_iter().filter(|field| !ground.contains(field)).collect();
+    for fields in [ground.clone(), only_dem, edge_fields()] {
+        let row = |field: &Field| {
             let unit = if field.unit.is_empty() { "–" } else { field.unit };
             format!("| `{}` | {} | {unit} | {} |", field.name, field.kind.name(), field.meaning)
-        })
-        .collect();
-    let table = expected.join("\n");
-    assert!(page.contains(&table), "docs/export-roads.md has another table than\n{table}");
+        };
+        let table = fields.iter().map(row).collect::<Vec<String>>().join("\n");
+        assert!(page.contains(&table), "docs/export-roads.md has another table than\n{table}");
+    }
 }

@@ -3,10 +3,10 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicU64, Ordering},
+    sync::{Mutex, atomic::AtomicU64},
 };
 
-use corniche_geom::{Bounds, CoordinateTable, NodeIndex, TileId};
+use corniche_geom::{Bounds, CoordinateTable, GridFrame, NodeIndex, TileId};
 use corniche_roads::{ClassFilter, FrcTable, FunctionalRoadClass};
 use corniche_store::{Key, MemoryScratch, MemoryStore, StoreError};
 use corniche_testing::{FlatProjection, Random, pbf};

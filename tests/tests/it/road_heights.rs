@@ -1,0 +1,402 @@
+//! Roads on the elevation files themselves: heights beside those that GDAL reads, grades of smooth lines, edges of the network.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_testing::pbf::{self, Way};
+use e2e::{Ran, build_from, copy_pass, corniche, real_data, sample, text, write_ascii_grid};
+use gdal::{Dataset, raster::Buffer, vector::LayerAccess as _};
+
+type Row = BTreeMap<String, String>;
+
+fn succeed(ran: Ran) -> Ran {
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    ran
+}
+
+/// A line of positions with heights.
+type Line = Vec<[f64; 3]>;
+
+/// Features of a file: their fields as texts, empty for null, and their lines.
+fn features(path: &Path) -> Vec<(Row, Vec<Line>)> {
+    let dataset = Dataset::open(path).unwrap();
+    let mut layer = dataset.layer(0).unwrap();
+    let mut found = Vec::new();
+    for feature in layer.features() {
+        let fields = feature.fields().map(|(name, value)| {
+            let value = value.and_then(|value| match value {
+                gdal::vector::FieldValue::IntegerValue(value) => Some(value.to_string()),
+                gdal::vector::FieldValue::Integer64Value(value) => Some(value.to_string()),
+                gdal::vector::FieldValue::RealValue(value) => Some(value.to_string()),
+                gdal::vector::FieldValue::StringValue(value) => Some(value),
+                _ => None,
+            });
+            (name, value.unwrap_or_default())
+        });
+        let geometry = feature.geometry().unwrap();
+        let lines = (0..geometry.geometry_count()).map(|part| {
+            let mut points = Vec::new();
+            geometry.get_geometry(part).get_points(&mut points);
+            points.into_iter().map(|(x, y, z)| [x, y, z]).collect()
+        });
+        found.push((fields.collect(), lines.collect()));
+    }
+    found
+}
+
+fn number(row: &Row, name: &str) -> f64 {
+    row[name].parse().unwrap_or_else(|_| panic!("{name}: {row:?}"))
+}
+
+/// An elevation file as GDAL reads it, bilinear between its samples; this test's own reading.
+struct Bilinear {
+    transform: [f64; 6],
+    samples: Buffer<f64>,
+}
+
+impl Bilinear {
+    fn open(path: &Path) -> Self {
+        let dataset = Dataset::open(path).unwrap();
+        let samples = dataset.rasterband(1).unwrap().read_band_as::<f64>().unwrap();
+        Self { transform: dataset.geo_transform().unwrap(), samples }
+    }
+
+    /// `None` outside, and at voids of SRTM.
+    fn at(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let [left, width, _, top, _, height] = self.transform;
+        let on_sample = |at: f64| if (at - at.round()).abs() < 1e-7 { at.round() } else { at };
+        let [column, row] = [(x - left) / width - 0.5, (y - top) / height - 0.5].map(on_sample);
+        let (columns, rows) = self.samples.shape();
+        let mut sum = 0.0;
+        for (column, across) in [(column.floor(), 1.0 - column.fract()), (column.floor() + 1.0, column.fract())] {
+            for (row, along) in [(row.floor(), 1.0 - row.fract()), (row.floor() + 1.0, row.fract())] {
+                if across * along <= 0.0 {
+                    continue;
+                }
+                if column < 0.0 || row < 0.0 || column >= columns as f64 || row >= rows as f64 {
+                    return None;
+                }
+                let sample = self.samples.data()[row as usize * columns + column as usize];
+                if sample < -32_000.0 {
+                    return None;
+                }
+                sum += across * along * sample;
+            }
+        }
+        Some(sum)
+    }
+}
+
+/// Lines are as near to an elevation file as their field says, at vertices and at many places between them. Returns how many places were compared.
+fn are_within(features: &[(Row, Vec<Line>)], dem: &Bilinear, field: &str) -> usize {
+    let mut compared = 0;
+    let mut share = 0.123_f64;
+    for (row, lines) in features {
+        let most_m = number(row, field) + 1e-4;
+        for [from, to] in lines.iter().flat_map(|line| line.array_windows::<2>()) {
+            share = (share + 0.618_034).fract();
+            for (share, most_m) in [(0.0, most_m.min(2e-4)), (0.25, most_m), (0.75, most_m), (share, most_m)] {
+                // Vertices of the ground are within the field, too; only those on the DEM are exact.
+                let most_m = if field == "height_tolerance_m" { most_m } else { number(row, field) + 1e-4 };
+                let at: [f64; 3] = std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]));
+                let Some(height_m) = dem.at([at[0], at[1]]) else { continue };
+                compared += 1;
+                let off_m = (at[2] - height_m).abs();
+                assert!(off_m <= most_m, "{row:?} at {at:?}: {off_m}");
+            }
+        }
+    }
+    compared
+}
+
+fn pass_inputs() -> [PathBuf; 2] {
+    ["pass/pass-dem.tif", "pass/pass.osm.pbf"].map(sample)
+}
+
+fn export(package: &Path, what: &str, target: &Path, options: &[&str]) -> Ran {
+    corniche([&["export", what, text(package), "-o", text(target), "-q"], options].concat())
+}
+
+#[test]
+fn roads_have_the_heights_of_the_elevation_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let package = at("pass.pmtiles");
+    copy_pass(&package, &["-q"]);
+    let [dem, osm] = pass_inputs();
+    let (on_dem, on_ground) = (at("dem.gpkg"), at("ground.gpkg"));
+    succeed(export(&package, "roads", &on_dem, &["--dem", text(&dem), "--osm", text(&osm)]));
+    succeed(export(&package, "roads", &on_ground, &[]));
+    let (roads, ground) = (features(&on_dem), features(&on_ground));
+    let read = Bilinear::open(&dem);
+    assert!(are_within(&roads, &read, "height_tolerance_m") > 10_000);
+    // The same lines on the package's triangles are as far off as the field says.
+    let of_ground: Vec<(Row, Vec<Line>)> = ground
+        .iter()
+        .zip(&roads)
+        .map(|((own, lines), (on_dem, _))| {
+            assert_eq!(own["way_id"], on_dem["way_id"]);
+            (on_dem.clone(), lines.clone())
+        })
+        .collect();
+    assert!(are_within(&of_ground, &read, "ground_tolerance_m") > 10_000);
+    // Lines that share a place have the same height there.
+    let mut heights: BTreeMap<[u64; 2], u64> = BTreeMap::new();
+    let mut shared = 0;
+    for vertex in roads.iter().flat_map(|(_, lines)| lines.iter().flatten()) {
+        let place = [vertex[0], vertex[1]].map(f64::to_bits);
+        if let Some(before) = heights.insert(place, vertex[2].to_bits()) {
+            shared += 1;
+            assert_eq!(before, vertex[2].to_bits(), "{vertex:?}");
+        }
+    }
+    assert!(shared > 20);
+    let mut structures = 0;
+    for ((on_dem, _), (on_ground, _)) in roads.iter().zip(&ground) {
+        let source = match (&*on_dem["bridge"], &*on_dem["tunnel"]) {
+            ("1", _) => "ground_under_bridge",
+            (_, "1") => "ground_over_tunnel",
+            _ => "dem",
+        };
+        assert_eq!(on_dem["height_source"], source);
+        assert_eq!(on_ground["height_source"], source.replace("dem", "ground"));
+        let names = ["ascent_m", "descent_m", "ground_ascent_m", "smoothing_max_m", "smoothed_by"];
+        for name in names {
+            assert_eq!(on_dem[name].is_empty(), source != "dem", "{name}: {on_dem:?}");
+        }
+        assert_eq!(on_ground["ascent_m"].is_empty(), source != "dem", "{on_ground:?}");
+        if source == "dem" {
+            assert_eq!(on_dem["smoothed_by"], "chain", "{on_dem:?}");
+            // Noise makes the ground's own ups and downs longer, never shorter than by what ends are smoothed.
+            let up = |name: &str| number(on_dem, name);
+            let most_m = 2.0 * up("smoothing_max_m") + 1e-3;
+            assert!(up("ascent_m") <= up("ground_ascent_m") + most_m, "{on_dem:?}");
+            let net = |ascent: &str, descent: &str| up(ascent) - up(descent);
+            let off = net("ascent_m", "descent_m") - net("ground_ascent_m", "ground_descent_m");
+            assert!(off.abs() <= most_m, "{on_dem:?}");
+        } else {
+            structures += 1;
+        }
+    }
+    assert!(structures >= 3);
+}
+
+/// What is left of roads has the grades that it has within the whole; pieces and classes change nothing.
+#[test]
+fn parts_of_roads_have_the_grades_of_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let package = at("pass.pmtiles");
+    copy_pass(&package, &["-q"]);
+    let [dem, osm] = pass_inputs();
+    let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+    let run = |name: &str, options: &[&str]| {
+        let target = at(name);
+        succeed(export(&package, "roads", &target, &[&inputs[..], options].concat()));
+        features(&target)
+    };
+    let whole = run("whole.gpkg", &[]);
+    for (found, lines) in run("classes.gpkg", &["--classes", "2-4"]) {
+        let (expected, of_whole) =
+            whole.iter().find(|(row, _)| row["way_id"] == found["way_id"]).unwrap();
+        assert_eq!((&found, &lines), (expected, of_whole));
+    }
+    let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
+    for (row, _) in run("pieces.gpkg", &["--pieces"]) {
+        if row["height_source"] == "dem" {
+            let own = sums.entry(row["way_id"].clone()).or_default();
+            own[0] += number(&row, "ascent_m");
+            own[1] += number(&row, "descent_m");
+        }
+    }
+    for (row, _) in whole.iter().filter(|(row, _)| row["height_source"] == "dem") {
+        let own = sums[&row["way_id"]];
+        for (found, name) in own.iter().zip(["ascent_m", "descent_m"]) {
+            assert!((found - number(row, name)).abs() < 0.01, "{name}: {found} {row:?}");
+        }
+    }
+}
+
+/// Nodes of a small network on a plane beside the central meridian of UTM 32, in degrees.
+const NODES: [(i64, [f64; 2]); 9] = [
+    (1, [8.990, 46.940]),
+    (2, [8.996, 46.941]),
+    (3, [9.002, 46.942]),
+    (4, [9.008, 46.943]),
+    (5, [9.002, 46.948]),
+    (6, [9.002, 46.936]),
+    // At the place of node 2, and yet another node.
+    (7, [8.996, 46.941]),
+    (8, [8.996, 46.947]),
+    (9, [9.014, 46.944]),
+];
+
+/// Builds a package of ways on bumpy ground; the ids of ways are those of their order.
+fn package_of(folder: &Path, name: &str, ways: &[(&[i64], &str)]) -> [PathBuf; 3] {
+    let [dem, osm, package] = ["dem.asc".to_owned(), format!("{name}.osm.pbf"), format!("{name}.pmtiles")]
+        .map(|name| folder.join(name));
+    let place = "xllcenter 497000\nyllcenter 5195000\ncellsize 20\nNODATA_value -9999";
+    write_ascii_grid(&dem, [301, 301], place, |column, row| {
+        let noise = f64::from((column as u32 * 7919 + row as u32 * 104_729) % 97) / 97.0;
+        500.0 + 1.2 * column as f64 + 4.0 * noise
+    });
+    let ways: Vec<Way<'_>> = (1..)
+        .zip(ways)
+        .map(|(id, (node_ids, structure))| {
+            let mut tags = vec![("highway", "secondary")];
+            if !structure.is_empty() {
+                tags.push((structure, "yes"));
+            }
+            Way { id, tags, node_ids: node_ids.to_vec() }
+        })
+        .collect();
+    fs::write(&osm, pbf::network(&[], &NODES, &ways)).unwrap();
+    build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
+    [dem, osm, package]
+}
+
+/// Splitting, turning and re-ordering ways changes no total by more than a centimetre, and no edge.
+#[test]
+fn grades_do_not_depend_on_how_ways_are_split() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut totals: Vec<[f64; 3]> = Vec::new();
+    let mut all_edges: Vec<Vec<Row>> = Vec::new();
+    let variants: [(&str, &[(&[i64], &str)]); 3] = [
+        ("whole", &[(&[1, 2, 3, 4, 9], ""), (&[5, 3, 6], ""), (&[7, 8], "")]),
+        ("split", &[(&[3, 5], ""), (&[1, 2], ""), (&[2, 3], ""), (&[3, 4], ""), (&[4, 9], ""), (&[3, 6], ""), (&[7, 8], "")]),
+        ("turned", &[(&[8, 7], ""), (&[6, 3], ""), (&[9, 4, 3], ""), (&[3, 2, 1], ""), (&[5, 3], "")]),
+    ];
+    for (name, ways) in variants {
+        let [dem, osm, package] = package_of(folder.path(), name, ways);
+        let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+        let target = folder.path().join(format!("{name}.gpkg"));
+        succeed(export(&package, "roads", &target, &inputs));
+        let mut total = [0.0; 3];
+        for (row, _) in features(&target) {
+            assert_eq!(row["smoothed_by"], "chain");
+            total[0] += number(&row, "length_2d_m");
+            total[1] += number(&row, "ascent_m") + number(&row, "descent_m");
+            total[2] = f64::max(total[2], number(&row, "smoothing_max_m"));
+        }
+        totals.push(total);
+        let target = folder.path().join(format!("{name}-edges.csv"));
+        succeed(export(&package, "edges", &target, &inputs));
+        let mut edges: Vec<Row> = features(&target).into_iter().map(|(row, _)| row).collect();
+        for edge in &mut edges {
+            edge.remove("ways");
+        }
+        all_edges.push(edges);
+    }
+    for total in &totals[1..] {
+        for (found, expected) in total.iter().zip(&totals[0]) {
+            assert!((found - expected).abs() < 0.01, "{totals:?}");
+        }
+    }
+    // Node 3 is a junction, node 2 is none: way 7–8 only lies there.
+    let ends: Vec<[&str; 2]> = all_edges[0]
+        .iter()
+        .map(|edge| [&*edge["from_node"], &*edge["to_node"]])
+        .collect();
+    assert_eq!(ends, [["1", "3"], ["3", "5"], ["3", "6"], ["3", "9"], ["7", "8"]]);
+    for edges in &all_edges[1..] {
+        assert_eq!(edges.len(), all_edges[0].len());
+        for (found, expected) in edges.iter().zip(&all_edges[0]) {
+            for name in ["from_node", "to_node", "class", "highway", "oneway"] {
+                assert_eq!(found[name], expected[name], "{name}");
+            }
+            for name in ["length_m", "ascent_m", "descent_m", "from_height_m", "to_height_m"] {
+                let off = number(found, name) - number(expected, name);
+                assert!(off.abs() < 0.01, "{name}: {found:?} {expected:?}");
+            }
+        }
+    }
+}
+
+/// Edges at one node have one height there; a bridge is a straight line; the way back is the other way around.
+#[test]
+fn edges_meet_and_bridges_are_straight() {
+    let folder = tempfile::tempdir().unwrap();
+    let ways: [(&[i64], &str); 5] =
+        [(&[1, 2], ""), (&[2, 3], "bridge"), (&[3, 4], ""), (&[5, 4], ""), (&[4, 9], "tunnel")];
+    let [dem, osm, package] = package_of(folder.path(), "bridge", &ways);
+    let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+    let target = folder.path().join("edges.gpkg");
+    let ran = succeed(export(&package, "edges", &target, &inputs));
+    assert!(ran.out.is_empty() && ran.err.is_empty(), "{}{}", ran.out, ran.err);
+    let edges = features(&target);
+    let ways: Vec<&str> = edges.iter().map(|(row, _)| &*row["ways"]).collect();
+    assert_eq!(ways, ["1f 2f 3f", "4b", "5f"]);
+    let [(over, _), (side, _), (tunnel, _)] = &edges[..] else { panic!("{ways:?}") };
+    assert!((number(over, "bridge_share") - 1.0 / 3.0).abs() < 0.02, "{over:?}");
+    assert_eq!((number(side, "bridge_share"), number(tunnel, "tunnel_share")), (0.0, 1.0));
+    assert_eq!(over["to_height_m"], side["from_height_m"]);
+    // A tunnel that ends nowhere has no height at its other end.
+    assert!(tunnel["ascent_m"].is_empty() && tunnel["to_height_m"].is_empty(), "{tunnel:?}");
+    let net = number(over, "ascent_m") - number(over, "descent_m");
+    let rise = number(over, "to_height_m") - number(over, "from_height_m");
+    assert!((net - rise).abs() < 1e-4);
+    assert_eq!(
+        [&over["ascent_m"], &over["descent_m"]],
+        [&over["descent_back_m"], &over["ascent_back_m"]]
+    );
+    // The plane rises 1.2 m in 20 m of the map.
+    assert!((number(over, "weighted_grade_pct") - 6.0).abs() < 0.5, "{over:?}");
+}
+
+/// Other elevation files and extracts are refused, and nothing is written.
+#[test]
+fn files_of_another_package_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let package = at("pass.pmtiles");
+    copy_pass(&package, &["-q"]);
+    let [dem, osm] = pass_inputs();
+    let other = at("other.tif");
+    let mut bytes = fs::read(&dem).unwrap();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 1;
+    fs::write(&other, bytes).unwrap();
+    let other_osm = at("other.osm.pbf");
+    let way = Way { id: 1, tags: vec![("highway", "primary")], node_ids: vec![1, 2] };
+    fs::write(&other_osm, pbf::network(&[], &NODES, &[way])).unwrap();
+    let target = at("roads.gpkg");
+    for (options, word) in [
+        (vec!["--dem", text(&other)], "other.tif"),
+        (vec!["--dem", text(&dem), "--osm", text(&other_osm)], "other.osm.pbf"),
+        (vec!["--osm", text(&osm)], "--dem"),
+    ] {
+        let ran = export(&package, "roads", &target, &options);
+        assert_eq!(ran.code, 2, "{options:?}: {}", ran.err);
+        assert!(ran.err.contains(word), "{options:?}: {}", ran.err);
+        assert!(!target.exists());
+    }
+    let ran = export(&package, "edges", &target, &["--dem", text(&dem)]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    // The elevation file may be anywhere among the words, also before the package.
+    let words = ["export", "roads", "-q", "-o", text(&target), "--dem", text(&dem), text(&package)];
+    succeed(corniche(words));
+}
+
+/// Real ground with voids: every height that is exported is that of the file.
+#[test]
+fn roads_of_liechtenstein_have_the_heights_of_srtm() {
+    let (Some(dem), Some(osm)) = (
+        real_data("liechtenstein/N47E009.hgt"),
+        real_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf"),
+    ) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let package = at("li.pmtiles");
+    build_from([&dem, &osm], &package, &["-q", "--bounds", "9.5,47.1,9.6,47.2"]);
+    let target = at("roads.fgb");
+    let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+    succeed(export(&package, "roads", &target, &inputs));
+    assert!(are_within(&features(&target), &Bilinear::open(&dem), "height_tolerance_m") > 100_000);
+}
