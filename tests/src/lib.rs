@@ -161,7 +161,8 @@ pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
         // Behind the name, which is in brackets, the twelfth and thirteenth number are user's and system's hundredths of a second.
         let text = read("stat").unwrap_or_default();
         let numbers = text.rsplit(')').next().unwrap_or_default().split_whitespace();
-        let spent: f64 = numbers.skip(11).take(2).filter_map(|number| number.parse::<f64>().ok()).sum();
+        let spent: f64 =
+            numbers.skip(11).take(2).filter_map(|number| number.parse::<f64>().ok()).sum();
         costs.cpu_s = (spent / 100.0).max(costs.cpu_s);
         thread::sleep(Duration::from_millis(2));
     }

@@ -51,7 +51,11 @@ const COMMANDS: [(&str, &[&str], &[&str]); 14] = [
 ];
 
 /// Runs a command within the limit of time, and tells what it took.
-fn run(folder: &Path, package: &Path, (_, before, after): (&str, &[&str], &[&str])) -> (Ran, Costs) {
+fn run(
+    folder: &Path,
+    package: &Path,
+    (_, before, after): (&str, &[&str], &[&str]),
+) -> (Ran, Costs) {
     let out = folder.join("out");
     let after = after.iter().map(|word| word.replace("OUT", text(&out)));
     let mut child = Command::new("bash")
@@ -91,7 +95,10 @@ fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) ->
                 );
                 println!("{line}");
                 let is_known = matches!(ran.code, 0..=2);
-                let is_refused = ran.code != 0 || is_read(&case);
+                // That the header counts the list of tiles wrongly is seen by what reads all of it.
+                let may_not_see = matches!(case.outcome, Outcome::Refused("fewer or more"));
+                let may_not_see = is_read(&case) || may_not_see && command.0 != "verify";
+                let is_refused = ran.code != 0 || may_not_see;
                 let is_small = peak_bytes >> 20 <= MOST_MIB;
                 if !is_known || !is_refused || !is_small || ran.err.contains("panicked") {
                     broken.push(line);
@@ -112,7 +119,7 @@ fn work_follows_bytes_and_no_coordinate() {
     check(&["lies"], [1; 3], |case, command| is_read(case) && commands.contains(&command));
 }
 
-/// What is refused is refused when it is opened, or with its first tile: by one way for all commands, so two of them will do.
+/// What is refused is refused when it is opened, with its first tile, or with the list of all: by one way for all commands, so two of them will do.
 #[test]
 #[ignore = "slow: every command on every hostile package, some minutes"]
 fn every_command_ends_on_every_hostile_package() {

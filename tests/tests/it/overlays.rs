@@ -301,10 +301,12 @@ fn what_is_wrong_with_a_file_is_told() {
     // Each of them has no more points than a file may have, both together have.
     let few = write("few.geojson", r#"{"type":"LineString","coordinates":[[9,47],[9,48]]}"#);
     let most = "[9,47],".repeat((1 << 20) - 1) + "[9,48]";
-    let most =
-        write("most.geojson", &format!(r#"{{"type":"LineString","coordinates":[{most}]}}"#));
+    let most = write("most.geojson", &format!(r#"{{"type":"LineString","coordinates":[{most}]}}"#));
     let told = refused(&scene, &[text(&few), text(&most)]);
-    assert!(told.contains("most.geojson\" and the files named before it have more than 1048576"), "{told}");
+    assert!(
+        told.contains("most.geojson\" and the files named before it have more than 1048576"),
+        "{told}"
+    );
     let line = scene.write_line("out.png.geojson", &[[0.0, 0.0], [100.0, 0.0]]);
     let same = corniche([
         "render",

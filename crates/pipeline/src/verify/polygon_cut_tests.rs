@@ -66,8 +66,20 @@ fn what_was_cut_holds() {
     assert!(holds(&around_the_hole));
     let smaller = [square([560, 360], 180), clockwise(square([603, 402], 96))];
     assert!(holds(&smaller), "rounded");
-    assert!(holds(&[square([850, 850], 150), square([901, 901], 250)]), "corners inside the other polygon");
-    let three_sides = vec![[0, 400], [440, 400], [440, 690], [560, 690], [560, 800], [590, 800], [590, 310], [0, 310]];
+    assert!(
+        holds(&[square([850, 850], 150), square([901, 901], 250)]),
+        "corners inside the other polygon"
+    );
+    let three_sides = vec![
+        [0, 400],
+        [440, 400],
+        [440, 690],
+        [560, 690],
+        [560, 800],
+        [590, 800],
+        [590, 310],
+        [0, 310],
+    ];
     assert!(holds(&[clockwise(three_sides)]));
 }
 
@@ -77,7 +89,10 @@ fn what_was_not_cut_lies_beyond() {
     assert!(!holds(&[square([-100, 400], 300)]), "over the outline");
     assert!(!holds(&[square([-5, 400], 300)]), "a little over the outline");
     assert!(!holds(&[square([560, 360], 180)]), "over the hole");
-    assert!(!holds(&[square([560, 360], 180), clockwise(square([605, 410], 80))]), "over some of it");
+    assert!(
+        !holds(&[square([560, 360], 180), clockwise(square([605, 410], 80))]),
+        "over some of it"
+    );
     assert!(!holds(&[vec![[400, 800], [600, 800], [600, 900], [400, 900]]]), "over a notch");
     // The middles of its long sides lie between two notches.
     assert!(!holds(&[vec![[50, 100], [450, 100], [450, 200], [50, 200]]]), "over two notches");
