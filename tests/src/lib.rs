@@ -133,23 +133,40 @@ pub fn run_soon(arguments: &[&str]) -> Ran {
     ended(&mut child)
 }
 
-/// Waits for the end of a program, and tells its largest resident size, bytes, as the kernel tells it while it runs.
+/// What a program took.
+#[cfg(target_os = "linux")]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Costs {
+    /// Its largest resident size.
+    pub peak_bytes: u64,
+    /// Seconds of computing, of all its threads.
+    pub cpu_s: f64,
+}
+
+/// Waits for the end of a program, and tells what it took, as the kernel tells it while it runs.
 ///
 /// # Panics
 /// As [`ended`] does.
 #[cfg(target_os = "linux")]
 #[must_use]
-pub fn ended_with_peak(child: &mut Child) -> (Ran, u64) {
-    let status = format!("/proc/{}/status", child.id());
-    let mut peak = 0;
+pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
+    let id = child.id();
+    let read = |name: &str| fs::read_to_string(format!("/proc/{id}/{name}"));
+    let mut costs = Costs::default();
     while matches!(child.try_wait(), Ok(None)) {
-        let text = fs::read_to_string(&status).unwrap_or_default();
+        let text = read("status").unwrap_or_default();
         let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
-        peak = kib.map_or(peak, |kib| kib * 1024).max(peak);
+        costs.peak_bytes = kib.map_or(0, |kib| kib * 1024).max(costs.peak_bytes);
+        // Behind the name, which is in brackets, the twelfth and thirteenth number are user's and system's hundredths of a second.
+        let text = read("stat").unwrap_or_default();
+        let numbers = text.rsplit(')').next().unwrap_or_default().split_whitespace();
+        let spent: f64 =
+            numbers.skip(11).take(2).filter_map(|number| number.parse::<f64>().ok()).sum();
+        costs.cpu_s = (spent / 100.0).max(costs.cpu_s);
         thread::sleep(Duration::from_millis(2));
     }
-    (ended(child), peak)
+    (ended(child), costs)
 }
 
 /// The cells of each line of a flight's list, without milliseconds, which come last.

@@ -21,7 +21,7 @@ mod values;
 mod view;
 mod voice;
 
-use std::ffi::OsString;
+use std::{borrow::Cow, ffi::OsString};
 
 use clap::{
     CommandFactory as _, Parser, Subcommand, ValueEnum as _,
@@ -50,6 +50,8 @@ pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
 
+use crate::escaped::in_line;
+
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
 #[command(version, name = "corniche", max_term_width = 100)]
@@ -66,6 +68,11 @@ impl Arguments {
     /// # Errors
     /// When it cannot be used; also when what is asked for is help or the version.
     pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let words: Vec<OsString> = words.collect();
+        Self::parsed(words.clone()).map_err(|error| as_shown(error, words))
+    }
+
+    fn parsed(words: Vec<OsString>) -> Result<Self, clap::Error> {
         let arguments = Self::try_parse_from(words).map_err(with_tip)?;
         // Conflicts of options before the command's name with those behind it are not the parser's.
         let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
@@ -84,6 +91,32 @@ impl Arguments {
     /// How the program is to talk.
     pub(crate) fn voice(&self) -> Voice {
         self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))
+    }
+}
+
+/// A refusal in whose message the words of the command line stand as [`in_line`] makes them, so that none passes for a line of ours: it is that of
+/// the words so written.
+fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
+    let mut is_shown_as_it_is = true;
+    let written = words.into_iter().map(|word| match in_line(&word.to_string_lossy()) {
+        Cow::Borrowed(_) => word,
+        Cow::Owned(shown) => {
+            is_shown_as_it_is = false;
+            shown.into()
+        }
+    });
+    let written = written.collect();
+    if is_shown_as_it_is {
+        return error;
+    }
+    match Arguments::parsed(written) {
+        Err(error) => error,
+        // Written otherwise nothing is wrong with them.
+        Ok(_) => {
+            let said = error.to_string();
+            let said = said.trim_start_matches("error: ").trim_end();
+            Arguments::command().error(error.kind(), in_line(said))
+        }
     }
 }
 

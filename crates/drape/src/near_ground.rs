@@ -10,6 +10,9 @@ use crate::segment_rectangle::SegmentRectangle;
 /// rounding of areas.
 const UNCOVERED: f64 = 1e-9;
 
+/// A triangle some of which lies near is cut by two rectangles, which takes as long as to look at so many.
+const STEPS_OF_PART: usize = 4;
+
 /// Bounds on the ground near a segment that grow with the distance from it.
 ///
 /// ```text
@@ -33,7 +36,7 @@ pub struct NearGround {
 /// Bounds on the ground within `reach` of a segment; `None` without any there.
 ///
 /// The ends and the reach are in lattice steps. *Within* is as for [`extrude`](crate::extrude): a rectangle, which holds
-/// the caps. Looking at a triangle is a step of `work`, and another when some of it lies within.
+/// the caps. Looking at a triangle is a step of `work`, and there are four more when some of it lies within.
 #[must_use]
 pub fn near_ground(
     ends: [[f64; 2]; 2],
@@ -54,7 +57,7 @@ pub fn near_ground(
         if part.corners().is_empty() {
             continue;
         }
-        work.add(1);
+        work.add(STEPS_OF_PART);
         widen(&mut near_range_m, part.corners());
         widen(&mut beneath_range_m, beneath.part_of(triangle, surface).corners());
         covered += part.area();

@@ -3,6 +3,7 @@
 use std::{fs, path::PathBuf};
 
 use super::*;
+use crate::LineFile;
 
 fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
     let path = folder.join(name);
@@ -95,4 +96,25 @@ fn what_gives_no_lines_is_told() {
     assert!(told("empty.gpx", "").contains("not a vector file"));
     let missing = read(&folder.path().join("missing.gpx"), false).unwrap_err();
     assert!(matches!(missing, OverlayError::Missing { .. }), "{missing}");
+}
+
+/// As many as a file may have are read, and one more is refused; also by what takes drawn lines up again.
+#[test]
+fn a_file_has_a_million_points_at_most() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |points: usize| {
+        let text = "[9,47],".repeat(points - 1) + "[9,48]";
+        let text = format!(r#"{{"type":"LineString","coordinates":[{text}]}}"#);
+        written(folder.path(), "a.geojson", &text)
+    };
+    assert_eq!(MOST_POINTS, 1 << 20);
+    let most = file(MOST_POINTS);
+    assert_eq!(read(&most, false).unwrap().lines[0].positions_deg.len(), MOST_POINTS);
+    let more = file(MOST_POINTS + 1);
+    for refused in [read(&more, false).map(drop), LineFile::read(&more).map(drop)] {
+        let Err(OverlayError::TooManyPoints { path, limit }) = refused else {
+            panic!("it is read: {refused:?}")
+        };
+        assert_eq!((path, limit), (more.clone(), MOST_POINTS));
+    }
 }

@@ -28,6 +28,7 @@ mod photo_against_files;
 mod photo_files;
 mod photos;
 mod polygon;
+mod polygon_cut;
 mod relief;
 mod report;
 mod roads_of_parent;

@@ -199,11 +199,11 @@ fn is_cut(host: &str) -> bool {
     port.is_some_and(|(_, port)| !is_number(port))
 }
 
-/// The `@` behind a password of digits and a blank, such as `me:12 34@host`. A host without a dot may have such a port, but seldom is a word
-/// with an `@` among the next three.
+/// The `@` behind a password of digits and a blank, such as `me:12 34@host`. A host may have such a port, but seldom is a word with an `@` among
+/// the next three, and of a host with a dot it is a person's address then.
 fn behind_number(address: &str, host: &str) -> Option<usize> {
     let (name, port) = host.split_once(':')?;
-    let is_host = name.is_empty() || name == "localhost" || name.contains(['.', '[']);
+    let is_host = name.is_empty() || name == "localhost" || name.contains('[');
     if is_host
         || port.is_empty()
         || !is_number(port)
@@ -212,7 +212,21 @@ fn behind_number(address: &str, host: &str) -> Option<usize> {
         return None;
     }
     let at = next_at(address, host.len())?;
-    (address[host.len()..at].split_whitespace().count() <= 3).then_some(at)
+    let between = &address[host.len()..at];
+    let is_near = between.split_whitespace().count() <= 3;
+    (is_near && !(name.contains('.') && is_of_person(between, &address[at + 1..]))).then_some(at)
+}
+
+/// Whether what stands around an `@` is a person's address and no end of a password and a host: its name begins with a letter, the host has a
+/// dot and nothing behind it, and no quotation mark that was set before the name ends there.
+fn is_of_person(before: &str, after: &str) -> bool {
+    let name = before.rsplit(is_end).next().unwrap_or_default();
+    let is_of_host = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-');
+    let (host, behind) = after.split_at(after.find(|c| !is_of_host(c)).unwrap_or(after.len()));
+    let closes = |c: char| matches!(c, '"' | '\'' | '`') && !before.contains(c);
+    name.starts_with(|c: char| c.is_alphabetic())
+        && host.trim_end_matches('.').contains('.')
+        && !behind.starts_with(|c| matches!(c, '/' | ':' | '?' | '#' | '\\') || closes(c))
 }
 
 /// The `@` before the next host in the same line, and in JSON in the same text.

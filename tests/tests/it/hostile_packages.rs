@@ -12,12 +12,14 @@ use std::{
     process::{Command, Stdio},
 };
 
-use corniche_testing::hostile::{COMMANDING, Case, FAMILIES, Outcome, commanding_texts};
-use e2e::{Ran, binary, corniche, ended_with_peak, json, text};
+use corniche_testing::{
+    hostile::{COMMANDING, Case, FAMILIES, Outcome, commanding_texts},
+    some_of,
+};
+use e2e::{Costs, Ran, binary, corniche, ended_with_costs, json, text};
 
-/// Seconds of computing that a command may take; the shell ends it then. On a machine of 2026 all stay below ten, those on a software driver
-/// included; slower machines get more.
-const MOST_SECONDS: u32 = 20;
+/// Seconds of computing that a command may take, on a software driver, too; the shell ends it then.
+const MOST_SECONDS: u32 = 10;
 const MOST_MIB: u64 = 1024;
 
 /// What is done with a package: the words before its name, and those after.
@@ -25,13 +27,14 @@ const COMMANDS: [(&str, &[&str], &[&str]); 14] = [
     ("verify", &["verify", "-q"], &[]),
     ("render geo", &["render", "-q", "--size", "200x150", "--roads", "geo"], &["-o", "OUT.png"]),
     ("render sv", &["render", "-q", "--size", "200x150", "--roads", "sv"], &["-o", "OUT.png"]),
+    // Most of these packages have their tile on level 0 alone.
     (
         "export roads",
-        &["export", "roads", "-q", "--crs", "EPSG:4979", "--heights", "as-is"],
+        &["export", "roads", "-q", "--level", "0", "--crs", "EPSG:4979", "--heights", "as-is"],
         &["-o", "OUT.gpkg"],
     ),
-    // As people call it: what it refuses without a system for its heights, it refuses soon.
-    ("export roads plain", &["export", "roads", "-q"], &["-o", "OUT.gpkg"]),
+    // Without a system for its heights.
+    ("export roads plain", &["export", "roads", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
     ("export areas", &["export", "areas", "-q"], &["-o", "OUT.gpkg"]),
     ("export boundaries", &["export", "boundaries", "-q"], &["-o", "OUT.gpkg"]),
     ("export mesh", &["export", "mesh", "-q"], &["-o", "OUT.glb"]),
@@ -47,8 +50,12 @@ const COMMANDS: [(&str, &[&str], &[&str]); 14] = [
     ("tile", &["tile", "--json"], &["0/0/0"]),
 ];
 
-/// Runs a command within the limit of time, and tells its memory.
-fn run(folder: &Path, package: &Path, (_, before, after): (&str, &[&str], &[&str])) -> (Ran, u64) {
+/// Runs a command within the limit of time, and tells what it took.
+fn run(
+    folder: &Path,
+    package: &Path,
+    (_, before, after): (&str, &[&str], &[&str]),
+) -> (Ran, Costs) {
     let out = folder.join("out");
     let after = after.iter().map(|word| word.replace("OUT", text(&out)));
     let mut child = Command::new("bash")
@@ -61,32 +68,39 @@ fn run(folder: &Path, package: &Path, (_, before, after): (&str, &[&str], &[&str
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    ended_with_peak(&mut child)
+    ended_with_costs(&mut child)
 }
 
-/// Tries commands on packages of some families; tells what is not as it should be.
-fn check(families: &[&str], commands: &[&str], is_asked: impl Fn(&Case) -> bool) {
+/// Tries commands on packages of some families, each so many-th of the pairs in each tier; tells what is not as it should be.
+fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) -> bool) {
     let mut broken = Vec::new();
+    let (mut pairs, mut chosen) = (0.., some_of(0.., every).peekable());
     for (family, cases) in FAMILIES.iter().filter(|(name, _)| families.contains(name)) {
-        for case in cases().into_iter().filter(|case| is_asked(case)) {
-            for command in COMMANDS.into_iter().filter(|(name, ..)| commands.contains(name)) {
+        for case in cases() {
+            for command in COMMANDS.into_iter().filter(|(name, ..)| is_asked(&case, name)) {
+                if pairs.next().and_then(|pair: usize| chosen.next_if_eq(&pair)).is_none() {
+                    continue;
+                }
                 let folder = tempfile::tempdir().unwrap();
                 let package = folder.path().join("hostile.pmtiles");
                 fs::write(&package, &case.bytes).unwrap();
-                let (ran, peak) = run(folder.path(), &package, command);
+                let (ran, Costs { peak_bytes, cpu_s }) = run(folder.path(), &package, command);
                 let said = ran.err.lines().last().unwrap_or_default();
                 let line = format!(
-                    "{family}: {}: {}: code {}, {} MiB, {said}",
+                    "{family}: {}: {}: code {}, {cpu_s:.2} s, {} MiB, {said}",
                     case.name,
                     command.0,
                     ran.code,
-                    peak >> 20
+                    peak_bytes >> 20
                 );
                 println!("{line}");
                 let is_known = matches!(ran.code, 0..=2);
-                let is_refused = ran.code != 0 || matches!(case.outcome, Outcome::Read);
-                if !is_known || !is_refused || peak >> 20 > MOST_MIB || ran.err.contains("panicked")
-                {
+                // That the header counts the list of tiles wrongly is seen by what reads all of it.
+                let may_not_see = matches!(case.outcome, Outcome::Refused("fewer or more"));
+                let may_not_see = is_read(&case) || may_not_see && command.0 != "verify";
+                let is_refused = ran.code != 0 || may_not_see;
+                let is_small = peak_bytes >> 20 <= MOST_MIB;
+                if !is_known || !is_refused || !is_small || ran.err.contains("panicked") {
                     broken.push(line);
                 }
             }
@@ -95,21 +109,23 @@ fn check(families: &[&str], commands: &[&str], is_asked: impl Fn(&Case) -> bool)
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
-#[test]
-fn work_follows_bytes_and_no_coordinate() {
-    let is_read = |case: &Case| matches!(case.outcome, Outcome::Read);
-    check(&["lies"], &["verify", "render sv", "export geotiff"], is_read);
+fn is_read(case: &Case) -> bool {
+    matches!(case.outcome, Outcome::Read)
 }
 
 #[test]
+fn work_follows_bytes_and_no_coordinate() {
+    let commands = ["verify", "render sv", "export geotiff"];
+    check(&["lies"], [1; 3], |case, command| is_read(case) && commands.contains(&command));
+}
+
+/// What is refused is refused when it is opened, with its first tile, or with the list of all: by one way for all commands, so two of them will do.
+#[test]
 #[ignore = "slow: every command on every hostile package, some minutes"]
 fn every_command_ends_on_every_hostile_package() {
-    let commands: Vec<&str> = COMMANDS.iter().map(|(name, ..)| *name).collect();
-    let families: Vec<&str> = FAMILIES.iter().map(|(name, _)| *name).collect();
-    let is_read = |case: &Case| matches!(case.outcome, Outcome::Read);
-    check(&families, &commands, is_read);
-    // What is refused is refused when it is opened, or with its first tile: by one way for all commands.
-    check(&families, &["verify", "export geotiff"], |case| !is_read(case));
+    let families = FAMILIES.map(|(name, _)| name);
+    let of_refused = ["verify", "export geotiff"];
+    check(&families, [40, 40, 1], |case, command| is_read(case) || of_refused.contains(&command));
 }
 
 /// Attribution, datum, CRS, names of inputs, reasons: nothing of it commands the terminal, nor does a file's name. Programs get it as it is.
@@ -136,6 +152,10 @@ fn no_text_of_a_package_commands_the_terminal() {
         &["growth", package, "--svg", &svg],
         &["info", text(&other)],
         &["info", "--\u{1b}[5mno"],
+        &["info", "--no\ncorniche: forged"],
+        &["info\ncorniche: forged"],
+        &["verify", package, "--max-error", "1\ncorniche: forged"],
+        &["render", package, "--size", "1x2\r\n\tcorniche: forged"],
         &["build", "--dem", text(&other), "-o", package],
     ] {
         let ran = corniche(words);

@@ -43,9 +43,9 @@ fn threads_and_memory_change_no_byte() {
 #[cfg(target_os = "linux")]
 fn peak_bytes(job: &Job, more: &[&str]) -> u64 {
     let mut child = job.start(&[&["--quiet"], more].concat());
-    let (ran, peak) = e2e::ended_with_peak(&mut child);
+    let (ran, costs) = e2e::ended_with_costs(&mut child);
     assert_eq!(ran.code, 0, "{}", ran.err);
-    peak
+    costs.peak_bytes
 }
 
 /// 256 MiB suffice for four threads, whatever the size of the DEM: here 27 million nodes, whose heights alone take 108 MB.

@@ -273,9 +273,11 @@ fn every_format_is_read_alike() {
     }
 }
 
-fn refused(scene: &Scene, overlay: &str) -> String {
+fn refused(scene: &Scene, overlays: &[&str]) -> String {
     let out = scene.at("refused.png");
-    let ran = corniche(["render", text(&scene.package), "-o", text(&out), "--overlay", overlay]);
+    let mut words = vec!["render", text(&scene.package), "-o", text(&out)];
+    overlays.iter().for_each(|overlay| words.extend(["--overlay", overlay]));
+    let ran = corniche(words);
     assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
     assert!(!Path::new(&out).exists());
     ran.err
@@ -290,12 +292,21 @@ fn what_is_wrong_with_a_file_is_told() {
         path
     };
     let missing = scene.at("missing.gpx");
-    assert!(refused(&scene, text(&missing)).contains("missing.gpx"));
+    assert!(refused(&scene, &[text(&missing)]).contains("missing.gpx"));
     let points = write("points.geojson", r#"{"type":"Point","coordinates":[9,47]}"#);
-    assert!(refused(&scene, text(&points)).contains("no line and no outline"));
+    assert!(refused(&scene, &[text(&points)]).contains("no line and no outline"));
     let broken = write("broken.gpx", "<gpx");
-    assert!(refused(&scene, text(&broken)).contains("not a vector file"));
-    assert!(refused(&scene, "a.gpx,width=900").contains("width must be 0.5 to 50"));
+    assert!(refused(&scene, &[text(&broken)]).contains("not a vector file"));
+    assert!(refused(&scene, &["a.gpx,width=900"]).contains("width must be 0.5 to 50"));
+    // Each of them has no more points than a file may have, both together have.
+    let few = write("few.geojson", r#"{"type":"LineString","coordinates":[[9,47],[9,48]]}"#);
+    let most = "[9,47],".repeat((1 << 20) - 1) + "[9,48]";
+    let most = write("most.geojson", &format!(r#"{{"type":"LineString","coordinates":[{most}]}}"#));
+    let told = refused(&scene, &[text(&few), text(&most)]);
+    assert!(
+        told.contains("most.geojson\" and the files named before it have more than 1048576"),
+        "{told}"
+    );
     let line = scene.write_line("out.png.geojson", &[[0.0, 0.0], [100.0, 0.0]]);
     let same = corniche([
         "render",

@@ -128,6 +128,8 @@ checks! {
     OsmAreaCounts "osm.areas.counts" Osm "areas by class, their square kilometres and the objects lost are those of the extract"
     OsmBoundaries "osm.boundaries" Osm "the boundaries of each tile are those of the extract, split again"
     OsmBoundaryCounts "osm.boundaries.counts" Osm "ways that are boundaries by class, their lengths and the ways lost are those of the extract"
+    AreaPolygon "areas.polygon" Osm "areas of a package that was cut with a polygon end at it"
+    BoundaryPolygon "boundaries.polygon" Osm "boundaries of a package that was cut with a polygon end at it"
 }
 
 /// One check, how often it was made, and where it failed.

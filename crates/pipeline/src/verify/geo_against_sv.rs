@@ -140,12 +140,17 @@ pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePo
 
 /// Whether a point lies within so many steps of one of the segments.
 pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
-    segments.iter().any(|&[a, b]| {
-        let (du, dv) = (b[0] - a[0], b[1] - a[1]);
-        let part = ((point[0] - a[0]) * du + (point[1] - a[1]) * dv) / (du * du + dv * dv);
-        let part = part.clamp(0.0, 1.0);
-        (a[0] + part * du - point[0]).hypot(a[1] + part * dv - point[1]) <= steps
-    })
+    segments.iter().any(|&segment| distance(point, segment) <= steps)
+}
+
+/// The distance of a point from a segment.
+pub(crate) fn distance(point: [f64; 2], [a, b]: Segment) -> f64 {
+    let (du, dv) = (b[0] - a[0], b[1] - a[1]);
+    let squared = du * du + dv * dv;
+    let ahead = (point[0] - a[0]) * du + (point[1] - a[1]) * dv;
+    // One without length is a point.
+    let part = if squared > 0.0 { (ahead / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (a[0] + part * du - point[0]).hypot(a[1] + part * dv - point[1])
 }
 
 /// The pieces of a segment that lie in the tile but on none of the lines. A segment along a border has none, because its

@@ -13,6 +13,7 @@ use super::{
     error::VerifyError,
     georeference, grid, osm_layers,
     osm_tile::{Found, Laying, SoupCache, look_at},
+    polygon_cut,
     temporary_store::TemporaryStore,
     verify_settings::{VerifyOsm, VerifySettings},
 };
@@ -108,6 +109,9 @@ fn compare_all(
     }
     if manifest.settings.boundaries {
         osm_layers::compare_boundaries(package, store, request.threads, findings, observer)?;
+    }
+    if let Some(region) = &polygon {
+        polygon_cut::verify(package, region, request.threads, findings, observer)?;
     }
     check_growth(manifest, &classes, findings);
     Ok(())

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use corniche_testing::some_of;
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use crate::support::{
     Options,
@@ -13,7 +13,8 @@ use crate::support::{
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_pipeline::{
-    CheckId, Needs, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
+    CheckId, Needs, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build,
+    verify,
 };
 use corniche_tileset::{
     AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
@@ -29,6 +30,8 @@ fn table() -> AreaTable {
 /// A package with areas, taken apart.
 struct Apart {
     folder: TempDir,
+    /// The polygon that it was cut with.
+    polygon: Option<Polygon>,
     manifest: Manifest,
     tiles: BTreeMap<u64, Tile>,
 }
@@ -45,12 +48,28 @@ struct Tile {
 impl Apart {
     /// The sample with a lake, and a wood with a clearing, which lie on several tiles.
     fn sound() -> Self {
+        Self::built(tempfile::tempdir().unwrap(), None)
+    }
+
+    /// The same cut with a polygon, which leaves out the south-west of the lake and some of the wood.
+    fn cut() -> Self {
         let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("polygon.geojson");
+        let [west, east, south, north] = [9.5175, 9.555, 46.884, 46.902];
+        let corners = format!(
+            "[{west},{south}],[{east},{south}],[{east},{north}],[{west},{north}],[{west},{south}]"
+        );
+        fs::write(&path, format!(r#"{{"type":"Polygon","coordinates":[[{corners}]]}}"#)).unwrap();
+        Self::built(folder, Some(Polygon::read(&path).unwrap()))
+    }
+
+    fn built(folder: TempDir, polygon: Option<Polygon>) -> Self {
         let path = folder.path().join("sound.pmtiles");
         let osm = corniche_testing::extract_with_areas(folder.path());
         let options = Options::plain(MAX_ERROR_M);
         let mut settings = settings(sample("pass-dem.tif"), Some(osm), path.clone(), options);
         settings.plan.areas = Some(table());
+        settings.plan.terrain.plan.polygon.clone_from(&polygon);
         build(&settings, &Silent).unwrap();
         let package = FilePackage::open(&path).unwrap();
         let manifest = package.manifest().clone();
@@ -63,7 +82,7 @@ impl Apart {
             let tile = Tile { id, whole, without_areas, areas, is_changed: false };
             tiles.insert(pmtiles_order(id), tile);
         }
-        Self { folder, manifest, tiles }
+        Self { folder, polygon, manifest, tiles }
     }
 
     /// Changes the areas of a tile, and corrects the sums that the manifest records of them.
@@ -115,7 +134,7 @@ impl Apart {
             dem: Vec::new(),
             photo: Vec::new(),
             osm: Some(osm),
-            polygon: None,
+            polygon: self.polygon.clone(),
             threads: 2,
         };
         verify(&FilePackage::open(&self.put_together())?, &settings, &Silent)
@@ -355,6 +374,22 @@ fn areas_that_are_not_those_of_the_extract() {
         apart.assert_breaks(&[]);
         apart.assert_breaks_against_extract(&[CheckId::OsmAreaCounts]);
     }
+}
+
+#[test]
+fn an_area_that_reaches_beyond_the_polygon() {
+    let mut apart = Apart::cut();
+    let checks = apart.against_extract(Some(table())).unwrap().checks;
+    let cut = checks.iter().find(|check| check.id == CheckId::AreaPolygon).unwrap();
+    assert!(cut.holds() && cut.checked > 4, "{cut:?}");
+    // The lake is cut in the west, far from the border of tile 0/0/0.
+    apart.change(TileId::ROOT, |areas| {
+        let lake = areas.iter_mut().find(|area| area.class == AreaClass::Water).unwrap();
+        let ring = &mut lake.polygons[0].rings[0];
+        let western = ring.iter_mut().min_by_key(|point| (point.u, point.v)).unwrap();
+        western.u -= 200_000;
+    });
+    apart.assert_breaks_against_extract(&[CheckId::OsmAreas, CheckId::AreaPolygon]);
 }
 
 #[test]

@@ -1,5 +1,10 @@
 //! The small package in pieces, so that each can be wrong by itself.
 
+use corniche_tileset::{
+    AreaCounts, AreaTableRecord, AreasRecord, BoundariesRecord, BoundaryCounts, InputRecord,
+    Manifest, SettingsRecord,
+};
+
 use crate::{
     package,
     payload::{Section, with_right_table_checksum},
@@ -55,9 +60,27 @@ impl Parts {
     }
 }
 
-/// The sound package's metadata.
+/// The sound package's metadata, in a system that PROJ knows and with an extract, areas and boundaries, so that no command stops before it has
+/// read tiles.
 pub(crate) fn metadata() -> serde_json::Value {
-    package::metadata(&package::manifest())
+    let (kind, name) = ("osm".to_owned(), "pass.osm.pbf".to_owned());
+    let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
+    let (table, sha256) = ("default".to_owned(), "0".repeat(64));
+    let areas = AreaCounts { objects: 0, kept: vec![], lost: vec![] };
+    let boundaries = BoundaryCounts { ways: 0, kept: vec![], lost: vec![] };
+    let sound = package::manifest();
+    package::metadata(&Manifest {
+        crs_wkt: "EPSG:32632".to_owned(),
+        inputs: vec![extract],
+        areas: Some(AreasRecord { counts: areas, levels: vec![] }),
+        boundaries: Some(BoundariesRecord { counts: boundaries, levels: vec![] }),
+        settings: SettingsRecord {
+            areas: Some(AreaTableRecord { table, sha256 }),
+            boundaries: true,
+            ..sound.settings.clone()
+        },
+        ..sound
+    })
 }
 
 /// A section as one zstd frame.
