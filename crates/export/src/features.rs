@@ -11,6 +11,7 @@ use corniche_work::{Observer, Stage};
 use crate::{
     error::ExportError,
     feature_request::{Coordinates, FeatureRequest},
+    height_bound::height_bound,
     places::Places,
     read,
     scratch::FileScratch,
@@ -125,6 +126,10 @@ pub(crate) fn write_features<F: Features>(
         metadata: of_package.into_iter().chain(metadata).collect(),
     };
     let mut file = VectorFile::create(path, request.format, layer)?;
+    if let Some(sentence) = height_bound(manifest, *level).filter(|_| F::SHAPES == ShapeKind::Lines)
+    {
+        file.tell_heights(sentence);
+    }
     pieces.for_each(observer, F::object, |pieces| {
         features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
     })?;

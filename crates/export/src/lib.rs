@@ -46,6 +46,7 @@ mod geotiff;
 mod globe;
 mod gltf;
 mod growth;
+mod height_bound;
 mod join;
 mod laid_lines;
 mod measures;
