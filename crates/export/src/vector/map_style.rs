@@ -15,11 +15,11 @@ struct Category {
     value: String,
     label: String,
     opacity: f32,
-    parts: Vec<Part>,
+    parts: Vec<SymbolPart>,
 }
 
 /// What is drawn once for each feature of a class. All parts with a lower `pass` lie below, whichever class they are of.
-struct Part {
+struct SymbolPart {
     pass: usize,
     drawing: Drawing,
 }
@@ -78,7 +78,7 @@ fn roads(style: &Style) -> Vec<Category> {
         let width_px = road.flat_width_px();
         let line = |pass, color, width_px| {
             let drawing = Drawing::Line { color, width_px, dash: road.dash };
-            Part { pass, drawing }
+            SymbolPart { pass, drawing }
         };
         let edge = line(0, road.outline, width_px + 2.0 * style.outline_px as f32);
         let bands = road.bands.all().iter();
@@ -97,7 +97,7 @@ fn areas(style: &Style) -> Vec<Category> {
     let category = |(below, class): (usize, AreaClass)| {
         let AreaStyle { color, opacity } = *style.area(class);
         let pass = AreaClass::COUNT - 1 - below;
-        let parts = vec![Part { pass, drawing: Drawing::Fill { color } }];
+        let parts = vec![SymbolPart { pass, drawing: Drawing::Fill { color } }];
         Category::named(class.name(), opacity, parts)
     };
     AreaStyle::TOP_FIRST.into_iter().enumerate().map(category).collect()
@@ -109,7 +109,7 @@ fn boundaries(style: &Style) -> Vec<Category> {
         let pass = BoundaryClass::COUNT - usize::from(class.number());
         let part = |pass, color, width_px| {
             let drawing = Drawing::Line { color, width_px, dash };
-            Part { pass, drawing }
+            SymbolPart { pass, drawing }
         };
         let casing = casing.map(|casing| part(0, casing, width_px + 2.0));
         let parts = casing.into_iter().chain([part(pass, color, width_px)]).collect();
@@ -119,12 +119,12 @@ fn boundaries(style: &Style) -> Vec<Category> {
 }
 
 impl Category {
-    fn named(name: &str, opacity: f32, parts: Vec<Part>) -> Self {
+    fn named(name: &str, opacity: f32, parts: Vec<SymbolPart>) -> Self {
         Self { value: name.to_owned(), label: name.to_owned(), opacity, parts }
     }
 }
 
-impl Part {
+impl SymbolPart {
     fn write(&self, out: &mut String) {
         let (kind, properties) = match &self.drawing {
             Drawing::Fill { color } => (
