@@ -22,8 +22,8 @@ use corniche_tileset::ReliefLevels;
 
 use crate::{args::WorkArgs, exit::ExitCode, failure::Failure, presets};
 
-/// Default tolerance of the simplification of roads, in cells of the level. It equals the default vertical tolerance, a
-/// quarter of the cell, because an error that is too small to be seen in height is too small in plan as well.
+/// Default tolerance of the simplification of roads, in cells of the level: where a level is drawn its cells have a pixel or two, and a quarter
+/// of one is not seen.
 const SIMPLIFY_CELLS: f64 = 0.25;
 /// Default quality of photos: at 85 they take a fifth more bytes for half a decibel (docs/lab/measured.md).
 const PHOTO_QUALITY: u8 = 80;

@@ -11,6 +11,7 @@ use corniche_work::{Observer, Stage};
 use crate::{
     error::ExportError,
     feature_request::{Coordinates, FeatureRequest},
+    height_bound::height_bound,
     places::Places,
     read,
     scratch::FileScratch,
@@ -132,6 +133,10 @@ pub(crate) fn write_features<F: Features>(
         SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
     let layer = source.layer(F::NAME, F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
+    if let Some(sentence) = height_bound(manifest, *level).filter(|_| F::SHAPES == ShapeKind::Lines)
+    {
+        file.tell_heights(sentence);
+    }
     pieces.for_each(observer, F::object, |pieces| {
         features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
     })?;

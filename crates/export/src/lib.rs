@@ -50,6 +50,7 @@ mod globe;
 mod gltf;
 mod grades;
 mod growth;
+mod height_bound;
 mod join;
 mod laid_lines;
 mod measures;

@@ -1,9 +1,11 @@
-//! Files of features through GDAL's vector drivers. Nothing here knows a road or an area.
+//! Files of features through GDAL's vector drivers. Nothing here knows a road or an area, but for the colours of their classes.
 
 mod cell;
 mod field;
 mod file;
 mod format;
+mod geopackage;
+mod map_style;
 mod whole;
 
 pub use cell::cell_text;

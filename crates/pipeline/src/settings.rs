@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_geom::Cell;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_store::Existing;
 use corniche_tileset::ReliefLevels;
@@ -118,10 +119,17 @@ pub struct TerrainSettings {
     /// Whether one datum may be taken for another where PROJ knows nothing between them. It changes no byte of a package: it only lets a
     /// build begin.
     pub allow_ballpark: bool,
-    /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
+    /// Largest vertical error of the finest level; `None` takes a sixteenth of the cell, but where cells are small not less than 0.25 m.
     pub max_error_m: Option<f64>,
     /// Which levels store their rasters for shading.
     pub relief: ReliefLevels,
+}
+
+/// The largest vertical error of the finest level where none is asked for, metres: a sixteenth of the cell's shorter side. Elevation data of
+/// small cells are themselves wrong by decimetres, so there it is 0.25 m, or a quarter of the cell where that is less.
+pub(crate) fn usual_max_error_m(cell: Cell) -> f64 {
+    let cell_m = cell.shorter_m();
+    (cell_m / 16.0).max((cell_m / 4.0).min(0.25))
 }
 
 /// How roads are made.

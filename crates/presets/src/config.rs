@@ -91,7 +91,7 @@ pub struct TerrainOptions {
     /// Take every K-th sample of the DEM along both axes as a node of the finest level, without interpolation
     #[arg(long, value_name = "K", conflicts_with = "cell")]
     pub cell_every: Option<u32>,
-    /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
+    /// Largest vertical error of the finest level, in metres [default: a 16th of the cell; 0.25 for cells of 1 to 4 m]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub max_error: Option<f64>,
     /// Fill voids that have data within this many cells in each of eight directions [default: 32]

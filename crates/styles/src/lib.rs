@@ -30,7 +30,7 @@ mod sheet_values;
 mod style;
 
 pub use area_style::AreaStyle;
-pub use color::Rgb;
+pub use color::{Rgb, to_bytes};
 pub use dash::Dash;
 pub use error::StyleError;
 pub use ground::{Light, MOST_TINT_STOPS, Tint, TintHeights, TintStop};

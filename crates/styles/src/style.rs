@@ -33,6 +33,12 @@ pub struct RoadStyle {
 impl RoadStyle {
     /// Width of slip roads and service roads as a share of that of their class.
     pub const NARROW_WIDTH_SHARE: f32 = 0.6;
+
+    /// Width on a flat map: the most that roads grow to with distance. Thinner than a pixel is not seen.
+    #[must_use]
+    pub fn flat_width_px(&self) -> f32 {
+        self.max_width_px.unwrap_or(self.min_width_px).max(1.0)
+    }
 }
 
 /// How much roads widen with distance (the paper, section 6.2 and Fig. 10).

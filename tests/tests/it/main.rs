@@ -17,6 +17,7 @@ mod export_geotiff;
 mod export_mesh;
 mod export_quantized_mesh;
 mod export_roads;
+mod export_styles;
 mod export_targets;
 mod export_tiles3d;
 mod extracts_without_roads;

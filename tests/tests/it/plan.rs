@@ -64,6 +64,41 @@ fn a_plan_is_printed_and_written_and_never_replaced_unasked() {
     assert_eq!(corniche(input).code, 2);
 }
 
+/// Without `--max-error` the bound is a 16th of the cell's shorter side, for cells of 1 to 4 m it is 0.25 m, and for smaller ones a quarter of the
+/// cell. A plan holds the bound itself: given, it makes the same plan, and the default of earlier versions, a quarter, makes another one.
+#[test]
+fn the_bound_without_max_error_follows_from_the_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let bounds = [
+        ([80.0, 60.0], 3.75),
+        ([10.0, 10.0], 0.625),
+        ([5.0, 5.0], 0.3125),
+        ([2.0, 3.0], 0.25),
+        ([1.0, 1.0], 0.25),
+        ([0.5, 0.5], 0.125),
+    ];
+    for (number, ([east_m, north_m], bound_m)) in bounds.into_iter().enumerate() {
+        let place = [500_000.0, east_m, 0.0, 5_000_000.0, 0.0, -north_m];
+        let raster = Raster::new(32632, [20, 20], place);
+        let dem = raster.write(folder.path(), &format!("{number}.tif"), |[x, _]| (x / 10.0) as f32);
+        let planned = |bound: &[&str]| -> (Value, Value) {
+            let file = folder.path().join("plan.json");
+            let words = ["plan", "--dem", text(&dem), "-O", "-o", text(&file), "--json"];
+            let ran = corniche([&words[..], bound].concat());
+            assert_eq!(ran.code, 0, "{}", ran.err);
+            let told: Value = serde_json::from_str(&ran.out).unwrap();
+            let plan: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+            (plan["settings"]["max_error_m"].clone(), told["plan_sha256"].clone())
+        };
+        let usual = planned(&[]);
+        assert_eq!(usual.0, bound_m, "{east_m} x {north_m} m");
+        assert_eq!(planned(&["--max-error", &bound_m.to_string()]), usual);
+        let quarter_m = east_m.min(north_m) / 4.0;
+        let quarter = planned(&["--max-error", &quarter_m.to_string()]);
+        assert_eq!(quarter.1 == usual.1, quarter_m <= bound_m, "{east_m} x {north_m} m");
+    }
+}
+
 /// A DEM whose samples are compressed all together, so that each thread must decode all of it: 35 MB each.
 fn one_strip(folder: &Path) -> std::path::PathBuf {
     let place = [500_000.0, 10.0, 0.0, 5_000_000.0, 0.0, -10.0];

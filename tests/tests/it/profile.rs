@@ -101,6 +101,7 @@ fn a_line_of_a_file_has_the_profile_of_the_way_that_it_follows() {
     let cut = std::process::Command::new("ogr2ogr")
         .args(["-dim", "XY", "-where", &format!("way_id = {longest}")])
         .args([&line, &roads])
+        .arg("roads")
         .output()
         .unwrap();
     assert!(cut.status.success(), "{}", String::from_utf8_lossy(&cut.stderr));

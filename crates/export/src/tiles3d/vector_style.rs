@@ -23,18 +23,13 @@ pub(crate) fn write(folder: &Path, style: &Style) -> io::Result<()> {
     };
     let document = json!({
         "color": by_class(&|road| format!("color('{}')", hex(road))),
-        "lineWidth": by_class(&|road| width_px(road).to_string()),
+        "lineWidth": by_class(&|road| road.flat_width_px().to_string()),
     });
     fs::write(folder.join(NAME), serde_json::to_vec_pretty(&document)?)
 }
 
-fn width_px(road: &RoadStyle) -> f32 {
-    road.max_width_px.unwrap_or(road.min_width_px).max(1.0)
-}
-
 fn hex(road: &RoadStyle) -> String {
-    let [red, green, blue] =
-        road.bands.main_color().map(|channel| (channel * 255.0).round().clamp(0.0, 255.0) as u8);
+    let [red, green, blue] = corniche_styles::to_bytes(road.bands.main_color());
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 

@@ -19,6 +19,7 @@ use crate::{
         cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
         format::VectorFormat,
+        geopackage,
         whole::{self, Contents},
     },
 };
@@ -28,7 +29,7 @@ const VERTICES_AT_ONCE: usize = 1 << 16;
 /// GDAL's settings while a file is written, of this thread. The file is of no use until it is complete, so the database need
 /// not be safe against a loss of power; and the same roads make the same bytes, whatever the date.
 const SETTINGS: [(&str, &str); 2] =
-    [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z")];
+    [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", geopackage::NO_TIME)];
 
 /// What a file says of itself and of its features.
 #[derive(Debug, Clone)]
@@ -54,6 +55,7 @@ pub(crate) struct VectorFile {
     layer: Layer,
     waiting: Vec<Record>,
     waiting_vertices: usize,
+    heights: Option<String>,
     written: Contents,
     _settings: GdalSettings,
 }
@@ -78,6 +80,7 @@ impl VectorFile {
             layer,
             waiting: Vec::new(),
             waiting_vertices: 0,
+            heights: None,
             written: Contents::default(),
             _settings: settings,
         })
@@ -95,6 +98,12 @@ impl VectorFile {
         self.waiting_vertices += record.shape.vertices();
         self.waiting.push(record);
         if self.waiting_vertices >= VERTICES_AT_ONCE { self.write() } else { Ok(()) }
+    }
+
+    /// Says in a GeoPackage's description of the layer how far heights may be off: a whole sentence. It may be known only when all features are
+    /// written; what is said last counts.
+    pub(crate) fn tell_heights(&mut self, sentence: String) {
+        self.heights = Some(sentence);
     }
 
     fn write(&mut self) -> Result<(), ExportError> {
@@ -116,7 +125,18 @@ impl VectorFile {
     /// Ends the file and reads it again: GDAL does not report everything that fails when a file is closed.
     pub(crate) fn finish(mut self) -> Result<(), ExportError> {
         self.write()?;
-        let Self { path, format, dataset, written, .. } = self;
+        let Self { path, format, dataset, layer, heights, written, .. } = self;
+        if format == VectorFormat::GeoPackage {
+            let told = match heights {
+                Some(heights) => {
+                    let description = layer.about(&heights);
+                    geopackage::describe(&dataset, layer.name, &description)
+                }
+                None => Ok(()),
+            };
+            let styled = told.and_then(|()| geopackage::add_style(&dataset, layer.name));
+            styled.map_err(|error| failed(&path, error))?;
+        }
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_dem::forget();
         dataset.close().map_err(|error| failed(&path, error))?;
@@ -124,6 +144,14 @@ impl VectorFile {
             return Err(ExportError::Write { path, source });
         }
         whole::check(&path, format, written)
+    }
+}
+
+impl Layer {
+    /// The description with what is known of heights, and the credits.
+    fn about(&self, heights: &str) -> String {
+        let parts = [self.description.as_str(), heights, &self.attribution];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
     }
 }
 

@@ -136,8 +136,7 @@ impl Estimate {
         let mut ground = if is_sampled {
             Ground::sampled(opened, dem, &finest, nodes, observer)?
         } else {
-            let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
-            Ground::recorded(nodes, opened.max_error_m / usual_m)
+            Ground::recorded(nodes, opened.tolerance_cells())
         };
         if !opened.grid.nodes_are_samples() {
             ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
@@ -311,9 +310,9 @@ impl MemoryEstimate {
 }
 
 impl Ground {
-    /// `max_error_ratio` is the tolerance divided by the usual one, a quarter of the cell.
-    fn recorded(nodes: u64, max_error_ratio: f64) -> Self {
-        let triangles_per_node = rates::triangles_per_node(max_error_ratio);
+    /// `tolerance_cells` is the tolerance as a share of the cell.
+    fn recorded(nodes: u64, tolerance_cells: f64) -> Self {
+        let triangles_per_node = rates::triangles_per_node(tolerance_cells);
         let nodes = nodes as f64;
         let all_triangles = rates::ALL_PER_FINEST * triangles_per_node * nodes;
         Self {
@@ -344,8 +343,7 @@ impl Ground {
             let begun = thread_time();
             // Values that are no heights are found, and told, when all samples are looked at.
             let Ok(tin) = corniche_tin::triangulate(&window.heights, spec) else {
-                let usual_m = grid.frame.cell().shorter_m() / 4.0;
-                return Ok(Self::recorded(nodes, max_error_m / usual_m));
+                return Ok(Self::recorded(nodes, opened.tolerance_cells()));
             };
             spent += thread_time().saturating_sub(begun);
             triangles += tin.triangles().len();

@@ -16,7 +16,7 @@ pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBloc
 pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
     let nodes = tiles.last().copied().unwrap_or(0) << 16;
-    Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 1.0))
+    Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 0.25))
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn four_times_the_tiles_take_four_times_the_disk() {
 fn the_extract_takes_disk_too() {
     let memory = || MemoryEstimate::new(&[], 1, 2);
     let put = |extract_bytes| {
-        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded(1, 1.0))
+        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded(1, 0.25))
     };
     let extract = 1_u64 << 30;
     assert!(put(extract).store_bytes > put(0).store_bytes + extract);
@@ -69,13 +69,16 @@ fn the_extract_takes_disk_too() {
 /// The packages that the rates were taken from (docs/lab/build-costs.md): nodes, triangles of all levels and bytes of ground.
 #[test]
 fn recorded_rates_fit_what_they_were_taken_from() {
-    for (name, nodes, ratio, triangles, bytes) in [
-        ("N47E009", 1_442_401, 1.0, 332_000.0, 432_000.0),
-        ("N47E009, 10 m", 1_442_401, 0.637, 559_000.0, 651_000.0),
-        ("N47E009, 5 m", 1_442_401, 0.319, 1_079_000.0, 1_113_000.0),
-        ("Liechtenstein", 2_883_601, 1.0, 849_000.0, 1_096_000.0),
+    for (name, nodes, tolerance_cells, triangles, bytes) in [
+        ("N47E009, a 4th", 1_442_401, 0.25, 332_000.0, 432_000.0),
+        ("N47E009, 10 m", 1_442_401, 0.159, 559_000.0, 651_000.0),
+        ("N47E009, 5 m", 1_442_401, 0.0796, 1_079_000.0, 1_113_000.0),
+        ("N47E009, a 16th", 1_442_401, 0.0625, 1_353_620.0, 1_364_000.0),
+        ("eight squares, a 16th", 11_527_201, 0.0625, 9_562_000.0, 9_333_000.0),
+        ("Tirol, a 16th", 446_229, 0.0625, 317_800.0, 354_400.0),
+        ("Liechtenstein", 2_883_601, 0.25, 849_000.0, 1_096_000.0),
     ] {
-        let ground = Ground::recorded(nodes, ratio);
+        let ground = Ground::recorded(nodes, tolerance_cells);
         let all = ground.triangles_per_node * nodes as f64 * rates::ALL_PER_FINEST;
         assert!((0.75..1.35).contains(&(all / triangles)), "{name}: {all}");
         let memory = MemoryEstimate::new(&[], 39, 1);

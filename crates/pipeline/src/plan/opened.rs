@@ -11,6 +11,7 @@ use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
+    settings::usual_max_error_m,
     settings_record,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };
@@ -99,6 +100,11 @@ impl Opened {
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
     }
 
+    /// The tolerance of the finest level as a share of the cell's shorter side.
+    pub(crate) fn tolerance_cells(&self) -> f64 {
+        self.max_error_m / self.grid.frame.cell().shorter_m()
+    }
+
     /// What follows from elevation files.
     fn plan(settings: &PlanSettings) -> Result<Planned, BuildError> {
         let terrain = &settings.terrain;
@@ -162,7 +168,7 @@ struct Planned {
 
 /// The tolerance of the finest level: given, or derived from the cell.
 fn max_error_m(terrain: &TerrainSettings, grid: &GridPlan) -> Result<f64, BuildError> {
-    let max_error_m = terrain.max_error_m.unwrap_or(grid.frame.cell().shorter_m() / 4.0);
+    let max_error_m = terrain.max_error_m.unwrap_or_else(|| usual_max_error_m(grid.frame.cell()));
     if MAX_ERRORS_M.contains(&max_error_m) {
         Ok(max_error_m)
     } else {

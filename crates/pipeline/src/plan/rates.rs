@@ -24,23 +24,23 @@ pub(crate) const RECORD_BYTES: u64 = 1 << 10;
 /// A coarse tile's TIN: ten bytes a vertex, of which there are half as many as triangles, and twelve a triangle.
 pub(crate) const TIN_BYTES_PER_TRIANGLE: f64 = 17.0;
 
-/// Triangles of the finest level for each node, at a tolerance of a quarter of the cell: rough ground. Smooth ground has
-/// fewer. Twice the tolerance halves them.
-pub(crate) const TRIANGLES_PER_NODE: f64 = 0.2;
+/// Triangles of the finest level for each node, times the tolerance as a share of the cell: rough ground. Smooth ground has down to half as
+/// many. With the usual tolerance of a 16th they are 0.68; twice the tolerance halves them.
+pub(crate) const TRIANGLES_PER_NODE: f64 = 0.0425;
 /// A TIN cannot have more.
 pub(crate) const MOST_TRIANGLES_PER_NODE: f64 = 2.0;
 /// Triangles of all levels, divided by those of the finest.
 pub(crate) const ALL_PER_FINEST: f64 = 1.4;
 
-/// Triangles of the finest level for each node. `max_error_ratio` is the tolerance divided by the usual one, a quarter of the cell.
-pub(crate) fn triangles_per_node(max_error_ratio: f64) -> f64 {
-    (TRIANGLES_PER_NODE / max_error_ratio).min(MOST_TRIANGLES_PER_NODE)
+/// Triangles of the finest level for each node. `tolerance_cells` is the tolerance as a share of the cell.
+pub(crate) fn triangles_per_node(tolerance_cells: f64) -> f64 {
+    (TRIANGLES_PER_NODE / tolerance_cells).min(MOST_TRIANGLES_PER_NODE)
 }
 
 /// Bytes of encoded ground for each triangle, with normals: the denser the triangles, the fewer. The curve goes through the
-/// measured points (0.16 triangles per node: 1.30), (0.28: 1.16), (0.54: 1.04); sparse ones take 1.4 to 1.5.
+/// measured points (0.16 triangles per node: 1.30), (0.28: 1.16), (0.54: 1.03); from 0.7 on it is 1.0. Sparse ones take 1.4 to 1.5.
 pub(crate) fn payload_bytes_per_triangle(triangles_per_node: f64) -> f64 {
-    (0.9 * triangles_per_node.powf(-0.21)).min(1.5)
+    (0.9 * triangles_per_node.powf(-0.21)).clamp(1.0, 1.5)
 }
 
 /// Bytes of a full tile's relief: 7 000 on smooth ground, 13 000 on rough.

@@ -118,7 +118,7 @@ fn normals_are_those_of_metres_not_of_cells() {
     }
 }
 
-/// Where one length stands for a cell, it is the shorter side: the default error is a quarter of it.
+/// Where one length stands for a cell, it is the shorter side: the default error is a sixteenth of it.
 #[test]
 fn the_shorter_side_stands_for_the_cell() {
     for cell_m in CELLS {
@@ -132,7 +132,7 @@ fn the_shorter_side_stands_for_the_cell() {
         build(&settings, &Silent).unwrap();
         let manifest = manifest(&package);
         let shorter_m = Cell::from(cell_m).fitted().shorter_m();
-        assert!((manifest.settings.max_error_m - shorter_m / 4.0).abs() < 1e-9);
+        assert!((manifest.settings.max_error_m - shorter_m / 16.0).abs() < 1e-9);
         // Eight cells, at least 40 m.
         let margins = manifest.levels.iter().map(|level| level.width_margin_m);
         let sides = manifest.levels.iter().map(|level| level.cell_m.shorter_m());

@@ -23,8 +23,7 @@ pub(crate) struct Grounds {
 impl Grounds {
     /// The costs of ground from elevation files, by the nodes of each finest tile.
     pub(crate) fn measured(opened: &Opened, nodes: &[(TileId, u64)]) -> Self {
-        let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
-        let triangles_per_node = rates::triangles_per_node(opened.max_error_m / usual_m);
+        let triangles_per_node = rates::triangles_per_node(opened.tolerance_cells());
         let tile_seconds_per_node = rates::SECONDS_PER_NODE - rates::HEIGHT_SECONDS_PER_NODE
             + triangles_per_node * rates::SECONDS_PER_TRIANGLE;
         let finest = |seconds_per_node: f64| {

@@ -1,0 +1,186 @@
+//! How QGIS draws the layer of a GeoPackage when it is opened: the colours and widths of the classes, in the words of its QML.
+//!
+//! Source: what QGIS 3.22 reads, `QgsCategorizedSymbolRenderer` and `QgsSymbolLayerUtils::parseProperties`.
+
+use std::fmt::Write as _;
+
+use corniche_areas::{AreaClass, BoundaryClass};
+use corniche_styles::{AreaStyle, Dash, LineStyle, Rgb, RoadStyle, Style};
+
+/// Millimetres of a pixel: QGIS takes screens to have 96 in an inch.
+const MM_PER_PX: f32 = 25.4 / 96.0;
+
+/// One class: its value in the field `class`, its name in the legend, and what is drawn for it, the lowest first.
+struct Category {
+    value: String,
+    label: String,
+    opacity: f32,
+    parts: Vec<SymbolPart>,
+}
+
+/// What is drawn once for each feature of a class. All parts with a lower `pass` lie below, whichever class they are of.
+struct SymbolPart {
+    pass: usize,
+    drawing: Drawing,
+}
+
+enum Drawing {
+    Fill { color: Rgb },
+    Line { color: Rgb, width_px: f32, dash: Dash },
+}
+
+/// The QML of a layer of this name in this style; `None` for a layer without classes.
+pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
+    let (categories, geometry_type, symbol_type) = match layer {
+        "roads" => (roads(style), 1, "line"),
+        "areas" => (areas(style), 2, "fill"),
+        "boundaries" => (boundaries(style), 1, "line"),
+        _ => return None,
+    };
+    let (mut values, mut symbols) = (String::new(), String::new());
+    for (number, category) in categories.iter().enumerate() {
+        let Category { value, label, .. } = category;
+        // Nothing is lost: a text takes what is written to it.
+        let _ = writeln!(
+            values,
+            r#"<category value="{value}" symbol="{number}" label="{label}" render="true"/>"#
+        );
+        let _ = writeln!(
+            symbols,
+            r#"<symbol type="{symbol_type}" name="{number}" alpha="{}" clip_to_extent="1" force_rhr="0">"#,
+            category.opacity
+        );
+        category.parts.iter().for_each(|part| part.write(&mut symbols));
+        symbols.push_str("</symbol>\n");
+    }
+    Some(format!(
+        r#"<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
+<qgis version="3.22.0" styleCategories="Symbology">
+<renderer-v2 type="categorizedSymbol" attr="class" symbollevels="1" forceraster="0" enableorderby="0">
+<categories>
+{values}</categories>
+<symbols>
+{symbols}</symbols>
+</renderer-v2>
+<blendMode>0</blendMode>
+<featureBlendMode>0</featureBlendMode>
+<layerOpacity>1</layerOpacity>
+<layerGeometryType>{geometry_type}</layerGeometryType>
+</qgis>
+"#
+    ))
+}
+
+/// Edges lie below all roads, and important roads above others.
+fn roads(style: &Style) -> Vec<Category> {
+    let above = |class: usize| style.roads.len() - class;
+    let category = |(class, road): (usize, &RoadStyle)| {
+        let width_px = road.flat_width_px();
+        let line = |pass, color, width_px| {
+            let drawing = Drawing::Line { color, width_px, dash: road.dash };
+            SymbolPart { pass, drawing }
+        };
+        let edge = line(0, road.outline, width_px + 2.0 * style.outline_px as f32);
+        let bands = road.bands.all().iter();
+        let bands = bands.map(|band| line(above(class), band.color, width_px * band.width_share));
+        Category {
+            value: class.to_string(),
+            label: format!("class {class}"),
+            opacity: road.opacity,
+            parts: std::iter::once(edge).chain(bands).collect(),
+        }
+    };
+    style.roads.iter().enumerate().map(category).collect()
+}
+
+fn areas(style: &Style) -> Vec<Category> {
+    let category = |(below, class): (usize, AreaClass)| {
+        let AreaStyle { color, opacity } = *style.area(class);
+        let pass = AreaClass::COUNT - 1 - below;
+        let parts = vec![SymbolPart { pass, drawing: Drawing::Fill { color } }];
+        Category::named(class.name(), opacity, parts)
+    };
+    AreaStyle::TOP_FIRST.into_iter().enumerate().map(category).collect()
+}
+
+fn boundaries(style: &Style) -> Vec<Category> {
+    let category = |(class, line): (BoundaryClass, &LineStyle)| {
+        let LineStyle { color, width_px, casing, opacity, dash, .. } = *line;
+        let pass = BoundaryClass::COUNT - usize::from(class.number());
+        let part = |pass, color, width_px| {
+            let drawing = Drawing::Line { color, width_px, dash };
+            SymbolPart { pass, drawing }
+        };
+        let casing = casing.map(|casing| part(0, casing, width_px + 2.0));
+        let parts = casing.into_iter().chain([part(pass, color, width_px)]).collect();
+        Category::named(class.name(), opacity, parts)
+    };
+    BoundaryClass::ALL.into_iter().zip(&style.boundaries).map(category).collect()
+}
+
+impl Category {
+    fn named(name: &str, opacity: f32, parts: Vec<SymbolPart>) -> Self {
+        Self { value: name.to_owned(), label: name.to_owned(), opacity, parts }
+    }
+}
+
+impl SymbolPart {
+    fn write(&self, out: &mut String) {
+        let (kind, properties) = match &self.drawing {
+            Drawing::Fill { color } => (
+                "SimpleFill",
+                vec![
+                    ("color", rgba(*color)),
+                    ("style", "solid".into()),
+                    ("outline_style", "no".into()),
+                ],
+            ),
+            Drawing::Line { color, width_px, dash } => {
+                ("SimpleLine", line(*color, *width_px, dash))
+            }
+        };
+        let pass = self.pass;
+        let _ = writeln!(out, r#"<layer class="{kind}" pass="{pass}" enabled="1" locked="0">"#);
+        for (key, value) in properties {
+            let _ = writeln!(out, r#"<prop k="{key}" v="{value}"/>"#);
+        }
+        out.push_str("</layer>\n");
+    }
+}
+
+fn line(color: Rgb, width_px: f32, dash: &Dash) -> Vec<(&'static str, String)> {
+    let is_dashed = dash.least_px() > 0.0 && dash.widths().is_none();
+    let cap = if is_dashed { "flat" } else { "round" };
+    let mut properties = vec![
+        ("line_color", rgba(color)),
+        ("line_style", "solid".into()),
+        ("line_width", millimetres(width_px)),
+        ("line_width_unit", "MM".into()),
+        ("capstyle", cap.into()),
+        ("joinstyle", "round".into()),
+    ];
+    if is_dashed {
+        let [first, gap, second] = dash.ends();
+        let lengths = [first, gap - first, second - gap, 1.0 - second];
+        let lengths = lengths.map(|share| millimetres(share * dash.least_px()));
+        properties.extend([
+            ("use_custom_dash", "1".into()),
+            ("customdash", lengths.join(";")),
+            ("customdash_unit", "MM".into()),
+        ]);
+    }
+    properties
+}
+
+fn rgba(color: Rgb) -> String {
+    let [red, green, blue] = corniche_styles::to_bytes(color);
+    format!("{red},{green},{blue},255")
+}
+
+fn millimetres(px: f32) -> String {
+    format!("{:.3}", px * MM_PER_PX)
+}
+
+#[cfg(test)]
+#[path = "map_style_tests.rs"]
+mod tests;
