@@ -2,7 +2,9 @@
 
 use std::{fmt::Write as _, path::Path};
 
-use corniche_export::{Profile, ProfileGrades, ProfilePoint, RoadHeights, profile, profile_of_lines};
+use corniche_export::{
+    Profile, ProfileGrades, ProfilePoint, RoadHeights, profile, profile_of_lines,
+};
 use corniche_geom::LatticePoint;
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
@@ -108,7 +110,10 @@ fn to_text(found: &Profile) -> String {
         writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices")
     } else {
         let within_m = found.height_tolerance_m;
-        writeln!(text, "         within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own")
+        writeln!(
+            text,
+            "         within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own"
+        )
     };
     if let Some((smooth, most_off_m)) = found.smooth {
         text.push_str(&grades_text(&smooth, "50 m"));
@@ -125,8 +130,7 @@ fn to_text(found: &Profile) -> String {
             found.on_structures_m
         );
     }
-    let _ =
-        writeln!(text, "Level    {}, {} vertices", found.level, points(found).count());
+    let _ = writeln!(text, "Level    {}, {} vertices", found.level, points(found).count());
     text
 }
 

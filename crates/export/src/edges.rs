@@ -16,6 +16,7 @@ use crate::{
     feature_request::FeatureRequest,
     features::{About, FeatureSource},
     grades::{GRADE_LENGTH_M, MeasuredChains, Smoothing},
+    height_bound::dem_heights,
     measures::steepest,
     piece::Vertex,
     vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile},
@@ -59,26 +60,76 @@ struct Shares<'a> {
 }
 
 const FIELDS: &[Field] = &[
-    field("from_node", FieldKind::Integer64, "", "id of the node where it begins; null where a way is cut"),
-    field("to_node", FieldKind::Integer64, "", "id of the node where it ends; null where a way is cut"),
-    field("ways", FieldKind::Text, "", "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it"),
+    field(
+        "from_node",
+        FieldKind::Integer64,
+        "",
+        "id of the node where it begins; null where a way is cut",
+    ),
+    field(
+        "to_node",
+        FieldKind::Integer64,
+        "",
+        "id of the node where it ends; null where a way is cut",
+    ),
+    field(
+        "ways",
+        FieldKind::Text,
+        "",
+        "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it",
+    ),
     field("class", FieldKind::Integer, "", "functional road class of the largest part"),
     field("highway", FieldKind::Text, "", "OSM's `highway` of the largest part"),
-    field("oneway", FieldKind::Text, "", "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`"),
+    field(
+        "oneway",
+        FieldKind::Text,
+        "",
+        "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`",
+    ),
     field("length_m", FieldKind::Real, "m", "true length in plan, on the ellipsoid of WGS84"),
-    field("ascent_m", FieldKind::Real, "m", "sum of all that the smooth line rises from the first to the last node; null where a height is not known"),
-    field("descent_m", FieldKind::Real, "m", "sum of all that it falls from the first to the last node"),
+    field(
+        "ascent_m",
+        FieldKind::Real,
+        "m",
+        "sum of all that the smooth line rises from the first to the last node; null where a height is not known",
+    ),
+    field(
+        "descent_m",
+        FieldKind::Real,
+        "m",
+        "sum of all that it falls from the first to the last node",
+    ),
     field("ascent_back_m", FieldKind::Real, "m", "sum of all that it rises on the way back"),
     field("descent_back_m", FieldKind::Real, "m", "sum of all that it falls on the way back"),
-    field("weighted_grade_pct", FieldKind::Real, "%", "size of the grade, up or down, weighted by length"),
-    field("steepest_pct", FieldKind::Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter"),
-    field("from_height_m", FieldKind::Real, "m", "height of the smooth line at the first node: the same for all edges there"),
+    field(
+        "weighted_grade_pct",
+        FieldKind::Real,
+        "%",
+        "size of the grade, up or down, weighted by length",
+    ),
+    field(
+        "steepest_pct",
+        FieldKind::Real,
+        "%",
+        "steepest grade over 50 m or more, up or down; null where it is shorter",
+    ),
+    field(
+        "from_height_m",
+        FieldKind::Real,
+        "m",
+        "height of the smooth line at the first node: the same for all edges there",
+    ),
     field("to_height_m", FieldKind::Real, "m", "height of the smooth line at the last node"),
     field("bridge_share", FieldKind::Real, "", "part of its length on bridges, 0 to 1"),
     field("tunnel_share", FieldKind::Real, "", "part of its length in tunnels, 0 to 1"),
 ];
 
-const fn field(name: &'static str, kind: FieldKind, unit: &'static str, meaning: &'static str) -> Field {
+const fn field(
+    name: &'static str,
+    kind: FieldKind,
+    unit: &'static str,
+    meaning: &'static str,
+) -> Field {
     Field { name, kind, unit, meaning }
 }
 
@@ -120,6 +171,7 @@ pub fn export_edges(
         length_m: 0.0,
         heights: places.heights().to_owned(),
     };
+    let mut tolerance_m = 0.0_f64;
     let edges = Chains::of(network, Breaks::Junctions);
     observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
     for (done, number) in (1..).zip(edges.numbers()) {
@@ -150,10 +202,12 @@ pub fn export_edges(
         let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
         let mut carried = Vec::new();
         for line in laid {
+            tolerance_m = tolerance_m.max(line.tolerance_m);
             carried.extend(places.carry(object, &line.vertices)?);
         }
         file.push(Record { values: edge.values(), shape: Shape::Lines(carried) })?;
     }
+    file.tell_heights(dem_heights(tolerance_m));
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(summary)

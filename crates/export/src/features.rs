@@ -11,7 +11,6 @@ use corniche_work::{Observer, Stage};
 use crate::{
     error::ExportError,
     feature_request::{Coordinates, FeatureRequest},
-    height_bound::height_bound,
     places::Places,
     read,
     scratch::FileScratch,
@@ -32,6 +31,11 @@ pub(crate) trait Features {
 
     /// What the file says of the layer.
     fn about(&self, source: &FeatureSource<'_, Self::Class>) -> About;
+
+    /// How far heights may be off, a whole sentence, once all features are written; `None` for a layer without heights.
+    fn heights_told(&self, _source: &FeatureSource<'_, Self::Class>) -> Option<String> {
+        None
+    }
 
     /// What a tile holds of the objects that are wanted.
     fn pieces(
@@ -133,13 +137,12 @@ pub(crate) fn write_features<F: Features>(
         SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
     let layer = source.layer(F::NAME, F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
-    if let Some(sentence) = height_bound(manifest, *level).filter(|_| F::SHAPES == ShapeKind::Lines)
-    {
-        file.tell_heights(sentence);
-    }
     pieces.for_each(observer, F::object, |pieces| {
         features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
     })?;
+    if let Some(sentence) = features.heights_told(source) {
+        file.tell_heights(sentence);
+    }
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(())

@@ -11,3 +11,9 @@ pub(crate) fn height_bound(manifest: &Manifest, level: u8) -> Option<String> {
     let bound_m = (bound_m * 100.0 - 1e-6).ceil() / 100.0;
     Some(format!("Heights are within {bound_m} m of the elevation data, at its samples."))
 }
+
+/// The same of lines on the elevation files themselves.
+pub(crate) fn dem_heights(tolerance_m: f64) -> String {
+    let tolerance_m = (tolerance_m * 1000.0 - 1e-6).ceil() / 1000.0;
+    format!("Heights are those of the elevation data, within {tolerance_m} m between vertices.")
+}

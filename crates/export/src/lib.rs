@@ -83,9 +83,7 @@ pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use geotiff::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
-pub use profile::{
-    Profile, ProfileGrades, ProfilePart, ProfilePoint, profile, profile_of_lines,
-};
+pub use profile::{Profile, ProfileGrades, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use quantized_mesh::{
     Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,
     export_quantized_mesh,

@@ -354,7 +354,12 @@ impl Telling<'_> {
             }
         };
         let measured = profile.iter().zip(grades(profile));
-        part.iter().map(|(way_id, vertex)| (way_id, vertex)).zip(measured).enumerate().map(point).collect()
+        part.iter()
+            .map(|(way_id, vertex)| (way_id, vertex))
+            .zip(measured)
+            .enumerate()
+            .map(point)
+            .collect()
     }
 }
 

@@ -17,9 +17,8 @@ use crate::{
     feature::{HeightSource, Road, Smooth, road_fields, road_values},
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
-    grades::{
-        MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, stretch_of_way,
-    },
+    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, stretch_of_way},
+    height_bound::{dem_heights, height_bound},
     join::{Line, lines},
     measures::{Measures, Profiled},
     piece::{Piece, PieceHeights, PieceKey},
@@ -143,6 +142,13 @@ impl Features for Roads<'_> {
                 ("HEIGHTS", heights.to_owned()),
                 ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
             ],
+        }
+    }
+
+    fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
+        match self.dem {
+            None => height_bound(source.package.manifest(), source.level),
+            Some(_) => Some(dem_heights(self.summary.height_tolerance_m)),
         }
     }
 

@@ -60,7 +60,8 @@ fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
         [&[1, 2], &[2, 3, 4, 5], &[2, 6], &[6, 30, 31, 6], &[20, 21, 22, 20]];
     assert_eq!(nodes_of(&network, Breaks::Junctions), expected);
     let chains = Chains::of(&network, Breaks::Junctions);
-    let degree = |id: i64| network.degree(NodeNumber(network.node_ids.binary_search(&id).unwrap() as u32));
+    let degree =
+        |id: i64| network.degree(NodeNumber(network.node_ids.binary_search(&id).unwrap() as u32));
     assert_eq!([1, 2, 3, 6, 20].map(degree), [1, 3, 2, 3, 2]);
     // Way 8 is in the second chain, against its direction.
     let of_road: Vec<_> = chains.of_road(&network.ways()[1]).collect();

@@ -15,8 +15,7 @@ use crate::{
     messages,
     named_output::NamedOutput,
     output::existing_of,
-    packages,
-    recorded,
+    packages, recorded,
     table::{Digits, bytes, length},
 };
 

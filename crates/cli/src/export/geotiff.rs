@@ -14,8 +14,7 @@ use crate::{
     messages,
     named_output::NamedOutput,
     output::existing_of,
-    packages,
-    recorded,
+    packages, recorded,
     settings::threads,
     table::{Digits, bytes},
 };

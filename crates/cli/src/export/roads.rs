@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use corniche_export::{
-    ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, export_roads,
-};
+use corniche_export::{ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, export_roads};
 use corniche_tileset::Manifest;
 
 use super::{MEMORY_BYTES, coordinates, facts, fill, format};
@@ -16,8 +14,7 @@ use crate::{
     messages,
     named_output::NamedOutput,
     output::existing_of,
-    packages,
-    recorded,
+    packages, recorded,
     table::{Digits, bytes, length},
 };
 

@@ -28,9 +28,8 @@ pub(crate) struct DemLine {
 /// Lays a line on the ground: of its vertices, those that are source points, and its ends, tell where it runs. Where there is no ground it has a gap.
 pub(crate) fn lay(nodes: &mut DemNodes<'_>, line: &[Vertex]) -> Result<Vec<DemLine>, ExportError> {
     let last = line.len().saturating_sub(1);
-    let is_kept = |(index, vertex): &(usize, &Vertex)| {
-        vertex.is_source || *index == 0 || *index == last
-    };
+    let is_kept =
+        |(index, vertex): &(usize, &Vertex)| vertex.is_source || *index == 0 || *index == last;
     let points: Vec<Vertex> =
         line.iter().enumerate().filter(is_kept).map(|(_, vertex)| *vertex).collect();
     let mut laid = Laid::default();
@@ -55,7 +54,8 @@ pub(crate) fn lay(nodes: &mut DemNodes<'_>, line: &[Vertex]) -> Result<Vec<DemLi
             before = end_m;
         }
     }
-    let reaches_end = laid.is_open && laid.lines.last().is_some_and(|line| line.vertices.len() >= 2);
+    let reaches_end =
+        laid.is_open && laid.lines.last().is_some_and(|line| line.vertices.len() >= 2);
     laid.lines.retain(|line| line.vertices.len() >= 2);
     if let Some(line) = laid.lines.last_mut().filter(|_| reaches_end) {
         line.has_end[1] = true;
@@ -100,7 +100,8 @@ impl Laid {
     /// There is no ground somewhere before a place, which begins a new line if it has ground itself.
     fn interrupt(&mut self, next: Option<Vertex>) {
         self.is_open = next.is_some();
-        let line = |vertex| DemLine { vertices: vec![vertex], tolerance_m: 0.0, has_end: [false; 2] };
+        let line =
+            |vertex| DemLine { vertices: vec![vertex], tolerance_m: 0.0, has_end: [false; 2] };
         self.lines.extend(next.map(line));
     }
 }

@@ -7,7 +7,14 @@ const STEPS: [f64; 2] = [100.0, 200.0];
 #[test]
 fn a_line_has_vertices_at_cell_lines_and_in_the_middle_of_cells() {
     let found = places_between([50.0, 100.0], [250.0, 100.0], STEPS);
-    let expected = [[75.0, 100.0], [100.0, 100.0], [150.0, 100.0], [200.0, 100.0], [225.0, 100.0], [250.0, 100.0]];
+    let expected = [
+        [75.0, 100.0],
+        [100.0, 100.0],
+        [150.0, 100.0],
+        [200.0, 100.0],
+        [225.0, 100.0],
+        [250.0, 100.0],
+    ];
     assert_eq!(found.concat(), expected);
     // Through a node both lines of the grid are crossed at once.
     let found = places_between([50.0, 100.0], [150.0, 300.0], STEPS);
@@ -40,7 +47,9 @@ fn the_largest_value_of_a_parabola_is_found() {
         let expected = (0..=10_000).map(|k| at(f64::from(k) / 1e4).abs()).fold(0.0, f64::max);
         assert!((found - expected).abs() < 1e-6, "{found} {expected}");
     };
-    for [a, b, c] in [[1.0, 4.0, -5.0], [0.0, 0.0, 0.0], [2.0, -9.0, 9.0], [0.0, 1.0, 0.0], [1.0, -3.0, 1.4]] {
+    for [a, b, c] in
+        [[1.0, 4.0, -5.0], [0.0, 0.0, 0.0], [2.0, -9.0, 9.0], [0.0, 1.0, 0.0], [1.0, -3.0, 1.4]]
+    {
         along(a, b, c);
     }
 }

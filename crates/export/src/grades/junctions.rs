@@ -59,7 +59,10 @@ pub(crate) trait Legs {
 const NONE: u32 = u32::MAX;
 
 /// The height of each node, NaN where it has no leg with ground, and at dead ends, whose height is that of their own line.
-pub(crate) fn node_heights(legs: &dyn Legs, observer: &dyn Observer) -> Result<Vec<f64>, ExportError> {
+pub(crate) fn node_heights(
+    legs: &dyn Legs,
+    observer: &dyn Observer,
+) -> Result<Vec<f64>, ExportError> {
     let by_node = legs.by_node();
     let nodes = by_node.parts()[0].len() - 1;
     let goes_on_in = goes_on_in(legs, &by_node);

@@ -67,8 +67,7 @@ fn noise_at_the_junction_is_smoothed_over_its_legs() {
         leg[0] += 8.0;
         leg
     };
-    let through =
-        junction(vec![(noisy(0.8), [1.0, 0.0]), (noisy(-0.8), [-1.0, 0.0])]) - 700.0;
+    let through = junction(vec![(noisy(0.8), [1.0, 0.0]), (noisy(-0.8), [-1.0, 0.0])]) - 700.0;
     let ends = junction(vec![(noisy(0.8), [1.0, 0.0]), (noisy(-0.8), [0.0, 1.0])]) - 700.0;
     assert!(through > 0.0 && through < 1.0, "{through}");
     assert!(ends > 1.5 * through && ends < 4.0, "{ends} {through}");

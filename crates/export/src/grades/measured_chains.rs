@@ -171,7 +171,8 @@ impl<'a> MeasuredChains<'a> {
         let mut smooth_m = vec![f64::NAN; grounds_m.len()];
         let mut first = 0;
         while first < grounds_m.len() {
-            let count = grounds_m[first..].iter().take_while(|height_m| height_m.is_finite()).count();
+            let count =
+                grounds_m[first..].iter().take_while(|height_m| height_m.is_finite()).count();
             let end = first + count;
             if count > 0 {
                 let held = [

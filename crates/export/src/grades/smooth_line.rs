@@ -49,7 +49,8 @@ impl SmoothLine {
         let mut after = 0;
         let heights_m: Vec<f64> = (0..count)
             .map(|k| {
-                let along_m = if k + 1 == count { last[0] } else { first[0] + k as f64 * spacing_m };
+                let along_m =
+                    if k + 1 == count { last[0] } else { first[0] + k as f64 * spacing_m };
                 while after + 1 < profile.len() && profile[after][0] < along_m {
                     after += 1;
                 }
@@ -114,7 +115,8 @@ impl SmoothLine {
         };
         let half_m = GRADE_LENGTH_M / 2.0;
         let middle_m = along_m.min(end_m - half_m).max(begin_m + half_m);
-        let [from_m, to_m] = [middle_m - half_m, middle_m + half_m].map(|at_m| at_m.clamp(begin_m, end_m));
+        let [from_m, to_m] =
+            [middle_m - half_m, middle_m + half_m].map(|at_m| at_m.clamp(begin_m, end_m));
         let rise_m = self.height_m(to_m) - self.height_m(from_m);
         if to_m > from_m { rise_m / (to_m - from_m) } else { 0.0 }
     }

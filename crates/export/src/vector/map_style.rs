@@ -32,7 +32,7 @@ enum Drawing {
 /// The QML of a layer of this name in this style; `None` for a layer without classes.
 pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
     let (categories, geometry_type, symbol_type) = match layer {
-        "roads" => (roads(style), 1, "line"),
+        "roads" | "edges" => (roads(style), 1, "line"),
         "areas" => (areas(style), 2, "fill"),
         "boundaries" => (boundaries(style), 1, "line"),
         _ => return None,

@@ -33,6 +33,7 @@ fn every_class_has_a_category() {
 #[test]
 fn colours_and_widths_are_those_of_the_default_style() {
     let roads = qml("roads", &Style::road_atlas()).unwrap();
+    assert_eq!(qml("edges", &Style::road_atlas()), Some(roads.clone()));
     let motorway = roads.split("</symbol>").next().unwrap();
     for part in [
         "pass=\"0\"",

@@ -62,8 +62,7 @@ fn memory_does_not_change_the_file() {
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
         let path = folder.path().join(format!("{memory_bytes}.csv"));
-        let summary =
-            export_pieces(&package, memory_bytes, &path, &Silent).unwrap();
+        let summary = export_pieces(&package, memory_bytes, &path, &Silent).unwrap();
         assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
         fs::read(path).unwrap()
     });

@@ -8,10 +8,7 @@
 //!
 //! Nothing that grows with the number of objects stays in memory.
 
-use std::{
-    path::PathBuf,
-    sync::atomic::Ordering,
-};
+use std::{path::PathBuf, sync::atomic::Ordering};
 
 use corniche_areas::AreaTable;
 use corniche_geom::{LatticeBounds, LatticeRegion, Projection};

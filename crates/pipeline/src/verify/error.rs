@@ -128,10 +128,7 @@ fn other_area_table(given: Option<&str>, expected: &str) -> String {
 
 impl VerifyError {
     /// What came of a comparison with these files. A changed file may be the cause of any other error, so it is reported instead.
-    pub(crate) fn unless_changed<T>(
-        inputs: &Inputs,
-        compared: Result<T, Self>,
-    ) -> Result<T, Self> {
+    pub(crate) fn unless_changed<T>(inputs: &Inputs, compared: Result<T, Self>) -> Result<T, Self> {
         match &compared {
             Err(Self::Interrupted) => compared,
             _ => inputs.check_unchanged().map_err(Self::from).and(compared),
