@@ -2,6 +2,7 @@
 
 mod edges;
 mod geotiff;
+mod lines;
 mod mesh;
 mod quantized_mesh;
 mod roads;

@@ -124,6 +124,18 @@ impl Chains {
         Chain { ends: self.ends[number], links }
     }
 
+    /// The place of a link among the links of all chains.
+    #[must_use]
+    pub fn place_of(&self, ChainNumber(number): ChainNumber, index: usize) -> usize {
+        self.starts[number] + index
+    }
+
+    /// How many links all chains have together.
+    #[must_use]
+    pub fn link_count(&self) -> usize {
+        self.links.len()
+    }
+
     /// The chain that a stretch of any other chains is in, and the number of its link there.
     #[must_use]
     pub fn of_link(&self, link: Link) -> (ChainNumber, usize) {

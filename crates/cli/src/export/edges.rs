@@ -1,41 +1,38 @@
 //! `corniche export edges`: roads from junction to junction.
 
-use std::path::Path;
-
 use corniche_export::{EdgesSummary, FeatureRequest, export_edges};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
-use super::{MEMORY_BYTES, coordinates, facts, fill, format};
+use super::{
+    MEMORY_BYTES, facts, fill,
+    lines::{LinesArgs, LinesExport},
+};
 use crate::{
     args::ExportEdgesArgs,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    named_output::NamedOutput,
-    output::existing_of,
-    packages, recorded,
+    messages, recorded,
     table::{Digits, bytes, length},
 };
 
 pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
-    let vector = &args.vector;
-    let format = format(vector.format, &vector.file.output)?;
-    let coordinates = coordinates(vector)?;
     let usage = "corniche export edges PACKAGE -o FILE --dem FILE... --osm FILE...";
-    let (place, [dem, osm]) = args.from.files(&args.extract.osm, usage)?;
-    let package = packages::open_with_datum(&place, &vector.datum)?;
-    let inputs: Vec<&Path> =
-        [place.name()].into_iter().chain(dem.iter().chain(&osm).map(AsRef::as_ref)).collect();
-    let name = format!("edges.{}", format.ending());
-    let existing = existing_of(vector.file.overwrite);
-    let output = NamedOutput::create(&vector.file.output, existing, name, &inputs)?;
-    let Some(elevation) = recorded::elevation(&args.from, &dem, &package)? else {
-        return Err(Failure::unusable(format!("no elevation file is named: {usage}")));
+    let lines = LinesArgs {
+        from: &args.from,
+        extract: &args.extract,
+        vector: &args.vector,
+        cpu: &args.cpu,
+        usage,
     };
-    let Some(network) = recorded::network(&args.extract, &osm, (&args.cpu, &package))? else {
-        return Err(Failure::unusable(format!("no extract is named: {usage}")));
+    let LinesExport { format, coordinates, package, output, elevation, network } =
+        LinesExport::begin(&lines, "edges")?;
+    // The package alone may have been named after these options.
+    let (Some(elevation), Some(network)) = (elevation, network) else {
+        return Err(Failure::unusable(format!(
+            "an elevation file and an extract are needed: {usage}"
+        )));
     };
     let request = FeatureRequest {
         format,
@@ -46,7 +43,7 @@ pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let inputs = (recorded::for_export(&elevation), &network);
-    let (summary, size) = fill(&vector.file, output, Some(&elevation), |path, progress| {
+    let (summary, size) = fill(&args.vector.file, output, Some(&elevation), |path, progress| {
         export_edges(&package, &request, inputs, path, progress)
     })?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));

@@ -1,38 +1,31 @@
 //! `corniche export roads`: roads as lines with heights, lengths and grades.
 
-use std::path::Path;
-
 use corniche_export::{ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, export_roads};
 use corniche_tileset::Manifest;
 
-use super::{MEMORY_BYTES, coordinates, facts, fill, format};
+use super::{
+    MEMORY_BYTES, facts, fill,
+    lines::{LinesArgs, LinesExport},
+};
 use crate::{
     args::ExportRoadsArgs,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    named_output::NamedOutput,
-    output::existing_of,
-    packages, recorded,
+    messages, recorded,
     table::{Digits, bytes, length},
 };
 
 pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let vector = &args.vector;
-    let format = format(vector.format, &vector.file.output)?;
-    let coordinates = coordinates(vector)?;
-    let (place, [dem, osm]) = args
-        .from
-        .files(&args.extract.osm, "corniche export roads PACKAGE -o FILE --dem FILE...")?;
-    let package = packages::open_with_datum(&place, &vector.datum)?;
-    let inputs: Vec<&Path> =
-        [place.name()].into_iter().chain(dem.iter().chain(&osm).map(AsRef::as_ref)).collect();
-    let name = format!("roads.{}", format.ending());
-    let existing = existing_of(vector.file.overwrite);
-    let output = NamedOutput::create(&vector.file.output, existing, name, &inputs)?;
-    let elevation = recorded::elevation(&args.from, &dem, &package)?;
-    let network = recorded::network(&args.extract, &osm, (&args.cpu, &package))?;
+    let lines = LinesArgs {
+        from: &args.from,
+        extract: &args.extract,
+        vector: &args.vector,
+        cpu: &args.cpu,
+        usage: "corniche export roads PACKAGE -o FILE --dem FILE...",
+    };
+    let LinesExport { format, coordinates, package, output, elevation, network } =
+        LinesExport::begin(&lines, "roads")?;
     let request = FeatureRequest {
         format,
         level: args.at.level,
@@ -46,7 +39,7 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         elevation: elevation.as_ref().map(recorded::for_export),
         network: network.as_ref(),
     };
-    let (summary, size) = fill(&vector.file, output, elevation.as_ref(), |path, progress| {
+    let (summary, size) = fill(&args.vector.file, output, elevation.as_ref(), |path, progress| {
         export_roads(&package, (&request, features), heights, path, progress)
     })?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));

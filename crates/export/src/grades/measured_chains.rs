@@ -24,10 +24,14 @@ pub(crate) struct MeasuredChains<'a> {
     chains: Chains,
     smoothing: Smoothing,
     lengths_m: Vec<f64>,
+    /// Where each link begins, along its chain.
+    link_starts_m: Vec<f64>,
     /// Where the stations of each chain begin, and the end of all. Bridges and tunnels have none.
     starts: Vec<usize>,
     /// The ground at all stations, NaN where there is none.
     grounds_m: Vec<f32>,
+    /// How much higher the smooth line is there: less is lost by rounding than of its heights.
+    above_m: Vec<f32>,
     /// The height at each node, NaN where there is none that is shared.
     nodes_m: Vec<f64>,
 }
@@ -73,15 +77,21 @@ impl<'a> MeasuredChains<'a> {
             places,
             smoothing,
             lengths_m: Vec::with_capacity(chains.len()),
+            link_starts_m: Vec::with_capacity(chains.link_count()),
             starts: vec![0],
             grounds_m: Vec::new(),
+            above_m: Vec::new(),
             nodes_m: Vec::new(),
             chains,
         };
         let mut order = Vec::with_capacity(measured.chains.len());
         for number in measured.chains.numbers() {
             let along = measured.along(number);
-            let length_m = along.length_m();
+            let mut length_m = 0.0;
+            for &link in measured.chains.get(number).links {
+                measured.link_starts_m.push(length_m);
+                length_m += measured.link_m(link);
+            }
             measured.lengths_m.push(length_m);
             let own = if measured.is_on_ground(number) { stations(length_m) } else { 0 };
             measured.starts.push(measured.starts[number.0] + own);
@@ -105,6 +115,10 @@ impl<'a> MeasuredChains<'a> {
             }
         }
         measured.nodes_m = node_heights(&measured, observer)?;
+        measured.above_m = vec![f32::NAN; count];
+        for &(_, number) in &order {
+            measured.smooth(number);
+        }
         observer.end(Stage::ExportChains);
         Ok(measured)
     }
@@ -156,51 +170,62 @@ impl<'a> MeasuredChains<'a> {
             .collect()
     }
 
-    /// What the smooth line of a chain is, at its stations; NaN where there is no ground. Empty for bridges and tunnels.
-    fn smooth(&self, number: ChainNumber) -> Vec<f64> {
+    /// Finds the smooth line of a chain on the ground; in parts where there is no ground.
+    fn smooth(&mut self, number: ChainNumber) {
         let own = self.stations_of(number);
-        if own.is_empty() {
-            return Vec::new();
-        }
         let grounds_m: Vec<f64> =
-            self.grounds_m[own].iter().map(|&height_m| f64::from(height_m)).collect();
+            self.grounds_m[own.clone()].iter().copied().map(f64::from).collect();
         let spacing_m = self.lengths_m[number.0] / (grounds_m.len() - 1) as f64;
         let held_m = self.chains.get(number).ends.map(|node| {
             Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
         });
-        let mut smooth_m = vec![f64::NAN; grounds_m.len()];
         let mut first = 0;
         while first < grounds_m.len() {
-            let count =
-                grounds_m[first..].iter().take_while(|height_m| height_m.is_finite()).count();
-            let end = first + count;
-            if count > 0 {
+            let known = grounds_m[first..].iter().take_while(|height_m| height_m.is_finite());
+            let end = first + known.count();
+            if end > first {
                 let held = [
                     held_m[0].filter(|_| first == 0),
                     held_m[1].filter(|_| end == grounds_m.len()),
                 ];
-                let solved = self.smoothing.solve(spacing_m, &grounds_m[first..end], held);
-                smooth_m[first..end].copy_from_slice(&solved);
+                let smooth_m = self.smoothing.solve(spacing_m, &grounds_m[first..end], held);
+                for (k, height_m) in smooth_m.into_iter().enumerate() {
+                    let above_m = height_m - grounds_m[first + k];
+                    self.above_m[own.start + first + k] = above_m as f32;
+                }
             }
             first = end.max(first + 1);
         }
-        smooth_m
+    }
+
+    /// The ground and the smooth line at a distance along a chain, between its stations; NaN where there is none. Over a bridge or through a tunnel
+    /// both are a straight line between its ends.
+    fn heights_at(&self, number: ChainNumber, at_m: f64) -> [f64; 2] {
+        let own = self.stations_of(number);
+        let last = own.len().max(2) - 1;
+        let place = (at_m / self.lengths_m[number.0] * last as f64).clamp(0.0, last as f64);
+        let station = (place.floor() as usize).min(last - 1);
+        let share = place - station as f64;
+        let mix = |[from, to]: [f64; 2]| from + share * (to - from);
+        if own.is_empty() {
+            let ends = self.chains.get(number).ends;
+            let straight = mix(ends.map(|node| self.nodes_m[self.network.index_of(node)]));
+            return [straight; 2];
+        }
+        let ends = [station, station + 1].map(|station| own.start + station);
+        let ground_m = mix(ends.map(|at| f64::from(self.grounds_m[at])));
+        [ground_m, ground_m + mix(ends.map(|at| f64::from(self.above_m[at])))]
     }
 
     /// The smooth lines of a way, with distances along it; in parts where it has a bridge, a tunnel or no ground.
     pub(crate) fn of_way(&self, way_id: i64) -> Vec<SmoothLine> {
         let mut lines = vec![SmoothLine::default()];
-        let mut known: Option<(ChainNumber, Vec<f64>)> = None;
         let mut begin_m = 0.0;
         for road in self.network.roads_of(way_id) {
             // The parts of a way that is cut do not go on.
             lines.push(SmoothLine::default());
             for (number, index) in self.chains.of_road(&self.network.ways()[road]) {
-                if known.as_ref().is_none_or(|(of, _)| *of != number) {
-                    known = Some((number, self.smooth(number)));
-                }
-                let smooth_m = known.as_ref().map_or(&[][..], |(_, smooth_m)| smooth_m);
-                begin_m += self.add_stretch(number, index, (smooth_m, begin_m), &mut lines);
+                begin_m += self.add_stretch(number, index, begin_m, &mut lines);
             }
         }
         lines.retain(|line| line.stations.len() >= 2);
@@ -212,23 +237,20 @@ impl<'a> MeasuredChains<'a> {
         &self,
         number: ChainNumber,
         index: usize,
-        (smooth_m, begin_m): (&[f64], f64),
+        begin_m: f64,
         lines: &mut Vec<SmoothLine>,
     ) -> f64 {
-        let links = self.chains.get(number).links;
-        let from_m: f64 = links[..index].iter().map(|link| self.link_m(*link)).sum();
-        let link = links[index];
+        let link = self.chains.get(number).links[index];
         let points: Vec<LatticePoint> = self.network.points_of_link(link).collect();
         let along = Along { distances_m: self.distances(points.iter().copied()), points };
         let own_m = along.length_m();
-        if smooth_m.is_empty() {
+        if !self.is_on_ground(number) {
             lines.push(SmoothLine::default());
             return own_m;
         }
-        let grounds_m: Vec<f64> =
-            self.grounds_m[self.stations_of(number)].iter().copied().map(f64::from).collect();
         // Its own points, and the stations of the chain between them.
-        let stations = self.distances_within(number, smooth_m.len(), [from_m, from_m + own_m]);
+        let from_m = self.link_starts_m[self.chains.place_of(number, index)];
+        let stations = self.distances_within(number, [from_m, from_m + own_m]);
         let mut distances_m = along.distances_m.clone();
         let inner = stations.len() - 1;
         distances_m.extend(stations[1..inner].iter().map(|at_m| at_m - from_m));
@@ -237,11 +259,10 @@ impl<'a> MeasuredChains<'a> {
         let mut after = 0;
         let mut own: Vec<Station> = distances_m
             .into_iter()
-            .map(|at_m| Station {
-                at: along.at(at_m, &mut after),
-                along_m: begin_m + if link.is_against { own_m - at_m } else { at_m },
-                height_m: self.height_at(number, smooth_m, from_m + at_m),
-                ground_m: self.height_at(number, &grounds_m, from_m + at_m),
+            .map(|at_m| {
+                let [ground_m, height_m] = self.heights_at(number, from_m + at_m);
+                let along_m = begin_m + if link.is_against { own_m - at_m } else { at_m };
+                Station { at: along.at(at_m, &mut after), along_m, height_m, ground_m }
             })
             .collect();
         if link.is_against {
@@ -266,23 +287,17 @@ impl<'a> MeasuredChains<'a> {
     /// its ends; `None` where a height is not known.
     pub(crate) fn profile(&self, links: &[Link]) -> Option<Vec<[f64; 2]>> {
         let mut profile: Vec<[f64; 2]> = Vec::new();
-        let mut known: Option<(ChainNumber, Vec<f64>)> = None;
         let mut begin_m = 0.0;
         for &link in links {
             let (number, index) = self.chains.of_link(link);
-            if known.as_ref().is_none_or(|(of, _)| *of != number) {
-                known = Some((number, self.smooth_or_straight(number)));
-            }
-            let smooth_m = known.as_ref().map_or(&[][..], |(_, smooth_m)| smooth_m);
-            let in_chain = self.chains.get(number).links;
-            let from_m: f64 = in_chain[..index].iter().map(|link| self.link_m(*link)).sum();
+            let from_m = self.link_starts_m[self.chains.place_of(number, index)];
             let own_m = self.link_m(link);
-            let is_turned = in_chain[index].is_against != link.is_against;
+            let is_turned = self.chains.get(number).links[index].is_against != link.is_against;
             let mut own: Vec<[f64; 2]> = self
-                .distances_within(number, smooth_m.len(), [from_m, from_m + own_m])
+                .distances_within(number, [from_m, from_m + own_m])
                 .into_iter()
                 .map(|at_m| {
-                    let height_m = self.height_at(number, smooth_m, at_m);
+                    let [_, height_m] = self.heights_at(number, at_m);
                     let at_m = at_m - from_m;
                     [begin_m + if is_turned { own_m - at_m } else { at_m }, height_m]
                 })
@@ -296,44 +311,19 @@ impl<'a> MeasuredChains<'a> {
         profile.iter().all(|[_, height_m]| height_m.is_finite()).then_some(profile)
     }
 
-    fn smooth_or_straight(&self, number: ChainNumber) -> Vec<f64> {
-        if self.is_on_ground(number) {
-            return self.smooth(number);
-        }
-        let ends = self.chains.get(number).ends;
-        ends.map(|node| self.nodes_m[self.network.index_of(node)]).to_vec()
-    }
-
     /// The true length of a link in plan.
     pub(crate) fn link_m(&self, link: Link) -> f64 {
         self.distances(self.network.points_of_link(link)).last().copied().unwrap_or_default()
     }
 
     /// Two distances along a chain, and those of the stations between them.
-    fn distances_within(
-        &self,
-        ChainNumber(number): ChainNumber,
-        stations: usize,
-        [from_m, to_m]: [f64; 2],
-    ) -> Vec<f64> {
-        let last = stations.max(2) - 1;
-        let spacing_m = self.lengths_m[number] / last as f64;
+    fn distances_within(&self, number: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
+        let last = self.stations_of(number).len().max(2) - 1;
+        let spacing_m = self.lengths_m[number.0] / last as f64;
         let first = (from_m / spacing_m).floor() as usize + 1;
         let between = (first..=last).map(|k| k as f64 * spacing_m);
         let between = between.take_while(|&at_m| at_m < to_m);
         [from_m].into_iter().chain(between).chain([to_m]).collect()
-    }
-
-    /// A height along a chain, between its stations.
-    fn height_at(&self, ChainNumber(number): ChainNumber, heights_m: &[f64], at_m: f64) -> f64 {
-        let last = heights_m.len().max(2) - 1;
-        let place = (at_m / self.lengths_m[number] * last as f64).clamp(0.0, last as f64);
-        let station = (place.floor() as usize).min(last - 1);
-        let share = place - station as f64;
-        match heights_m.get(station..station + 2) {
-            Some(&[from, to]) => from + share * (to - from),
-            _ => f64::NAN,
-        }
     }
 
     /// The network.
