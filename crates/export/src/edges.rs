@@ -46,6 +46,8 @@ struct Edge<'a> {
     ways: String,
     shares: Shares<'a>,
     profile: Option<Vec<[f64; 2]>>,
+    /// Heights of the nodes that other edges share.
+    nodes_m: [Option<f64>; 2],
 }
 
 /// What an edge is made of, by length in metres.
@@ -195,6 +197,7 @@ pub fn export_edges(
             ways: ways_text(network, &chain),
             shares: Shares::of(&measured, &chain),
             profile: measured.profile(chain.links),
+            nodes_m: chain.ends.map(|node| measured.node_m(node)),
         };
         summary.edges += 1;
         summary.length_m += edge.shares.length_m;
@@ -228,7 +231,8 @@ impl Edge<'_> {
         let both = ascent_m.zip(descent_m).map(|(up_m, down_m)| up_m + down_m);
         let weighted = both.filter(|_| length_m > 0.0).map(|both_m| 100.0 * both_m / length_m);
         let steepest = profile.and_then(|profile| steepest(profile, GRADE_LENGTH_M));
-        let height = |end: Option<&[f64; 2]>| optional(end.map(|end| end[1]));
+        let own = [profile.and_then(<[_]>::first), profile.and_then(<[_]>::last)];
+        let height = |end: usize| optional(self.nodes_m[end].or(own[end].map(|place| place[1])));
         let node = |id: Option<i64>| id.map_or(Value::Null, Value::Integer);
         vec![
             node(self.ends[0]),
@@ -244,8 +248,8 @@ impl Edge<'_> {
             optional(ascent_m),
             optional(weighted),
             optional(steepest.map(|grade| 100.0 * grade)),
-            height(profile.and_then(<[_]>::first)),
-            height(profile.and_then(<[_]>::last)),
+            height(0),
+            height(1),
             share(bridge_m),
             share(tunnel_m),
         ]

@@ -16,6 +16,6 @@ mod smoothing;
 
 pub(crate) use grade_limit::grade_limit;
 pub(crate) use measured_chains::MeasuredChains;
-pub(crate) use on_way::stretch_of_way;
+pub(crate) use on_way::{most_steps, stretch_of_way};
 pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine};
 pub(crate) use smoothing::Smoothing;

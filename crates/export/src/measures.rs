@@ -76,8 +76,9 @@ impl Measures {
 ///                    twice the least length is enough: a longer stretch has a part, long enough, that is not less steep.
 /// ```
 pub(crate) fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
+    let [begin_m, _] = *profile.first()?;
     let [last_m, _] = *profile.last()?;
-    if last_m < least_m {
+    if last_m - begin_m < least_m {
         return None;
     }
     let mut most = 0.0_f64;
@@ -103,7 +104,7 @@ pub(crate) fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
         while behind + 1 < index && profile[behind + 1][0] <= here[0] - least_m {
             behind += 1;
         }
-        if here[0] >= least_m {
+        if here[0] >= begin_m + least_m {
             look(at(profile, behind, here[0] - least_m), here);
         }
     }

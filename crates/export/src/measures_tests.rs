@@ -125,3 +125,17 @@ proptest! {
         }
     }
 }
+
+/// Where a profile begins changes nothing: parts of longer ones keep their distances.
+#[test]
+fn a_profile_may_begin_anywhere() {
+    let profile = [[0.0, 5.0], [12.0, 6.0], [31.0, 2.0], [40.0, 2.5]];
+    let moved = profile.map(|[along_m, height_m]| [along_m + 1000.0, height_m]);
+    for least_m in [5.0, 20.0, 39.0, 41.0] {
+        let [one, other] = [&profile, &moved].map(|profile| steepest(profile, least_m));
+        assert_eq!(one.is_some(), other.is_some(), "{least_m}");
+        if let (Some(one), Some(other)) = (one, other) {
+            near(one, other);
+        }
+    }
+}

@@ -13,7 +13,7 @@ use crate::{
     error::ExportError,
     feature::HeightSource,
     feature_request::Coordinates,
-    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, stretch_of_way},
+    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
@@ -295,13 +295,15 @@ impl Telling<'_> {
             let parts = way.iter().map(|line| line.part(stretch));
             parts.max_by_key(|part| part.stations.len())
         };
-        if let Some(stretch) = stretch_of_way(way, &vertices, end_m - begin_m) {
+        let most_steps = most_steps(self.places.manifest(), self.level);
+        let length_m = end_m - begin_m;
+        if let Some(stretch) = stretch_of_way(way, &vertices, length_m, most_steps) {
             let mut line = part(stretch)?;
             line.stations.iter_mut().for_each(|station| station.along_m += begin_m - stretch[0]);
             return Some(line);
         }
         vertices.reverse();
-        let stretch = stretch_of_way(way, &vertices, end_m - begin_m)?;
+        let stretch = stretch_of_way(way, &vertices, length_m, most_steps)?;
         let mut line = part(stretch)?;
         line.stations.reverse();
         for station in &mut line.stations {

@@ -17,7 +17,10 @@ use crate::{
     feature::{HeightSource, Road, Smooth, road_fields, road_values},
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
-    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, stretch_of_way},
+    grades::{
+        MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, most_steps,
+        stretch_of_way,
+    },
     height_bound::{dem_heights, height_bound},
     join::{Line, lines},
     measures::{Measures, Profiled},
@@ -86,7 +89,8 @@ pub fn export_roads(
                 MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)
             };
             let chains = heights.network.map(measure).transpose()?;
-            Some(OnDem { nodes, smoothing, chains })
+            let most_steps = most_steps(manifest, source.level);
+            Some(OnDem { nodes, smoothing, chains, most_steps })
         }
     };
     let mut roads = Roads {
@@ -119,6 +123,8 @@ struct OnDem<'a> {
     nodes: DemNodes<'a>,
     smoothing: Smoothing,
     chains: Option<MeasuredChains<'a>>,
+    /// How far lines may be beside their ways, lattice steps.
+    most_steps: f64,
 }
 
 impl Features for Roads<'_> {
@@ -240,7 +246,7 @@ impl OnDem<'_> {
         let mut is_of_chain = !way.is_empty();
         for Profiled { line, profile } in lines {
             let length_m = profile.last().map_or(0.0, |last| last[0]);
-            let found = stretch_of_way(way, &line.vertices, length_m);
+            let found = stretch_of_way(way, &line.vertices, length_m, self.most_steps);
             is_of_chain &= found.is_some();
             match found {
                 Some(stretch) => parts.extend(way.iter().map(|line| line.part(stretch))),

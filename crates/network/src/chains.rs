@@ -36,6 +36,14 @@ pub struct Chain<'a> {
     pub links: &'a [Link],
 }
 
+impl Chain<'_> {
+    /// Whether it comes back to where it begins.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.ends[0] == self.ends[1]
+    }
+}
+
 /// All chains of a network: each stretch is in one of them.
 #[derive(Debug)]
 pub struct Chains {

@@ -17,6 +17,7 @@ fn road(way_id: i64, node_ids: &[i64], structure: Structure) -> Road {
         line: Polyline::new(points).unwrap(),
         fixed: (0..node_ids.len() as u32).collect(),
         node_ids: node_ids.iter().copied().map(Some).collect(),
+        same_places: Vec::new(),
     }
 }
 
@@ -85,6 +86,18 @@ fn structures_are_chains_of_their_own_where_that_is_wanted() {
     assert_eq!(nodes_of(&network, Breaks::Junctions), [[1, 2, 3, 4, 5]]);
     let expected: [&[i64]; 3] = [&[1, 2], &[2, 3, 4], &[4, 5]];
     assert_eq!(nodes_of(&network, Breaks::JunctionsAndStructures), expected);
+}
+
+/// Two nodes of a way that lie at one place are one, whichever of them others join.
+#[test]
+fn nodes_that_a_way_has_at_one_place_are_one() {
+    let mut way = road(1, &[1, 2, 4], Structure::Ground);
+    way.same_places = vec![[2, 3]];
+    let mut other = road(3, &[2, 6], Structure::Ground);
+    other.node_ids[0] = Some(3);
+    let network = network(&[way, road(2, &[2, 5], Structure::Ground), other]);
+    let expected: [&[i64]; 4] = [&[1, 2], &[2, 4], &[2, 5], &[2, 6]];
+    assert_eq!(nodes_of(&network, Breaks::Junctions), expected);
 }
 
 #[test]

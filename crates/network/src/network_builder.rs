@@ -15,11 +15,19 @@ pub struct NetworkBuilder {
     stop_points: Vec<u32>,
     stop_ids: Vec<Option<i64>>,
     highways: BTreeMap<String, u32>,
+    /// Of two nodes at one place the larger id, and the smaller one that stands for it; which another one may stand for.
+    stands_for: BTreeMap<i64, i64>,
 }
 
 impl NetworkBuilder {
     /// Adds a road. Ends without an id meet nothing.
     pub fn push(&mut self, road: &Road) {
+        for &[one, other] in &road.same_places {
+            let [one, other] = [one, other].map(|id| self.representative(id));
+            if one != other {
+                self.stands_for.insert(one.max(other), one.min(other));
+            }
+        }
         let [first_point, first_stop] = [self.points.len(), self.stop_points.len()];
         self.points.extend(road.line.points());
         for (index, &point) in road.fixed.iter().enumerate() {
@@ -45,10 +53,24 @@ impl NetworkBuilder {
         });
     }
 
+    /// The smallest of all nodes at the place of a node, as far as they are known.
+    fn representative(&self, mut id: i64) -> i64 {
+        while let Some(&smaller) = self.stands_for.get(&id) {
+            id = smaller;
+        }
+        id
+    }
+
     /// Finds out which roads meet.
     #[must_use]
-    pub fn finish(self) -> Network {
-        let Self { ways, points, stop_points, stop_ids, highways } = self;
+    pub fn finish(mut self) -> Network {
+        let mut stop_ids = std::mem::take(&mut self.stop_ids);
+        if !self.stands_for.is_empty() {
+            for id in stop_ids.iter_mut().flatten() {
+                *id = self.representative(*id);
+            }
+        }
+        let Self { ways, points, stop_points, highways, .. } = self;
         let mut node_ids: Vec<i64> = stop_ids.iter().copied().flatten().collect();
         node_ids.sort_unstable();
         node_ids.dedup();

@@ -123,6 +123,7 @@ fn assemble_way(
     let mut assembled = Assembled::default();
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
     let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::new()];
+    let mut same_places = Vec::new();
     for (index, stop) in stops.iter().enumerate() {
         // The node has a position: the next one of the placed points.
         let is_known = location::degrees(stop.location).is_some();
@@ -131,9 +132,12 @@ fn assemble_way(
             (Some(point), Some(piece)) => match piece.last_mut() {
                 Some(last) if last.point == point => {
                     duplicates += 1;
-                    // Of several nodes at one place, that counts at which other roads may join.
-                    if stop.is_shared() && !last.is_fixed {
-                        (last.is_fixed, last.id) = (true, way.node_ids.get(index).copied());
+                    let id = way.node_ids.get(index).copied();
+                    // Of several nodes at one place, those count at which other roads may join.
+                    if stop.is_shared() && last.is_fixed {
+                        same_places.extend(last.id.zip(id).map(|(one, other)| [one, other]));
+                    } else if stop.is_shared() {
+                        (last.is_fixed, last.id) = (true, id);
                     }
                 }
                 _ => {
@@ -162,6 +166,9 @@ fn assemble_way(
         strays += if own.is_empty() { count } else { 0 };
         roads += u32::from(!own.is_empty());
         assembled.roads.extend(own);
+    }
+    if let Some(first) = assembled.roads.first_mut() {
+        first.same_places = same_places;
     }
     for (count, defect) in [
         (missing, Defect::MissingNodes { way_id, points: missing }),
@@ -200,5 +207,6 @@ fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
         line,
         fixed,
         node_ids,
+        same_places: Vec::new(),
     })
 }

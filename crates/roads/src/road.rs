@@ -211,6 +211,8 @@ pub struct Road {
     /// For each of `fixed` OSM's id of the node there, by which roads are joined; `None` for a place that is no node. Empty where ids were not
     /// asked for.
     pub node_ids: Vec<Option<i64>>,
+    /// Pairs of nodes of the way that lie at one place of the lattice, and may both join other roads. Of each pair one stands in `node_ids`.
+    pub same_places: Vec<[i64; 2]>,
 }
 
 #[cfg(test)]

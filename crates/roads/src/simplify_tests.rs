@@ -18,6 +18,7 @@ fn road(points: Vec<LatticePoint>, inner_fixed: &[u32]) -> Option<Road> {
         line,
         fixed,
         node_ids: Vec::new(),
+        same_places: Vec::new(),
     })
 }
 

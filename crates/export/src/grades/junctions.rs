@@ -8,13 +8,15 @@
 //! Lines reach as far as they are smoothed, through other junctions along the legs that go on most straight there.
 
 use corniche_geom::IndexLists;
-use corniche_work::{Observer, Stage};
+use corniche_work::Observer;
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
 use crate::error::ExportError;
 
 /// Two legs go on in each other where the road turns by less than this, as a cosine: 45°.
 const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// At a node with more legs none goes on in another: no real junction has as many, and pairs are looked at two by two.
+const MOST_LEGS: usize = 64;
 /// A line goes through so many chains at most, so that work is bounded where they are very short.
 const MOST_CHAINS: usize = 64;
 
@@ -45,8 +47,8 @@ impl Leg {
 pub(crate) trait Legs {
     /// The ends of chains that lie at each node: twice the number of the chain, plus one for its last station.
     fn by_node(&self) -> IndexLists;
-    /// Whether only one road ends at a node.
-    fn is_dead_end(&self, node: usize) -> bool;
+    /// Whether a node needs no height of its own: at a dead end, and where a ring without a junction begins.
+    fn is_alone(&self, node: usize) -> bool;
     /// How much is smoothed.
     fn smoothing(&self) -> Smoothing;
     /// The distance between stations, and the ground at them from the node on; NaN where there is none.
@@ -58,7 +60,7 @@ pub(crate) trait Legs {
 /// No leg goes on in this one.
 const NONE: u32 = u32::MAX;
 
-/// The height of each node, NaN where it has no leg with ground, and at dead ends, whose height is that of their own line.
+/// The height of each node, NaN where it has no leg with ground, and where it needs none.
 pub(crate) fn node_heights(
     legs: &dyn Legs,
     observer: &dyn Observer,
@@ -71,9 +73,8 @@ pub(crate) fn node_heights(
     for (node, height_m) in heights_m.iter_mut().enumerate() {
         if node % 4096 == 0 {
             observer.check()?;
-            observer.advance(Stage::ExportChains, 0);
         }
-        if legs.is_dead_end(node) {
+        if legs.is_alone(node) {
             continue;
         }
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -113,6 +114,9 @@ fn goes_on_in(legs: &dyn Legs, by_node: &IndexLists) -> Vec<u32> {
     let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
     for node in 0..nodes {
         let own = by_node.of(node);
+        if own.len() > MOST_LEGS {
+            continue;
+        }
         let directions: Vec<[f64; 2]> =
             own.iter().map(|&end| legs.direction(Leg::of(end as usize))).collect();
         pairs.clear();

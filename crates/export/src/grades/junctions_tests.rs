@@ -15,7 +15,7 @@ impl Legs for Star {
         IndexLists::new(1 + self.legs.len(), 2 * self.legs.len(), node)
     }
 
-    fn is_dead_end(&self, node: usize) -> bool {
+    fn is_alone(&self, node: usize) -> bool {
         node > 0
     }
 

@@ -1,9 +1,9 @@
 //! The chains of a network with heights of the elevation files, and smooth lines along them.
 
-use std::ops::Range;
+use std::{collections::HashSet, ops::Range};
 
 use corniche_geom::{IndexLists, LatticePoint};
-use corniche_network::{Breaks, ChainNumber, Chains, Link, Network};
+use corniche_network::{Breaks, ChainNumber, Chains, Link, Network, NodeNumber};
 use corniche_roads::Structure;
 use corniche_work::{Observer, Stage};
 
@@ -15,7 +15,7 @@ use super::{
 use crate::{dem_ground::DemNodes, error::ExportError, places::Places};
 
 /// Chains are told of after so many.
-const TOLD_CHAINS: u64 = 1024;
+const TOLD_CHAINS: usize = 1024;
 
 /// The chains of a network, cut where bridges and tunnels begin, with what their heights are.
 pub(crate) struct MeasuredChains<'a> {
@@ -34,6 +34,8 @@ pub(crate) struct MeasuredChains<'a> {
     above_m: Vec<f32>,
     /// The height at each node, NaN where there is none that is shared.
     nodes_m: Vec<f64>,
+    /// The nodes at which rings without a junction begin.
+    rings: HashSet<usize>,
 }
 
 /// A chain with its points and their distances from its beginning.
@@ -82,8 +84,12 @@ impl<'a> MeasuredChains<'a> {
             grounds_m: Vec::new(),
             above_m: Vec::new(),
             nodes_m: Vec::new(),
+            rings: HashSet::new(),
             chains,
         };
+        let rings = measured.chains.numbers().filter(|&number| measured.is_ring(number));
+        let begin = |number| network.index_of(measured.chains.get(number).ends[0]);
+        measured.rings = rings.map(begin).collect();
         let mut order = Vec::with_capacity(measured.chains.len());
         for number in measured.chains.numbers() {
             let along = measured.along(number);
@@ -107,17 +113,18 @@ impl<'a> MeasuredChains<'a> {
         let count = measured.starts.last().copied().unwrap_or_default();
         measured.grounds_m = vec![f32::NAN; count];
         observer.begin(Stage::ExportChains, Some(order.len() as u64));
-        for (done, &(_, number)) in (1..).zip(&order) {
-            measured.read_ground(number, nodes)?;
-            if done % TOLD_CHAINS == 0 {
-                observer.check()?;
-                observer.advance(Stage::ExportChains, TOLD_CHAINS);
+        for some in order.chunks(TOLD_CHAINS) {
+            for &(_, number) in some {
+                measured.read_ground(number, nodes)?;
             }
+            observer.check()?;
+            observer.advance(Stage::ExportChains, some.len() as u64);
         }
         measured.nodes_m = node_heights(&measured, observer)?;
         measured.above_m = vec![f32::NAN; count];
-        for &(_, number) in &order {
-            measured.smooth(number);
+        for some in order.chunks(TOLD_CHAINS) {
+            observer.check()?;
+            some.iter().for_each(|&(_, number)| measured.smooth(number));
         }
         observer.end(Stage::ExportChains);
         Ok(measured)
@@ -132,8 +139,11 @@ impl<'a> MeasuredChains<'a> {
         let own = self.stations_of(number);
         let (mut after, last) = (0, own.len() - 1);
         for k in 0..own.len() {
-            let along_m = along.length_m() * k as f64 / last as f64;
-            let at = along.at(along_m, &mut after);
+            let at = match (k, along.points.last()) {
+                // To the last bit, so that all legs of a junction have the same ground there.
+                (k, Some(end)) if k == last => end.in_steps(),
+                _ => along.at(along.length_m() * k as f64 / last as f64, &mut after),
+            };
             if let Some(height_m) = nodes.height_m(at)? {
                 self.grounds_m[own.start + k] = height_m as f32;
             }
@@ -175,27 +185,57 @@ impl<'a> MeasuredChains<'a> {
         let own = self.stations_of(number);
         let grounds_m: Vec<f64> =
             self.grounds_m[own.clone()].iter().copied().map(f64::from).collect();
-        let spacing_m = self.lengths_m[number.0] / (grounds_m.len() - 1) as f64;
-        let held_m = self.chains.get(number).ends.map(|node| {
-            Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
-        });
+        let last = grounds_m.len() - 1;
+        let spacing_m = self.lengths_m[number.0] / last as f64;
+        if self.is_ring(number) && grounds_m.iter().all(|height_m| height_m.is_finite()) {
+            let smooth_m = self.smoothing.solve_ring(spacing_m, &grounds_m[..last]);
+            for (k, &ground_m) in grounds_m.iter().enumerate() {
+                self.above_m[own.start + k] = (smooth_m[k % last] - ground_m) as f32;
+            }
+            return;
+        }
+        let ends = self.chains.get(number).ends;
+        let held_m = ends.map(|node| self.node_m(node));
         let mut first = 0;
-        while first < grounds_m.len() {
+        while first <= last {
             let known = grounds_m[first..].iter().take_while(|height_m| height_m.is_finite());
             let end = first + known.count();
             if end > first {
-                let held = [
-                    held_m[0].filter(|_| first == 0),
-                    held_m[1].filter(|_| end == grounds_m.len()),
-                ];
+                let held =
+                    [held_m[0].filter(|_| first == 0), held_m[1].filter(|_| end == last + 1)];
                 let smooth_m = self.smoothing.solve(spacing_m, &grounds_m[first..end], held);
-                for (k, height_m) in smooth_m.into_iter().enumerate() {
+                for (k, height_m) in smooth_m.iter().enumerate() {
                     let above_m = height_m - grounds_m[first + k];
                     self.above_m[own.start + first + k] = above_m as f32;
+                }
+                // The ground ends somewhere before the next station: to there the line goes on as it came.
+                let inner = |from: usize, before: usize| match smooth_m.get(before) {
+                    Some(before_m) => 2.0 * smooth_m[from] - before_m,
+                    None => smooth_m[from],
+                };
+                let count = end - first;
+                if let Some(before) = first.checked_sub(1) {
+                    self.go_on(own.start + before, inner(0, 1));
+                }
+                if end <= last {
+                    self.go_on(own.start + end, inner(count - 1, count.wrapping_sub(2)));
                 }
             }
             first = end.max(first + 1);
         }
+    }
+
+    /// Puts a height of a smooth line at a station without ground.
+    fn go_on(&mut self, station: usize, height_m: f64) {
+        if self.above_m[station].is_nan() {
+            (self.grounds_m[station], self.above_m[station]) = (height_m as f32, 0.0);
+        }
+    }
+
+    /// Whether a chain comes back to its beginning without a junction there.
+    fn is_ring(&self, number: ChainNumber) -> bool {
+        let chain = self.chains.get(number);
+        chain.is_closed() && self.network.degree(chain.ends[0]) == 2
     }
 
     /// The ground and the smooth line at a distance along a chain, between its stations; NaN where there is none. Over a bridge or through a tunnel
@@ -206,7 +246,12 @@ impl<'a> MeasuredChains<'a> {
         let place = (at_m / self.lengths_m[number.0] * last as f64).clamp(0.0, last as f64);
         let station = (place.floor() as usize).min(last - 1);
         let share = place - station as f64;
-        let mix = |[from, to]: [f64; 2]| from + share * (to - from);
+        // A station without ground counts only where it counts for something.
+        let mix = |[from, to]: [f64; 2]| match share {
+            ..=0.0 => from,
+            1.0.. => to,
+            _ => from + share * (to - from),
+        };
         if own.is_empty() {
             let ends = self.chains.get(number).ends;
             let straight = mix(ends.map(|node| self.nodes_m[self.network.index_of(node)]));
@@ -326,6 +371,11 @@ impl<'a> MeasuredChains<'a> {
         [from_m].into_iter().chain(between).chain([to_m]).collect()
     }
 
+    /// The height of a node that several roads share; `None` of others, and where it is not known.
+    pub(crate) fn node_m(&self, node: NodeNumber) -> Option<f64> {
+        Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
+    }
+
     /// The network.
     pub(crate) fn network(&self) -> &'a Network {
         self.network
@@ -347,8 +397,9 @@ impl Legs for MeasuredChains<'_> {
         self.legs_by_node()
     }
 
-    fn is_dead_end(&self, node: usize) -> bool {
-        self.network.degree_at(node) < 2
+    fn is_alone(&self, node: usize) -> bool {
+        let degree = self.network.degree_at(node);
+        degree < 2 || (degree == 2 && self.rings.contains(&node))
     }
 
     fn smoothing(&self) -> Smoothing {

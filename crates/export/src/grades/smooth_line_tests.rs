@@ -24,6 +24,7 @@ fn grades_of_a_hill() {
     assert!((hill().grade(200.0) - 0.05).abs() < 1e-12);
     assert!(hill().grade(300.0).abs() < 1e-12);
     assert_eq!(SmoothGrades::of(&[hill().part([0.0, 49.0])]).steepest, None);
+    assert_eq!(SmoothGrades::of(&[hill().part([100.0, 149.0])]).steepest, None);
     assert_eq!(SmoothGrades::of(&[]), SmoothGrades::default());
     assert!(SmoothLine::default().height_m(3.0).is_nan());
 }

@@ -50,6 +50,16 @@ impl Smoothing {
         right
     }
 
+    /// The smooth line through heights around a ring: the last station is next to the first.
+    pub(crate) fn solve_ring(self, spacing_m: f64, heights_m: &[f64]) -> Vec<f64> {
+        let count = heights_m.len();
+        // So far on both sides, nothing of the free ends is left.
+        let reach = ((2.0 * self.length_m / spacing_m).ceil() as usize).min(2 * count);
+        let around: Vec<f64> =
+            (0..count + 2 * reach).map(|k| heights_m[(k + 2 * count - reach) % count]).collect();
+        self.solve(spacing_m, &around, [None, None])[reach..reach + count].to_vec()
+    }
+
     /// The height of the free smooth line at one station, and how much it weighs: by how much the sum grows if the height there is another one, over
     /// the square of the difference.
     pub(crate) fn estimate(self, spacing_m: f64, heights_m: &[f64], at: usize) -> Estimate {

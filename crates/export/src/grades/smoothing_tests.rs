@@ -70,6 +70,21 @@ fn an_estimate_says_what_another_height_costs() {
     assert!(SMOOTHING.estimate(10.0, &heights, 15).weight > 2.0 * weight);
 }
 
+/// Around a ring it does not matter where it begins.
+#[test]
+fn a_ring_has_no_beginning() {
+    for count in [3, 17, 200] {
+        let heights: Vec<f64> = (0..count).map(|k| f64::from(k * 7919 % 13)).collect();
+        let mut turned = heights.clone();
+        turned.rotate_left(2);
+        let mut smooth = SMOOTHING.solve_ring(10.0, &heights);
+        smooth.rotate_left(2);
+        for (found, expected) in SMOOTHING.solve_ring(10.0, &turned).iter().zip(&smooth) {
+            near(*found, *expected, 0.01);
+        }
+    }
+}
+
 proptest! {
     /// Of all lines the solution costs least: any other one costs more.
     #[test]

@@ -234,6 +234,7 @@ fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
             line: whole,
             fixed,
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         };
         line.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
     }

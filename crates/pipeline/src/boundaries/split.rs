@@ -118,6 +118,7 @@ impl BoundarySplitting<'_> {
             line,
             fixed: boundary.fixed.clone(),
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         };
         let step = self.step(level);
         let on_lattice = |part: i64| (part + step / 2).div_euclid(step) * step;

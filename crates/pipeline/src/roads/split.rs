@@ -181,6 +181,7 @@ impl RoadPart<'_> {
             line,
             fixed,
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         };
         Self { road: Cow::Owned(own), segments_um: own_um }
     }

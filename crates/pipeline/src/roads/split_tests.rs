@@ -223,6 +223,7 @@ impl World {
             line,
             fixed: vec![0, last / 2, last],
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         }
     }
 }
@@ -326,6 +327,7 @@ impl Large {
             line: Polyline::new(points).unwrap(),
             fixed: vec![0, last],
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         };
         let lengths = self.lengths();
         RoadSplitting {

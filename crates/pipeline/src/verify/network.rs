@@ -1,5 +1,7 @@
 //! The roads of a package's extract as a network, for who measures along them.
 
+use corniche_drape::{ClippedPart, OwnedBorders};
+use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_network::{Network, NetworkBuilder};
 use corniche_osm::{ExtractSummary, LayerSink, Layers, read_extract};
 use corniche_roads::Road;
@@ -15,7 +17,8 @@ use crate::{
     inputs::{Inputs, OtherInputs},
 };
 
-/// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice.
+/// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice. Roads are cut
+/// at the rectangle of the package's data.
 ///
 /// # Errors
 /// When a file cannot be read, changes meanwhile, or they are not those of the build.
@@ -57,7 +60,8 @@ fn read(
         pool: &pool,
         memory_bytes: extract.memory_bytes,
     };
-    let mut found = Found::default();
+    let data = manifest.frame.lattice_bounds(manifest.data_nodes());
+    let mut found = Found { data, roads: NetworkBuilder::default() };
     observer.begin(Stage::Extract, None);
     let on_progress = |done, total| observer.reached(Stage::Extract, done, total);
     let should_stop = || observer.is_cancelled();
@@ -70,15 +74,56 @@ fn read(
     Ok(found.roads.finish())
 }
 
-#[derive(Default)]
 struct Found {
+    /// The rectangle of the data. What lies outside costs nothing.
+    data: LatticeBounds,
     roads: NetworkBuilder,
 }
 
 impl LayerSink<Road, ExtractSummary> for Found {
     fn take(&mut self, road: Road) {
-        self.roads.push(&road);
+        let is_inside = |point: &LatticePoint| self.data.contains(*point);
+        if road.line.points().iter().all(is_inside) {
+            self.roads.push(&road);
+        } else {
+            for part in corniche_drape::clip_parts(&road.line, &self.data, OwnedBorders::ALL) {
+                self.roads.push(&part_of_road(&road, part));
+            }
+        }
     }
 
     fn end(&mut self, _: ExtractSummary) {}
 }
+
+/// A part of a road. Its ends, where they are cuts, are no nodes.
+fn part_of_road(road: &Road, part: ClippedPart) -> Road {
+    let points = road.line.points();
+    let last = part.line.points().len() - 1;
+    let stop = |(index, point): (usize, &LatticePoint)| {
+        // A point of the road is the beginning of its segment, or the end of the one before.
+        let of_road = [
+            part.segments.get(index).copied(),
+            index.checked_sub(1).and_then(|before| Some(part.segments.get(before)? + 1)),
+        ];
+        let of_road = of_road.into_iter().flatten().find(|&at| points.get(at) == Some(point));
+        let fixed = of_road.and_then(|at| road.fixed.binary_search(&(at as u32)).ok());
+        let node_id = fixed.and_then(|at| road.node_ids.get(at).copied().flatten());
+        let is_kept = fixed.is_some() || index == 0 || index == last;
+        is_kept.then_some((index as u32, node_id))
+    };
+    let stops: Vec<(u32, Option<i64>)> =
+        part.line.points().iter().enumerate().filter_map(stop).collect();
+    Road {
+        way_id: road.way_id,
+        class: road.class,
+        attributes: road.attributes.clone(),
+        fixed: stops.iter().map(|(index, _)| *index).collect(),
+        node_ids: stops.iter().map(|(_, node_id)| *node_id).collect(),
+        same_places: road.same_places.clone(),
+        line: part.line,
+    }
+}
+
+#[cfg(test)]
+#[path = "network_tests.rs"]
+mod tests;

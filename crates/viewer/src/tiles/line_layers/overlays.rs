@@ -83,6 +83,7 @@ impl LevelLine {
             line: path,
             fixed: vec![0, last],
             node_ids: Vec::new(),
+            same_places: Vec::new(),
         };
         let points = simplify(&road, tolerance).points().to_vec();
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {

@@ -1,0 +1,45 @@
+//! Parts of roads know the nodes of the whole road.
+
+use corniche_geom::Polyline;
+use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+
+use super::*;
+
+#[test]
+fn parts_of_a_road_keep_its_nodes_and_end_at_none() {
+    let at = |u: i64, v: i64| LatticePoint::new(u, v);
+    let road = Road {
+        way_id: 7,
+        class: FunctionalRoadClass::new(3).unwrap(),
+        attributes: RoadAttributes::default(),
+        line: Polyline::new(vec![
+            at(-50, 0),
+            at(10, 0),
+            at(20, 0),
+            at(40, 0),
+            at(40, 200),
+            at(60, 200),
+            at(60, 10),
+        ])
+        .unwrap(),
+        fixed: vec![0, 1, 3, 6],
+        node_ids: vec![Some(100), Some(101), Some(103), Some(106)],
+        same_places: Vec::new(),
+    };
+    let data = LatticeBounds { min: at(0, -100), max: at(100, 100) };
+    let parts: Vec<(Vec<LatticePoint>, Vec<u32>, Vec<Option<i64>>)> =
+        corniche_drape::clip_parts(&road.line, &data, OwnedBorders::ALL)
+            .into_iter()
+            .map(|part| part_of_road(&road, part))
+            .map(|road| (road.line.into_points(), road.fixed, road.node_ids))
+            .collect();
+    let expected = [
+        (
+            vec![at(0, 0), at(10, 0), at(20, 0), at(40, 0), at(40, 100)],
+            vec![0, 1, 3, 4],
+            vec![None, Some(101), Some(103), None],
+        ),
+        (vec![at(60, 100), at(60, 10)], vec![0, 1], vec![None, Some(106)]),
+    ];
+    assert_eq!(parts, expected);
+}
