@@ -109,15 +109,12 @@ fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
     if is_shown_as_it_is {
         return error;
     }
-    match Arguments::parsed(written) {
-        Err(error) => error,
+    Arguments::parsed(written).err().unwrap_or_else(|| {
         // Written otherwise nothing is wrong with them.
-        Ok(_) => {
-            let said = error.to_string();
-            let said = said.trim_start_matches("error: ").trim_end();
-            Arguments::command().error(error.kind(), in_line(said))
-        }
-    }
+        let said = error.to_string();
+        let said = said.trim_start_matches("error: ").trim_end();
+        Arguments::command().error(error.kind(), in_line(said))
+    })
 }
 
 /// What other programs call a part of the data.

@@ -276,7 +276,7 @@ fn every_format_is_read_alike() {
 fn refused(scene: &Scene, overlays: &[&str]) -> String {
     let out = scene.at("refused.png");
     let mut words = vec!["render", text(&scene.package), "-o", text(&out)];
-    overlays.iter().for_each(|overlay| words.extend(["--overlay", overlay]));
+    words.extend(overlays.iter().flat_map(|overlay| ["--overlay", overlay]));
     let ran = corniche(words);
     assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
     assert!(!Path::new(&out).exists());

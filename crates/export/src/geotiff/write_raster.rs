@@ -63,7 +63,7 @@ pub fn export_geotiff(
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
     let grid = RasterGrid::of(package, request.bounds.as_ref())?;
-    check_size(package, level, request, &grid)?;
+    check_size(package, request, &grid)?;
     let places = Places::new(manifest, Coordinates::Package)?;
     let facts = facts(package, level, request, &places, &grid);
     let writing = Writing { package, level, request, grid, observer };
@@ -85,10 +85,10 @@ pub fn export_geotiff(
     })
 }
 
-/// An error where a raster would be nearly all without ground: its rectangle may be a lie.
+/// An error where a raster would be nearly all without ground: its rectangle may be a lie. Tiles of the finest level count, whichever level's TINs
+/// are taken: they have ground wherever a coarse tile has, and a single coarse tile may be said to hold all nodes.
 fn check_size(
     package: &FilePackage,
-    level: u8,
     request: &GeoTiffRequest<'_>,
     grid: &RasterGrid,
 ) -> Result<(), ExportError> {
@@ -97,7 +97,8 @@ fn check_size(
     if nodes <= FREE_NODES {
         return Ok(());
     }
-    let side = (TILE_CELLS * package.manifest().frame.stride(level)).unsigned_abs();
+    let level = package.manifest().frame.max_level();
+    let side = TILE_CELLS.unsigned_abs();
     let tiles = read::tiles(package, level, request.bounds.as_ref())?.len() as u64;
     let within = tiles.saturating_mul(side.saturating_mul(side));
     if nodes / MOST_NOTHING > within {
