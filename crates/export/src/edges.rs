@@ -176,10 +176,12 @@ pub fn export_edges(
     let mut tolerance_m = 0.0_f64;
     let edges = Chains::of(network, Breaks::Junctions);
     observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
+    let mut told = 0;
     for (done, number) in (1..).zip(edges.numbers()) {
-        if done % TOLD_EDGES == 0 {
+        if done % TOLD_EDGES == 0 || done == edges.len() as u64 {
             observer.check()?;
-            observer.advance(Stage::ExportFeatures, TOLD_EDGES);
+            observer.advance(Stage::ExportFeatures, done - told);
+            told = done;
         }
         let chain = edges.get(number);
         let line: Vec<Vertex> = network

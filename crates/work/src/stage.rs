@@ -111,9 +111,7 @@ impl Stage {
             Self::Verify => ("verify", "verifying", TILES),
             Self::ExportTiles => ("export-tiles", "reading tiles", TILES),
             Self::ExportBlocks => ("export-blocks", "writing blocks", Unit::Things("blocks")),
-            Self::ExportChains => {
-                ("export-chains", "heights along roads", Unit::Things("stretches"))
-            }
+            Self::ExportChains => ("export-chains", "heights along roads", Unit::Things("chains")),
             Self::ExportFeatures => ("export-features", "writing features", Unit::Things("pieces")),
             Self::Match => ("match", "comparing tiles", TILES),
             Self::Fly => ("fly", "drawing frames", Unit::Things("frames")),

@@ -49,6 +49,7 @@ mod recorded_package;
 mod relief;
 mod remote;
 mod resume;
+mod road_heights;
 mod road_tags;
 mod samples;
 mod schemas;

@@ -1,6 +1,9 @@
 //! The chains of a network with heights of the elevation files, and smooth lines along them.
 
-use std::{collections::HashSet, ops::Range};
+use std::{
+    collections::{HashMap, HashSet},
+    ops::Range,
+};
 
 use corniche_geom::{IndexLists, LatticePoint};
 use corniche_network::{Breaks, ChainNumber, Chains, Link, Network, NodeNumber};
@@ -35,7 +38,9 @@ pub(crate) struct MeasuredChains<'a> {
     /// The height at each node, NaN where there is none that is shared.
     nodes_m: Vec<f64>,
     /// The nodes at which rings without a junction begin.
-    rings: HashSet<usize>,
+    ring_nodes: HashSet<usize>,
+    /// Of the chains that are such rings the distance of their first station from that node: it lies at a place that does not depend on ways.
+    ring_starts_m: HashMap<usize, f64>,
 }
 
 /// A chain with its points and their distances from its beginning.
@@ -47,6 +52,12 @@ struct Along {
 impl Along {
     fn length_m(&self) -> f64 {
         self.distances_m.last().copied().unwrap_or_default()
+    }
+
+    /// The distance of the point with the smallest coordinates.
+    fn least_point_m(&self) -> f64 {
+        let least = self.points.iter().zip(&self.distances_m).min_by_key(|(point, _)| **point);
+        least.map_or(0.0, |(_, &distance_m)| distance_m)
     }
 
     /// The place at a distance, which ascends from call to call; `after` is the point after the one before.
@@ -84,12 +95,10 @@ impl<'a> MeasuredChains<'a> {
             grounds_m: Vec::new(),
             above_m: Vec::new(),
             nodes_m: Vec::new(),
-            rings: HashSet::new(),
+            ring_nodes: HashSet::new(),
+            ring_starts_m: HashMap::new(),
             chains,
         };
-        let rings = measured.chains.numbers().filter(|&number| measured.is_ring(number));
-        let begin = |number| network.index_of(measured.chains.get(number).ends[0]);
-        measured.rings = rings.map(begin).collect();
         let mut order = Vec::with_capacity(measured.chains.len());
         for number in measured.chains.numbers() {
             let along = measured.along(number);
@@ -99,6 +108,11 @@ impl<'a> MeasuredChains<'a> {
                 length_m += measured.link_m(link);
             }
             measured.lengths_m.push(length_m);
+            if measured.is_ring(number) {
+                let node = measured.chains.get(number).ends[0];
+                measured.ring_nodes.insert(network.index_of(node));
+                measured.ring_starts_m.insert(number.0, along.least_point_m());
+            }
             let own = if measured.is_on_ground(number) { stations(length_m) } else { 0 };
             measured.starts.push(measured.starts[number.0] + own);
             if own > 0 {
@@ -138,11 +152,17 @@ impl<'a> MeasuredChains<'a> {
         let along = self.along(number);
         let own = self.stations_of(number);
         let (mut after, last) = (0, own.len() - 1);
+        let (length_m, start_m) = (along.length_m(), self.start_m(number));
         for k in 0..own.len() {
+            let mut at_m = start_m + length_m * k as f64 / last as f64;
+            if at_m > length_m {
+                // Around a ring; its first part comes last.
+                (at_m, after) = (at_m - length_m, 0);
+            }
             let at = match (k, along.points.last()) {
                 // To the last bit, so that all legs of a junction have the same ground there.
-                (k, Some(end)) if k == last => end.in_steps(),
-                _ => along.at(along.length_m() * k as f64 / last as f64, &mut after),
+                (k, Some(end)) if k == last && start_m <= 0.0 => end.in_steps(),
+                _ => along.at(at_m, &mut after),
             };
             if let Some(height_m) = nodes.height_m(at)? {
                 self.grounds_m[own.start + k] = height_m as f32;
@@ -232,6 +252,11 @@ impl<'a> MeasuredChains<'a> {
         }
     }
 
+    /// Where the first station of a chain lies, along it: at its beginning, but for rings.
+    fn start_m(&self, ChainNumber(number): ChainNumber) -> f64 {
+        self.ring_starts_m.get(&number).copied().unwrap_or_default()
+    }
+
     /// Whether a chain comes back to its beginning without a junction there.
     fn is_ring(&self, number: ChainNumber) -> bool {
         let chain = self.chains.get(number);
@@ -243,7 +268,9 @@ impl<'a> MeasuredChains<'a> {
     fn heights_at(&self, number: ChainNumber, at_m: f64) -> [f64; 2] {
         let own = self.stations_of(number);
         let last = own.len().max(2) - 1;
-        let place = (at_m / self.lengths_m[number.0] * last as f64).clamp(0.0, last as f64);
+        let (length_m, start_m) = (self.lengths_m[number.0], self.start_m(number));
+        let at_m = if at_m < start_m { at_m - start_m + length_m } else { at_m - start_m };
+        let place = (at_m / length_m * last as f64).clamp(0.0, last as f64);
         let station = (place.floor() as usize).min(last - 1);
         let share = place - station as f64;
         // A station without ground counts only where it counts for something.
@@ -364,9 +391,9 @@ impl<'a> MeasuredChains<'a> {
     /// Two distances along a chain, and those of the stations between them.
     fn distances_within(&self, number: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
         let last = self.stations_of(number).len().max(2) - 1;
-        let spacing_m = self.lengths_m[number.0] / last as f64;
-        let first = (from_m / spacing_m).floor() as usize + 1;
-        let between = (first..=last).map(|k| k as f64 * spacing_m);
+        let (spacing_m, start_m) = (self.lengths_m[number.0] / last as f64, self.start_m(number));
+        let first = ((from_m - start_m) / spacing_m).floor() as i64 + 1;
+        let between = (first..).map(|k| start_m + k as f64 * spacing_m);
         let between = between.take_while(|&at_m| at_m < to_m);
         [from_m].into_iter().chain(between).chain([to_m]).collect()
     }
@@ -399,7 +426,7 @@ impl Legs for MeasuredChains<'_> {
 
     fn is_alone(&self, node: usize) -> bool {
         let degree = self.network.degree_at(node);
-        degree < 2 || (degree == 2 && self.rings.contains(&node))
+        degree < 2 || (degree == 2 && self.ring_nodes.contains(&node))
     }
 
     fn smoothing(&self) -> Smoothing {
