@@ -54,9 +54,10 @@ impl Smoothing {
     pub(crate) fn solve_ring(self, spacing_m: f64, heights_m: &[f64]) -> Vec<f64> {
         let count = heights_m.len();
         // So far on both sides, nothing of the free ends is left.
-        let reach = ((2.0 * self.length_m / spacing_m).ceil() as usize).min(2 * count);
+        let reach = (2.0 * self.length_m / spacing_m).ceil() as usize;
+        let first = count - reach % count;
         let around: Vec<f64> =
-            (0..count + 2 * reach).map(|k| heights_m[(k + 2 * count - reach) % count]).collect();
+            (0..count + 2 * reach).map(|k| heights_m[(first + k) % count]).collect();
         self.solve(spacing_m, &around, [None, None])[reach..reach + count].to_vec()
     }
 
