@@ -8,35 +8,30 @@ mod quantized_mesh;
 mod roads;
 mod tiles3d;
 mod unknown_ending;
+mod vector_files;
 
 use std::path::Path;
 
 use corniche_areas::{AreaClass, BoundaryClass};
-use corniche_export::{
-    Coordinates, ExportError, FeatureRequest, VectorFormat, export_areas, export_boundaries,
-};
-use corniche_pipeline::RecordedElevation;
+use corniche_export::{Coordinates, ExportError, FeatureRequest, export_areas, export_boundaries};
 use corniche_tileset::{FilePackage, Manifest};
 
-use self::unknown_ending::unknown_ending;
+pub(crate) use self::vector_files::MEMORY_BYTES;
+use self::vector_files::{fill, format};
 use crate::{
     args::{
-        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, FileArgs, Format,
-        InPlanArgs, VectorArgs,
+        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, FileArgs, InPlanArgs,
     },
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
-    named_output::{NamedOutput, named},
+    named_output::NamedOutput,
     output::existing_of,
     packages,
     progress::Progress,
     table::{Digits, bytes, length},
 };
-
-/// Memory for sorting pieces by their objects.
-pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {
@@ -130,22 +125,6 @@ fn write<T>(
     fill(file, output, None, export)
 }
 
-/// Writes a file that was begun, and puts it into its place unless elevation files have changed meanwhile. Gives its size, too.
-fn fill<T>(
-    file: &FileArgs,
-    output: NamedOutput,
-    elevation: Option<&RecordedElevation>,
-    export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
-) -> Result<(T, u64), Failure> {
-    let progress = Progress::new();
-    let exported = export(&output.path(), &progress);
-    progress.finish();
-    // A file that changed may be the cause of any other error.
-    elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
-    let summary = exported.map_err(|error| named(error, &file.output))?;
-    Ok((summary, output.place()?))
-}
-
 /// Tells what was exported of a layer without heights.
 fn note_plan(args: &InPlanArgs, what: &str, manifest: &Manifest, size: u64) {
     let coordinates = match args.crs {
@@ -159,40 +138,4 @@ fn note_plan(args: &InPlanArgs, what: &str, manifest: &Manifest, size: u64) {
         in_line(coordinates),
         in_line(&manifest.attribution.join("; ")),
     ));
-}
-
-/// The format that is named, or that of the ending.
-fn format(format: Option<Format>, output: &Path) -> Result<VectorFormat, Failure> {
-    let named = format.map(VectorFormat::from);
-    named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
-        let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        unknown_ending(output, &endings)
-    })
-}
-
-/// The coordinates of lines with heights that are asked for.
-fn coordinates(args: &VectorArgs) -> Result<Coordinates, Failure> {
-    match (args.crs, args.heights) {
-        (ExportCrs::Package, None) => Ok(Coordinates::Package),
-        (ExportCrs::Wgs84, None) => Ok(Coordinates::Wgs84),
-        (ExportCrs::Wgs84, Some(_)) => Ok(Coordinates::Wgs84WithPackageHeights),
-        (ExportCrs::Package, Some(_)) => Err(Failure::unusable(
-            "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
-        )),
-    }
-}
-
-/// What coordinates and heights of exported lines are, and what is to be shown with them, a line each.
-fn facts(args: &VectorArgs, heights: &str, manifest: &Manifest) -> String {
-    let coordinates = match (args.crs, args.heights) {
-        (ExportCrs::Package, _) => &manifest.crs,
-        (ExportCrs::Wgs84, None) => "EPSG:4979",
-        (ExportCrs::Wgs84, Some(_)) => "EPSG:4326",
-    };
-    format!(
-        "coordinates: {}\nheights: {}\nto be shown with it: {}",
-        in_line(coordinates),
-        in_line(heights),
-        in_line(&manifest.attribution.join("; ")),
-    )
 }

@@ -51,7 +51,7 @@ pub struct Chains {
     /// Where the links of each chain begin, and the end of all.
     starts: Vec<usize>,
     ends: Vec<[NodeNumber; 2]>,
-    /// Of each stretch its place among the links.
+    /// The place of each stretch among the links.
     places: Vec<u32>,
 }
 

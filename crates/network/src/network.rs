@@ -34,15 +34,15 @@ pub struct Network {
     pub(crate) ways: Vec<NetworkWay>,
     /// The points of all ways, on the lattice of a package.
     pub(crate) points: Vec<LatticePoint>,
-    /// Of each stop, which point of its way it is.
+    /// Which point of its way each stop is.
     pub(crate) stop_points: Vec<u32>,
-    /// Of each stop, the number of its node.
+    /// The number of the node of each stop.
     pub(crate) stop_nodes: Vec<u32>,
-    /// Of each node its id; places that are no nodes come last, without one.
+    /// The id of each node; places that are no nodes come last, without one.
     pub(crate) node_ids: Vec<i64>,
     /// How many nodes there are, with places that are none.
     pub(crate) nodes: usize,
-    /// Of each node the ends of stretches that lie there: twice the number of the stretch, plus one for its second end. A stretch has the number of the
+    /// The ends of stretches that lie at each node: twice the number of the stretch, plus one for its second end. A stretch has the number of the
     /// stop at which it begins.
     pub(crate) ends_at: IndexLists,
     pub(crate) highways: Vec<String>,

@@ -15,7 +15,7 @@ pub struct NetworkBuilder {
     stop_points: Vec<u32>,
     stop_ids: Vec<Option<i64>>,
     highways: BTreeMap<String, u32>,
-    /// Of two nodes at one place the larger id, and the smaller one that stands for it; which another one may stand for.
+    /// The larger id of two nodes at one place, and the smaller one that stands for it, for which another one may stand.
     stands_for: BTreeMap<i64, i64>,
 }
 

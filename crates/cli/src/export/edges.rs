@@ -5,8 +5,8 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
 use super::{
-    MEMORY_BYTES, facts, fill,
     lines::{LinesArgs, LinesExport},
+    vector_files::{MEMORY_BYTES, facts, fill},
 };
 use crate::{
     args::ExportEdgesArgs,

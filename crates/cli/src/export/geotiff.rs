@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_export::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 use corniche_tileset::{Manifest, SampleErrorRecord};
 
-use super::fill;
+use super::vector_files::fill;
 use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,

@@ -7,7 +7,7 @@ use corniche_network::Network;
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
 
-use super::{coordinates, format};
+use super::vector_files::{coordinates, format};
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg, VectorArgs},
     failure::Failure,
@@ -17,28 +17,28 @@ use crate::{
 };
 
 /// What a command line of an export of lines says.
-pub(super) struct LinesArgs<'a> {
-    pub(super) from: &'a RecordedArgs,
-    pub(super) extract: &'a ExtractArgs,
-    pub(super) vector: &'a VectorArgs,
-    pub(super) cpu: &'a ThreadsArg,
+pub(crate) struct LinesArgs<'a> {
+    pub(crate) from: &'a RecordedArgs,
+    pub(crate) extract: &'a ExtractArgs,
+    pub(crate) vector: &'a VectorArgs,
+    pub(crate) cpu: &'a ThreadsArg,
     /// How to name the package.
-    pub(super) usage: &'a str,
+    pub(crate) usage: &'a str,
 }
 
 /// An export of lines whose inputs are open.
-pub(super) struct LinesExport {
-    pub(super) format: VectorFormat,
-    pub(super) coordinates: Coordinates,
-    pub(super) package: FilePackage,
-    pub(super) output: NamedOutput,
-    pub(super) elevation: Option<RecordedElevation>,
-    pub(super) network: Option<Network>,
+pub(crate) struct LinesExport {
+    pub(crate) format: VectorFormat,
+    pub(crate) coordinates: Coordinates,
+    pub(crate) package: FilePackage,
+    pub(crate) output: NamedOutput,
+    pub(crate) elevation: Option<RecordedElevation>,
+    pub(crate) network: Option<Network>,
 }
 
 impl LinesExport {
     /// Opens the inputs and begins the file, whose layer is called `layer`. An unusable place is reported before any work is done.
-    pub(super) fn begin(args: &LinesArgs<'_>, layer: &str) -> Result<Self, Failure> {
+    pub(crate) fn begin(args: &LinesArgs<'_>, layer: &str) -> Result<Self, Failure> {
         let LinesArgs { from, extract, vector, cpu, usage } = args;
         let format = format(vector.format, &vector.file.output)?;
         let coordinates = coordinates(vector)?;

@@ -4,8 +4,8 @@ use corniche_export::{ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, 
 use corniche_tileset::Manifest;
 
 use super::{
-    MEMORY_BYTES, facts, fill,
     lines::{LinesArgs, LinesExport},
+    vector_files::{MEMORY_BYTES, facts, fill},
 };
 use crate::{
     args::ExportRoadsArgs,

@@ -106,7 +106,7 @@ pub(crate) fn node_heights(
     Ok(heights_m)
 }
 
-/// Of each end of a chain the end of another one, at the same node, in which it goes on most straight.
+/// For each end of a chain the end of another one, at the same node, in which it goes on most straight.
 fn goes_on_in(legs: &dyn Legs, by_node: &IndexLists) -> Vec<u32> {
     let nodes = by_node.parts()[0].len() - 1;
     let ends = by_node.parts()[1].iter().max().map_or(0, |most| *most as usize + 2);

@@ -39,7 +39,7 @@ pub(crate) struct MeasuredChains<'a> {
     nodes_m: Vec<f64>,
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
-    /// Of the chains that are such rings the distance of their first station from that node: it lies at a place that does not depend on ways.
+    /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
     ring_starts_m: HashMap<usize, f64>,
 }
 

@@ -14,7 +14,7 @@ pub(crate) const MOST_SPACING_M: f64 = 10.0;
 /// How much is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Smoothing {
-    /// Of waves of this length half is left, metres.
+    /// The length of waves of which half is left, metres.
     pub(crate) length_m: f64,
 }
 
