@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt::Write as _, path::Path};
 
 use corniche_areas::AreaObject;
-use corniche_network::{Breaks, Chain, Chains, Network};
+use corniche_network::{Breaks, Chain, ChainNumber, Chains, Network};
 use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
@@ -176,8 +176,11 @@ pub fn export_edges(
     let mut tolerance_m = 0.0_f64;
     let edges = Chains::of(network, Breaks::Junctions);
     observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
+    // By both of their nodes, whichever way they were found by.
+    let mut numbers: Vec<ChainNumber> = edges.numbers().collect();
+    numbers.sort_by_key(|&number| edges.get(number).ends);
     let mut told = 0;
-    for (done, number) in (1..).zip(edges.numbers()) {
+    for (done, number) in (1..).zip(numbers) {
         if done % TOLD_EDGES == 0 || done == edges.len() as u64 {
             observer.check()?;
             observer.advance(Stage::ExportFeatures, done - told);

@@ -99,7 +99,7 @@ fn a_named_format_and_an_empty_selection() {
     assert!(ran.err.contains("0 ways"), "{}", ran.err);
     let dataset = Dataset::open(&target).unwrap();
     let layer = dataset.layer(0).unwrap();
-    assert_eq!((layer.feature_count(), layer.defn().fields().count()), (0, 24));
+    assert_eq!((layer.feature_count(), layer.defn().fields().count()), (0, 26));
     for ending in ["gpkg", "geojson", "csv"] {
         let target = folder.path().join(format!("empty.{ending}"));
         let options = ["--classes", "8", "--crs", "EPSG:4979", "--heights", "as-is"];

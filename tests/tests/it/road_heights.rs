@@ -429,7 +429,7 @@ fn files_of_another_package_are_refused() {
     fs::write(&other_osm, pbf::network(&[], &NODES, &[way])).unwrap();
     let target = at("roads.gpkg");
     for (options, word) in [
-        (vec!["--dem", text(&other)], "other.tif"),
+        (vec!["--dem", text(&other)], "not the elevation files"),
         (vec!["--dem", text(&dem), "--osm", text(&other_osm)], "other.osm.pbf"),
         (vec!["--osm", text(&osm)], "--dem"),
     ] {
