@@ -174,6 +174,7 @@ impl Network {
     }
 
     /// The points of a link, in the direction of the chain: two at least.
+    #[must_use]
     pub fn points_of_link(&self, link: Link) -> impl DoubleEndedIterator<Item = LatticePoint> + '_ {
         let way = self.way_of(link);
         let [first, last] = [link.stretch, link.stretch + 1]

@@ -34,14 +34,12 @@ impl NetworkBuilder {
             self.stop_points.push(point);
             self.stop_ids.push(road.node_ids.get(index).copied().flatten());
         }
-        let count = self.highways.len() as u32;
-        let highway = match self.highways.get(&road.attributes.highway) {
-            Some(&known) => known,
-            None => {
-                self.highways.insert(road.attributes.highway.clone(), count);
-                count
-            }
-        };
+        let known = self.highways.get(&road.attributes.highway).copied();
+        let highway = known.unwrap_or_else(|| {
+            let count = self.highways.len() as u32;
+            self.highways.insert(road.attributes.highway.clone(), count);
+            count
+        });
         self.ways.push(NetworkWay {
             way_id: road.way_id,
             class: road.class,
@@ -75,12 +73,12 @@ impl NetworkBuilder {
         node_ids.sort_unstable();
         node_ids.dedup();
         let mut nodes = node_ids.len();
-        let mut number = |id: Option<i64>| match id {
-            Some(id) => node_ids.partition_point(|&known| known < id) as u32,
-            None => {
-                nodes += 1;
-                nodes as u32 - 1
+        let mut number = |id: Option<i64>| {
+            if let Some(id) = id {
+                return node_ids.partition_point(|&known| known < id) as u32;
             }
+            nodes += 1;
+            nodes as u32 - 1
         };
         let stop_nodes: Vec<u32> = stop_ids.into_iter().map(&mut number).collect();
         // The last stop of a road begins no stretch.

@@ -138,7 +138,9 @@ impl<'a> MeasuredChains<'a> {
         measured.above_m = vec![f32::NAN; count];
         for some in order.chunks(TOLD_CHAINS) {
             observer.check()?;
-            some.iter().for_each(|&(_, number)| measured.smooth(number));
+            for &(_, number) in some {
+                measured.smooth(number);
+            }
         }
         observer.end(Stage::ExportChains);
         Ok(measured)
