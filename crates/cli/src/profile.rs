@@ -45,12 +45,11 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let elevation = recorded.as_ref().map(recorded::for_export);
     let network = recorded::network(&args.extract, &osm, (&args.cpu, &package))?;
     let progress = Progress::new();
-    let found = match &lines {
-        Some(lines) => profile_of_lines(&package, lines, args.at.level, elevation, &progress),
-        None => {
-            let heights = RoadHeights { elevation, network: network.as_ref() };
-            profile(&package, &args.way, args.at.level, heights, &progress)
-        }
+    let found = if let Some(lines) = &lines {
+        profile_of_lines(&package, lines, args.at.level, elevation, &progress)
+    } else {
+        let heights = RoadHeights { elevation, network: network.as_ref() };
+        profile(&package, &args.way, args.at.level, heights, &progress)
     };
     progress.finish();
     // A file that changed may be the cause of any other error.

@@ -268,8 +268,11 @@ const NODES: [(i64, [f64; 2]); 13] = [
     (23, [8.979, 46.934]),
 ];
 
+/// The nodes of a way, and the tag that says what carries it, if it is not the ground.
+type PlainWay<'a> = (&'a [i64], &'a str);
+
 /// Builds a package of ways on bumpy ground; the ids of ways are those of their order.
-fn package_of(folder: &Path, name: &str, ways: &[(&[i64], &str)]) -> [PathBuf; 3] {
+fn package_of(folder: &Path, name: &str, ways: &[PlainWay<'_>]) -> [PathBuf; 3] {
     let [dem, osm, package] =
         ["dem.asc".to_owned(), format!("{name}.osm.pbf"), format!("{name}.pmtiles")]
             .map(|name| folder.join(name));
@@ -301,7 +304,7 @@ fn grades_do_not_depend_on_how_ways_are_split() {
     let folder = tempfile::tempdir().unwrap();
     let mut totals: Vec<[f64; 3]> = Vec::new();
     let mut all_edges: Vec<Vec<Row>> = Vec::new();
-    let variants: [(&str, &[(&[i64], &str)]); 3] = [
+    let variants: [(&str, &[PlainWay<'_>]); 3] = [
         (
             "whole",
             &[(&[1, 2, 3, 4, 9], ""), (&[5, 3, 6], ""), (&[7, 8], ""), (&[20, 21, 22, 23, 20], "")],
@@ -385,7 +388,7 @@ fn grades_do_not_depend_on_how_ways_are_split() {
 #[test]
 fn edges_meet_and_bridges_are_straight() {
     let folder = tempfile::tempdir().unwrap();
-    let ways: [(&[i64], &str); 5] =
+    let ways: [PlainWay<'_>; 5] =
         [(&[1, 2], ""), (&[2, 3], "bridge"), (&[3, 4], ""), (&[5, 4], ""), (&[4, 9], "tunnel")];
     let [dem, osm, package] = package_of(folder.path(), "bridge", &ways);
     let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
