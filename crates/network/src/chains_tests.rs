@@ -23,7 +23,9 @@ fn road(way_id: i64, node_ids: &[i64], structure: Structure) -> Road {
 
 fn network(roads: &[Road]) -> Network {
     let mut builder = NetworkBuilder::default();
-    roads.iter().for_each(|road| builder.push(road));
+    for road in roads {
+        builder.push(road);
+    }
     builder.finish()
 }
 
@@ -135,7 +137,9 @@ proptest! {
                 own = vec![line[at..].to_vec(), line[..=at].to_vec()];
             }
             if *is_turned {
-                own.iter_mut().for_each(|part| part.reverse());
+                for part in &mut own {
+                    part.reverse();
+                }
             }
             parts.extend(own);
         }

@@ -11,7 +11,8 @@ struct Star {
 
 impl Legs for Star {
     fn by_node(&self) -> IndexLists {
-        let node = |end: usize| Some(if end % 2 == 0 { 0 } else { 1 + end / 2 }).into_iter();
+        let node =
+            |end: usize| Some(if end.is_multiple_of(2) { 0 } else { 1 + end / 2 }).into_iter();
         IndexLists::new(1 + self.legs.len(), 2 * self.legs.len(), node)
     }
 
