@@ -19,7 +19,7 @@ use crate::{
     height_bound::dem_heights,
     measures::steepest,
     piece::Vertex,
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile},
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields},
 };
 
 /// Edges are told of after so many.
@@ -61,78 +61,30 @@ struct Shares<'a> {
     oneways: Vec<Oneway>,
 }
 
-const FIELDS: &[Field] = &[
-    field(
-        "from_node",
-        FieldKind::Integer64,
-        "",
-        "id of the node where it begins; null where a way is cut",
-    ),
-    field(
-        "to_node",
-        FieldKind::Integer64,
-        "",
-        "id of the node where it ends; null where a way is cut",
-    ),
-    field(
-        "ways",
-        FieldKind::Text,
-        "",
-        "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it",
-    ),
-    field("class", FieldKind::Integer, "", "functional road class of the largest part"),
-    field("highway", FieldKind::Text, "", "OSM's `highway` of the largest part"),
-    field(
-        "oneway",
-        FieldKind::Text,
-        "",
-        "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`",
-    ),
-    field("length_m", FieldKind::Real, "m", "true length in plan, on the ellipsoid of WGS84"),
-    field(
-        "ascent_m",
-        FieldKind::Real,
-        "m",
-        "sum of all that the smooth line rises from the first to the last node; null where a height is not known",
-    ),
-    field(
-        "descent_m",
-        FieldKind::Real,
-        "m",
-        "sum of all that it falls from the first to the last node",
-    ),
-    field("ascent_back_m", FieldKind::Real, "m", "sum of all that it rises on the way back"),
-    field("descent_back_m", FieldKind::Real, "m", "sum of all that it falls on the way back"),
-    field(
-        "weighted_grade_pct",
-        FieldKind::Real,
-        "%",
-        "size of the grade, up or down, weighted by length",
-    ),
-    field(
-        "steepest_pct",
-        FieldKind::Real,
-        "%",
-        "steepest grade over 50 m or more, up or down; null where it is shorter",
-    ),
-    field(
-        "from_height_m",
-        FieldKind::Real,
-        "m",
-        "height of the smooth line at the first node: the same for all edges there",
-    ),
-    field("to_height_m", FieldKind::Real, "m", "height of the smooth line at the last node"),
-    field("bridge_share", FieldKind::Real, "", "part of its length on bridges, 0 to 1"),
-    field("tunnel_share", FieldKind::Real, "", "part of its length in tunnels, 0 to 1"),
-];
-
-const fn field(
-    name: &'static str,
-    kind: FieldKind,
-    unit: &'static str,
-    meaning: &'static str,
-) -> Field {
-    Field { name, kind, unit, meaning }
+fields! { FIELDS, values, edge: &Edge<'_>:
+    "from_node", Integer64, "", "id of the node where it begins; null where a way is cut", node(edge.ends[0]);
+    "to_node", Integer64, "", "id of the node where it ends; null where a way is cut", node(edge.ends[1]);
+    "ways", Text, "", "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it",
+        Value::Text(edge.ways.clone());
+    "class", Integer, "", "functional road class of the largest part",
+        edge.shares.largest().0.map_or(Value::Null, |class| Value::Integer(class.number().into()));
+    "highway", Text, "", "OSM's `highway` of the largest part", text(edge.shares.largest().1);
+    "oneway", Text, "", "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`",
+        Value::Text(edge.shares.oneway().to_owned());
+    "length_m", Real, "m", "true length in plan, on the ellipsoid of WGS84", real(edge.shares.length_m);
+    "ascent_m", Real, "m", "sum of all that the smooth line rises from the first to the last node; null where a height is not known",
+        optional(edge.ascent_m());
+    "descent_m", Real, "m", "sum of all that it falls from the first to the last node", optional(edge.descent_m());
+    "ascent_back_m", Real, "m", "sum of all that it rises on the way back", optional(edge.descent_m());
+    "descent_back_m", Real, "m", "sum of all that it falls on the way back", optional(edge.ascent_m());
+    "weighted_grade_pct", Real, "%", "size of the grade, up or down, weighted by length", optional(edge.weighted_pct());
+    "steepest_pct", Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter",
+        optional(edge.steepest_pct());
+    "from_height_m", Real, "m", "height of the smooth line at the first node: the same for all edges there",
+        optional(edge.height_m(0));
+    "to_height_m", Real, "m", "height of the smooth line at the last node", optional(edge.height_m(1));
+    "bridge_share", Real, "", "part of its length on bridges, 0 to 1", real(edge.shares.share(edge.shares.bridge_m));
+    "tunnel_share", Real, "", "part of its length in tunnels, 0 to 1", real(edge.shares.share(edge.shares.tunnel_m));
 }
 
 /// The fields of edges, in their order.
@@ -213,7 +165,7 @@ pub fn export_edges(
             tolerance_m = tolerance_m.max(line.tolerance_m);
             carried.extend(places.carry(object, &line.vertices)?);
         }
-        file.push(Record { values: edge.values(), shape: Shape::Lines(carried) })?;
+        file.push(Record { values: values(&edge), shape: Shape::Lines(carried) })?;
     }
     file.tell_heights(dem_heights(tolerance_m));
     file.finish()?;
@@ -222,43 +174,43 @@ pub fn export_edges(
 }
 
 impl Edge<'_> {
-    /// A value for each of [`edge_fields`].
-    fn values(&self) -> Vec<Value> {
-        let Shares { length_m, bridge_m, tunnel_m, .. } = self.shares;
-        let share = |part_m: f64| real(if length_m > 0.0 { part_m / length_m } else { 0.0 });
-        let (class, highway) = self.shares.largest();
-        let profile = self.profile.as_deref();
-        let sum = |sign: f64| {
-            let rise = |pair: &[[f64; 2]; 2]| (sign * (pair[1][1] - pair[0][1])).max(0.0);
-            profile.map(|profile| profile.array_windows().map(rise).sum::<f64>())
-        };
-        let (ascent_m, descent_m) = (sum(1.0), sum(-1.0));
-        let both = ascent_m.zip(descent_m).map(|(up_m, down_m)| up_m + down_m);
-        let weighted = both.filter(|_| length_m > 0.0).map(|both_m| 100.0 * both_m / length_m);
-        let steepest = profile.and_then(|profile| steepest(profile, GRADE_LENGTH_M));
-        let own = [profile.and_then(<[_]>::first), profile.and_then(<[_]>::last)];
-        let height = |end: usize| optional(self.nodes_m[end].or(own[end].map(|place| place[1])));
-        let node = |id: Option<i64>| id.map_or(Value::Null, Value::Integer);
-        vec![
-            node(self.ends[0]),
-            node(self.ends[1]),
-            Value::Text(self.ways.clone()),
-            class.map_or(Value::Null, |class| Value::Integer(class.number().into())),
-            text(highway),
-            Value::Text(self.shares.oneway().to_owned()),
-            real(length_m),
-            optional(ascent_m),
-            optional(descent_m),
-            optional(descent_m),
-            optional(ascent_m),
-            optional(weighted),
-            optional(steepest.map(|grade| 100.0 * grade)),
-            height(0),
-            height(1),
-            share(bridge_m),
-            share(tunnel_m),
-        ]
+    fn ascent_m(&self) -> Option<f64> {
+        self.rises_m(1.0)
     }
+
+    fn descent_m(&self) -> Option<f64> {
+        self.rises_m(-1.0)
+    }
+
+    /// Metres upwards, all of them together; with the sign −1 downwards.
+    fn rises_m(&self, sign: f64) -> Option<f64> {
+        let rise = |pair: &[[f64; 2]; 2]| (sign * (pair[1][1] - pair[0][1])).max(0.0);
+        self.profile.as_ref().map(|profile| profile.array_windows().map(rise).sum())
+    }
+
+    fn weighted_pct(&self) -> Option<f64> {
+        let both_m = self.ascent_m()? + self.descent_m()?;
+        let length_m = self.shares.length_m;
+        (length_m > 0.0).then(|| 100.0 * both_m / length_m)
+    }
+
+    fn steepest_pct(&self) -> Option<f64> {
+        steepest(self.profile.as_ref()?, GRADE_LENGTH_M).map(|grade| 100.0 * grade)
+    }
+
+    /// The height at an end: that of its node, or of its own line where it is alone there.
+    fn height_m(&self, end: usize) -> Option<f64> {
+        let own = || {
+            let profile = self.profile.as_ref()?;
+            let place = if end == 0 { profile.first() } else { profile.last() };
+            place.map(|place| place[1])
+        };
+        self.nodes_m[end].or_else(own)
+    }
+}
+
+fn node(id: Option<i64>) -> Value {
+    id.map_or(Value::Null, Value::Integer)
 }
 
 fn optional(value: Option<f64>) -> Value {
@@ -299,6 +251,10 @@ impl<'a> Shares<'a> {
             });
         }
         shares
+    }
+
+    fn share(&self, part_m: f64) -> f64 {
+        if self.length_m > 0.0 { part_m / self.length_m } else { 0.0 }
     }
 
     /// What most of it is; of equal parts the more important class.

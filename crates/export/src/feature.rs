@@ -7,21 +7,8 @@ use crate::{
     grades::SmoothGrades,
     measures::Measures,
     piece::PieceHeights,
-    vector::{Field, FieldKind, Value},
+    vector::{Field, FieldKind, Value, fields},
 };
-
-/// Declares fields together with what is in them, in one order.
-macro_rules! fields {
-    ($fields:ident, $values:ident, $road:ident: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
-        const $fields: &[Field] = &[
-            $(Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },)+
-        ];
-
-        fn $values($road: &Road<'_>) -> Vec<Value> {
-            vec![$($value),+]
-        }
-    };
-}
 
 /// What is known of a feature's road.
 pub(crate) struct Road<'a> {
@@ -69,7 +56,7 @@ impl HeightSource {
     }
 }
 
-fields! { FIELDS, values, road:
+fields! { FIELDS, values, road: &Road<'_>:
     "way_id", Integer64, "", "id of the way in OpenStreetMap", Value::Integer(road.way_id);
     "class", Integer, "", "functional road class, 0 (motorway) to 8 (other road)",
         Value::Integer(road.class.number().into());
@@ -95,7 +82,7 @@ fields! { FIELDS, values, road:
     "length_3d_m", Real, "m", "true length with the ups and downs of the line", real(road.measures.length_3d_m);
 }
 
-fields! { GROUND_FIELDS, ground_values, road:
+fields! { GROUND_FIELDS, ground_values, road: &Road<'_>:
     "ascent_m", Real, "m", "sum of all that the line rises, in its direction; null for bridges and tunnels",
         on_ground(road, road.measures.ascent_m);
     "descent_m", Real, "m", "sum of all that it falls; null for bridges and tunnels",
@@ -104,7 +91,7 @@ fields! { GROUND_FIELDS, ground_values, road:
         percent_on_ground(road, road.measures.steepest);
 }
 
-fields! { DEM_FIELDS, dem_values, road:
+fields! { DEM_FIELDS, dem_values, road: &Road<'_>:
     "ascent_m", Real, "m", "sum of all that the smooth line rises, in the way's direction; null for bridges and tunnels",
         smooth(road, |grades| Some(grades.ascent_m));
     "descent_m", Real, "m", "sum of all that the smooth line falls; null for bridges and tunnels",
@@ -125,7 +112,7 @@ fields! { DEM_FIELDS, dem_values, road:
         over_limit(road);
 }
 
-fields! { LAST_FIELDS, last_values, road:
+fields! { LAST_FIELDS, last_values, road: &Road<'_>:
     "vertices_in", Integer64, "", "points of the level's line before it was laid on the ground",
         Value::Integer(road.measures.vertices_in as i64);
     "vertices_out", Integer64, "", "vertices of the line on the ground",
@@ -135,12 +122,12 @@ fields! { LAST_FIELDS, last_values, road:
         Value::Text(road.height_source().text(road.attributes.structure).to_owned());
 }
 
-fields! { BOUND_FIELDS, bound_values, road:
+fields! { BOUND_FIELDS, bound_values, road: &Road<'_>:
     "height_tolerance_m", Real, "m", "how far the heights are from the DEM at its samples at most, as the package promises it; against the DEM, not against the world",
         real(road.heights.tolerance_m);
 }
 
-fields! { MEASURED_FIELDS, measured_values, road:
+fields! { MEASURED_FIELDS, measured_values, road: &Road<'_>:
     "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length; against the DEM, not against the world",
         real(road.heights.tolerance_m);
     "ground_tolerance_m", Real, "m", "how far the package's triangles are from the DEM along the line at most; null where they were not compared",

@@ -10,6 +10,6 @@ mod whole;
 
 pub use cell::cell_text;
 pub use field::{Field, FieldKind};
-pub(crate) use field::{Record, Shape, ShapeKind, Value};
+pub(crate) use field::{Record, Shape, ShapeKind, Value, fields};
 pub(crate) use file::{Layer, VectorFile};
 pub use format::VectorFormat;

@@ -43,6 +43,12 @@ impl<'a> DemNodes<'a> {
         self.steps
     }
 
+    /// The block in which a place lies.
+    pub(crate) fn block_of(&self, at: [f64; 2]) -> [i64; 2] {
+        let cell = [0, 1].map(|axis| (at[axis] / self.steps[axis]).floor() as i64);
+        cell.map(|index| index.div_euclid(BLOCK_CELLS))
+    }
+
     /// The height at a place on the lattice; `None` where a node that it needs has none. The same place has the same height to the last bit, from
     /// whatever cell a line comes.
     pub(crate) fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ExportError> {

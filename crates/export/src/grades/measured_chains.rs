@@ -116,11 +116,8 @@ impl<'a> MeasuredChains<'a> {
             let own = if measured.is_on_ground(number) { stations(length_m) } else { 0 };
             measured.starts.push(measured.starts[number.0] + own);
             if own > 0 {
-                let steps = nodes.steps();
-                let first = along.points[0].in_steps();
                 // Neighbours are read one after the other, so that each height is read once or twice.
-                let block = [0, 1].map(|axis| (first[axis] / steps[axis] / 64.0).floor() as i64);
-                order.push((block, number));
+                order.push((nodes.block_of(along.points[0].in_steps()), number));
             }
         }
         order.sort_unstable();
@@ -409,21 +406,16 @@ impl<'a> MeasuredChains<'a> {
     pub(crate) fn network(&self) -> &'a Network {
         self.network
     }
+}
 
-    /// The ends of chains on the ground, by the node at which they lie.
-    fn legs_by_node(&self) -> IndexLists {
+impl Legs for MeasuredChains<'_> {
+    fn by_node(&self) -> IndexLists {
         let ends = 2 * self.chains.len();
         IndexLists::new(self.network.node_count(), ends, |end| {
             let number = ChainNumber(end / 2);
             let node = self.network.index_of(self.chains.get(number).ends[end % 2]);
             self.is_on_ground(number).then_some(node).into_iter()
         })
-    }
-}
-
-impl Legs for MeasuredChains<'_> {
-    fn by_node(&self) -> IndexLists {
-        self.legs_by_node()
     }
 
     fn is_alone(&self, node: usize) -> bool {

@@ -104,9 +104,7 @@ impl SmoothLine {
             _ => f64::NAN,
         }
     }
-}
 
-impl SmoothLine {
     /// Rise over run of 50 m around a distance, or of what the line has of them.
     pub(crate) fn grade(&self, along_m: f64) -> f64 {
         let ends = self.stations.first().zip(self.stations.last());

@@ -85,3 +85,18 @@ impl Shape {
         }
     }
 }
+
+/// Declares fields together with what is in them, in one order.
+macro_rules! fields {
+    ($fields:ident, $values:ident, $of:ident: $type:ty: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
+        const $fields: &[Field] = &[
+            $(Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },)+
+        ];
+
+        fn $values($of: $type) -> Vec<Value> {
+            vec![$($value),+]
+        }
+    };
+}
+
+pub(crate) use fields;

@@ -15,6 +15,7 @@ use crate::{
     BuildError, Observer, Stage,
     extract::placed_reading::PlacedReading,
     inputs::{Inputs, OtherInputs},
+    layers::fixed_points::point_of_line,
 };
 
 /// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice. Roads are cut
@@ -99,20 +100,14 @@ impl LayerSink<Road, ExtractSummary> for Found {
 fn part_of_road(road: &Road, part: ClippedPart) -> Road {
     let points = road.line.points();
     let last = part.line.points().len() - 1;
-    let stop = |(index, point): (usize, &LatticePoint)| {
-        // A point of the road is the beginning of its segment, or the end of the one before.
-        let of_road = [
-            part.segments.get(index).copied(),
-            index.checked_sub(1).and_then(|before| Some(part.segments.get(before)? + 1)),
-        ];
-        let of_road = of_road.into_iter().flatten().find(|&at| points.get(at) == Some(point));
+    let stop = |index: usize| {
+        let of_road = point_of_line(points, &part, index);
         let fixed = of_road.and_then(|at| road.fixed.binary_search(&(at as u32)).ok());
         let node_id = fixed.and_then(|at| road.node_ids.get(at).copied().flatten());
         let is_kept = fixed.is_some() || index == 0 || index == last;
         is_kept.then_some((index as u32, node_id))
     };
-    let stops: Vec<(u32, Option<i64>)> =
-        part.line.points().iter().enumerate().filter_map(stop).collect();
+    let stops: Vec<(u32, Option<i64>)> = (0..=last).filter_map(stop).collect();
     Road {
         way_id: road.way_id,
         class: road.class,
