@@ -14,7 +14,8 @@ use i_overlay::{
 use crate::{OutlineError, Polygon, surrounded};
 
 /// The parts of polygons, whose points are whole multiples of `step`, in what rings wind around more often counter-clockwise than clockwise. So are the points of the parts: those of the
-/// rings, and those where outlines cross, go to the nearest multiples.
+/// rings, and those where outlines cross, go to the nearest multiples; where a segment ends within a step of a crossing, the crossing is that end.
+/// So the parts reach up to two steps beyond the region, and farther only where moved outlines cross again.
 ///
 /// Source: the crate `i_overlay`, which splits all outlines at their crossings and asks of each piece what is on its sides.
 ///
