@@ -7,14 +7,12 @@
 //!   heights along a chain ──► one height for each junction ──► a smooth line for each chain ──► what lies on each way
 //! ```
 
-mod grade_limit;
 mod junctions;
 mod measured_chains;
 mod on_way;
 mod smooth_line;
 mod smoothing;
 
-pub(crate) use grade_limit::grade_limit;
 pub(crate) use measured_chains::MeasuredChains;
 pub(crate) use on_way::{most_steps, stretch_of_way};
 pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine};

@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
 use corniche_network::Network;
-use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_roads::{FunctionalRoadClass, Structure, grade_limit};
 use corniche_tileset::{FilePackage, tile_of_order};
 use corniche_work::Observer;
 
@@ -17,10 +17,7 @@ use crate::{
     feature::{HeightSource, Road, Smooth, road_fields, road_values},
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
-    grades::{
-        MeasuredChains, SmoothGrades, SmoothLine, Smoothing, grade_limit, most_steps,
-        stretch_of_way,
-    },
+    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
     height_bound::{dem_heights, height_bound},
     join::{Line, lines},
     measures::{Measures, Profiled},

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_roads::Structure;
 
 use crate::network::{Network, NetworkWay, NodeNumber};
 
@@ -132,6 +133,16 @@ impl Chains {
         Chain { ends: self.ends[number], links }
     }
 
+    /// The ends of chains that lie at each node: twice the number of the chain, plus one for its last end. `counts` says of which chains.
+    #[must_use]
+    pub fn ends_at(&self, network: &Network, counts: impl Fn(ChainNumber) -> bool) -> IndexLists {
+        IndexLists::new(network.node_count(), 2 * self.len(), |end| {
+            let number = ChainNumber(end / 2);
+            let node = network.index_of(self.get(number).ends[end % 2]);
+            counts(number).then_some(node).into_iter()
+        })
+    }
+
     /// The place of a link among the links of all chains.
     #[must_use]
     pub fn place_of(&self, ChainNumber(number): ChainNumber, index: usize) -> usize {
@@ -171,6 +182,12 @@ impl Network {
     #[must_use]
     pub fn way_of(&self, link: Link) -> &NetworkWay {
         &self.ways[self.way_of_stretch(link.stretch)]
+    }
+
+    /// What carries a chain of [`Breaks::JunctionsAndStructures`].
+    #[must_use]
+    pub fn structure_of(&self, chain: &Chain<'_>) -> Structure {
+        chain.links.first().map_or(Structure::Ground, |&link| self.way_of(link).structure)
     }
 
     /// The points of a link, in the direction of the chain: two at least.

@@ -14,6 +14,8 @@ pub struct NetworkWay {
     pub class: FunctionalRoadClass,
     /// What carries it.
     pub structure: Structure,
+    /// OSM's `layer`: what lies above what.
+    pub layer: i8,
     /// Permitted direction.
     pub oneway: Oneway,
     /// Which of the network's points are its own.

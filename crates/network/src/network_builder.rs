@@ -44,6 +44,7 @@ impl NetworkBuilder {
             way_id: road.way_id,
             class: road.class,
             structure: road.attributes.structure,
+            layer: road.attributes.layer,
             oneway: road.attributes.oneway,
             points: first_point..self.points.len(),
             stops: first_stop..self.stop_points.len(),

@@ -175,8 +175,7 @@ impl<'a> MeasuredChains<'a> {
     }
 
     fn is_on_ground(&self, number: ChainNumber) -> bool {
-        let links = self.chains.get(number).links;
-        self.network.way_of(links[0]).structure == Structure::Ground
+        self.network.structure_of(&self.chains.get(number)) == Structure::Ground
     }
 
     fn along(&self, number: ChainNumber) -> Along {
@@ -410,12 +409,7 @@ impl<'a> MeasuredChains<'a> {
 
 impl Legs for MeasuredChains<'_> {
     fn by_node(&self) -> IndexLists {
-        let ends = 2 * self.chains.len();
-        IndexLists::new(self.network.node_count(), ends, |end| {
-            let number = ChainNumber(end / 2);
-            let node = self.network.index_of(self.chains.get(number).ends[end % 2]);
-            self.is_on_ground(number).then_some(node).into_iter()
-        })
+        self.chains.ends_at(self.network, |number| self.is_on_ground(number))
     }
 
     fn is_alone(&self, node: usize) -> bool {

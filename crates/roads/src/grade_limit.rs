@@ -8,7 +8,8 @@ const LINK_MORE_PCT: f64 = 2.0;
 /// Source: the limits that held on seven regions when bridges and grades were tried for this program, in the order of magnitude of design guides for
 /// difficult ground, such as AASHTO, *A Policy on Geometric Design of Highways and Streets*, 2018, chapters 5 to 8. Steeper roads exist: a grade above
 /// its limit is worth a look, not an error.
-pub(crate) fn grade_limit(highway: &str) -> Option<f64> {
+#[must_use]
+pub fn grade_limit(highway: &str) -> Option<f64> {
     if let Some(of_link) = highway.strip_suffix("_link") {
         return grade_limit(of_link).map(|limit| limit + LINK_MORE_PCT);
     }

@@ -1,0 +1,187 @@
+//! Where bridges and tunnels cross other roads without a node in common.
+
+use corniche_geom::{LatticePoint, Side, cross, side};
+use corniche_network::{ChainNumber, Chains, Network};
+use corniche_roads::grade_limit;
+use rstar::{
+    AABB, RTree,
+    primitives::{GeomWithData, Rectangle},
+};
+
+use crate::{Distance, spans::SpanKind};
+
+/// A place on a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrossingPlace {
+    /// The chain.
+    pub chain: ChainNumber,
+    /// OSM's id of the way there.
+    pub way_id: i64,
+    /// The distance along the chain, metres.
+    pub along_m: f64,
+    /// What it is there; `None` on the ground.
+    pub kind: Option<SpanKind>,
+    /// How it is ordered: OSM's `layer`, but at least 1 on a bridge, 0 on the ground and at most −1 in a tunnel.
+    pub layer: i8,
+    /// The steepest grade with which roads of its kind are built, rise over run.
+    pub steepest: f64,
+}
+
+/// Whether it is known what is above.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// By what they are, or by their layers.
+    Known,
+    /// Both are bridges, or both tunnels, of one layer.
+    Tie,
+}
+
+/// Where two chains cross, of which one at least is a bridge or a tunnel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Where on the lattice.
+    pub at: [f64; 2],
+    /// The upper one; where that is not known, either.
+    pub upper: CrossingPlace,
+    /// The lower one.
+    pub lower: CrossingPlace,
+    /// Whether it is known which is which.
+    pub order: Order,
+}
+
+/// Ways for which no grade is known may be as steep as service roads, percent.
+const OTHER_LIMIT_PCT: f64 = 20.0;
+
+/// A piece of a chain between two points.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    ends: [LatticePoint; 2],
+    place: CrossingPlace,
+    length_m: f64,
+}
+
+/// There are more crossings than this for each segment of bridges and tunnels, and more than any city has: lines were made to cross each other.
+const MOST_FOR_SEGMENT: usize = 64;
+const MOST_ANYWAY: usize = 1 << 16;
+
+/// Bridges and tunnels cross roads more often than is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooManyCrossings {
+    /// So many are.
+    pub most: usize,
+}
+
+type Boxed = GeomWithData<Rectangle<[f64; 2]>, usize>;
+
+/// All crossings of a network's bridges and tunnels with its roads and with each other, in the order of their chains.
+///
+/// Orientations are exact. Roads that end on one another, or share a point, do not cross there.
+///
+/// # Errors
+/// Where there are more of them than any real network has.
+pub fn crossings(
+    network: &Network,
+    chains: &Chains,
+    distance_m: &Distance<'_>,
+) -> Result<Vec<Crossing>, TooManyCrossings> {
+    let mut of_spans: Vec<Segment> = Vec::new();
+    for chain in chains.numbers() {
+        if SpanKind::of(network.structure_of(&chains.get(chain))).is_some() {
+            of_spans.extend(segments(network, chains, chain, distance_m));
+        }
+    }
+    let corners = |[a, b]: [LatticePoint; 2]| [a.in_steps(), b.in_steps()];
+    let boxed = |(number, segment): (usize, &Segment)| -> Boxed {
+        let [a, b] = corners(segment.ends);
+        GeomWithData::new(Rectangle::from_corners(a, b), number)
+    };
+    let tree = RTree::bulk_load(of_spans.iter().enumerate().map(boxed).collect());
+    let mut found = Vec::new();
+    if of_spans.is_empty() {
+        return Ok(found);
+    }
+    let most = (MOST_FOR_SEGMENT * of_spans.len()).max(MOST_ANYWAY);
+    let mut numbers: Vec<usize> = Vec::new();
+    let mut own_number = 0;
+    for chain in chains.numbers() {
+        let is_span = SpanKind::of(network.structure_of(&chains.get(chain))).is_some();
+        for segment in segments(network, chains, chain, distance_m) {
+            let [a, b] = corners(segment.ends);
+            numbers.clear();
+            let near = tree.locate_in_envelope_intersecting(&AABB::from_corners(a, b));
+            // Two spans are compared once.
+            numbers.extend(near.map(|of| of.data).filter(|&other| !is_span || other < own_number));
+            numbers.sort_unstable();
+            found.extend(numbers.iter().filter_map(|&other| segment.crossing(&of_spans[other])));
+            if found.len() > most {
+                return Err(TooManyCrossings { most });
+            }
+            own_number += usize::from(is_span);
+        }
+    }
+    Ok(found)
+}
+
+fn segments(
+    network: &Network,
+    chains: &Chains,
+    chain: ChainNumber,
+    distance_m: &Distance<'_>,
+) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    let mut along_m = 0.0;
+    for &link in chains.get(chain).links {
+        let way = network.way_of(link);
+        let kind = SpanKind::of(way.structure);
+        let layer = match kind {
+            Some(SpanKind::Bridge) => way.layer.max(1),
+            None => 0,
+            Some(SpanKind::Tunnel) => way.layer.min(-1),
+        };
+        let limit_pct = grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT);
+        let steepest = limit_pct / 100.0;
+        let mut points = network.points_of_link(link);
+        let Some(mut before) = points.next() else { continue };
+        for point in points {
+            let length_m = distance_m(before.in_steps(), point.in_steps());
+            let place = CrossingPlace { chain, way_id: way.way_id, along_m, kind, layer, steepest };
+            segments.push(Segment { ends: [before, point], place, length_m });
+            along_m += length_m;
+            before = point;
+        }
+    }
+    segments
+}
+
+impl Segment {
+    fn crossing(&self, other: &Self) -> Option<Crossing> {
+        let [a, b] = self.ends;
+        let [c, d] = other.ends;
+        if self.ends.iter().any(|end| other.ends.contains(end)) {
+            return None;
+        }
+        // What lies on a line counts as left of it, so a line that passes through a point of another crosses once.
+        let is_left = |from, to, point| side(from, to, point) != Side::Right;
+        if is_left(a, b, c) == is_left(a, b, d) || is_left(c, d, a) == is_left(c, d, b) {
+            return None;
+        }
+        let share = |from: LatticePoint, to: LatticePoint, [one, two]: [LatticePoint; 2]| {
+            let [of_from, of_to] = [from, to].map(|end| cross(one, two, end) as f64);
+            of_from / (of_from - of_to)
+        };
+        let [own, others] = [share(a, b, other.ends), share(c, d, self.ends)];
+        let [from, to] = [a.in_steps(), b.in_steps()];
+        let at = [0, 1].map(|axis| from[axis] + own * (to[axis] - from[axis]));
+        let [one, two] = [(self, own), (other, others)].map(|(segment, share)| CrossingPlace {
+            along_m: segment.place.along_m + share * segment.length_m,
+            ..segment.place
+        });
+        let order = if one.layer == two.layer { Order::Tie } else { Order::Known };
+        let [upper, lower] = if one.layer >= two.layer { [one, two] } else { [two, one] };
+        Some(Crossing { at, upper, lower, order })
+    }
+}
+
+#[cfg(test)]
+#[path = "crossings_tests.rs"]
+mod tests;

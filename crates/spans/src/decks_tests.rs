@@ -1,0 +1,254 @@
+//! Decks between supports, lifts at crossings, and what is told of them.
+
+use std::convert::Infallible;
+
+use corniche_network::{Chains, Network};
+use corniche_roads::Structure::{Bridge, Ground, Tunnel};
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    SpanReason::{LayerTie, NoGround, OrderUnreachable},
+    crossings,
+    test_network::{Way, distance_m, network, way},
+};
+
+/// Solves the spans of ways over the ground, and hands them to a test.
+fn solved<T>(
+    ways: &[Way<'_>],
+    ground_m: impl Fn([f64; 2]) -> Option<f64>,
+    test: impl FnOnce(&Decks, &Network, &Chains) -> T,
+) -> T {
+    let (network, chains) = network(ways);
+    let spans = Spans::find(&network, &chains, &distance_m);
+    let crossings = crossings(&network, &chains, &distance_m).unwrap();
+    let ground = |at: [f64; 2]| Ok::<_, Infallible>(ground_m(at.map(|part| part / 1000.0)));
+    let decks = Decks::solve(spans, &crossings, ground).unwrap();
+    test(&decks, &network, &chains)
+}
+
+/// The height of a way of one chain at a distance from its first node.
+fn at(decks: &Decks, network: &Network, chains: &Chains, way_id: i64, along_m: f64) -> f64 {
+    let way = &network.ways()[network.roads_of(way_id).start];
+    let (chain, index) = chains.of_road(way).next().unwrap();
+    let chain_found = chains.get(chain);
+    let length_m = decks.spans.edges[decks.spans.edge_of(chain).unwrap()].length_m;
+    let is_against = chain_found.links[index].is_against;
+    decks.height_m(chain, if is_against { length_m - along_m } else { along_m }).unwrap()
+}
+
+/// A bridge of 200 m over a gorge, and a road beneath it at a distance from its beginning.
+fn over_gorge(crossed_at: i64) -> [Way<'static>; 4] {
+    [
+        way(1, Ground, &[(1, -50, 0), (2, 0, 0)]),
+        way(2, Bridge, &[(2, 0, 0), (3, 200, 0)]),
+        way(3, Ground, &[(3, 200, 0), (4, 250, 0)]),
+        way(4, Ground, &[(5, crossed_at, -50), (6, crossed_at, 50)]),
+    ]
+}
+
+#[test]
+fn a_deck_is_straight_between_its_ends_and_its_free_height_is_told() {
+    let ground = |[east, _]: [f64; 2]| {
+        Some(if east <= 0.0 {
+            500.0
+        } else if east >= 200.0 {
+            510.0
+        } else {
+            420.0
+        })
+    };
+    solved(&over_gorge(40), ground, |decks, network, chains| {
+        for (along_m, expected) in [(0.0, 500.0), (40.0, 502.0), (200.0, 510.0)] {
+            assert!((at(decks, network, chains, 2, along_m) - expected).abs() < 1e-9);
+        }
+        let [FreeHeight { free_m: Some(free_m), .. }] = decks.free_heights() else { panic!() };
+        assert!((free_m - 82.0).abs() < 1e-9);
+        assert!(decks.problems().is_empty());
+    });
+}
+
+/// On flat ground a bridge over a road is lifted to a metre, as a tent to the nearest support, and not beyond.
+#[test]
+fn a_lift_is_a_tent_with_its_apex_over_the_crossing() {
+    solved(
+        &over_gorge(80),
+        |_| Some(100.0),
+        |decks, network, chains| {
+            let expected = [
+                (0.0, 100.0),
+                (40.0, 100.5),
+                (80.0, 101.0),
+                (120.0, 100.5),
+                (160.0, 100.0),
+                (200.0, 100.0),
+            ];
+            for (along_m, expected) in expected {
+                let found = at(decks, network, chains, 2, along_m);
+                assert!((found - expected).abs() < 1e-9, "{along_m}: {found}");
+            }
+            assert!(decks.problems().is_empty());
+        },
+    );
+}
+
+/// Near a support the flank would be too steep: for a secondary road 12 %, so 3 m away 0.36 m are made; a metre away the least.
+#[test]
+fn a_lift_is_no_steeper_than_its_class_but_never_less_than_the_least() {
+    for (from_m, expected) in [(3, 100.36), (1, 100.3)] {
+        solved(
+            &over_gorge(from_m),
+            |_| Some(100.0),
+            |decks, network, chains| {
+                let found = at(decks, network, chains, 2, from_m as f64);
+                assert!((found - expected).abs() < 1e-9, "{found}");
+                let problems: Vec<_> =
+                    decks.problems().iter().map(|problem| problem.reason).collect();
+                assert_eq!(problems, [OrderUnreachable]);
+            },
+        );
+    }
+}
+
+/// Three bridges of layers 1 to 3 over each other, each a metre above the one below.
+#[test]
+fn stacked_bridges_are_lifted_from_below() {
+    let bridge = |id: i64, layer: i8, [east, north]: [i64; 2]| {
+        let nodes = [(10 * id, -east, -north), (10 * id + 1, east, north)];
+        let end = |which: usize, k: i64| {
+            let (node, east, north) = nodes[which];
+            way(
+                100 * id + k,
+                Ground,
+                &[(node, east, north), (10 * id + 5 + k, 2 * east, 2 * north)],
+            )
+        };
+        [Way { layer, ..way(id, Bridge, &nodes) }, end(0, 1), end(1, 2)]
+    };
+    let mut ways: Vec<Way<'_>> = [(3, 3, [100, 0]), (4, 2, [0, 100]), (5, 1, [100, 100])]
+        .into_iter()
+        .flat_map(|(id, layer, end)| bridge(id, layer, end))
+        .collect();
+    ways.push(way(9, Ground, &[(91, -100, 90), (92, 100, -90)]));
+    ways.sort_by_key(|way| way.id);
+    solved(
+        &ways,
+        |_| Some(0.0),
+        |decks, network, chains| {
+            let heights = [5, 4, 3].map(|id| {
+                let middle_m = if id == 5 { 100.0 * 2.0_f64.sqrt() } else { 100.0 };
+                at(decks, network, chains, id, middle_m)
+            });
+            for (found, expected) in heights.iter().zip([1.0, 2.0, 3.0]) {
+                assert!((found - expected).abs() < 1e-6, "{heights:?}");
+            }
+            assert!(decks.problems().is_empty(), "{:?}", decks.problems());
+            assert_eq!(decks.free_heights().len(), 6);
+        },
+    );
+}
+
+#[test]
+fn tunnels_are_lowered_beneath_roads() {
+    let mut ways = over_gorge(100);
+    ways[1].structure = Tunnel;
+    solved(
+        &ways,
+        |_| Some(50.0),
+        |decks, network, chains| {
+            assert!((at(decks, network, chains, 2, 100.0) - 49.0).abs() < 1e-9);
+            assert!((at(decks, network, chains, 2, 50.0) - 49.5).abs() < 1e-9);
+        },
+    );
+}
+
+#[test]
+fn ties_and_missing_ground_are_told() {
+    let mut ways = over_gorge(100);
+    ways[3].structure = Bridge;
+    solved(
+        &ways,
+        |[east, _]| (east < 150.0).then_some(7.0),
+        |decks, network, chains| {
+            assert!((at(decks, network, chains, 2, 200.0) - 7.0).abs() < 1e-9);
+            let reasons: Vec<_> = decks.problems().iter().map(|problem| problem.reason).collect();
+            assert!(reasons.contains(&LayerTie) && reasons.contains(&NoGround), "{reasons:?}");
+        },
+    );
+}
+
+/// Other heights at the supports: the base is solved again, the lift stays.
+#[test]
+fn a_deck_is_carried_by_other_heights() {
+    solved(
+        &over_gorge(80),
+        |_| Some(100.0),
+        |decks, network, chains| {
+            let other =
+                decks.with_supports(|node| (network.node_id(node) == Some(3)).then_some(120.0));
+            for (along_m, expected) in [(0.0, 100.0), (80.0, 109.0), (200.0, 120.0)] {
+                assert!((at(&other, network, chains, 2, along_m) - expected).abs() < 1e-9);
+            }
+        },
+    );
+}
+
+proptest! {
+    /// Splitting and turning ways, and adding a constant to the ground, changes nothing else.
+    #[test]
+    fn decks_do_not_depend_on_how_ways_are_split_or_turned(
+        bridge in prop::collection::vec((1..60_i64, -40..40_i64), 2..7),
+        cut in any::<prop::sample::Index>(),
+        is_turned in any::<bool>(),
+        crossed_at in 5..50_i64,
+        more_m in -100.0_f64..100.0,
+        slope in -0.1_f64..0.1,
+    ) {
+        let mut east = 0;
+        let nodes: Vec<(i64, i64, i64)> = (10..)
+            .zip(&bridge)
+            .map(|(id, &(run, north))| { east += run; (id, east, north) })
+            .collect();
+        let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+        let grounds = || [
+            way(1, Ground, &[(1, first.1 - 50, first.2), first]),
+            way(8, Ground, &[last, (2, last.1 + 50, last.2)]),
+            way(9, Ground, &[(3, first.1 + crossed_at, -1000), (4, first.1 + crossed_at, 1000)]),
+        ];
+        let [one, two, three] = grounds();
+        let whole = [one, way(2, Bridge, &nodes), two, three];
+        let at_cut = cut.index(nodes.len());
+        let mut parts: Vec<Vec<(i64, i64, i64)>> = vec![nodes.clone()];
+        if at_cut > 0 && at_cut + 1 < nodes.len() {
+            parts = vec![nodes[..=at_cut].to_vec(), nodes[at_cut..].to_vec()];
+        }
+        if is_turned {
+            parts.iter_mut().for_each(|part| part.reverse());
+        }
+        let [one, two, three] = grounds();
+        let mut split = vec![one];
+        split.extend((2..).zip(&parts).map(|(id, part)| way(id, Bridge, part)));
+        split.extend([two, three]);
+        let ground = move |[east, north]: [f64; 2]| Some(300.0 + slope * east + (north / 9.0).sin());
+        let heights = |ways: &[Way<'_>], more_m: f64| {
+            solved(ways, |at| ground(at).map(|own_m| own_m + more_m), |decks, network, chains| {
+                let (chain, _) = chains.of_road(&network.ways()[network.roads_of(2).start]).next().unwrap();
+                let length_m = decks.spans.edges[decks.spans.edge_of(chain).unwrap()].length_m;
+                let mut all: Vec<f64> =
+                    (0..=20).map(|k| decks.height_m(chain, length_m * f64::from(k) / 20.0).unwrap()).collect();
+                // A chain begins at the smaller of its nodes.
+                if all.first().unwrap().to_bits() != (ground([first.1 as f64, first.2 as f64]).unwrap() + more_m).to_bits() {
+                    all.reverse();
+                }
+                all
+            })
+        };
+        let expected = heights(&whole, 0.0);
+        for (found, expected) in heights(&split, 0.0).iter().zip(&expected) {
+            prop_assert!((found - expected).abs() < 1e-9);
+        }
+        for (found, expected) in heights(&whole, more_m).iter().zip(&expected) {
+            prop_assert!((found - expected - more_m).abs() < 1e-9);
+        }
+    }
+}

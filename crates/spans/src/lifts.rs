@@ -1,0 +1,121 @@
+//! How far decks are lifted, and tunnels lowered, so that what crosses keeps its order.
+//!
+//! ```text
+//!                  ╱╲            a tent: highest at the crossing, down to nothing at the nearest support, and as far along all
+//!     ●━━━━━━━━━━━╱━━╲━━━━━━●    other chains
+//!     support      crossing
+//! ```
+
+use std::{
+    cmp::Reverse,
+    collections::{BTreeMap, BinaryHeap, btree_map::Entry},
+};
+
+use crate::spans::{Edge, Spans};
+
+/// A tent, as far as it stands on one edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Tent {
+    apex_m: f64,
+    /// Where it has come down to nothing.
+    reach_m: f64,
+    /// How far its apex is from the ends of the edge.
+    from_ends_m: [f64; 2],
+    /// Where along the edge it is highest, if it is there.
+    own_m: Option<f64>,
+}
+
+impl Tent {
+    /// How high it is at a distance along its edge.
+    pub(crate) fn height_m(&self, along_m: f64, length_m: f64) -> f64 {
+        let [first_m, last_m] = self.from_ends_m;
+        let around_m = (first_m + along_m).min(last_m + length_m - along_m);
+        let direct_m = self.own_m.map_or(f64::INFINITY, |own_m| (own_m - along_m).abs());
+        self.apex_m * (1.0 - around_m.min(direct_m) / self.reach_m).max(0.0)
+    }
+
+    /// Whether it is a lower tent over the same place than another one.
+    pub(crate) fn is_below(&self, other: &Self) -> bool {
+        self.from_ends_m == other.from_ends_m
+            && self.own_m == other.own_m
+            && self.apex_m < other.apex_m
+    }
+
+    /// Where it bends along its edge.
+    pub(crate) fn bends_m(&self, length_m: f64) -> impl Iterator<Item = f64> + use<> {
+        let [first_m, last_m] = self.from_ends_m;
+        let feet_m = [self.reach_m - first_m, length_m - (self.reach_m - last_m)];
+        let valley_m = (length_m + last_m - first_m) / 2.0;
+        let reach_m = self.reach_m;
+        let own =
+            self.own_m.into_iter().flat_map(move |own_m| [own_m - reach_m, own_m, own_m + reach_m]);
+        feet_m
+            .into_iter()
+            .chain([valley_m])
+            .chain(own)
+            .filter(move |&at_m| at_m > 0.0 && at_m < length_m)
+    }
+}
+
+/// A place on an edge.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OnEdge {
+    pub(crate) edge: usize,
+    pub(crate) along_m: f64,
+}
+
+/// How far joints are from a place, up to the nearest support.
+pub(crate) struct Reach {
+    at: OnEdge,
+    /// The distance of the nearest support.
+    pub(crate) support_m: f64,
+    /// Joints that are nearer, with their distances.
+    joints: BTreeMap<u32, f64>,
+}
+
+impl Reach {
+    /// Goes along edges from a place until it comes to a support; `None` where there is none.
+    pub(crate) fn of(spans: &Spans, held: &dyn Fn(usize) -> bool, at: OnEdge) -> Option<Self> {
+        let mut joints = BTreeMap::new();
+        // Distances are not negative: as bits they are in the order of their values.
+        let mut waiting = BinaryHeap::new();
+        let edge = &spans.edges[at.edge];
+        let ends_m = [at.along_m, edge.length_m - at.along_m].map(|to_m| to_m.max(0.0));
+        for (joint, to_m) in edge.joints.into_iter().zip(ends_m) {
+            waiting.push(Reverse((to_m.to_bits(), joint)));
+        }
+        while let Some(Reverse((bits, joint))) = waiting.pop() {
+            let to_m = f64::from_bits(bits);
+            if held(joint as usize) {
+                return Some(Self { at, support_m: to_m, joints });
+            }
+            match joints.entry(joint) {
+                Entry::Occupied(_) => continue,
+                Entry::Vacant(entry) => entry.insert(to_m),
+            };
+            for &end in spans.edges_at.of(joint as usize) {
+                let Edge { joints, length_m, .. } = &spans.edges[end as usize / 2];
+                waiting.push(Reverse(((to_m + length_m).to_bits(), joints[1 - end as usize % 2])));
+            }
+        }
+        None
+    }
+
+    /// The tents that stand on edges within reach when the apex is so high, with the numbers of the edges.
+    pub(crate) fn tents(&self, spans: &Spans, apex_m: f64) -> Vec<(usize, Tent)> {
+        let to_m = |joint: u32| self.joints.get(&joint).copied().unwrap_or(self.support_m);
+        let mut edges: Vec<usize> = vec![self.at.edge];
+        for &joint in self.joints.keys() {
+            edges.extend(spans.edges_at.of(joint as usize).iter().map(|end| *end as usize / 2));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let tent = |edge: usize| Tent {
+            apex_m,
+            reach_m: self.support_m,
+            from_ends_m: spans.edges[edge].joints.map(to_m),
+            own_m: (edge == self.at.edge).then_some(self.at.along_m),
+        };
+        edges.into_iter().map(|edge| (edge, tent(edge))).collect()
+    }
+}

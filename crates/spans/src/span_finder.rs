@@ -1,0 +1,172 @@
+//! Spans are found in a network, and where they are carried.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
+
+use crate::{
+    Distance,
+    spans::{Edge, Joint, SpanKind, Spans, Support},
+};
+
+/// The direction in which a chain leaves its node is that of its first metres.
+const DIRECTION_M: f64 = 10.0;
+
+impl Spans {
+    /// The spans of a network. `chains` are those of [`corniche_network::Breaks::JunctionsAndStructures`], so it does not matter how ways are split.
+    ///
+    /// A joint is a support where the span ends and something else goes on. Where it passes through, a way on the ground that touches it, steps
+    /// for example, carries nothing:
+    ///
+    /// ```text
+    ///    ═══════●─── ground        ═══●═══        ═════╗
+    ///    a support                    │ steps          ●─── ground
+    ///                                 free        ═════╝  two decks that end there: a support
+    /// ```
+    #[must_use]
+    pub fn find(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Self {
+        let mut finder = Finder { network, chains, distance_m, numbers: BTreeMap::new() };
+        let mut joints: Vec<Joint> = Vec::new();
+        let mut edges: Vec<Edge> = Vec::new();
+        for chain in chains.numbers() {
+            let found = chains.get(chain);
+            let Some(kind) = SpanKind::of(network.structure_of(&found)) else { continue };
+            let points = network.points_of_chain(&found);
+            let ends = [points.first(), points.last()].map(|point| point.copied());
+            let [Some(first), Some(last)] = ends else { continue };
+            let pairs = points.array_windows();
+            let length_m = pairs.map(|[a, b]| distance_m(a.in_steps(), b.in_steps())).sum();
+            let [from, to] = found.ends;
+            let own = [(from, first), (to, last)]
+                .map(|(node, at)| finder.joint(kind, node, at, &mut joints));
+            let ways = found.links.iter().map(|&link| network.way_of(link).way_id);
+            let way_id = ways.min().unwrap_or_default();
+            edges.push(Edge { chain, kind, span: 0, joints: own, length_m, way_id });
+        }
+        let edges_at = IndexLists::new(joints.len(), 2 * edges.len(), |end| {
+            std::iter::once(edges[end / 2].joints[end % 2] as usize)
+        });
+        let count = number_spans(&mut edges, &edges_at);
+        let ends_at = chains.ends_at(network, |_| true);
+        for (number, joint) in joints.iter_mut().enumerate() {
+            let Some(&first) = edges_at.of(number).first() else { continue };
+            let kind = edges[first as usize / 2].kind;
+            (joint.support, joint.touched_by) =
+                finder.support(kind, ends_at.of(network.index_of(joint.node)));
+        }
+        Self { edges, joints, edges_at, count }
+    }
+}
+
+struct Finder<'a> {
+    network: &'a Network,
+    chains: &'a Chains,
+    distance_m: &'a Distance<'a>,
+    numbers: BTreeMap<(SpanKind, NodeNumber), u32>,
+}
+
+impl Finder<'_> {
+    fn joint(
+        &mut self,
+        kind: SpanKind,
+        node: NodeNumber,
+        at: LatticePoint,
+        joints: &mut Vec<Joint>,
+    ) -> u32 {
+        *self.numbers.entry((kind, node)).or_insert_with(|| {
+            joints.push(Joint { node, at, support: None, touched_by: None });
+            joints.len() as u32 - 1
+        })
+    }
+
+    /// Why a span of a kind is carried at a node, and which way on the ground touches it; `ends` are all that lie there.
+    fn support(&self, kind: SpanKind, ends: &[u32]) -> (Option<Support>, Option<i64>) {
+        let kind_of = |end: u32| {
+            let chain = self.chains.get(ChainNumber(end as usize / 2));
+            SpanKind::of(self.network.structure_of(&chain))
+        };
+        let of_kind = |wanted: Option<SpanKind>| {
+            ends.iter().copied().filter(move |&end| kind_of(end) == wanted)
+        };
+        let own: Vec<[f64; 2]> = of_kind(Some(kind)).map(|end| self.direction(end)).collect();
+        let mut grounds = of_kind(None).map(|end| self.way_at(end));
+        let is_opposite =
+            |one: [f64; 2], other: [f64; 2]| one[0] * other[0] + one[1] * other[1] < 0.0;
+        let passes_through = own
+            .iter()
+            .enumerate()
+            .any(|(k, &one)| own[k + 1..].iter().any(|&other| is_opposite(one, other)));
+        if passes_through {
+            return (None, grounds.min());
+        }
+        let support = if grounds.next().is_some() {
+            Some(Support::Ground)
+        } else if own.len() < ends.len() {
+            Some(Support::OtherKind)
+        } else if own.len() == 1 && kind == SpanKind::Bridge {
+            Some(Support::OpenEnd)
+        } else {
+            // The end of a tunnel where nothing goes on lies inside the mountain as well as anywhere: the ground says nothing of it.
+            None
+        };
+        (support, None)
+    }
+
+    /// The way at an end of a chain.
+    fn way_at(&self, end: u32) -> i64 {
+        let links = self.chains.get(ChainNumber(end as usize / 2)).links;
+        let link = if end % 2 == 0 { links.first() } else { links.last() };
+        link.map_or(0, |&link| self.network.way_of(link).way_id)
+    }
+
+    /// From the node at an end of a chain to where the chain is ten metres away, or to its other end.
+    fn direction(&self, end: u32) -> [f64; 2] {
+        let chain = self.chains.get(ChainNumber(end as usize / 2));
+        let mut points = self.network.points_of_chain(&chain);
+        if end % 2 == 1 {
+            points.reverse();
+        }
+        let Some(from) = points.first().map(|point| point.in_steps()) else { return [0.0; 2] };
+        let away = |to: &[f64; 2]| (self.distance_m)(from, *to) >= DIRECTION_M;
+        let mut others = points[1..].iter().map(|point| point.in_steps());
+        let last = points.last().map_or(from, |point| point.in_steps());
+        let to = others.find(away).unwrap_or(last);
+        [to[0] - from[0], to[1] - from[1]]
+    }
+}
+
+/// Gives each edge the number of its span: edges that share a joint have the same. Returns how many spans there are.
+fn number_spans(edges: &mut [Edge], edges_at: &IndexLists) -> usize {
+    const NONE: u32 = u32::MAX;
+    let mut of_edge = vec![NONE; edges.len()];
+    let mut count = 0;
+    let mut waiting = Vec::new();
+    for first in 0..edges.len() {
+        if of_edge[first] != NONE {
+            continue;
+        }
+        of_edge[first] = count;
+        waiting.push(first);
+        while let Some(edge) = waiting.pop() {
+            for joint in edges[edge].joints {
+                for &end in edges_at.of(joint as usize) {
+                    let other = end as usize / 2;
+                    if of_edge[other] == NONE {
+                        of_edge[other] = count;
+                        waiting.push(other);
+                    }
+                }
+            }
+        }
+        count += 1;
+    }
+    for (edge, span) in edges.iter_mut().zip(of_edge) {
+        edge.span = span;
+    }
+    count as usize
+}
+
+#[cfg(test)]
+#[path = "span_finder_tests.rs"]
+mod tests;

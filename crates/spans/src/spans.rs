@@ -1,0 +1,201 @@
+//! The networks of structure ways, and the joints at which they are carried.
+
+use corniche_geom::{IndexLists, LatticePoint};
+use corniche_network::{ChainNumber, NodeNumber};
+use corniche_roads::Structure;
+
+/// What a span is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SpanKind {
+    /// A bridge: never below the ground.
+    Bridge,
+    /// A tunnel: never above the ground.
+    Tunnel,
+}
+
+impl SpanKind {
+    /// The kind of span that a road with a structure is; `None` on the ground.
+    #[must_use]
+    pub fn of(structure: Structure) -> Option<Self> {
+        match structure {
+            Structure::Ground => None,
+            Structure::Bridge => Some(Self::Bridge),
+            Structure::Tunnel => Some(Self::Tunnel),
+        }
+    }
+
+    /// Which way is away from the ground: 1 for up, −1 for down.
+    #[must_use]
+    pub fn away(self) -> f64 {
+        match self {
+            Self::Bridge => 1.0,
+            Self::Tunnel => -1.0,
+        }
+    }
+}
+
+/// Why a joint has the height of the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Support {
+    /// A road on the ground goes on there.
+    Ground,
+    /// A bridge goes on as a tunnel, or a tunnel as a bridge.
+    OtherKind,
+    /// A bridge ends where nothing goes on: at a pier's end, or where the data ends.
+    OpenEnd,
+}
+
+/// A node where chains of a span meet or end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Joint {
+    /// Its node.
+    pub node: NodeNumber,
+    /// Where it lies.
+    pub at: LatticePoint,
+    /// Why it has the ground's height; `None` where it is free.
+    pub support: Option<Support>,
+    /// A way on the ground that touches the span here although it passes through: it does not carry it.
+    pub touched_by: Option<i64>,
+}
+
+/// A chain of a span.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Edge {
+    pub(crate) chain: ChainNumber,
+    pub(crate) kind: SpanKind,
+    pub(crate) span: u32,
+    /// The joints at its ends.
+    pub(crate) joints: [u32; 2],
+    pub(crate) length_m: f64,
+    /// The smallest id of its ways.
+    pub(crate) way_id: i64,
+}
+
+/// What is wrong with a span, or worth to be known of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SpanReason {
+    /// Nothing carries it: it stays on the ground.
+    NoSupport,
+    /// One support carries it: it is level.
+    OneSupport,
+    /// A bridge ends where nothing goes on.
+    OpenEnd,
+    /// A way on the ground touches it where it passes through.
+    GroundWayOnDeck,
+    /// It goes on as the other kind.
+    KindChange,
+    /// It crosses another span of the same layer: nothing says which is above.
+    LayerTie,
+    /// It is less than a metre above or below what it crosses.
+    OrderUnreachable,
+    /// Some of its supports lie where there is no ground.
+    NoGround,
+    /// It joins so many ways that it is not solved.
+    TooIntricate,
+}
+
+impl SpanReason {
+    /// What it is called in reports.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::NoSupport => "span_no_support",
+            Self::OneSupport => "span_one_support",
+            Self::OpenEnd => "span_open_end",
+            Self::GroundWayOnDeck => "ground_way_on_deck",
+            Self::KindChange => "kind_change",
+            Self::LayerTie => "layer_tie",
+            Self::OrderUnreachable => "order_unreachable",
+            Self::NoGround => "no_ground",
+            Self::TooIntricate => "span_too_intricate",
+        }
+    }
+}
+
+/// A reason with the way at which it was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SpanProblem {
+    /// What it is.
+    pub reason: SpanReason,
+    /// A way of the span; of several the one with the smallest id.
+    pub way_id: i64,
+}
+
+/// All bridges and tunnels of a network.
+#[derive(Debug)]
+pub struct Spans {
+    /// In the order of their chains.
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) joints: Vec<Joint>,
+    /// The ends of edges at each joint: twice the number of the edge, plus one for its last end.
+    pub(crate) edges_at: IndexLists,
+    pub(crate) count: usize,
+}
+
+impl Spans {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// All joints, those of bridges and of tunnels apart.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The edge of a chain; `None` on the ground.
+    pub(crate) fn edge_of(&self, chain: ChainNumber) -> Option<usize> {
+        self.edges.binary_search_by_key(&chain, |edge| edge.chain).ok()
+    }
+
+    /// The smallest id of the ways that meet in a joint.
+    pub(crate) fn way_of_joint(&self, joint: usize) -> i64 {
+        let ends = self.edges_at.of(joint).iter();
+        ends.map(|end| self.edges[*end as usize / 2].way_id).min().unwrap_or_default()
+    }
+
+    /// What is to be told of how spans are carried, in order.
+    #[must_use]
+    pub fn problems(&self) -> Vec<SpanProblem> {
+        let mut supports = vec![0_u64; self.count];
+        let mut first_ways = vec![i64::MAX; self.count];
+        let mut problems = Vec::new();
+        for edge in &self.edges {
+            let first = &mut first_ways[edge.span as usize];
+            *first = edge.way_id.min(*first);
+        }
+        for (number, joint) in self.joints.iter().enumerate() {
+            let ends = self.edges_at.of(number);
+            let Some(&end) = ends.first() else { continue };
+            let span = self.edges[end as usize / 2].span as usize;
+            supports[span] += u64::from(joint.support.is_some());
+            let way_id = self.way_of_joint(number);
+            let of_support = match joint.support {
+                Some(Support::OtherKind) => Some(SpanReason::KindChange),
+                Some(Support::OpenEnd) => Some(SpanReason::OpenEnd),
+                _ => None,
+            };
+            let touched = joint.touched_by.map(|_| SpanReason::GroundWayOnDeck);
+            let reasons = of_support.into_iter().chain(touched);
+            problems.extend(reasons.map(|reason| SpanProblem { reason, way_id }));
+        }
+        for (count, way_id) in supports.into_iter().zip(first_ways) {
+            let reason = match count {
+                0 => SpanReason::NoSupport,
+                1 => SpanReason::OneSupport,
+                _ => continue,
+            };
+            problems.push(SpanProblem { reason, way_id });
+        }
+        problems.sort_unstable();
+        problems
+    }
+}
