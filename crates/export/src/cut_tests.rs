@@ -14,7 +14,7 @@ fn piece(longitudes: &[f64]) -> Piece {
         attributes: RoadAttributes::default(),
         vertices: vertices.collect(),
         goes_on: [true, true],
-        heights: crate::piece::PieceHeights { tolerance_m: 0.5, ground_m: None },
+        heights: crate::piece::PieceHeights { tolerance_m: 0.5, ground_m: None, on_deck: false },
     }
 }
 

@@ -3,13 +3,15 @@
 use std::{collections::BTreeMap, fmt::Write as _, path::Path};
 
 use corniche_areas::AreaObject;
-use corniche_network::{Breaks, Chain, ChainNumber, Chains, Network};
+use corniche_geom::LatticePoint;
+use corniche_network::{Breaks, Chain, ChainNumber, Chains, Link, Network};
 use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
-    dem_ground::{DemNodes, lay},
+    deck_lines::on_deck,
+    dem_ground::{DemLine, DemNodes, lay},
     elevation::Elevation,
     error::ExportError,
     feature::{oneway, real, text},
@@ -19,9 +21,12 @@ use crate::{
     height_bound::dem_heights,
     measures::steepest,
     piece::Vertex,
+    span_facts::SpanFacts,
     vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields},
 };
 
+/// Lines of a network lie on its ways: half a metre allows for nothing but rounding.
+const NEAR_STEPS: f64 = 500.0;
 /// Edges are told of after so many.
 const TOLD_EDGES: u64 = 1024;
 
@@ -32,12 +37,14 @@ pub struct EdgesSummary {
     pub edges: u64,
     /// Edges of which no part lies on ground; they are left out.
     pub without_ground: u64,
-    /// Edges with a height that is not known, because they leave the ground or end on a bridge or in a tunnel: they have no ascent.
+    /// Edges with a height that is not known, because they leave the ground, or nothing carries their bridge or tunnel: they have no ascent.
     pub without_ascent: u64,
     /// True length in plan, metres.
     pub length_m: f64,
     /// What heights are, in words.
     pub heights: String,
+    /// The bridges and tunnels of the network.
+    pub spans: SpanFacts,
 }
 
 /// What is known of an edge.
@@ -94,7 +101,7 @@ pub fn edge_fields() -> Vec<Field> {
 }
 
 /// Writes the edges of a network to a new file at `path`: each is there once, from the node with the smaller id. Their lines lie on the elevation
-/// files; ascents and grades are those of smooth lines, straight over bridges and through tunnels. After an error the file at `path` is of no use.
+/// files and on decks; ascents and grades are those of smooth lines. After an error the file at `path` is of no use.
 ///
 /// # Errors
 /// When the request cannot be met, an elevation file cannot be read, or something cannot be written.
@@ -124,6 +131,7 @@ pub fn export_edges(
         without_ascent: 0,
         length_m: 0.0,
         heights: places.heights().to_owned(),
+        spans: SpanFacts::of(measured.decks()),
     };
     let mut tolerance_m = 0.0_f64;
     let edges = Chains::of(network, Breaks::Junctions);
@@ -139,12 +147,7 @@ pub fn export_edges(
             told = done;
         }
         let chain = edges.get(number);
-        let line: Vec<Vertex> = network
-            .points_of_chain(&chain)
-            .into_iter()
-            .map(|point| Vertex { at: point.in_steps(), z_m: f64::NAN, is_source: true })
-            .collect();
-        let laid = lay(&mut nodes, &line)?;
+        let laid = laid(&measured, &mut nodes, &chain)?;
         if laid.is_empty() {
             summary.without_ground += 1;
             continue;
@@ -154,7 +157,7 @@ pub fn export_edges(
             ways: ways_text(network, &chain),
             shares: Shares::of(&measured, &chain),
             profile: measured.profile(chain.links),
-            nodes_m: chain.ends.map(|node| measured.node_m(node)),
+            nodes_m: node_heights(&measured, &chain),
         };
         summary.edges += 1;
         summary.length_m += edge.shares.length_m;
@@ -171,6 +174,71 @@ pub fn export_edges(
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(summary)
+}
+
+/// An edge on the elevation files, and on the decks of its bridges and tunnels.
+fn laid(
+    measured: &MeasuredChains<'_>,
+    nodes: &mut DemNodes<'_>,
+    chain: &Chain<'_>,
+) -> Result<Vec<DemLine>, ExportError> {
+    let network = measured.network();
+    let distance_m = |from: [f64; 2], to: [f64; 2]| measured.places().distance_m(from, to);
+    let mut lines: Vec<DemLine> = Vec::new();
+    for links in chain.links.chunk_by(|one, other| {
+        let [one, other] = [one, other].map(|link| network.way_of(*link).structure);
+        one == Structure::Ground && other == Structure::Ground
+    }) {
+        let mut points: Vec<LatticePoint> = Vec::new();
+        for &link in links {
+            points.extend(network.points_of_link(link).skip(usize::from(!points.is_empty())));
+        }
+        let vertex =
+            |point: LatticePoint| Vertex { at: point.in_steps(), z_m: f64::NAN, is_source: true };
+        let line: Vec<Vertex> = points.into_iter().map(vertex).collect();
+        let structure = network.way_of(links[0]).structure;
+        let deck = match structure {
+            Structure::Ground => Vec::new(),
+            _ => measured.of_link(links[0]),
+        };
+        for mut own in lay(nodes, &line)? {
+            if structure != Structure::Ground {
+                // Decks know the direction of their ways.
+                let turn = |vertices: &mut Vec<Vertex>| {
+                    if links[0].is_against {
+                        vertices.reverse();
+                    }
+                };
+                turn(&mut own.vertices);
+                let raised = on_deck(structure, &own.vertices, (&deck, NEAR_STEPS), &distance_m);
+                if let Some(vertices) = raised {
+                    (own.vertices, own.tolerance_m) = (vertices, 0.0);
+                }
+                turn(&mut own.vertices);
+            }
+            let ends = lines.last().and_then(|line| line.vertices.last());
+            let goes_on = own.has_end[0]
+                && ends.map(|end| end.at) == own.vertices.first().map(|first| first.at);
+            match lines.last_mut().filter(|line| goes_on && line.has_end[1]) {
+                Some(before) => {
+                    before.vertices.extend(own.vertices.into_iter().skip(1));
+                    before.tolerance_m = before.tolerance_m.max(own.tolerance_m);
+                    before.has_end[1] = own.has_end[1];
+                }
+                None => lines.push(own),
+            }
+        }
+    }
+    Ok(lines)
+}
+
+/// The heights of both nodes that other edges share; none on a bridge or in a tunnel, whose own height counts there.
+fn node_heights(measured: &MeasuredChains<'_>, chain: &Chain<'_>) -> [Option<f64>; 2] {
+    let structure =
+        |link: Option<&Link>| link.map(|link| measured.network().way_of(*link).structure);
+    let links = [chain.links.first(), chain.links.last()];
+    let is_on_ground = links.map(|link| structure(link) == Some(Structure::Ground));
+    [0, 1].map(|end| measured.node_m(chain.ends[end]).filter(|_| is_on_ground[end]))
 }
 
 impl Edge<'_> {

@@ -49,6 +49,10 @@ pub enum ExportError {
         "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
     )]
     NoWay { package: PathBuf, way_id: i64, level: u8 },
+    #[error(
+        "bridges and tunnels of the extract cross more lines than in any real network; leave out --osm"
+    )]
+    Spans(#[source] corniche_geom::TooMuchWork),
     #[error("no line lies on ground of {package:?}")]
     NoLineOnGround { package: PathBuf },
     #[error("{package:?} has no ground there; corniche info tells its extent")]

@@ -27,12 +27,14 @@ pub(crate) struct Road<'a> {
 /// The grades of a road without the noise of its heights.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Smooth {
-    /// `None` for bridges and tunnels.
+    /// `None` for bridges and tunnels whose deck is not known.
     pub(crate) grades: Option<SmoothGrades>,
     /// Whether the smooth line is that of a chain from junction to junction, not of the way alone.
     pub(crate) is_of_chain: bool,
     /// The grade that roads of its kind are built with at most, percent.
     pub(crate) limit_pct: Option<f64>,
+    /// The least height between a bridge or a tunnel and what it crosses, metres.
+    pub(crate) free_height_m: Option<f64>,
 }
 
 /// Where the heights of exported roads come from.
@@ -45,9 +47,11 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// What it is called in features of roads that a structure carries.
-    pub(crate) fn text(self, structure: Structure) -> &'static str {
+    /// What it is called in features of roads that a structure carries, whose deck is known or not.
+    pub(crate) fn text(self, structure: Structure, on_deck: bool) -> &'static str {
         match (structure, self) {
+            (Structure::Bridge, _) if on_deck => "deck",
+            (Structure::Tunnel, _) if on_deck => "tunnel",
             (Structure::Bridge, _) => "ground_under_bridge",
             (Structure::Tunnel, _) => "ground_over_tunnel",
             (Structure::Ground, Self::Ground) => "ground",
@@ -92,24 +96,26 @@ fields! { GROUND_FIELDS, ground_values, road: &Road<'_>:
 }
 
 fields! { DEM_FIELDS, dem_values, road: &Road<'_>:
-    "ascent_m", Real, "m", "sum of all that the smooth line rises, in the way's direction; null for bridges and tunnels",
+    "ascent_m", Real, "m", "sum of all that the smooth line rises, in the way's direction; null for bridges and tunnels without `deck` or `tunnel` heights",
         smooth(road, |grades| Some(grades.ascent_m));
-    "descent_m", Real, "m", "sum of all that the smooth line falls; null for bridges and tunnels",
+    "descent_m", Real, "m", "sum of all that the smooth line falls; null as above",
         smooth(road, |grades| Some(grades.descent_m));
-    "steepest_pct", Real, "%", "steepest grade of the smooth line over 50 m or more, up or down; null where no part is as long, and for bridges and tunnels",
+    "steepest_pct", Real, "%", "steepest grade of the smooth line over 50 m or more, up or down; null where no part is as long, and as above",
         smooth(road, |grades| grades.steepest.map(|grade| 100.0 * grade));
-    "ground_ascent_m", Real, "m", "sum of all that the line itself rises, with the noise of the heights; null for bridges and tunnels",
+    "ground_ascent_m", Real, "m", "sum of all that the line itself rises, with the noise of the heights; null as above",
         on_ground(road, road.measures.ascent_m);
-    "ground_descent_m", Real, "m", "sum of all that the line itself falls; null for bridges and tunnels",
+    "ground_descent_m", Real, "m", "sum of all that the line itself falls; null as above",
         on_ground(road, road.measures.descent_m);
-    "ground_steepest_pct", Real, "%", "steepest grade of the line itself over 20 m or more; null where no part is as long, and for bridges and tunnels",
+    "ground_steepest_pct", Real, "%", "steepest grade of the line itself over 20 m or more; null where no part is as long, and as above",
         percent_on_ground(road, road.measures.steepest);
-    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line; null for bridges and tunnels",
+    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line, of decks without the ground in their way; null as above",
         smooth(road, |grades| Some(grades.most_off_m));
-    "smoothed_by", Text, "", "`chain`: from junction to junction, as --osm allows; `way`: by the way alone; null for bridges and tunnels",
+    "smoothed_by", Text, "", "`chain`: from junction to junction, as --osm allows; `way`: by the way alone; null as above",
         smoothed_by(road);
     "grade_over_limit", Integer, "", "1 where `steepest_pct` is more than roads of that `highway` are built with, else 0; null where either is unknown",
         over_limit(road);
+    "free_height_m", Real, "m", "of bridges and tunnels: the least height between them and the roads that they cross, an estimate; null without such a road",
+        road.smooth.and_then(|smooth| smooth.free_height_m).map_or(Value::Null, real);
 }
 
 fields! { LAST_FIELDS, last_values, road: &Road<'_>:
@@ -118,8 +124,8 @@ fields! { LAST_FIELDS, last_values, road: &Road<'_>:
     "vertices_out", Integer64, "", "vertices of the line on the ground",
         Value::Integer(road.measures.vertices_out as i64);
     "parts", Integer, "", "lines without a gap between them", Value::Integer(road.parts as i64);
-    "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `ground_under_bridge`, `ground_over_tunnel`: heights of what the road does not lie on",
-        Value::Text(road.height_source().text(road.attributes.structure).to_owned());
+    "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `deck`, `tunnel`: an estimate between the heights of both ends; `ground_under_bridge`, `ground_over_tunnel`: heights of what the road does not lie on",
+        Value::Text(road.height_source().text(road.attributes.structure, road.heights.on_deck).to_owned());
 }
 
 fields! { BOUND_FIELDS, bound_values, road: &Road<'_>:
@@ -128,8 +134,8 @@ fields! { BOUND_FIELDS, bound_values, road: &Road<'_>:
 }
 
 fields! { MEASURED_FIELDS, measured_values, road: &Road<'_>:
-    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length; against the DEM, not against the world",
-        real(road.heights.tolerance_m);
+    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length; against the DEM, not against the world; null for decks and tunnels",
+        if road.heights.on_deck { Value::Null } else { real(road.heights.tolerance_m) };
     "ground_tolerance_m", Real, "m", "how far the package's triangles are from the DEM along the line at most; null where they were not compared",
         road.heights.ground_m.map_or(Value::Null, real);
 }
@@ -197,9 +203,10 @@ pub(crate) fn real(value: f64) -> Value {
     Value::Real((value * 1e6).round() / 1e6)
 }
 
-/// A measure of the ground; none where the road does not lie on it.
+/// A measure of the line; none where it is not the road's.
 fn on_ground(road: &Road<'_>, value: f64) -> Value {
-    if road.attributes.structure == Structure::Ground { real(value) } else { Value::Null }
+    let is_its_own = road.attributes.structure == Structure::Ground || road.heights.on_deck;
+    if is_its_own { real(value) } else { Value::Null }
 }
 
 fn percent_on_ground(road: &Road<'_>, grade: Option<f64>) -> Value {

@@ -15,5 +15,7 @@ mod smoothing;
 
 pub(crate) use measured_chains::MeasuredChains;
 pub(crate) use on_way::{most_steps, stretch_of_way};
+#[cfg(test)]
+pub(crate) use smooth_line::Station;
 pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine};
 pub(crate) use smoothing::Smoothing;

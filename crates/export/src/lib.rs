@@ -37,6 +37,7 @@ mod bounds;
 mod cut;
 mod cut_polygon;
 mod datum;
+mod deck_lines;
 mod dem_ground;
 mod edges;
 mod elevation;
@@ -65,6 +66,7 @@ mod relief_map;
 mod roads;
 mod scratch;
 mod sorted_pieces;
+mod span_facts;
 mod surfaces;
 mod texture;
 mod tiles3d;
@@ -89,5 +91,6 @@ pub use quantized_mesh::{
     export_quantized_mesh,
 };
 pub use roads::{ExportSummary, RoadHeights, export_roads};
+pub use span_facts::SpanFacts;
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 pub use vector::{Field, FieldKind, VectorFormat, cell_text};

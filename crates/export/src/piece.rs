@@ -47,6 +47,8 @@ pub(crate) struct PieceHeights {
     pub(crate) tolerance_m: f64,
     /// The ground of its tile; `None` where it was not measured.
     pub(crate) ground_m: Option<f64>,
+    /// Whether they are those of a deck or a tunnel, which nothing tells how good they are.
+    pub(crate) on_deck: bool,
 }
 
 impl PieceHeights {
@@ -56,6 +58,7 @@ impl PieceHeights {
         Self {
             tolerance_m: self.tolerance_m.max(other.tolerance_m),
             ground_m: both.reduce(f64::max),
+            on_deck: self.on_deck && other.on_deck,
         }
     }
 }
@@ -86,7 +89,9 @@ impl SortRecord for Piece {
         bytes.extend(key.tile.to_le_bytes());
         bytes.extend(key.part.to_le_bytes());
         bytes.extend(key.cut.to_le_bytes());
-        bytes.extend([class.number(), u8::from(goes_on[0]), u8::from(goes_on[1])]);
+        let [first, last] = *goes_on;
+        bytes.push(class.number());
+        bytes.extend([first, last, heights.on_deck].map(u8::from));
         for number in [heights.tolerance_m, heights.ground_m.unwrap_or(f64::NAN)] {
             bytes.extend(number.to_le_bytes());
         }
@@ -112,10 +117,10 @@ impl SortRecord for Piece {
             part: u32::from_le_bytes(array(bytes)?),
             cut: u32::from_le_bytes(array(bytes)?),
         };
-        let [class, first, last] = array(bytes)?;
+        let [class, first, last, on_deck] = array(bytes)?;
         let [tolerance_m, ground_m] = [number(bytes)?, number(bytes)?];
         let ground_m = Some(ground_m).filter(|ground_m| !ground_m.is_nan());
-        let heights = PieceHeights { tolerance_m, ground_m };
+        let heights = PieceHeights { tolerance_m, ground_m, on_deck: on_deck == 1 };
         let (codes, width_mm) = (array(bytes)?, u32::from_le_bytes(array(bytes)?));
         let attributes = RoadAttributes::from_parts(codes, width_mm, || text(bytes))?;
         let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);

@@ -31,7 +31,11 @@ fn piece(way_id: i64, tile: u64, part: u32) -> Piece {
             Vertex { at: [(1_u64 << 50) as f64, 0.125], z_m: -0.25, is_source: true },
         ],
         goes_on: [false, true],
-        heights: PieceHeights { tolerance_m: 0.5, ground_m: Some(f64::from(part) + 0.25) },
+        heights: PieceHeights {
+            tolerance_m: 0.5,
+            ground_m: Some(f64::from(part) + 0.25),
+            on_deck: part % 2 == 1,
+        },
     }
 }
 

@@ -1,6 +1,9 @@
 //! Heights and grades along ways.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::Range,
+};
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};
@@ -8,6 +11,7 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
+    deck_lines::on_deck,
     dem_ground::{DemLine, DemNodes, lay},
     elevation::Elevation,
     error::ExportError,
@@ -41,7 +45,7 @@ pub struct Profile {
     pub length_2d_m: f64,
     /// True length with heights, metres.
     pub length_3d_m: f64,
-    /// What bridges and tunnels have of the length in plan: what follows is told without them.
+    /// What bridges and tunnels without known decks have of the length in plan: what follows is told without them.
     pub on_structures_m: f64,
     /// The ups and downs of the line itself.
     pub grades: ProfileGrades,
@@ -74,7 +78,7 @@ pub struct ProfilePoint {
     pub way_id: i64,
     /// True distance in plan from the beginning of the profile, metres. Gaps count nothing.
     pub distance_m: f64,
-    /// Height of the ground.
+    /// Height of the line.
     pub height_m: f64,
     /// Rise over run, over 20 m around the point, or as many as the part has; upwards is positive.
     pub grade: f64,
@@ -82,7 +86,8 @@ pub struct ProfilePoint {
     pub position_deg: [f64; 2],
     /// Where the height is from, as in exported roads.
     pub height_source: &'static str,
-    /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels, and without elevation files.
+    /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels whose decks are not
+    /// known, and without elevation files.
     pub smooth: Option<[f64; 2]>,
 }
 
@@ -127,7 +132,8 @@ pub fn profile(
         let chains = MeasuredChains::measure(network, &places, &mut nodes, smoothing, observer)?;
         smooth_ways.extend(way_ids.iter().map(|&way_id| (way_id, chains.of_way(way_id))));
     }
-    Telling { level, places, structures, smooth_ways, tolerance_m }.tell(parts, heights.elevation)
+    Telling { level, places, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
+        .tell(parts, heights.elevation)
 }
 
 /// Follows lines that are no ways of the package over the ground of a level, one after the other. Parts of the line with index 0 have the
@@ -159,7 +165,8 @@ pub fn profile_of_lines(
     let tolerance_m = manifest.levels.get(usize::from(level));
     let tolerance_m = tolerance_m.map_or(0.0, |record| record.geometric_error_m);
     let (structures, smooth_ways) = (BTreeMap::new(), BTreeMap::new());
-    Telling { level, places, structures, smooth_ways, tolerance_m }.tell(parts, elevation)
+    Telling { level, places, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
+        .tell(parts, elevation)
 }
 
 /// What a profile is told from.
@@ -168,6 +175,8 @@ struct Telling<'a> {
     places: Places<'a>,
     /// What carries each way.
     structures: BTreeMap<i64, Structure>,
+    /// Bridges and tunnels whose decks are known.
+    on_deck: BTreeSet<i64>,
     /// The smooth line of each way, where those of chains are known.
     smooth_ways: BTreeMap<i64, Vec<SmoothLine>>,
     /// How far the ground is from the elevation files at most, metres.
@@ -264,8 +273,13 @@ impl Telling<'_> {
                 let own = part[first + 1..].iter().take_while(|(of, _)| *of == way_id).count();
                 let run: Vec<Vertex> =
                     part[first..=first + own].iter().map(|(_, vertex)| *vertex).collect();
-                for DemLine { vertices, tolerance_m, .. } in lay(nodes, &run)? {
-                    self.tolerance_m = self.tolerance_m.max(tolerance_m);
+                for DemLine { mut vertices, tolerance_m, .. } in lay(nodes, &run)? {
+                    if let Some(raised) = self.raised(way_id, &vertices) {
+                        vertices = raised;
+                        self.on_deck.insert(way_id);
+                    } else {
+                        self.tolerance_m = self.tolerance_m.max(tolerance_m);
+                    }
                     let begin = vertices.first().map(|vertex| vertex.at);
                     let goes_on = |before: &&mut ProfileLine| {
                         before.last().map(|(_, vertex)| vertex.at) == begin
@@ -280,6 +294,26 @@ impl Telling<'_> {
             }
         }
         Ok(laid_parts)
+    }
+
+    /// A line of a bridge or a tunnel on its deck, in whichever direction; `None` where it is none, or not known.
+    fn raised(&self, way_id: i64, ground: &[Vertex]) -> Option<Vec<Vertex>> {
+        let (structure, way) = (self.structure(way_id), self.smooth_ways.get(&way_id)?);
+        let most_steps = most_steps(self.places.manifest(), self.level);
+        let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
+        let of = |ground: &[Vertex]| on_deck(structure, ground, (way, most_steps), &distance_m);
+        of(ground).or_else(|| {
+            let turned: Vec<Vertex> = ground.iter().rev().copied().collect();
+            of(&turned).map(|mut raised| {
+                raised.reverse();
+                raised
+            })
+        })
+    }
+
+    /// Whether heights along a way are its own.
+    fn is_measured(&self, way_id: i64) -> bool {
+        self.structure(way_id) == Structure::Ground || self.on_deck.contains(&way_id)
     }
 
     fn structure(&self, way_id: i64) -> Structure {
@@ -312,12 +346,12 @@ impl Telling<'_> {
         Some(line)
     }
 
-    /// The vertices between which a part lies on the ground, not on a bridge or in a tunnel; way by way where smooth lines are those of ways. A segment
+    /// The vertices between which the heights of a part are its own, not those beneath a bridge or above a tunnel; way by way where smooth lines are those of ways. A segment
     /// belongs to the way of its second vertex.
     fn runs_on_ground(&self, part: &ProfileLine) -> Vec<Range<usize>> {
         let mut runs: Vec<Range<usize>> = Vec::new();
         for end in 1..part.len() {
-            if self.structure(part[end].0) != Structure::Ground {
+            if !self.is_measured(part[end].0) {
                 continue;
             }
             let is_of_same_way =
@@ -351,7 +385,7 @@ impl Telling<'_> {
                 height_m,
                 grade,
                 position_deg: self.places.wgs84(vertex.at),
-                height_source: from.text(self.structure(*way_id)),
+                height_source: from.text(self.structure(*way_id), self.on_deck.contains(way_id)),
                 smooth: smooth_at(index, along_m),
             }
         };

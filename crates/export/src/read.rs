@@ -131,7 +131,11 @@ pub(crate) fn pieces_of(
             class: road.class,
             attributes: attributes.attributes.clone(),
             goes_on: goes_on(road, frame, id),
-            heights: PieceHeights { tolerance_m: terrain.geometric_error_m, ground_m: None },
+            heights: PieceHeights {
+                tolerance_m: terrain.geometric_error_m,
+                ground_m: None,
+                on_deck: false,
+            },
             vertices,
         });
     }

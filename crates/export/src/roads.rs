@@ -1,6 +1,6 @@
 //! The whole way of roads out of a package.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
@@ -11,6 +11,7 @@ use corniche_work::Observer;
 
 use crate::{
     cut::cut_at_bounds,
+    deck_lines::on_deck,
     dem_ground::{DemLine, DemNodes, lay, off_dem_m},
     elevation::Elevation,
     error::ExportError,
@@ -21,9 +22,10 @@ use crate::{
     height_bound::{dem_heights, height_bound},
     join::{Line, lines},
     measures::{Measures, Profiled},
-    piece::{Piece, PieceHeights, PieceKey},
+    piece::{Piece, PieceHeights, PieceKey, Vertex},
     places::Places,
     read,
+    span_facts::{SpanFacts, least_free_heights},
     vector::{Record, Shape, ShapeKind},
 };
 
@@ -46,6 +48,8 @@ pub struct ExportSummary {
     pub height_tolerance_m: f64,
     /// How far the package's triangles are from the elevation files along the lines at most, metres; `None` where they were not compared.
     pub ground_tolerance_m: Option<f64>,
+    /// The bridges and tunnels of the network, where there is one.
+    pub spans: Option<SpanFacts>,
 }
 
 /// Where heights of roads are taken from.
@@ -87,9 +91,13 @@ pub fn export_roads(
             };
             let chains = heights.network.map(measure).transpose()?;
             let most_steps = most_steps(manifest, source.level);
-            Some(OnDem { nodes, smoothing, chains, most_steps })
+            let decks = chains.as_ref().map(MeasuredChains::decks);
+            let free_heights_m = decks.map(least_free_heights).unwrap_or_default();
+            Some(OnDem { nodes, smoothing, chains, most_steps, free_heights_m, deck: None })
         }
     };
+    let decks = dem.as_ref().and_then(|dem| dem.chains.as_ref()).map(MeasuredChains::decks);
+    let spans = decks.map(SpanFacts::of);
     let mut roads = Roads {
         by_piece: features == RoadFeatures::Pieces,
         dem,
@@ -102,6 +110,7 @@ pub fn export_roads(
             heights: source.places.heights().to_owned(),
             height_tolerance_m: 0.0,
             ground_tolerance_m: None,
+            spans,
         },
     };
     write_features(&mut roads, &source, path, observer)?;
@@ -122,6 +131,10 @@ struct OnDem<'a> {
     chains: Option<MeasuredChains<'a>>,
     /// How far lines may be beside their ways, lattice steps.
     most_steps: f64,
+    /// The least height between each bridge or tunnel and what it crosses, by way.
+    free_heights_m: BTreeMap<i64, f64>,
+    /// The decks of the way that was asked for last: pieces of a way often come one after the other.
+    deck: Option<(i64, Vec<SmoothLine>)>,
 }
 
 impl Features for Roads<'_> {
@@ -190,14 +203,8 @@ impl Features for Roads<'_> {
             return Err(ExportError::Differs { object: Self::object(first) });
         }
         self.summary.ways += 1;
-        let way = self.dem.as_ref().and_then(|dem| dem.chains.as_ref()).map(|chains| {
-            if first.attributes.structure == Structure::Ground {
-                chains.of_way(first.key.way_id)
-            } else {
-                Vec::new()
-            }
-        });
-        let way = way.unwrap_or_default();
+        let chains = self.dem.as_ref().and_then(|dem| dem.chains.as_ref());
+        let way = chains.map(|chains| chains.of_way(first.key.way_id)).unwrap_or_default();
         if !self.by_piece {
             let heights = pieces.iter().map(|piece| piece.heights).reduce(PieceHeights::with);
             let of = Piece { heights: heights.unwrap_or(first.heights), ..first.clone() };
@@ -218,14 +225,23 @@ impl OnDem<'_> {
         for piece in cut {
             let ground_m = off_dem_m(&mut self.nodes, &piece.vertices)?;
             let [first_end, last_end] = piece.goes_on;
+            let structure = piece.attributes.structure;
             for DemLine { vertices, tolerance_m, has_end: [first, last] } in
                 lay(&mut self.nodes, &piece.vertices)?
             {
+                let raised = match structure {
+                    Structure::Ground => None,
+                    _ => self.raised(piece.key.way_id, structure, &vertices),
+                };
+                let on_deck = raised.is_some();
+                let tolerance_m = if on_deck { 0.0 } else { tolerance_m };
+                let heights = PieceHeights { tolerance_m, ground_m, on_deck };
+                let vertices = raised.unwrap_or(vertices);
                 laid.push(Piece {
                     key: PieceKey { cut: laid.len() as u32, ..piece.key },
                     vertices,
                     goes_on: [first && first_end, last && last_end],
-                    heights: PieceHeights { tolerance_m, ground_m },
+                    heights,
                     ..piece.clone()
                 });
             }
@@ -233,11 +249,28 @@ impl OnDem<'_> {
         Ok(laid)
     }
 
+    /// A line of a bridge or a tunnel on its deck; `None` where that is not known.
+    fn raised(
+        &mut self,
+        way_id: i64,
+        structure: Structure,
+        ground: &[Vertex],
+    ) -> Option<Vec<Vertex>> {
+        let chains = self.chains.as_ref()?;
+        if self.deck.as_ref().is_none_or(|(known, _)| *known != way_id) {
+            self.deck = Some((way_id, chains.of_way(way_id)));
+        }
+        let (_, way) = self.deck.as_ref()?;
+        let distance_m = |from: [f64; 2], to: [f64; 2]| chains.places().distance_m(from, to);
+        on_deck(structure, ground, (way, self.most_steps), &distance_m)
+    }
+
     /// The grades of lines of a way, of which `way` are the smooth lines where these are known.
     fn smooth(&self, of: &Piece, lines: &[Profiled<'_>], way: &[SmoothLine]) -> Smooth {
         let limit_pct = grade_limit(&of.attributes.highway);
-        if of.attributes.structure != Structure::Ground {
-            return Smooth { grades: None, is_of_chain: false, limit_pct };
+        let free_height_m = self.free_heights_m.get(&of.key.way_id).copied();
+        if of.attributes.structure != Structure::Ground && !of.heights.on_deck {
+            return Smooth { grades: None, is_of_chain: false, limit_pct, free_height_m };
         }
         let mut parts = Vec::new();
         let mut is_of_chain = !way.is_empty();
@@ -251,7 +284,7 @@ impl OnDem<'_> {
             }
         }
         let grades = Some(SmoothGrades::of(&parts));
-        Smooth { grades, is_of_chain, limit_pct }
+        Smooth { grades, is_of_chain, limit_pct, free_height_m }
     }
 }
 

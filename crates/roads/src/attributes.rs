@@ -10,7 +10,7 @@ use crate::{
 ///
 /// - **Form**: `junction=roundabout|circular`, else a link by its `highway` value, else one of two carriageways when
 ///   `dual_carriageway=yes` or when a motorway or trunk road is one-way.
-/// - **Structure**: any `bridge` but `no`; any `tunnel` but `no`, `culvert` (the water is in it, not the road) and
+/// - **Structure**: any `bridge` but `no`, `boardwalk` (planks on soft ground) and `low_water_crossing` (a ford that is paved); any `tunnel` but `no`, `culvert` (the water is in it, not the road) and
 ///   `building_passage` (at ground level). `covered` is a roof and changes nothing. Where both are tagged, the way is
 ///   a tunnel if its layer is below 0, else a bridge.
 /// - **Oneway**: as tagged; motorways and roundabouts are one-way unless tagged otherwise. Roads open to one direction
@@ -58,13 +58,14 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
 }
 
 /// The tags that [`attributes`] reads as another value, as `(key, value)` with the value as tagged: a `layer` that is no whole number or too
-/// large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, `lanes` that are no count and a
+/// large, which is taken for 0 or the largest; a `bridge` or a `tunnel` that leaves the road on the ground, `lanes` that are no count and a
 /// `width` that is none (0, for example), which are taken for none.
 pub fn tags_taken_otherwise<'t>(
     tags: &[(&'t str, &'t str)],
 ) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {
     let text = |key| tag(tags, key).unwrap_or_default();
-    let known: [(&'static str, IsRead); 4] = [
+    let known: [(&'static str, IsRead); 5] = [
+        ("bridge", |bridge| !BESIDE_BRIDGES.contains(&bridge)),
         ("layer", |layer| layer.parse::<i8>().is_ok()),
         ("tunnel", |tunnel| !BESIDE_TUNNELS.contains(&tunnel)),
         ("lanes", |text| lanes(text).is_some()),
@@ -80,11 +81,14 @@ pub fn tags_taken_otherwise<'t>(
 /// Whether the value of a tag is read as it stands.
 type IsRead = fn(&str) -> bool;
 
+/// Values of `bridge` that leave the road on the ground: its heights are the ground's.
+const BESIDE_BRIDGES: [&str; 2] = ["boardwalk", "low_water_crossing"];
 /// Values of `tunnel` that do not put the road underground: the water is in a culvert, a building passage is at ground level.
 const BESIDE_TUNNELS: [&str; 2] = ["culvert", "building_passage"];
 
 fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
-    let is_bridge = !matches!(bridge, "" | "no" | "false" | "0");
+    let is_bridge =
+        !matches!(bridge, "" | "no" | "false" | "0") && !BESIDE_BRIDGES.contains(&bridge);
     let is_tunnel =
         !matches!(tunnel, "" | "no" | "false" | "0") && !BESIDE_TUNNELS.contains(&tunnel);
     match (is_bridge, is_tunnel) {

@@ -54,6 +54,9 @@ fn structure_is_what_carries_the_road() {
     check("tunnel=avalanche_protector", Structure::Tunnel);
     check("tunnel=culvert", Structure::Ground);
     check("tunnel=building_passage", Structure::Ground);
+    check("bridge=boardwalk", Structure::Ground);
+    check("bridge=low_water_crossing layer=1", Structure::Ground);
+    check("bridge=viaduct", Structure::Bridge);
     check("bridge=yes tunnel=yes layer=1", Structure::Bridge);
     check("bridge=yes tunnel=yes layer=-1", Structure::Tunnel);
 }

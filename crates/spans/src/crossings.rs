@@ -1,6 +1,6 @@
 //! Where bridges and tunnels cross other roads without a node in common.
 
-use corniche_geom::{LatticePoint, Side, cross, side};
+use corniche_geom::{LatticePoint, Side, TooMuchWork, Work, cross, side};
 use corniche_network::{ChainNumber, Chains, Network};
 use corniche_roads::grade_limit;
 use rstar::{
@@ -60,16 +60,11 @@ struct Segment {
     length_m: f64,
 }
 
-/// There are more crossings than this for each segment of bridges and tunnels, and more than any city has: lines were made to cross each other.
-const MOST_FOR_SEGMENT: usize = 64;
-const MOST_ANYWAY: usize = 1 << 16;
-
-/// Bridges and tunnels cross roads more often than is looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TooManyCrossings {
-    /// So many are.
-    pub most: usize,
-}
+/// Pairs of segments that are looked at, at least and for each segment of bridges and tunnels: in a city it is a handful. A crossing counts for
+/// as many as it takes memory.
+const MOST_PAIRS: u64 = 1 << 26;
+const MOST_PAIRS_OF_SEGMENT: u64 = 1 << 10;
+const PAIRS_OF_CROSSING: usize = 64;
 
 type Boxed = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
@@ -78,12 +73,12 @@ type Boxed = GeomWithData<Rectangle<[f64; 2]>, usize>;
 /// Orientations are exact. Roads that end on one another, or share a point, do not cross there.
 ///
 /// # Errors
-/// Where there are more of them than any real network has.
+/// Where more lines cross each other than in any real network.
 pub fn crossings(
     network: &Network,
     chains: &Chains,
     distance_m: &Distance<'_>,
-) -> Result<Vec<Crossing>, TooManyCrossings> {
+) -> Result<Vec<Crossing>, TooMuchWork> {
     let mut of_spans: Vec<Segment> = Vec::new();
     for chain in chains.numbers() {
         if SpanKind::of(network.structure_of(&chains.get(chain))).is_some() {
@@ -100,7 +95,7 @@ pub fn crossings(
     if of_spans.is_empty() {
         return Ok(found);
     }
-    let most = (MOST_FOR_SEGMENT * of_spans.len()).max(MOST_ANYWAY);
+    let work = Work::new(MOST_PAIRS + MOST_PAIRS_OF_SEGMENT * of_spans.len() as u64);
     let mut numbers: Vec<usize> = Vec::new();
     let mut own_number = 0;
     for chain in chains.numbers() {
@@ -112,10 +107,11 @@ pub fn crossings(
             // Two spans are compared once.
             numbers.extend(near.map(|of| of.data).filter(|&other| !is_span || other < own_number));
             numbers.sort_unstable();
+            work.add(numbers.len());
+            let before = found.len();
             found.extend(numbers.iter().filter_map(|&other| segment.crossing(&of_spans[other])));
-            if found.len() > most {
-                return Err(TooManyCrossings { most });
-            }
+            work.add(PAIRS_OF_CROSSING * (found.len() - before));
+            work.check()?;
             own_number += usize::from(is_span);
         }
     }

@@ -21,6 +21,8 @@ const LEAST_FLANK: f64 = 0.02;
 const MOST_PASSES: usize = 8;
 /// Where decks are lifted, heights are given so often along them, metres: between the bends of a tent another one may be higher.
 const STATION_M: f64 = 10.0;
+/// So many lifts on one chain are made; no real one needs a tenth.
+const MOST_TENTS: usize = 256;
 /// Less is no reason to lift, metres.
 const ENOUGH_M: f64 = 1e-6;
 
@@ -212,7 +214,8 @@ impl Decks {
                 let least_m = wanted_m - FREE_HEIGHT_M + LEAST_FREE_HEIGHT_M;
                 let apex_m = wanted_m.min(gentle_m.max(least_m));
                 let before_m = away * (self.raised_m(*at) - self.base_m(*at));
-                if apex_m <= before_m + ENOUGH_M || reach.support_m <= 0.0 {
+                let has_room = self.tents[at.edge].len() < MOST_TENTS && reach.support_m > 0.0;
+                if apex_m <= before_m + ENOUGH_M || !has_room {
                     continue;
                 }
                 is_changed = true;

@@ -22,7 +22,7 @@ mod spans;
 #[cfg(test)]
 mod test_network;
 
-pub use crossings::{Crossing, CrossingPlace, Order, TooManyCrossings, crossings};
+pub use crossings::{Crossing, CrossingPlace, Order, crossings};
 pub use decks::{Decks, FreeHeight};
 pub use spans::{Joint, SpanKind, SpanProblem, SpanReason, Spans, Support};
 

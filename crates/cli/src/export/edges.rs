@@ -6,7 +6,7 @@ use corniche_tileset::Manifest;
 
 use super::{
     lines::{LinesArgs, LinesExport},
-    vector_files::{MEMORY_BYTES, facts, fill},
+    vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
     args::ExportEdgesArgs,
@@ -58,7 +58,7 @@ fn to_text(
 ) -> String {
     let count = |number| Digits::of_notes().count(number);
     format!(
-        "{}: {} edges, {}, {}; {} more have no ground, {} no ascent (bridges, tunnels and ground that end within them)\n{}",
+        "{}: {} edges, {}, {}; {} more have no ground, {} no ascent (where the ground ends, or nothing carries a bridge or a tunnel)\n{}",
         in_line(&args.vector.file.output.to_string_lossy()),
         count(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
@@ -66,5 +66,5 @@ fn to_text(
         count(summary.without_ground),
         count(summary.without_ascent),
         facts(&args.vector, &summary.heights, manifest),
-    )
+    ) + &spans_text(&summary.spans)
 }

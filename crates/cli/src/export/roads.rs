@@ -5,7 +5,7 @@ use corniche_tileset::Manifest;
 
 use super::{
     lines::{LinesArgs, LinesExport},
-    vector_files::{MEMORY_BYTES, facts, fill},
+    vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
     args::ExportRoadsArgs,
@@ -75,5 +75,5 @@ fn to_text(
         count(summary.vertices),
         bytes(size),
         facts(&args.vector, &summary.heights, manifest),
-    )
+    ) + &summary.spans.as_ref().map(spans_text).unwrap_or_default()
 }

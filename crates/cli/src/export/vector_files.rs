@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_export::{Coordinates, ExportError, VectorFormat};
+use corniche_export::{Coordinates, ExportError, SpanFacts, VectorFormat};
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::Manifest;
 
@@ -13,6 +13,7 @@ use crate::{
     failure::Failure,
     named_output::{NamedOutput, named},
     progress::Progress,
+    table::Digits,
 };
 
 /// Memory for sorting pieces by their objects.
@@ -67,5 +68,21 @@ pub(crate) fn facts(args: &VectorArgs, heights: &str, manifest: &Manifest) -> St
         in_line(coordinates),
         in_line(heights),
         in_line(&manifest.attribution.join("; ")),
+    )
+}
+
+/// A line of bridges and tunnels, and of what is to be known of them; nothing where there is none.
+pub(super) fn spans_text(facts: &SpanFacts) -> String {
+    if facts.spans == 0 {
+        return String::new();
+    }
+    let count = |number| Digits::of_notes().count(number);
+    let reasons =
+        facts.reasons.iter().map(|(reason, number)| format!(", {reason} {}", count(*number)));
+    format!(
+        "\nbridges and tunnels: {} with {} crossings; their heights are estimates{}",
+        count(facts.spans),
+        count(facts.crossings),
+        reasons.collect::<String>(),
     )
 }

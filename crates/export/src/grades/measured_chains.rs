@@ -8,6 +8,7 @@ use std::{
 use corniche_geom::{IndexLists, LatticePoint};
 use corniche_network::{Breaks, ChainNumber, Chains, Link, Network, NodeNumber};
 use corniche_roads::Structure;
+use corniche_spans::{Decks, Spans, crossings};
 use corniche_work::{Observer, Stage};
 
 use super::{
@@ -20,7 +21,7 @@ use crate::{dem_ground::DemNodes, error::ExportError, places::Places};
 /// Chains are told of after so many.
 const TOLD_CHAINS: usize = 1024;
 
-/// The chains of a network, cut where bridges and tunnels begin, with what their heights are.
+/// The chains of a network, cut where bridges and tunnels begin, with their heights.
 pub(crate) struct MeasuredChains<'a> {
     network: &'a Network,
     places: &'a Places<'a>,
@@ -39,6 +40,8 @@ pub(crate) struct MeasuredChains<'a> {
     nodes_m: Vec<f64>,
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
+    /// Bridges and tunnels on the ground of their supports, and on the smooth lines there.
+    decks: [Decks; 2],
     /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
     ring_starts_m: HashMap<usize, f64>,
 }
@@ -85,6 +88,10 @@ impl<'a> MeasuredChains<'a> {
         observer: &dyn Observer,
     ) -> Result<Self, ExportError> {
         let chains = Chains::of(network, Breaks::JunctionsAndStructures);
+        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+        let spans = Spans::find(network, &chains, &distance_m);
+        let crossings = crossings(network, &chains, &distance_m).map_err(ExportError::Spans)?;
+        let decks = Decks::solve(spans, &crossings, |at| nodes.height_m(at))?;
         let mut measured = Self {
             network,
             places,
@@ -97,6 +104,7 @@ impl<'a> MeasuredChains<'a> {
             nodes_m: Vec::new(),
             ring_nodes: HashSet::new(),
             ring_starts_m: HashMap::new(),
+            decks: [decks.clone(), decks],
             chains,
         };
         let mut order = Vec::with_capacity(measured.chains.len());
@@ -132,6 +140,8 @@ impl<'a> MeasuredChains<'a> {
             observer.advance(Stage::ExportChains, some.len() as u64);
         }
         measured.nodes_m = node_heights(&measured, observer)?;
+        let [decks, _] = &measured.decks;
+        measured.decks[1] = decks.with_supports(|node| measured.node_m(node));
         measured.above_m = vec![f32::NAN; count];
         for some in order.chunks(TOLD_CHAINS) {
             observer.check()?;
@@ -261,10 +271,14 @@ impl<'a> MeasuredChains<'a> {
         chain.is_closed() && self.network.degree(chain.ends[0]) == 2
     }
 
-    /// The ground and the smooth line at a distance along a chain, between its stations; NaN where there is none. Over a bridge or through a tunnel
-    /// both are a straight line between its ends.
+    /// The ground and the smooth line at a distance along a chain, between its stations; NaN where there is none. Of bridges and tunnels their own
+    /// heights.
     fn heights_at(&self, number: ChainNumber, at_m: f64) -> [f64; 2] {
         let own = self.stations_of(number);
+        if own.is_empty() {
+            let height_m = |decks: &Decks| decks.height_m(number, at_m).unwrap_or(f64::NAN);
+            return self.decks.each_ref().map(height_m);
+        }
         let last = own.len().max(2) - 1;
         let (length_m, start_m) = (self.lengths_m[number.0], self.start_m(number));
         let at_m = if at_m < start_m { at_m - start_m + length_m } else { at_m - start_m };
@@ -277,17 +291,13 @@ impl<'a> MeasuredChains<'a> {
             1.0.. => to,
             _ => from + share * (to - from),
         };
-        if own.is_empty() {
-            let ends = self.chains.get(number).ends;
-            let straight = mix(ends.map(|node| self.nodes_m[self.network.index_of(node)]));
-            return [straight; 2];
-        }
         let ends = [station, station + 1].map(|station| own.start + station);
         let ground_m = mix(ends.map(|at| f64::from(self.grounds_m[at])));
         [ground_m, ground_m + mix(ends.map(|at| f64::from(self.above_m[at])))]
     }
 
-    /// The smooth lines of a way, with distances along it; in parts where it has a bridge, a tunnel or no ground.
+    /// The smooth lines of a way, with distances along it; in parts where heights are not known. Of a bridge or a tunnel the ground's height is that of
+    /// its deck, as if no ground came in its way.
     pub(crate) fn of_way(&self, way_id: i64) -> Vec<SmoothLine> {
         let mut lines = vec![SmoothLine::default()];
         let mut begin_m = 0.0;
@@ -314,10 +324,6 @@ impl<'a> MeasuredChains<'a> {
         let points: Vec<LatticePoint> = self.network.points_of_link(link).collect();
         let along = Along { distances_m: self.distances(points.iter().copied()), points };
         let own_m = along.length_m();
-        if !self.is_on_ground(number) {
-            lines.push(SmoothLine::default());
-            return own_m;
-        }
         // Its own points, and the stations of the chain between them.
         let from_m = self.link_starts_m[self.chains.place_of(number, index)];
         let stations = self.distances_within(number, [from_m, from_m + own_m]);
@@ -353,8 +359,7 @@ impl<'a> MeasuredChains<'a> {
         own_m
     }
 
-    /// The smooth line of some links in a row: distances from their beginning, and heights. Over a bridge or through a tunnel a straight line between
-    /// its ends; `None` where a height is not known.
+    /// The smooth line of some links in a row, bridges and tunnels too: distances from their beginning, and heights; `None` where one is not known.
     pub(crate) fn profile(&self, links: &[Link]) -> Option<Vec<[f64; 2]>> {
         let mut profile: Vec<[f64; 2]> = Vec::new();
         let mut begin_m = 0.0;
@@ -386,8 +391,12 @@ impl<'a> MeasuredChains<'a> {
         self.distances(self.network.points_of_link(link)).last().copied().unwrap_or_default()
     }
 
-    /// Two distances along a chain, and those of the stations between them.
+    /// Two distances along a chain, and those of the stations between them; of a bridge or a tunnel those at which it bends.
     fn distances_within(&self, number: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
+        if self.stations_of(number).is_empty() {
+            let bends_m = self.decks[0].bends_m(number, [from_m, to_m]);
+            return [from_m].into_iter().chain(bends_m).chain([to_m]).collect();
+        }
         let last = self.stations_of(number).len().max(2) - 1;
         let (spacing_m, start_m) = (self.lengths_m[number.0] / last as f64, self.start_m(number));
         let first = ((from_m - start_m) / spacing_m).floor() as i64 + 1;
@@ -399,6 +408,24 @@ impl<'a> MeasuredChains<'a> {
     /// The height of a node that several roads share; `None` of others, and where it is not known.
     pub(crate) fn node_m(&self, node: NodeNumber) -> Option<f64> {
         Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
+    }
+
+    /// Bridges and tunnels, on the ground of their supports.
+    pub(crate) fn decks(&self) -> &Decks {
+        &self.decks[0]
+    }
+
+    /// The smooth line of a link, in the direction of its way.
+    pub(crate) fn of_link(&self, link: Link) -> Vec<SmoothLine> {
+        let (number, index) = self.chains.of_link(link);
+        let mut lines = vec![SmoothLine::default()];
+        self.add_stretch(number, index, 0.0, &mut lines);
+        lines
+    }
+
+    /// Where lattice points lie.
+    pub(crate) fn places(&self) -> &'a Places<'a> {
+        self.places
     }
 
     /// The network.

@@ -94,15 +94,21 @@ impl SmoothLine {
 
     /// The height at a distance; that of the nearest end beyond them, NaN of an empty line.
     pub(crate) fn height_m(&self, along_m: f64) -> f64 {
+        self.at(along_m).map_or(f64::NAN, |station| station.height_m)
+    }
+
+    /// Whether it lies along a whole stretch of its way.
+    pub(crate) fn reaches(&self, [from_m, to_m]: [f64; 2]) -> bool {
+        let ends = self.stations.first().zip(self.stations.last());
+        ends.is_some_and(|(first, last)| first.along_m <= from_m && to_m <= last.along_m)
+    }
+
+    /// The place at a distance, or the nearest end beyond them; `None` of an empty line.
+    pub(crate) fn at(&self, along_m: f64) -> Option<Station> {
         let after = self.stations.partition_point(|station| station.along_m < along_m);
         let [from, to] = [after.saturating_sub(1), after.min(self.stations.len().max(1) - 1)];
-        match (self.stations.get(from), self.stations.get(to)) {
-            (Some(from), Some(to)) => {
-                let ends = [from.along_m, to.along_m];
-                from.towards(*to, along_m.clamp(ends[0], ends[1])).height_m
-            }
-            _ => f64::NAN,
-        }
+        let (from, to) = (self.stations.get(from)?, self.stations.get(to)?);
+        Some(from.towards(*to, along_m.clamp(from.along_m, to.along_m)))
     }
 
     /// Rise over run of 50 m around a distance, or of what the line has of them.

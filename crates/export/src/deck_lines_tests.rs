@@ -1,0 +1,80 @@
+//! Decks over ground: where they lie, where they meet it, and which vertices are left.
+
+use super::*;
+use crate::grades::Station;
+
+fn vertex(east: f64, z_m: f64, is_source: bool) -> Vertex {
+    Vertex { at: [1000.0 * east, 0.0], z_m, is_source }
+}
+
+fn distance_m(from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1]) / 1000.0
+}
+
+/// A deck through places `(along, height)`, one metre of the lattice for each of the way.
+fn deck(places: &[(f64, f64)]) -> SmoothLine {
+    let station = |&(along_m, ground_m): &(f64, f64)| Station {
+        at: [1000.0 * along_m, 0.0],
+        along_m,
+        height_m: 0.0,
+        ground_m,
+    };
+    SmoothLine { stations: places.iter().map(station).collect() }
+}
+
+fn raised(structure: Structure, ground: &[Vertex], deck: SmoothLine) -> Vec<(f64, f64)> {
+    let found = on_deck(structure, ground, (&[deck], 10.0), &distance_m).unwrap();
+    found.iter().map(|vertex| (vertex.at[0] / 1000.0, vertex.z_m)).collect()
+}
+
+/// Over a gorge only the ends are left, and points of the way.
+#[test]
+fn a_bridge_leaves_the_ground_beneath_it() {
+    let ground = [
+        vertex(0.0, 100.0, true),
+        vertex(10.0, 60.0, false),
+        vertex(25.0, 40.0, true),
+        vertex(30.0, 55.0, false),
+        vertex(40.0, 108.0, true),
+    ];
+    let found = raised(Structure::Bridge, &ground, deck(&[(0.0, 100.0), (40.0, 108.0)]));
+    assert_eq!(found, [(0.0, 100.0), (25.0, 105.0), (40.0, 108.0)]);
+}
+
+/// Where a hill is in the way the bridge lies on it, and the tunnel beneath dips under a valley; both have a vertex where they meet the ground.
+#[test]
+fn bridges_are_never_below_the_ground_and_tunnels_never_above() {
+    let ground = |sign: f64| {
+        [
+            (0.0, 0.0, true),
+            (10.0, -10.0, false),
+            (20.0, 10.0, false),
+            (30.0, -10.0, false),
+            (40.0, 0.0, true),
+        ]
+        .map(|(east, z_m, is_source)| vertex(east, sign * z_m, is_source))
+    };
+    let flat = || deck(&[(0.0, 0.0), (40.0, 0.0)]);
+    let over = [(0.0, 0.0), (15.0, 0.0), (20.0, 10.0), (25.0, 0.0), (40.0, 0.0)];
+    assert_eq!(raised(Structure::Bridge, &ground(1.0), flat()), over);
+    let under = over.map(|(east, z_m)| (east, 0.0 - z_m));
+    assert_eq!(raised(Structure::Tunnel, &ground(-1.0), flat()), under);
+}
+
+/// The bends of a lift are vertices, also on a part of the way.
+#[test]
+fn a_deck_has_vertices_where_it_bends() {
+    let tent = || deck(&[(0.0, 50.0), (10.0, 50.0), (20.0, 51.0), (30.0, 50.0), (40.0, 50.0)]);
+    let ground = [vertex(5.0, 0.0, true), vertex(14.0, 0.0, false), vertex(40.0, 50.0, true)];
+    let found = raised(Structure::Bridge, &ground, tent());
+    assert_eq!(found, [(5.0, 50.0), (10.0, 50.0), (20.0, 51.0), (30.0, 50.0), (40.0, 50.0)]);
+}
+
+#[test]
+fn what_lies_elsewhere_or_on_the_ground_is_no_deck() {
+    let ground = [vertex(0.0, 0.0, true), vertex(40.0, 0.0, true)];
+    let way = [deck(&[(0.0, 5.0), (40.0, 5.0)])];
+    assert_eq!(on_deck(Structure::Ground, &ground, (&way, 10.0), &distance_m), None);
+    let beside = [Vertex { at: [0.0, 5000.0], ..ground[0] }, ground[1]];
+    assert_eq!(on_deck(Structure::Bridge, &beside, (&way, 10.0), &distance_m), None);
+}
