@@ -1,7 +1,5 @@
 //! The heights of decks and tunnels.
 
-use std::rc::Rc;
-
 use corniche_network::{ChainNumber, NodeNumber};
 
 use crate::{
@@ -36,9 +34,9 @@ pub struct FreeHeight {
 }
 
 /// How high bridges and tunnels are.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Decks {
-    spans: Rc<Spans>,
+    spans: Spans,
     /// The height of each joint, NaN where it is not known.
     joints_m: Vec<f64>,
     /// The tents on each edge.
@@ -80,7 +78,7 @@ impl Decks {
         let mut decks = Self {
             joints_m,
             tents: vec![Vec::new(); spans.edges.len()],
-            spans: Rc::new(spans),
+            spans,
             free_heights: Vec::with_capacity(crossings.len()),
             problems,
         };
@@ -93,15 +91,11 @@ impl Decks {
         Ok(decks)
     }
 
-    /// The same spans with other heights at their supports, lifted as much: `held_m` gives them by node, `None` for those of these decks.
-    #[must_use]
-    pub fn with_supports(&self, held_m: impl Fn(NodeNumber) -> Option<f64>) -> Self {
-        let of_joint = |(joint, own_m): (&crate::Joint, &f64)| match joint.support {
-            Some(_) => held_m(joint.node).unwrap_or(*own_m),
-            None => f64::NAN,
-        };
-        let held_m: Vec<f64> = self.spans.joints.iter().zip(&self.joints_m).map(of_joint).collect();
-        Self { joints_m: solved(&self.spans, &held_m), ..self.clone() }
+    /// The nodes at which spans are carried, with their heights; those without ground are left out.
+    pub fn supports(&self) -> impl Iterator<Item = (NodeNumber, f64)> + '_ {
+        let all = self.spans.joints.iter().zip(&self.joints_m);
+        all.filter(|(joint, height_m)| joint.support.is_some() && height_m.is_finite())
+            .map(|(joint, &height_m)| (joint.node, height_m))
     }
 
     /// The spans.

@@ -177,22 +177,6 @@ fn ties_and_missing_ground_are_told() {
     );
 }
 
-/// Other heights at the supports: the base is solved again, the lift stays.
-#[test]
-fn a_deck_is_carried_by_other_heights() {
-    solved(
-        &over_gorge(80),
-        |_| Some(100.0),
-        |decks, network, chains| {
-            let other =
-                decks.with_supports(|node| (network.node_id(node) == Some(3)).then_some(120.0));
-            for (along_m, expected) in [(0.0, 100.0), (80.0, 109.0), (200.0, 120.0)] {
-                assert!((at(&other, network, chains, 2, along_m) - expected).abs() < 1e-9);
-            }
-        },
-    );
-}
-
 proptest! {
     /// Splitting and turning ways, and adding a constant to the ground, changes nothing else.
     #[test]

@@ -121,6 +121,30 @@ fn are_within(features: &[(Row, Vec<Line>)], dem: &Bilinear, field: &str) -> usi
     compared
 }
 
+/// Bridges and tunnels as this test knows them: on the ground at both ends, never below it, or above; those without a crossing straight.
+fn are_on_decks(features: &[(Row, Vec<Line>)], dem: &Bilinear) {
+    let mut straight = 0;
+    for (row, lines) in features {
+        let [line] = &lines[..] else { panic!("{row:?}") };
+        let away = if row["bridge"] == "1" { 1.0 } else { -1.0 };
+        let over_m = |at: &[f64; 3]| away * (at[2] - dem.at([at[0], at[1]]).unwrap());
+        let (first, last) = (line[0], line[line.len() - 1]);
+        assert!(over_m(&first).abs() < 2e-4 && over_m(&last).abs() < 2e-4, "{row:?}");
+        assert!(line.iter().all(|at| over_m(at) > -2e-4), "{row:?}");
+        let is_clear = line[1..line.len() - 1].iter().all(|at| over_m(at) > 1e-3);
+        if row["free_height_m"].is_empty() && is_clear {
+            straight += 1;
+            let distance_m = |to: &[f64; 3]| (to[0] - first[0]).hypot(to[1] - first[1]);
+            let grade = (last[2] - first[2]) / distance_m(&last);
+            // The ways of the sample's bridges are nearly straight, too.
+            for at in line.iter().filter(|_| row["bridge"] == "1") {
+                assert!((first[2] + grade * distance_m(at) - at[2]).abs() < 0.05, "{row:?} {at:?}");
+            }
+        }
+    }
+    assert!(straight >= 3, "{straight} of {}", features.len());
+}
+
 fn pass_inputs() -> [PathBuf; 2] {
     ["pass/pass-dem.tif", "pass/pass.osm.pbf"].map(sample)
 }
@@ -141,7 +165,10 @@ fn roads_have_the_heights_of_the_elevation_file() {
     succeed(export(&package, "roads", &on_ground, &[]));
     let (roads, ground) = (features(&on_dem), features(&on_ground));
     let read = Bilinear::open(&dem);
-    assert!(are_within(&roads, &read, "height_tolerance_m") > 10_000);
+    let (of_decks, of_dem): (Vec<_>, Vec<_>) =
+        roads.iter().cloned().partition(|(row, _)| row["height_source"] != "dem");
+    assert!(are_within(&of_dem, &read, "height_tolerance_m") > 10_000);
+    are_on_decks(&of_decks, &read);
     // The same lines on the package's triangles are as far off as the field says.
     let of_ground: Vec<(Row, Vec<Line>)> = ground
         .iter()
@@ -165,20 +192,17 @@ fn roads_have_the_heights_of_the_elevation_file() {
     assert!(shared > 20);
     let mut structures = 0;
     for ((on_dem, _), (on_ground, _)) in roads.iter().zip(&ground) {
-        let source = match (&*on_dem["bridge"], &*on_dem["tunnel"]) {
-            ("1", _) => "ground_under_bridge",
-            (_, "1") => "ground_over_tunnel",
-            _ => "dem",
+        let (source, of_ground) = match (&*on_dem["bridge"], &*on_dem["tunnel"]) {
+            ("1", _) => ("deck", "ground_under_bridge"),
+            (_, "1") => ("tunnel", "ground_over_tunnel"),
+            _ => ("dem", "ground"),
         };
-        assert_eq!(on_dem["height_source"], source);
-        assert_eq!(on_ground["height_source"], source.replace("dem", "ground"));
-        let names = ["ascent_m", "descent_m", "ground_ascent_m", "smoothing_max_m", "smoothed_by"];
-        for name in names {
-            assert_eq!(on_dem[name].is_empty(), source != "dem", "{name}: {on_dem:?}");
-        }
+        assert_eq!([&on_dem["height_source"], &on_ground["height_source"]], [source, of_ground]);
+        assert_eq!(on_dem["smoothed_by"], "chain", "{on_dem:?}");
         assert_eq!(on_ground["ascent_m"].is_empty(), source != "dem", "{on_ground:?}");
+        assert_eq!(on_dem["height_tolerance_m"].is_empty(), source != "dem", "{on_dem:?}");
         if source == "dem" {
-            assert_eq!(on_dem["smoothed_by"], "chain", "{on_dem:?}");
+            assert!(on_dem["free_height_m"].is_empty(), "{on_dem:?}");
             // Noise makes the ground's own ups and downs longer, never shorter than by what ends are smoothed.
             let up = |name: &str| number(on_dem, name);
             let most_m = 2.0 * up("smoothing_max_m") + 1e-3;
@@ -215,7 +239,7 @@ fn parts_of_roads_have_the_grades_of_the_whole() {
     }
     let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
     for (row, _) in run("pieces.gpkg", &["--pieces"]) {
-        if row["height_source"] == "dem" {
+        if !row["ascent_m"].is_empty() {
             assert!(
                 row["steepest_pct"].is_empty() || number(&row, "length_2d_m") >= 50.0,
                 "{row:?}"
@@ -229,7 +253,7 @@ fn parts_of_roads_have_the_grades_of_the_whole() {
     let mut halves: BTreeMap<String, [f64; 2]> = BTreeMap::new();
     for (name, bounds) in [("west.gpkg", "9.0,46,9.53,47.5"), ("east.gpkg", "9.53,46,10,47.5")] {
         for (row, _) in run(name, &["--bounds", bounds]) {
-            if row["height_source"] == "dem" {
+            if !row["ascent_m"].is_empty() {
                 assert_eq!(row["smoothed_by"], "chain", "{row:?}");
                 let own = halves.entry(row["way_id"].clone()).or_default();
                 own[0] += number(&row, "ascent_m");
@@ -237,7 +261,7 @@ fn parts_of_roads_have_the_grades_of_the_whole() {
             }
         }
     }
-    for (row, _) in whole.iter().filter(|(row, _)| row["height_source"] == "dem") {
+    for (row, _) in &whole {
         let own = halves[&row["way_id"]];
         for (found, name) in own.iter().zip(["ascent_m", "descent_m"]) {
             assert!((found - number(row, name)).abs() < 0.05, "{name}: {found} {row:?}");
@@ -402,8 +426,9 @@ fn edges_meet_and_bridges_are_straight() {
     assert!((number(over, "bridge_share") - 1.0 / 3.0).abs() < 0.02, "{over:?}");
     assert_eq!((number(side, "bridge_share"), number(tunnel, "tunnel_share")), (0.0, 1.0));
     assert_eq!(over["to_height_m"], side["from_height_m"]);
-    // A tunnel that ends nowhere has no height at its other end.
-    assert!(tunnel["ascent_m"].is_empty() && tunnel["to_height_m"].is_empty(), "{tunnel:?}");
+    // A tunnel that ends nowhere is level.
+    let of_tunnel = ["ascent_m", "descent_m"].map(|name| number(tunnel, name));
+    assert_eq!((of_tunnel, &tunnel["to_height_m"]), ([0.0; 2], &side["from_height_m"]));
     // The bridge is straight over a ridge of 30 m.
     assert!(number(over, "descent_m") < 5.0, "{over:?}");
     assert_eq!(
@@ -412,6 +437,49 @@ fn edges_meet_and_bridges_are_straight() {
     );
     // The plane rises 1.2 m in 20 m of the map.
     assert!((number(over, "weighted_grade_pct") - 6.0).abs() < 0.5, "{over:?}");
+}
+
+/// A bridge over a road, however it is split and turned: a metre above it, by the same totals.
+#[test]
+fn decks_do_not_depend_on_how_bridges_are_split() {
+    let folder = tempfile::tempdir().unwrap();
+    let ground: [PlainWay<'_>; 3] = [(&[1, 2], ""), (&[5, 6], ""), (&[4, 9], "")];
+    let variants: [(&str, &[PlainWay<'_>]); 3] = [
+        ("deck", &[(&[2, 3, 4], "bridge")]),
+        ("split-deck", &[(&[2, 3], "bridge"), (&[3, 4], "bridge")]),
+        ("turned-deck", &[(&[4, 3], "bridge"), (&[3, 2], "bridge")]),
+    ];
+    let mut all: Vec<[f64; 4]> = Vec::new();
+    for (name, bridges) in variants {
+        let [dem, osm, package] = package_of(folder.path(), name, &[&ground, bridges].concat());
+        let crs = ["--crs", "EPSG:4979", "--heights", "as-is"];
+        let inputs = [&["--dem", text(&dem), "--osm", text(&osm)][..], &crs].concat();
+        let target = folder.path().join(format!("{name}.gpkg"));
+        succeed(export(&package, "roads", &target, &inputs));
+        let roads = features(&target);
+        let mut own = [0.0, 0.0, 0.0, f64::INFINITY];
+        for (row, lines) in roads.iter().filter(|(row, _)| row["bridge"] == "1") {
+            assert_eq!(row["height_source"], "deck");
+            own[0] += number(row, "ascent_m") + number(row, "descent_m");
+            own[1] += number(row, "ground_ascent_m") + number(row, "ground_descent_m");
+            let heights = lines.iter().flatten().map(|at| at[2]);
+            own[2] = heights.fold(own[2], f64::max);
+            own[3] = row["free_height_m"].parse().unwrap_or(own[3]).min(own[3]);
+        }
+        assert!((own[3] - 1.0).abs() < 1e-3, "{own:?}");
+        all.push(own);
+        let heights_at = |lon: f64| -> Vec<u64> {
+            let lines = roads.iter().flat_map(|(_, lines)| lines.iter().flatten());
+            lines.filter(|at| (at[0] - lon).abs() < 1e-7).map(|at| at[2].to_bits()).collect()
+        };
+        for lon in [8.996, 9.008] {
+            let [one, other] = heights_at(lon)[..] else { panic!("{lon}") };
+            assert_eq!(one, other);
+        }
+    }
+    for own in &all[1..] {
+        assert!(own.iter().zip(&all[0]).all(|(one, other)| (one - other).abs() < 0.01), "{all:?}");
+    }
 }
 
 /// Other elevation files and extracts are refused, and nothing is written.
@@ -464,5 +532,7 @@ fn roads_of_liechtenstein_have_the_heights_of_srtm() {
     let target = at("roads.fgb");
     let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
     succeed(export(&package, "roads", &target, &inputs));
-    assert!(are_within(&features(&target), &Bilinear::open(&dem), "height_tolerance_m") > 100_000);
+    let mut roads = features(&target);
+    roads.retain(|(row, _)| row["height_source"] == "dem");
+    assert!(are_within(&roads, &Bilinear::open(&dem), "height_tolerance_m") > 100_000);
 }

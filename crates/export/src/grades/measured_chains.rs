@@ -40,8 +40,8 @@ pub(crate) struct MeasuredChains<'a> {
     nodes_m: Vec<f64>,
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
-    /// Bridges and tunnels on the ground of their supports, and on the smooth lines there.
-    decks: [Decks; 2],
+    /// Bridges and tunnels, whose supports are as high as the ground there.
+    decks: Decks,
     /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
     ring_starts_m: HashMap<usize, f64>,
 }
@@ -104,7 +104,7 @@ impl<'a> MeasuredChains<'a> {
             nodes_m: Vec::new(),
             ring_nodes: HashSet::new(),
             ring_starts_m: HashMap::new(),
-            decks: [decks.clone(), decks],
+            decks,
             chains,
         };
         let mut order = Vec::with_capacity(measured.chains.len());
@@ -140,8 +140,10 @@ impl<'a> MeasuredChains<'a> {
             observer.advance(Stage::ExportChains, some.len() as u64);
         }
         measured.nodes_m = node_heights(&measured, observer)?;
-        let [decks, _] = &measured.decks;
-        measured.decks[1] = decks.with_supports(|node| measured.node_m(node));
+        // Lines are held where bridges and tunnels begin: else both sides of a short bridge would be smoothed apart, and the bridge be steep.
+        for (node, height_m) in measured.decks.supports() {
+            measured.nodes_m[network.index_of(node)] = height_m;
+        }
         measured.above_m = vec![f32::NAN; count];
         for some in order.chunks(TOLD_CHAINS) {
             observer.check()?;
@@ -276,8 +278,7 @@ impl<'a> MeasuredChains<'a> {
     fn heights_at(&self, number: ChainNumber, at_m: f64) -> [f64; 2] {
         let own = self.stations_of(number);
         if own.is_empty() {
-            let height_m = |decks: &Decks| decks.height_m(number, at_m).unwrap_or(f64::NAN);
-            return self.decks.each_ref().map(height_m);
+            return [self.decks.height_m(number, at_m).unwrap_or(f64::NAN); 2];
         }
         let last = own.len().max(2) - 1;
         let (length_m, start_m) = (self.lengths_m[number.0], self.start_m(number));
@@ -394,7 +395,7 @@ impl<'a> MeasuredChains<'a> {
     /// Two distances along a chain, and those of the stations between them; of a bridge or a tunnel those at which it bends.
     fn distances_within(&self, number: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
         if self.stations_of(number).is_empty() {
-            let bends_m = self.decks[0].bends_m(number, [from_m, to_m]);
+            let bends_m = self.decks.bends_m(number, [from_m, to_m]);
             return [from_m].into_iter().chain(bends_m).chain([to_m]).collect();
         }
         let last = self.stations_of(number).len().max(2) - 1;
@@ -410,9 +411,9 @@ impl<'a> MeasuredChains<'a> {
         Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
     }
 
-    /// Bridges and tunnels, on the ground of their supports.
+    /// Bridges and tunnels, whose supports are as high as the ground there.
     pub(crate) fn decks(&self) -> &Decks {
-        &self.decks[0]
+        &self.decks
     }
 
     /// The smooth line of a link, in the direction of its way.
