@@ -1,6 +1,6 @@
 //! The classes of boundaries, from countries to protected areas, and the tags that make them.
 
-use crate::named_classes::named_classes;
+use crate::{classed_layer::ClassTable, named_classes::named_classes};
 
 named_classes! {
     /// What a boundary divides. A class with a lower number is more important.
@@ -24,6 +24,19 @@ named_classes! {
 }
 
 impl BoundaryClass {
+    /// Districts and parks are too small to be drawn where cells are large.
+    pub(crate) const TABLE: ClassTable = ClassTable {
+        title: "Boundaries",
+        key: "boundary",
+        of_tags: |tags| Self::of_tags(tags).map(Self::number),
+        has_relations: true,
+        names: &Self::NAMES,
+        coarsest_cells_m: &{
+            let (county, small) = (Some(250.0), Some(80.0));
+            [None, None, None, county, county, small, small, small]
+        },
+    };
+
     /// OSM's `admin_level` of its relations; `None` for protected areas.
     #[must_use]
     pub const fn admin_level(self) -> Option<u8> {

@@ -13,6 +13,9 @@ macro_rules! named_classes {
             /// How many classes there are.
             pub const COUNT: usize = [$($name),+].len();
 
+            /// The names of all classes, in order of their numbers.
+            pub const NAMES: [&str; Self::COUNT] = [$($name),+];
+
             /// All classes, in order of their numbers.
             pub const ALL: [Self; Self::COUNT] = [$(Self::$variant),+];
 
@@ -31,9 +34,7 @@ macro_rules! named_classes {
             /// Its name in tables, settings and styles.
             #[must_use]
             pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $name,)+
-                }
+                Self::NAMES[self as usize]
             }
 
             /// The class with this name.

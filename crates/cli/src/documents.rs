@@ -7,6 +7,7 @@ pub(crate) mod areas;
 pub(crate) mod boundaries;
 pub(crate) mod growth;
 pub(crate) mod info;
+pub(crate) mod lines;
 pub(crate) mod plan;
 pub(crate) mod progress;
 pub(crate) mod tile;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use corniche_areas::{AreaClass, BoundaryClass};
+use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_geom::Cell;
 use corniche_tileset::{
-    AreasRecord, BoundariesRecord, Counts, DatumOperationRecord, Manifest, SampleErrorRecord,
+    AreasRecord, Counts, DatumOperationRecord, LinesRecord, Manifest, SampleErrorRecord,
     ScaleRecord,
 };
 
@@ -109,8 +109,10 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if let Some(areas) = &manifest.areas {
         say(area_texts(areas, digits));
     }
-    if let Some(boundaries) = &manifest.boundaries {
-        say(boundary_texts(boundaries, digits));
+    for layer in ClassedLayer::ALL {
+        if let Some(lines) = manifest.lines(layer) {
+            say(line_texts(layer, lines, digits));
+        }
     }
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
@@ -148,18 +150,19 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
     )
 }
 
-/// What became of boundaries, and what they take on each level.
-fn boundary_texts(boundaries: &BoundariesRecord, digits: Digits) -> String {
-    let BoundariesRecord { counts, levels } = boundaries;
-    let mut classes = Table::new(["boundaries", "ways", "km"]);
+/// What became of a layer of lines, and what it takes on each level.
+fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> String {
+    let LinesRecord { counts, levels } = lines;
+    let mut classes = Table::new([layer.name(), "ways", "km"]);
     for kept in &counts.kept {
-        let name = BoundaryClass::from_number(kept.class).map_or("?", BoundaryClass::name);
+        let name = layer.class(kept.class).map_or("?", LineClass::name);
         let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
         classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
     }
     let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
     format!(
-        "Boundaries: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
+        "{}: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
+        layer.table().title,
         digits.count(counts.ways),
         classes.to_text(),
         lost_text("ways", &counts.lost, digits),

@@ -7,7 +7,7 @@ use std::{
     thread,
 };
 
-use corniche_areas::AreaTable;
+use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_geom::Cell;
 use corniche_pipeline::{
     OpenOptions, PhotoChoice, PhotoSettings, PlanOptions, PlanSettings, Polygon, Resources,
@@ -95,7 +95,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     }
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;
-    let boundaries = boundaries(&args.areas, &osm)?;
+    let lines = lines(&args.areas, &osm)?;
     let cut = Cut {
         bounds_deg: bounds_deg(terrain.bounds, &osm)?.or(base.terrain.plan.bounds_deg),
         polygon: args.polygon.map(polygon).transpose()?,
@@ -105,7 +105,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         terrain_of: args.terrain_of,
         osm,
         areas,
-        boundaries,
+        lines,
         photo,
         attribution,
         terrain: terrain_settings(terrain, base.terrain, cut, args.force)?,
@@ -254,16 +254,25 @@ fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable
     }
 }
 
-/// Whether boundaries are wanted.
-fn boundaries(options: &AreaOptions, osm: &[PathBuf]) -> Result<bool, Failure> {
-    match options.boundaries.as_deref() {
-        None | Some("off") => Ok(false),
-        Some("on") if osm.is_empty() => Err(Failure::unusable(
-            "--boundaries takes boundaries from an extract; give one with --osm",
-        )),
-        Some("on") => Ok(true),
-        Some(other) => Err(Failure::unusable(format!("boundaries is on or off, not {other:?}"))),
+/// The layers of lines that are wanted.
+fn lines(options: &AreaOptions, osm: &[PathBuf]) -> Result<Vec<ClassedLayer>, Failure> {
+    let mut wanted = Vec::new();
+    for layer in ClassedLayer::ALL {
+        let name = layer.name();
+        match options.lines(layer) {
+            None | Some("off") => {}
+            Some("on") if osm.is_empty() => {
+                return Err(Failure::unusable(format!(
+                    "--{name} takes {name} from an extract; give one with --osm"
+                )));
+            }
+            Some("on") => wanted.push(layer),
+            Some(other) => {
+                return Err(Failure::unusable(format!("{name} is on or off, not {other:?}")));
+            }
+        }
     }
+    Ok(wanted)
 }
 
 fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {

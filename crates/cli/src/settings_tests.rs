@@ -45,7 +45,7 @@ fn settings_of(text: &str) -> String {
     let credits = (terrain.attribution.clone(), photo.attribution.clone(), terrain.bounds);
     let terrain = terrain_settings(terrain, usual_terrain().terrain, cut, false).unwrap();
     let photo = photo_choice(&[PathBuf::from("a.tif")], &photo).unwrap();
-    let areas = (area_table(&areas, &[]).unwrap(), boundaries(&areas, &[]).unwrap());
+    let areas = (area_table(&areas, &[]).unwrap(), lines(&areas, &[]).unwrap());
     format!("{credits:?} {terrain:?} {:?} {areas:?} {photo:?}", road_settings(roads).unwrap())
 }
 

@@ -1,9 +1,10 @@
 //! `corniche tile`: one decoded tile, for other tools to check packages with.
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
-    AreaRecord, BoundaryRecord, FilePackage, Manifest, Sections, Terrain, TilePayload,
-    decode_areas, decode_boundaries,
+    AreaRecord, FilePackage, LineRecord, Manifest, Sections, Terrain, TilePayload, decode_areas,
+    decode_lines,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -48,7 +49,7 @@ fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Fai
 /// What a tile has of the layers in plan.
 struct PlanLayers {
     areas: Vec<AreaRecord>,
-    boundaries: Vec<BoundaryRecord>,
+    boundaries: Vec<LineRecord>,
 }
 
 impl PlanLayers {
@@ -56,7 +57,7 @@ impl PlanLayers {
         let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
         let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
         let areas = decode_areas(&bytes, id, &package.manifest().frame);
-        let boundaries = decode_boundaries(&bytes, id);
+        let boundaries = decode_lines(&bytes, id, ClassedLayer::Boundaries);
         Ok(Self {
             areas: areas.map_err(|error| unusable(&error))?,
             boundaries: boundaries.map_err(|error| unusable(&error))?,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_tileset::{AreasRecord, BoundariesRecord, Counts, Manifest, VerticalRecord};
+use corniche_tileset::{AreasRecord, Counts, LinesRecord, Manifest, VerticalRecord};
 
 use crate::{
     escaped::in_line,
@@ -151,7 +151,7 @@ fn layers(manifest: &Manifest, digits: Digits) -> Option<String> {
         let kept = kept(counts.kept.iter().map(|of| of.areas).sum(), counts.objects);
         format!("areas        {kept} objects kept")
     });
-    let boundaries = manifest.boundaries.as_ref().map(|BoundariesRecord { counts, .. }| {
+    let boundaries = manifest.boundaries.as_ref().map(|LinesRecord { counts, .. }| {
         let kept = kept(counts.kept.iter().map(|of| of.ways).sum(), counts.ways);
         format!("{kept} ways kept")
     });

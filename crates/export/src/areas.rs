@@ -79,7 +79,7 @@ pub fn export_areas(
 ) -> Result<AreasSummary, ExportError> {
     if package.manifest().areas.is_none() {
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoLayer { package, layer: Areas::NAME });
+        return Err(ExportError::NoLayer { package, layer: NAME });
     }
     let source = FeatureSource::new(package, request, Areas::SHAPES)?;
     let level = source.level;
@@ -97,6 +97,9 @@ fn rounding_m(package: &FilePackage, level: u8) -> f64 {
     if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 }
 }
 
+/// See [`Features::name`].
+const NAME: &str = "areas";
+
 /// Areas on their way into a file.
 struct Areas {
     rounding_m: f64,
@@ -106,8 +109,11 @@ struct Areas {
 impl Features for Areas {
     type Class = AreaClass;
     type Piece = PlanPiece;
-    const NAME: &'static str = "areas";
     const SHAPES: ShapeKind = ShapeKind::Polygons;
+
+    fn name(&self) -> &'static str {
+        NAME
+    }
 
     fn about(&self, source: &FeatureSource<'_, AreaClass>) -> About {
         About {
@@ -123,9 +129,8 @@ impl Features for Areas {
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, ExportError> {
         let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
-        let areas = decode_areas(&bytes, tile, &package.manifest().frame).map_err(|source| {
-            ExportError::Damaged { layer: Self::NAME, source: Box::new(source) }
-        })?;
+        let areas = decode_areas(&bytes, tile, &package.manifest().frame)
+            .map_err(|source| ExportError::Damaged { layer: NAME, source: Box::new(source) })?;
         let wanted = areas.into_iter().filter(|area| request.classes.contains(&area.class));
         Ok(wanted
             .map(|area| PlanPiece {

@@ -24,10 +24,11 @@ pub(crate) trait Features {
     type Class;
     /// What one tile holds of an object; pieces sort by objects.
     type Piece: SortRecord;
-    /// The layer's name in the file.
-    const NAME: &'static str;
     /// Its geometries.
     const SHAPES: ShapeKind;
+
+    /// The layer's name in the file.
+    fn name(&self) -> &'static str;
 
     /// What the file says of the layer.
     fn about(&self, source: &FeatureSource<'_, Self::Class>) -> About;
@@ -135,7 +136,7 @@ pub(crate) fn write_features<F: Features>(
     let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
     let pieces =
         SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
-    let layer = source.layer(F::NAME, F::SHAPES, features.about(source));
+    let layer = source.layer(features.name(), F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
     pieces.for_each(observer, F::object, |pieces| {
         features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))

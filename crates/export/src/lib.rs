@@ -32,7 +32,6 @@
 //! writes no file but the one it is asked for.
 
 mod areas;
-mod boundaries;
 mod bounds;
 mod cut;
 mod cut_polygon;
@@ -54,6 +53,7 @@ mod growth;
 mod height_bound;
 mod join;
 mod laid_lines;
+mod lines;
 mod measures;
 mod mesh;
 mod piece;
@@ -74,7 +74,6 @@ mod vector;
 mod whole_lines;
 
 pub use areas::{AreasSummary, export_areas};
-pub use boundaries::{BoundariesSummary, export_boundaries};
 pub use bounds::DegreeBounds;
 pub use datum::with_vertical_crs;
 pub use edges::{EdgesSummary, edge_fields, export_edges};
@@ -84,6 +83,7 @@ pub use feature::{HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use geotiff::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
+pub use lines::{LinesSummary, export_lines};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 pub use profile::{Profile, ProfileGrades, ProfilePart, ProfilePoint, profile, profile_of_lines};
 pub use quantized_mesh::{

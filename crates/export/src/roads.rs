@@ -140,8 +140,11 @@ struct OnDem<'a> {
 impl Features for Roads<'_> {
     type Class = FunctionalRoadClass;
     type Piece = Piece;
-    const NAME: &'static str = "roads";
     const SHAPES: ShapeKind = ShapeKind::Lines;
+
+    fn name(&self) -> &'static str {
+        "roads"
+    }
 
     fn about(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> About {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };

@@ -1,8 +1,9 @@
 //! Defects of an extract that were survived: each names its object and its reason.
 
+use corniche_areas::ClassedLayer;
 use serde::{Deserialize, Serialize};
 
-use crate::{area_loss::AreaLoss, boundary_loss::BoundaryLoss};
+use crate::{area_loss::AreaLoss, line_loss::LineLoss};
 
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,12 +141,14 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
-    /// A way that is a boundary is left out.
-    LostBoundary {
+    /// A way of a layer of lines is left out.
+    LostLine {
+        /// The layer.
+        layer: ClassedLayer,
         /// The way.
         way_id: i64,
         /// Why it is left out.
-        loss: BoundaryLoss,
+        loss: LineLoss,
     },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.
     ConflictingNode {
@@ -182,7 +185,7 @@ impl Defect {
             Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
             Self::LostArea { loss, .. } => loss.reason(),
-            Self::LostBoundary { loss, .. } => loss.reason(),
+            Self::LostLine { layer, loss, .. } => loss.reason(*layer),
             Self::MissingWays { .. } => MISSING_WAYS,
             Self::MendedOutline { .. } => MENDED_OUTLINE,
             Self::OpenCoastline { .. } => OPEN_COASTLINE,
@@ -208,7 +211,7 @@ impl Defect {
             | Self::NoLine { way_id }
             | Self::DuplicatePoints { way_id, .. }
             | Self::ConflictingWay { way_id }
-            | Self::LostBoundary { way_id, .. }
+            | Self::LostLine { way_id, .. }
             | Self::OpenCoastline { way_id }
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
@@ -244,7 +247,7 @@ impl Defect {
             | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. }
             | Self::OpenCoastline { .. }
-            | Self::LostBoundary { .. }
+            | Self::LostLine { .. }
             | Self::LostArea { .. } => None,
         }
     }

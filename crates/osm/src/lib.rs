@@ -6,7 +6,7 @@
 //!                                                                                     │                               ▼
 //!                                                                what the ways are ◄──┘   blobs with nodes ──► locate_nodes
 //!                                                                      │                                              │
-//!  Road, Area, Boundary: layer by layer, each in order of ids ◄── hand_out ◄── Stop in the order of the ways ◄────────┘
+//!  Road, Area, ClassedLine: by layer, each in order of ids ◄───── hand_out ◄── Stop in the order of the ways ◄────────┘
 //!
 //!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place; relations by osmpbf
 //! ```
@@ -24,14 +24,14 @@
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
 mod areas;
-mod boundaries;
 mod header_bounds;
 mod layer_sink;
 mod layers;
+mod lines;
 mod outlines;
 mod read_areas;
-mod read_boundaries;
 mod read_extract;
+mod read_lines;
 mod read_request;
 mod read_roads;
 mod reading;
@@ -75,26 +75,26 @@ mod way_bytes;
 mod way_facts;
 
 mod area_loss;
-mod boundary_loss;
 mod defect;
 mod defect_bytes;
 mod error;
 mod kept_error;
+mod line_loss;
 mod summary;
 
 pub use area_loss::AreaLoss;
 pub use areas::{AreaSummary, KeptAreas};
-pub use boundaries::{Boundary, BoundarySummary};
-pub use boundary_loss::BoundaryLoss;
 pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
 pub use layer_sink::LayerSink;
-pub use layers::Layers;
+pub use layers::{Layers, LinesSink};
+pub use line_loss::LineLoss;
+pub use lines::{ClassedLine, LineSummary};
 pub use read_areas::read_areas;
-pub use read_boundaries::read_boundaries;
 pub use read_extract::{read_extract, read_extract_from};
+pub use read_lines::read_lines;
 pub use read_request::{OnProgress, ReadRequest, ToLattice};
 pub use read_roads::{read_roads, read_roads_from};
 pub use share::{Share, ShareError};

@@ -21,12 +21,12 @@ use crate::{
     Defect, ReadOsmError,
     areas::hand_out_areas,
     blobs::BlobFile,
-    boundaries::hand_out_boundaries,
     deferred::Deferred,
     extracts::{BlobOrder, Extracts},
     find_ways::{FoundWays, WaysWanted},
     hand_out::{RoadWays, hand_out_roads},
     layers::Layers,
+    lines::hand_out_lines,
     locate_nodes::{NodeQuestions, locate_nodes},
     nodes_last::NodesLast,
     number_nodes::{NumberedNodes, number_nodes},
@@ -44,12 +44,12 @@ use crate::{
 
 /// Reads an extract once, and hands out all layers that are wanted, one after the other.
 ///
-/// Each layer is handed out as [`read_areas`](crate::read_areas), [`read_boundaries`](crate::read_boundaries) and [`read_roads`](crate::read_roads) do it, whatever other layers are wanted. `on_defect` is
+/// Each layer is handed out as [`read_areas`](crate::read_areas), [`read_lines`](crate::read_lines) and [`read_roads`](crate::read_roads) do it, whatever other layers are wanted. `on_defect` is
 /// told what is wrong with a layer between its beginning and its end.
 ///
 /// # Memory and limits
 /// As for [`read_roads`](crate::read_roads), all layers together; what may be kept of a file holds for each layer. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
-/// each object that makes ways boundaries, and 16 bytes for each point of coastlines.
+/// each object that gives ways a class, and 16 bytes for each point of coastlines.
 ///
 /// # Errors
 /// As for [`read_roads`](crate::read_roads). What was handed out before is to be forgotten then.
@@ -96,9 +96,9 @@ fn read_all<R: Read + Seek>(
     };
     let request = &ReadRequest { on_progress: Some(&told), ..*request };
     let of_areas = layers.areas.as_ref().map(|&(table, _)| Wanted::Areas(table));
-    let of_boundaries = layers.boundaries.as_ref().map(|_| Wanted::Boundaries);
+    let of_lines = layers.lines.iter().map(|&(layer, _)| Wanted::Lines(layer));
     let wanted = LayersWanted {
-        outlines: of_areas.into_iter().chain(of_boundaries).collect(),
+        outlines: of_areas.into_iter().chain(of_lines).collect(),
         roads: layers.roads.is_some().then_some(request.table),
     };
     let reading =
@@ -116,8 +116,8 @@ fn read_all<R: Read + Seek>(
     if let (Some((_, sink)), Some(found)) = (layers.areas, of_areas.and_then(|_| outlines.next())) {
         hand_out_areas(&reading, found, sink, on_defect)?;
     }
-    if let (Some(sink), Some(found)) = (layers.boundaries, outlines.next()) {
-        hand_out_boundaries(&reading, found, sink, on_defect)?;
+    for ((layer, sink), found) in layers.lines.into_iter().zip(outlines) {
+        hand_out_lines(&reading, layer, found, sink, on_defect)?;
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
         let header = file.take_header();

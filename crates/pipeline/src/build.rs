@@ -121,18 +121,13 @@ pub(crate) fn warn(context: &Context<'_>) {
 /// week may have forgotten an option.
 fn warn_of_other_network(context: &Context<'_>) {
     let GroundSource::Package(terrain) = context.source else { return };
-    let PlanSettings { terrain: of_terrain, roads, areas, boundaries, osm, .. } = context.settings;
+    let PlanSettings { terrain: of_terrain, roads, areas, lines, osm, .. } = context.settings;
     let manifest = terrain.manifest();
     if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return;
     }
-    let ours = settings_record::of(
-        of_terrain,
-        roads,
-        context.max_error_m,
-        None,
-        (areas.as_ref(), *boundaries),
-    );
+    let ours =
+        settings_record::of(of_terrain, roads, context.max_error_m, None, (areas.as_ref(), lines));
     let differences = network_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(

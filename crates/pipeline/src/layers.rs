@@ -15,10 +15,15 @@ pub(crate) mod layer_writer;
 pub(crate) mod parts_by_tile;
 pub(crate) mod tile_section;
 
-use std::ops::{Index, IndexMut};
+use std::{
+    iter,
+    ops::{Index, IndexMut},
+};
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
-use corniche_tileset::{AreasSection, BoundariesSection, EncodeError, SectionSize};
+use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize};
+use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
 use crate::artifacts::Kind;
@@ -27,18 +32,38 @@ use crate::artifacts::Kind;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SectionLayer {
     Areas,
-    Boundaries,
+    Lines(ClassedLayer),
 }
 
 impl SectionLayer {
+    /// How many there are.
+    const COUNT: usize = 1 + ClassedLayer::ALL.len();
+
     /// All of them, in the order of their sections.
-    pub(crate) const ALL: [Self; 2] = [Self::Areas, Self::Boundaries];
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        iter::once(Self::Areas).chain(ClassedLayer::ALL.map(Self::Lines))
+    }
+
+    fn place(self) -> usize {
+        match self {
+            Self::Areas => 0,
+            Self::Lines(layer) => 1 + layer as usize,
+        }
+    }
+
+    /// What is told while its objects are split.
+    pub(crate) fn stage(self) -> Stage {
+        match self {
+            Self::Areas => Stage::MapAreas,
+            Self::Lines(ClassedLayer::Boundaries) => Stage::Boundaries,
+        }
+    }
 
     /// The artifact that holds the section of a tile.
     pub(crate) fn section(self) -> Kind {
         match self {
             Self::Areas => Kind::AreaSection,
-            Self::Boundaries => Kind::BoundarySection,
+            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundarySection,
         }
     }
 
@@ -46,7 +71,7 @@ impl SectionLayer {
     pub(crate) fn totals(self) -> Kind {
         match self {
             Self::Areas => Kind::AreaTotals,
-            Self::Boundaries => Kind::BoundaryTotals,
+            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundaryTotals,
         }
     }
 
@@ -61,29 +86,27 @@ impl SectionLayer {
             Self::Areas => {
                 corniche_tileset::with_areas(payload, id, AreasSection::from_bytes(section))
             }
-            Self::Boundaries => corniche_tileset::with_boundaries(
-                payload,
-                id,
-                BoundariesSection::from_bytes(section),
-            ),
+            Self::Lines(layer) => {
+                corniche_tileset::with_lines(payload, id, LinesSection::from_bytes(layer, section))
+            }
         }
     }
 }
 
 /// A value for each layer that has sections.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct ByLayer<T>([T; SectionLayer::ALL.len()]);
+pub(crate) struct ByLayer<T>([T; SectionLayer::COUNT]);
 
 impl<T> Index<SectionLayer> for ByLayer<T> {
     type Output = T;
 
     fn index(&self, layer: SectionLayer) -> &T {
-        &self.0[layer as usize]
+        &self.0[layer.place()]
     }
 }
 
 impl<T> IndexMut<SectionLayer> for ByLayer<T> {
     fn index_mut(&mut self, layer: SectionLayer) -> &mut T {
-        &mut self.0[layer as usize]
+        &mut self.0[layer.place()]
     }
 }

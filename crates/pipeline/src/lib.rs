@@ -5,7 +5,6 @@
 
 mod areas;
 mod artifacts;
-mod boundaries;
 mod build;
 mod context;
 mod defect;
@@ -17,6 +16,7 @@ mod hex;
 mod inputs;
 mod layers;
 mod levels;
+mod lines;
 mod machine;
 mod manifest_texts;
 mod memory_shares;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_areas::AreaTable;
+use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::Cell;
 use corniche_roads::{ClassFilter, FrcTable};
@@ -44,8 +44,8 @@ pub struct PlanSettings {
     pub roads: RoadSettings,
     /// Which objects of the extracts are areas, if any are wanted.
     pub areas: Option<AreaTable>,
-    /// Whether boundaries of the extracts are wanted.
-    pub boundaries: bool,
+    /// The layers of lines of the extracts that are wanted, in their order.
+    pub lines: Vec<ClassedLayer>,
     /// Photos of the ground.
     pub photo: PhotoChoice,
     /// Credits beside those that the inputs call for, such as a DEM's.

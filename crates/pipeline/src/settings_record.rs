@@ -5,7 +5,7 @@
 //! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
 //! and the extract as the build did.
 
-use corniche_areas::AreaTable;
+use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_dem::{OpenOptions, PlanOptions, Polygon};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
@@ -20,7 +20,7 @@ pub(crate) fn of(
     roads: &RoadSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
-    (areas, boundaries): (Option<&AreaTable>, bool),
+    (areas, lines): (Option<&AreaTable>, &[ClassedLayer]),
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
     let TerrainSettings {
@@ -62,7 +62,7 @@ pub(crate) fn of(
         simplify_cells: *simplify_cells,
         photo,
         areas: areas.map(area_table_record),
-        boundaries,
+        boundaries: lines.contains(&ClassedLayer::Boundaries),
     }
 }
 

@@ -30,7 +30,7 @@ fn table(name: &str) -> FrcTable {
 
 fn record((terrain, roads): &Settings) -> SettingsRecord {
     let photo = Some(PhotoRecord { levels: 2, quality: 80 });
-    of(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo, (None, false))
+    of(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo, (None, &[]))
 }
 
 /// Every setting that determines bytes, and another value of it.

@@ -3,7 +3,6 @@
 pub(crate) mod area_seams;
 mod areas;
 mod attributes;
-mod boundaries;
 mod checks;
 mod dem;
 mod dem_inputs;
@@ -18,6 +17,7 @@ mod georeference;
 mod grid;
 mod header;
 mod layer_sums;
+mod lines;
 mod manifest_sums;
 mod network;
 mod one_tile;
@@ -44,6 +44,7 @@ mod triangle_soup;
 mod verify_settings;
 mod vertices_against_dem;
 
+use corniche_areas::ClassedLayer;
 use corniche_tileset::FilePackage;
 
 use crate::Observer;
@@ -87,7 +88,9 @@ fn look_at_all(
     let (mut report, mut findings) = tiles::verify(package, settings.threads, observer)?;
     photos::verify(package, settings.threads, &mut findings, observer)?;
     areas::verify(package, settings.threads, &mut findings, observer)?;
-    boundaries::verify(package, settings.threads, &mut findings, observer)?;
+    for layer in ClassedLayer::ALL {
+        lines::verify(package, layer, settings.threads, &mut findings, observer)?;
+    }
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;

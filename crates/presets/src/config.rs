@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
+use corniche_areas::ClassedLayer;
 use serde::{Deserialize, Deserializer};
 
 use crate::{
@@ -154,6 +155,14 @@ pub struct AreaOptions {
 }
 
 impl AreaOptions {
+    /// What is said of a layer of lines.
+    #[must_use]
+    pub fn lines(&self, layer: ClassedLayer) -> Option<&str> {
+        match layer {
+            ClassedLayer::Boundaries => self.boundaries.as_deref(),
+        }
+    }
+
     /// These options; those that are not given are taken from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {

@@ -7,6 +7,7 @@
 
 use std::{env, error::Error, path::Path};
 
+use corniche_areas::ClassedLayer;
 use corniche_tileset::{
     FilePackage, PayloadContext, PayloadSizes, Sections, area_part_sizes, decode, payload_sizes,
     photo_section,
@@ -76,7 +77,7 @@ fn stored(sizes: &PayloadSizes) -> [u64; 9] {
         sizes.relief,
         sizes.photo,
         sizes.areas,
-        sizes.boundaries,
+        sizes.lines[ClassedLayer::Boundaries as usize],
     ]
     .map(|size| size.stored)
 }

@@ -34,11 +34,11 @@ mod package;
 mod payload;
 
 pub use manifest::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
-    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, Counts,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
     DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord,
-    Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts,
-    SampleErrorRecord, SampleSums, ScaleRecord, SettingsRecord, VerticalRecord,
+    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord,
+    PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord,
+    SampleSums, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
@@ -49,14 +49,14 @@ pub use package::{
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    AreaRecord, AreaRings, BoundaryRecord, Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER,
+    AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, LineRecord, PHOTO_BORDER,
     PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
-    TerrainSummary, TilePayload, decode, decode_areas, decode_boundaries, decode_photo,
-    payload_sizes, terrain_summary,
+    TerrainSummary, TilePayload, decode, decode_areas, decode_lines, decode_photo, payload_sizes,
+    terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, BoundariesSection, EncodedTile, PayloadContext, PhotoSection, area_part_sizes,
-    encode, encode_areas, encode_boundaries, encode_photo, encode_with_ground_of, photo_section,
-    terrain_part_sizes, with_areas, with_boundaries, with_photo,
+    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, area_part_sizes, encode,
+    encode_areas, encode_lines, encode_photo, encode_with_ground_of, photo_section,
+    terrain_part_sizes, with_areas, with_lines, with_photo,
 };

@@ -39,8 +39,8 @@ pub const MAX_LINES: usize = 1 << 20;
 pub const MAX_POINTS: usize = 1 << 22;
 /// Vertices of all lines of the GEO section, crossings included: 128 MiB in memory.
 pub const MAX_LINE_VERTICES: usize = 1 << 22;
-/// Parts of boundaries in one tile.
-pub const MAX_BOUNDARIES: usize = 1 << 18;
+/// Parts of lines of one layer, such as boundaries, in one tile.
+pub const MAX_CLASSED_LINES: usize = 1 << 18;
 /// Areas in one tile.
 pub const MAX_AREAS: usize = 1 << 18;
 /// Rings of all areas of a tile, and so polygons.

@@ -9,10 +9,10 @@ mod sample_sums;
 pub(crate) mod check;
 
 pub use contents::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, BoundariesRecord,
-    BoundaryClassRecord, BoundaryCounts, BoundaryLevelRecord, ClipRecord, DatumOperationRecord,
-    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
-    SettingsRecord, VerticalRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
+    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
+    Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord,
+    VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

@@ -14,7 +14,7 @@ mod envelope;
 
 mod areas;
 mod attributes;
-mod boundaries;
+mod lines;
 mod photo;
 mod relief;
 mod road_tags;
@@ -40,14 +40,14 @@ mod damage;
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
 pub use areas::{AreasSection, area_part_sizes, encode_areas, with_areas};
-#[cfg(feature = "write")]
-pub use boundaries::{BoundariesSection, encode_boundaries, with_boundaries};
-pub use boundaries::{BoundaryRecord, decode_boundaries};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of, terrain_part_sizes};
 pub use envelope::SectionSize;
+pub use lines::{LineRecord, decode_lines};
+#[cfg(feature = "write")]
+pub use lines::{LinesSection, encode_lines, with_lines};
 pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};

@@ -1,7 +1,7 @@
 //! Commands that give what a package holds to other programs.
 
 use clap::{Args, Subcommand, ValueEnum};
-use corniche_areas::{AreaClass, BoundaryClass};
+use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
     Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
@@ -153,7 +153,7 @@ pub(crate) struct ExportBoundariesArgs {
     pub(crate) plan: InPlanArgs,
     /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_boundary_class)]
-    pub(crate) classes: Vec<BoundaryClass>,
+    pub(crate) classes: Vec<LineClass>,
 }
 
 #[derive(Debug, Args)]
@@ -537,8 +537,14 @@ fn parse_area_class(text: &str) -> Result<AreaClass, String> {
     AreaClass::from_name(text).ok_or_else(|| other_classes("areas", &AreaClass::ALL))
 }
 
-fn parse_boundary_class(text: &str) -> Result<BoundaryClass, String> {
-    BoundaryClass::from_name(text).ok_or_else(|| other_classes("boundaries", &BoundaryClass::ALL))
+fn parse_boundary_class(text: &str) -> Result<LineClass, String> {
+    parse_line_class(ClassedLayer::Boundaries, text)
+}
+
+fn parse_line_class(layer: ClassedLayer, text: &str) -> Result<LineClass, String> {
+    let classes = layer.classes();
+    let named = classes.iter().copied().find(|class| class.name() == text);
+    named.ok_or_else(|| other_classes(layer.name(), &classes))
 }
 
 fn other_classes(layer: &str, classes: &[impl ToString]) -> String {

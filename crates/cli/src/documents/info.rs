@@ -4,6 +4,7 @@ mod counts;
 mod frame;
 mod levels;
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::CoordinateTable;
 use corniche_tileset::{
     DatumOperationRecord, InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord,
@@ -18,8 +19,8 @@ use self::{
 };
 use super::{
     areas::{AreaTableDocument, AreasDocument},
-    boundaries::BoundariesDocument,
     growth::RowDocument,
+    lines::LinesDocument,
 };
 
 /// What a package holds.
@@ -93,9 +94,9 @@ pub(crate) struct ManifestDocument {
     /// The areas; left out in packages made without.
     #[serde(skip_serializing_if = "Option::is_none")]
     areas: Option<AreasDocument>,
-    /// The boundaries; left out in packages made without.
+    /// The boundaries, in the classes "admin-2" to "admin-8" and "protected"; left out in packages made without.
     #[serde(skip_serializing_if = "Option::is_none")]
-    boundaries: Option<BoundariesDocument>,
+    boundaries: Option<LinesDocument>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -256,6 +257,8 @@ struct InputDocument {
 
 impl From<&Manifest> for ManifestDocument {
     fn from(manifest: &Manifest) -> Self {
+        let lines = |layer| manifest.lines(layer).cloned().map(|of| LinesDocument::of(layer, of));
+        let boundaries = lines(ClassedLayer::Boundaries);
         let manifest = manifest.clone();
         let ScaleRecord { center, least, largest } = manifest.scale;
         let VerticalRecord { quantum_m, unit, datum, treatment, range_m } = manifest.vertical;
@@ -288,7 +291,7 @@ impl From<&Manifest> for ManifestDocument {
             growth: manifest.growth.iter().map(Into::into).collect(),
             photos: manifest.photos.into_iter().map(Into::into).collect(),
             areas: manifest.areas.map(Into::into),
-            boundaries: manifest.boundaries.map(Into::into),
+            boundaries,
         }
     }
 }

@@ -1,14 +1,14 @@
-//! What is looked for in an extract, areas by a table or boundaries, and which keys, tags and roles belong to it.
+//! What is looked for in an extract, areas by a table or a layer of lines, and which keys, tags and roles belong to it.
 
-use corniche_areas::{AreaTable, BoundaryClass};
+use corniche_areas::{AreaTable, ClassedLayer};
 
 /// Which objects are looked for.
 #[derive(Clone, Copy)]
 pub(crate) enum Wanted<'a> {
     /// Areas of a table.
     Areas(&'a AreaTable),
-    /// Boundaries, of which each way counts, closed or not.
-    Boundaries,
+    /// Lines of a layer, of which each way counts, closed or not.
+    Lines(ClassedLayer),
 }
 
 impl Wanted<'_> {
@@ -19,7 +19,7 @@ impl Wanted<'_> {
                 table.keys().any(|known| known.as_bytes() == key)
                     || table.has_sea() && key == b"natural"
             }
-            Self::Boundaries => key == b"boundary",
+            Self::Lines(layer) => key == layer.table().key.as_bytes(),
         }
     }
 
@@ -27,7 +27,7 @@ impl Wanted<'_> {
     pub(crate) fn classify(self, tags: &[(&str, &str)]) -> Option<u8> {
         match self {
             Self::Areas(table) => table.classify(tags).map(corniche_areas::AreaClass::number),
-            Self::Boundaries => BoundaryClass::of_tags(tags).map(BoundaryClass::number),
+            Self::Lines(layer) => (layer.table().of_tags)(tags),
         }
     }
 
@@ -38,14 +38,16 @@ impl Wanted<'_> {
 
     /// Whether a way that is not closed can be one of them.
     pub(crate) fn has_open_ways(self) -> bool {
-        matches!(self, Self::Boundaries)
+        matches!(self, Self::Lines(_))
     }
 
     /// Whether a way with this role belongs to the outline of a relation.
     pub(crate) fn is_outline(self, role: &[u8]) -> bool {
         match self {
             Self::Areas(_) => true,
-            Self::Boundaries => [&b""[..], b"outer", b"inner"].contains(&role),
+            Self::Lines(layer) => {
+                layer.table().has_relations && [&b""[..], b"outer", b"inner"].contains(&role)
+            }
         }
     }
 }

@@ -5,15 +5,15 @@
 use std::fs;
 
 use crate::common::to_lattice;
-use corniche_areas::BoundaryClass;
-use corniche_osm::{Boundary, BoundaryLoss, BoundarySummary, Defect, ReadRequest, read_boundaries};
+use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
+use corniche_osm::{ClassedLine, Defect, LineLoss, LineSummary, ReadRequest, read_lines};
 use corniche_store::MemoryScratch;
 use corniche_testing::pbf::{Block, file};
 
 struct Found {
-    boundaries: Vec<Boundary>,
+    boundaries: Vec<ClassedLine>,
     defects: Vec<Defect>,
-    summary: BoundarySummary,
+    summary: LineSummary,
 }
 
 /// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
@@ -37,8 +37,9 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         on_progress: None,
     };
     let (mut boundaries, mut defects) = (Vec::new(), Vec::new());
-    let summary = read_boundaries(
+    let summary = read_lines(
         &request,
+        ClassedLayer::Boundaries,
         &mut |boundary| boundaries.push(boundary),
         &mut |defect| defects.push(defect),
         &|| false,
@@ -71,7 +72,8 @@ const DISTRICT: Tags<'_> =
 const PARK: Tags<'_> = &[("type", "boundary"), ("boundary", "protected_area")];
 
 fn classes(found: &Found) -> Vec<(i64, BoundaryClass)> {
-    found.boundaries.iter().map(|boundary| (boundary.way_id, boundary.class)).collect()
+    let class = |class: LineClass| BoundaryClass::from_number(class.number()).unwrap();
+    found.boundaries.iter().map(|line| (line.way_id, class(line.class))).collect()
 }
 
 #[test]
@@ -132,21 +134,17 @@ fn what_is_lost_is_counted_by_reason() {
         &[(1, "outer"), (2, "outer"), (3, "outer"), (4, "outer"), (5, "outer")];
     let found = read(&made(&ways, &[(10, COUNTRY, members)]), 1 << 24);
     assert_eq!(classes(&found).iter().map(|(id, _)| *id).collect::<Vec<_>>(), [1, 2, 2]);
-    let lost: Vec<(i64, BoundaryLoss)> = found
+    let lost: Vec<(i64, LineLoss)> = found
         .defects
         .iter()
         .filter_map(|defect| match defect {
-            Defect::LostBoundary { way_id, loss } => Some((*way_id, *loss)),
+            Defect::LostLine { way_id, loss, .. } => Some((*way_id, *loss)),
             _ => None,
         })
         .collect();
     assert_eq!(
         lost,
-        [
-            (3, BoundaryLoss::MissingNodes),
-            (4, BoundaryLoss::OutsideProjection),
-            (5, BoundaryLoss::MissingWay)
-        ]
+        [(3, LineLoss::MissingNodes), (4, LineLoss::OutsideProjection), (5, LineLoss::MissingWay)]
     );
     assert!(found.defects.contains(&Defect::MissingNodes { way_id: 2, points: 1 }));
     assert_eq!(found.summary.ways, 5);

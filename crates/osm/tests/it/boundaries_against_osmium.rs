@@ -5,8 +5,8 @@
 use std::{collections::BTreeMap, path::Path, process::Command};
 
 use crate::common::{default_table, to_lattice};
-use corniche_areas::BoundaryClass;
-use corniche_osm::{BoundaryLoss, Defect, ReadRequest, read_boundaries};
+use corniche_areas::{BoundaryClass, ClassedLayer};
+use corniche_osm::{Defect, LineLoss, ReadRequest, read_lines};
 use corniche_store::MemoryScratch;
 use corniche_testing::real_data;
 
@@ -90,13 +90,14 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             on_progress: None,
         };
         let (mut kept, mut lost) = (BTreeMap::new(), BTreeMap::new());
-        let summary = read_boundaries(
+        let summary = read_lines(
             &request,
+            ClassedLayer::Boundaries,
             &mut |boundary| {
                 kept.insert(boundary.way_id, boundary.class);
             },
             &mut |defect| {
-                if let Defect::LostBoundary { way_id, loss } = defect {
+                if let Defect::LostLine { way_id, loss, .. } = defect {
                     lost.insert(way_id, loss);
                 }
             },
@@ -108,16 +109,12 @@ fn boundaries_are_the_ways_that_osmium_lists() {
         for (way_id, (class, is_present)) in &expected {
             if *is_present {
                 assert!(
-                    kept.get(way_id) == Some(class)
-                        || lost.get(way_id) == Some(&BoundaryLoss::MissingNodes),
+                    kept.get(way_id) == ClassedLayer::Boundaries.class(class.number()).as_ref()
+                        || lost.get(way_id) == Some(&LineLoss::MissingNodes),
                     "{name}: way {way_id} {class}"
                 );
             } else {
-                assert_eq!(
-                    lost.get(way_id),
-                    Some(&BoundaryLoss::MissingWay),
-                    "{name}: way {way_id}"
-                );
+                assert_eq!(lost.get(way_id), Some(&LineLoss::MissingWay), "{name}: way {way_id}");
             }
         }
         println!("{name}: {} ways, {} kept, {} lost", expected.len(), kept.len(), lost.len());

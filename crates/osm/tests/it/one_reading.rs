@@ -5,10 +5,10 @@
 use std::{cell::Cell, fs, io::Cursor, path::Path};
 
 use crate::common::{CountedBlobs, Gathered, POOL, gather, request, to_lattice};
-use corniche_areas::{Area, AreaTable};
+use corniche_areas::{Area, AreaTable, ClassedLayer};
 use corniche_osm::{
-    AreaSummary, Boundary, BoundarySummary, Defect, ExtractSummary, LayerSink, Layers,
-    ReadOsmError, ReadRequest, read_extract, read_extract_from, read_roads_from,
+    AreaSummary, ClassedLine, Defect, ExtractSummary, LayerSink, Layers, LineSummary, ReadOsmError,
+    ReadRequest, read_extract, read_extract_from, read_roads_from,
 };
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_roads::Road;
@@ -23,7 +23,7 @@ use proptest::prelude::*;
 #[derive(Debug, Default, PartialEq)]
 struct All {
     areas: (Vec<Area>, Option<AreaSummary>),
-    boundaries: (Vec<Boundary>, Option<BoundarySummary>),
+    boundaries: (Vec<ClassedLine>, Option<LineSummary>),
     roads: (Vec<Road>, Option<ExtractSummary>),
     defects: Vec<Defect>,
 }
@@ -50,9 +50,11 @@ fn with_layers(
     let (mut areas, mut boundaries, mut roads) =
         (Gathered::default(), Gathered::default(), Gathered::default());
     let mut defects = Vec::new();
+    let of_boundaries =
+        which.boundaries.then_some((ClassedLayer::Boundaries, &mut boundaries as _));
     let layers = Layers {
         areas: which.areas.then_some((&table, &mut areas as &mut dyn LayerSink<_, _>)),
-        boundaries: which.boundaries.then_some(&mut boundaries as &mut dyn LayerSink<_, _>),
+        lines: Vec::from_iter(of_boundaries),
         roads: which.roads.then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
     read(layers, &mut |defect| defects.push(defect)).map_err(|error| error.to_string())?;

@@ -70,10 +70,13 @@ impl TileSplitting for AreaSplitting<'_> {
 }
 
 impl<'a> TileLayer for AreaLayer<'a> {
-    const STAGE: Stage = Stage::MapAreas;
     type Splitting = AreaSplitting<'a>;
     type Summary = AreaSummary;
     type Done = AreaTotals;
+
+    fn stage(&self) -> Stage {
+        SectionLayer::Areas.stage()
+    }
 
     fn splitting(&self) -> &AreaSplitting<'a> {
         &self.splitting

@@ -10,7 +10,7 @@
 
 use std::{path::PathBuf, sync::atomic::Ordering};
 
-use corniche_areas::AreaTable;
+use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_geom::{LatticeBounds, LatticeRegion, Projection};
 use corniche_osm::{
     ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
@@ -23,16 +23,16 @@ use crate::{
     BuildError, Defect, Observer, RoadSettings,
     areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
     artifacts::{self, Kind},
-    boundaries::{
-        layer::{BoundaryLayer, MeasuredSplitting},
-        split::BoundarySplitting,
-    },
     heights::data_tiles::DataTiles,
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
     },
     levels::Levels,
+    lines::{
+        layer::{LinesLayer, MeasuredSplitting},
+        split::LineSplitting,
+    },
     roads::{
         layer::RoadLayer,
         split::RoadSplitting,
@@ -51,7 +51,8 @@ pub(crate) struct ExtractInput<'a> {
     pub(crate) settings: &'a RoadSettings,
     /// Which objects are areas, if any are wanted.
     pub(crate) areas: Option<&'a AreaTable>,
-    pub(crate) boundaries: bool,
+    /// The layers of lines that are wanted.
+    pub(crate) lines: &'a [ClassedLayer],
     /// The tiles on which data can lie.
     pub(crate) data: DataTiles,
     pub(crate) projection: &'a (dyn Projection + Sync),
@@ -104,7 +105,7 @@ pub(crate) fn partition(
 /// What was found in the extract.
 struct Found {
     roads: (RoadTotals, ExtractSummary),
-    /// Whether areas or boundaries were asked for, and there are some: then there need not be roads.
+    /// Whether other layers were asked for, and there are some: then there need not be roads.
     has_others: bool,
 }
 
@@ -117,8 +118,8 @@ fn read(
     let (store, scratch) = places;
     let mut areas =
         input.areas.map(|table| (table, LayerWriter::new(area_layer(input, places), told)));
-    let boundaries = input.boundaries.then(|| boundary_layer(input, places));
-    let mut boundaries = boundaries.map(|layer| LayerWriter::new(layer, told));
+    let writer = |&layer| (layer, LayerWriter::new(lines_layer(input, layer, places), told));
+    let mut lines: Vec<_> = input.lines.iter().map(writer).collect();
     let mut roads = LayerWriter::new(road_layer(input, places), told);
     let kept = kept_in(store);
     let of = kept.complete();
@@ -130,11 +131,11 @@ fn read(
     let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
     let layers = Layers {
         areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
-        boundaries: boundaries.as_mut().map(|sink| sink as &mut dyn LayerSink<_, _>),
+        lines: lines.iter_mut().map(|(layer, sink)| (*layer, sink as &mut _)).collect(),
         // Shares keep roads alone.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
-    let read = if of.is_none() || input.areas.is_some() || input.boundaries {
+    let read = if of.is_none() || input.areas.is_some() || !input.lines.is_empty() {
         on_extract(input, scratch, told, |request| {
             read_extract(request, layers, on_defect, &should_stop)
         })
@@ -145,13 +146,14 @@ fn read(
     if let Some((_, areas)) = &mut areas {
         areas.check()?;
     }
-    boundaries.as_mut().map_or(Ok(()), LayerWriter::check)?;
+    lines.iter_mut().try_for_each(|(_, writer)| writer.check())?;
     roads.check()?;
     read?;
     let has_areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
-    let has_boundaries = boundaries.map_or(Ok(None), LayerWriter::done)?;
-    let has_others = has_areas.is_some_and(|totals| totals.has_any())
-        || has_boundaries.is_some_and(|totals| totals.has_any());
+    let mut has_others = has_areas.is_some_and(|totals| totals.has_any());
+    for (_, writer) in lines {
+        has_others |= writer.done()?.is_some_and(|totals| totals.has_any());
+    }
     if let Some(of) = of {
         let read = on_extract(input, scratch, told, |request| {
             read_kept_roads(request, of, kept, &mut roads, on_defect, &should_stop)
@@ -190,18 +192,19 @@ fn road_layer<'a>(
     RoadLayer::new(splitting, places, input.memory_bytes)
 }
 
-fn boundary_layer<'a>(
+fn lines_layer<'a>(
     input: &ExtractInput<'a>,
+    layer: ClassedLayer,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
-) -> BoundaryLayer<'a> {
-    let splitting = BoundarySplitting {
+) -> LinesLayer<'a> {
+    let splitting = LineSplitting {
         levels: input.levels,
         data: input.data,
         clip: input.clip,
         polygon: input.polygon,
     };
     let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
-    BoundaryLayer::new(splitting, places, input.memory_bytes)
+    LinesLayer::new(layer, splitting, places, input.memory_bytes)
 }
 
 /// Reads the extract.

@@ -100,7 +100,7 @@ impl World {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = ExtractInput {
-            boundaries: false,
+            lines: &[],
             data: DataTiles::between(
                 &frame,
                 NodeIndex { i: -512, j: -512 },

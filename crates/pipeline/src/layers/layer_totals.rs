@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_store::Artifacts;
-use corniche_tileset::{AreaClassRecord, AreaCounts, BoundaryClassRecord, BoundaryCounts};
+use corniche_tileset::{AreaClassRecord, AreaCounts, LineClassRecord, LineCounts};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::SectionLayer;
@@ -22,8 +22,8 @@ pub(crate) struct LayerTotals<M> {
 
 /// Areas, in square metres.
 pub(crate) type AreaTotals = LayerTotals<f64>;
-/// Ways that are boundaries, in micrometres.
-pub(crate) type BoundaryTotals = LayerTotals<u64>;
+/// Ways of a layer of lines, in micrometres.
+pub(crate) type LineTotals = LayerTotals<u64>;
 
 impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
     pub(crate) fn put(&self, layer: SectionLayer, store: &dyn Artifacts) -> Result<(), BuildError> {
@@ -62,15 +62,15 @@ impl AreaTotals {
     }
 }
 
-impl BoundaryTotals {
+impl LineTotals {
     /// What the manifest says of them.
-    pub(crate) fn counts(&self) -> BoundaryCounts {
-        let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| BoundaryClassRecord {
+    pub(crate) fn counts(&self) -> LineCounts {
+        let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| LineClassRecord {
             class,
             ways,
             length_um,
         };
         let kept = self.kept.iter().map(class).collect();
-        BoundaryCounts { ways: self.objects, kept, lost: self.lost() }
+        LineCounts { ways: self.objects, kept, lost: self.lost() }
     }
 }

@@ -31,13 +31,14 @@ pub(crate) trait TileSplitting: Sync {
 
 /// What a layer makes of its objects. They are numbered in the order in which they come.
 pub(crate) trait TileLayer {
-    /// What is told while its objects are split.
-    const STAGE: Stage;
     type Splitting: TileSplitting;
     /// What the reader counted.
     type Summary;
     /// What is known of the layer at the end.
     type Done;
+
+    /// What is told while its objects are split.
+    fn stage(&self) -> Stage;
 
     fn splitting(&self) -> &Self::Splitting;
 
@@ -115,6 +116,7 @@ impl<'a> LayerContext<'a> {
 
 /// A layer while its objects come in.
 pub(crate) struct LayerWriter<'a, 'b, L: TileLayer> {
+    stage: Stage,
     layer: Option<L>,
     told: &'a LayerContext<'b>,
     batch: Vec<ObjectOf<L>>,
@@ -126,8 +128,8 @@ pub(crate) struct LayerWriter<'a, 'b, L: TileLayer> {
 
 impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
     pub(crate) fn new(layer: L, told: &'a LayerContext<'b>) -> Self {
-        let (batch, batch_points) = (Vec::new(), 0);
-        Self { layer: Some(layer), told, batch, batch_points, count: 0, done: Ok(None) }
+        let (stage, batch) = (layer.stage(), Vec::new());
+        Self { stage, layer: Some(layer), told, batch, batch_points: 0, count: 0, done: Ok(None) }
     }
 
     fn fail(&mut self, error: BuildError) {
@@ -168,7 +170,7 @@ impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
 
 impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L> {
     fn begin(&mut self) {
-        self.told.go_on_to(L::STAGE);
+        self.told.go_on_to(self.stage);
     }
 
     fn take(&mut self, object: ObjectOf<L>) {
@@ -185,7 +187,7 @@ impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L>
     }
 
     fn reached(&mut self, done: u64, all: u64) {
-        self.told.reached(L::STAGE, done, all);
+        self.told.reached(self.stage, done, all);
     }
 
     fn end(&mut self, summary: L::Summary) {

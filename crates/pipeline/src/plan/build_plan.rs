@@ -142,8 +142,7 @@ impl BuildPlan {
     /// The plan for what was opened.
     pub(crate) fn of(settings: &PlanSettings, opened: &Opened) -> Result<Self, BuildError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, areas, boundaries, attribution, generator, .. } =
-            settings;
+        let PlanSettings { terrain, roads, areas, lines, attribution, generator, .. } = settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
@@ -154,7 +153,7 @@ impl BuildPlan {
                 roads,
                 opened.max_error_m,
                 opened.photo.record(),
-                (areas.as_ref(), *boundaries),
+                (areas.as_ref(), lines),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
             area_table: areas.as_ref().map(AreaTableText::of),
@@ -227,7 +226,7 @@ impl BuildPlan {
             osm: paths("osm").collect(),
             terrain,
             areas: self.area_table.as_ref().map(AreaTableText::table).transpose()?,
-            boundaries: self.settings.boundaries,
+            lines: self.settings.lines(),
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),

@@ -92,7 +92,7 @@ fn recorded_rates_fit_what_they_were_taken_from() {
 fn some_tiles_tell_how_the_ground_is() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let settings = PlanSettings {
-        boundaries: false,
+        lines: Vec::new(),
         dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: Vec::new(),

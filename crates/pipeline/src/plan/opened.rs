@@ -130,13 +130,8 @@ impl Opened {
         let terrain = RecordedTerrain::open(package, &settings.generator)?;
         let manifest = terrain.manifest();
         let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
-        let ours = settings_record::of(
-            &settings.terrain,
-            &settings.roads,
-            max_error_m,
-            None,
-            (None, false),
-        );
+        let ours =
+            settings_record::of(&settings.terrain, &settings.roads, max_error_m, None, (None, &[]));
         let differences = terrain_differences(&ours, &manifest.settings);
         if !differences.is_empty() {
             let differences = differences.join("; ");

@@ -65,10 +65,13 @@ impl TileSplitting for RoadSplitting<'_> {
 }
 
 impl<'a> TileLayer for RoadLayer<'a> {
-    const STAGE: Stage = Stage::Roads;
     type Splitting = RoadSplitting<'a>;
     type Summary = ExtractSummary;
     type Done = (RoadTotals, ExtractSummary);
+
+    fn stage(&self) -> Stage {
+        Stage::Roads
+    }
 
     fn splitting(&self) -> &RoadSplitting<'a> {
         &self.splitting

@@ -1,9 +1,10 @@
 //! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
+use corniche_areas::ClassedLayer;
 use corniche_tileset::{
-    AreaLevelRecord, AreasRecord, BoundariesRecord, BoundaryLevelRecord, Counts, Distribution,
-    FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, PhotoLevelRecord,
-    SampleErrorRecord, ScaleRecord, VerticalRecord,
+    AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
+    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleErrorRecord,
+    ScaleRecord, VerticalRecord,
 };
 
 use super::sums::TileSums;
@@ -12,7 +13,7 @@ use crate::{
     heights::pyramid::HeightSums,
     layers::{
         SectionLayer,
-        layer_totals::{AreaTotals, BoundaryTotals},
+        layer_totals::{AreaTotals, LineTotals},
         tile_section::SectionSums,
     },
     manifest_texts,
@@ -27,7 +28,8 @@ pub(crate) struct Outcome<'a> {
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
     pub(crate) areas: Option<AreaTotals>,
-    pub(crate) boundaries: Option<BoundaryTotals>,
+    /// In order of [`ClassedLayer::ALL`].
+    pub(crate) lines: Vec<Option<LineTotals>>,
     pub(crate) tiles: &'a TileSums,
 }
 
@@ -40,7 +42,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         &settings.roads,
         outcome.context.max_error_m,
         outcome.context.photo.record(),
-        (settings.areas.as_ref(), settings.boundaries),
+        (settings.areas.as_ref(), &settings.lines),
     );
     let mut attribution = settings.attribution.clone();
     for credit in outcome.context.photo.files().into_iter().flat_map(|photo| &photo.credits) {
@@ -88,7 +90,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         growth: growth(outcome),
         photos: photos(outcome),
         areas: areas(outcome),
-        boundaries: boundaries(outcome),
+        boundaries: lines(outcome, ClassedLayer::Boundaries),
     }
 }
 
@@ -179,17 +181,17 @@ fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
     Some(AreasRecord { counts, levels })
 }
 
-fn boundaries(outcome: &Outcome<'_>) -> Option<BoundariesRecord> {
-    let counts = outcome.boundaries.as_ref()?.counts();
-    let level = |(level, SectionSums { tiles, parts, points, bytes })| BoundaryLevelRecord {
+fn lines(outcome: &Outcome<'_>, layer: ClassedLayer) -> Option<LinesRecord> {
+    let counts = outcome.lines.get(layer as usize)?.as_ref()?.counts();
+    let level = |(level, SectionSums { tiles, parts, points, bytes })| LineLevelRecord {
         level,
         tiles,
         parts,
         points,
         bytes,
     };
-    let levels = sections(outcome, SectionLayer::Boundaries).map(level).collect();
-    Some(BoundariesRecord { counts, levels })
+    let levels = sections(outcome, SectionLayer::Lines(layer)).map(level).collect();
+    Some(LinesRecord { counts, levels })
 }
 
 /// The sums of a layer on the levels that have some of it.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use corniche_areas::ClassedLayer;
 use corniche_store::{OpenMode, Scratch, open_own};
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
 
@@ -84,7 +85,9 @@ pub(crate) fn make(
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
         areas: LayerTotals::get(SectionLayer::Areas, context.store)?,
-        boundaries: LayerTotals::get(SectionLayer::Boundaries, context.store)?,
+        lines: (ClassedLayer::ALL.iter())
+            .map(|&layer| LayerTotals::get(SectionLayer::Lines(layer), context.store))
+            .collect::<Result<_, _>>()?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {
@@ -107,8 +110,9 @@ fn all_beside_ground(manifest: &Manifest) -> Option<&'static str> {
         return (manifest.counts.roads_kept == 0).then_some("road");
     }
     let has_areas = manifest.areas.as_ref().is_some_and(|areas| !areas.levels.is_empty());
-    let has_boundaries = manifest.boundaries.as_ref().is_some_and(|found| !found.levels.is_empty());
-    (!has_areas && !has_boundaries).then_some("area or boundary")
+    let mut lines = ClassedLayer::ALL.into_iter().filter_map(|layer| manifest.lines(layer));
+    let has_lines = lines.any(|found| !found.levels.is_empty());
+    (!has_areas && !has_lines).then_some("area or boundary")
 }
 
 /// Fails if the levels of a package whose terrain was taken are others than what was found in its tiles.

@@ -51,7 +51,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         osm,
         settings: &context.settings.roads,
         areas: context.settings.areas.as_ref(),
-        boundaries: context.settings.boundaries,
+        lines: &context.settings.lines,
         data: context.data(),
         projection: &projection,
         levels: context.levels,

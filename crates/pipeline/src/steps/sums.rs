@@ -74,7 +74,7 @@ impl TileSums {
         sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
-        for layer in SectionLayer::ALL {
+        for layer in SectionLayer::all() {
             sums.sections[layer].add(ground.sections[layer]);
         }
         sums.geometric_errors_m.push(deviation.geometric_error_m);

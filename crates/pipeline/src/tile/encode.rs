@@ -82,7 +82,7 @@ pub(crate) fn with_ground(
         bytes = corniche_tileset::with_photo(&bytes, id, &photo)?;
     }
     let mut sections = ByLayer::<SectionOfTile>::default();
-    for layer in SectionLayer::ALL {
+    for layer in SectionLayer::all() {
         let Some(TileSection { section, parts, points }) =
             TileSection::get(layer, context.store, id)?
         else {

@@ -75,6 +75,7 @@ fn compare_all(
         .transpose()?;
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
+    let lines = manifest.settings.lines();
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = TemporaryStore::new(observer)?;
     let (store, scratch) = (&work.store, work.scratch()?);
@@ -86,7 +87,7 @@ fn compare_all(
         osm: &paths,
         settings: &settings,
         areas: area_table,
-        boundaries: manifest.settings.boundaries,
+        lines: &lines,
         data: DataTiles::spanning(first, last),
         projection: &projection,
         levels: &levels,
@@ -107,8 +108,8 @@ fn compare_all(
     if area_table.is_some() {
         osm_layers::compare_areas(package, store, request.threads, findings, observer)?;
     }
-    if manifest.settings.boundaries {
-        osm_layers::compare_boundaries(package, store, request.threads, findings, observer)?;
+    for layer in lines {
+        osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
     }
     if let Some(region) = &polygon {
         polygon_cut::verify(package, region, request.threads, findings, observer)?;

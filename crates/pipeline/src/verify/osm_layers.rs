@@ -1,23 +1,24 @@
 //! Layers of the extract that have sections, split again, against those of the package, tile by tile.
 
-use corniche_areas::AreaTable;
+use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_geom::TileId;
 use corniche_store::Artifacts;
 use corniche_tileset::{
-    AreaRecord, AreasSection, BoundariesSection, BoundaryRecord, FilePackage, Manifest,
-    decode_areas, decode_boundaries,
+    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, decode_areas,
+    decode_lines,
 };
 
 use super::{
     checks::{CheckId, Findings},
     each_tile::{compare_in_order, each_tile},
     error::VerifyError,
+    lines::LineChecks,
 };
 use crate::{
     Observer,
     layers::{
         SectionLayer,
-        layer_totals::{AreaTotals, BoundaryTotals},
+        layer_totals::{AreaTotals, LineTotals},
         tile_section::TileSection,
     },
     settings_record,
@@ -70,27 +71,29 @@ pub(crate) fn compare_areas(
     Ok(())
 }
 
-/// Compares the boundaries of each tile, and their counts, with those that the store has now.
-pub(crate) fn compare_boundaries(
+/// Compares the lines of a layer of each tile, and their counts, with those that the store has now.
+pub(crate) fn compare_lines(
     package: &FilePackage,
+    layer: ClassedLayer,
     store: &dyn Artifacts,
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let checks = LineChecks::of(layer);
     let how = HowCompared {
-        layer: SectionLayer::Boundaries,
-        check: CheckId::OsmBoundaries,
-        recorded: |payload: &[u8], id| decode_boundaries(payload, id).ok(),
-        expected: |section, id| BoundariesSection::from_bytes(section).decode(id).ok(),
-        name: |of: &BoundaryRecord| {
+        layer: SectionLayer::Lines(layer),
+        check: checks.osm,
+        recorded: |payload: &[u8], id| decode_lines(payload, id, layer).ok(),
+        expected: |section, id| LinesSection::from_bytes(layer, section).decode(id).ok(),
+        name: |of: &LineRecord| {
             format!("{} way {} with {} points", of.class, of.way_id, of.points.len())
         },
     };
     compare(package, store, threads, &how, findings, observer)?;
-    let found = BoundaryTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = package.manifest().boundaries.as_ref().map(|of| of.counts.clone());
-    findings.look(CheckId::OsmBoundaryCounts, found == recorded, || {
+    let found = LineTotals::get(how.layer, store)?.map(|totals| totals.counts());
+    let recorded = package.manifest().lines(layer).map(|of| of.counts.clone());
+    findings.look(checks.osm_counts, found == recorded, || {
         format!("{recorded:?} are recorded, {found:?} are in the extract")
     });
     Ok(())

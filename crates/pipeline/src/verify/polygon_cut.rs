@@ -1,18 +1,20 @@
-//! Whether areas and boundaries end at the polygon that the package was cut with.
+//! Whether areas and lines with classes end at the polygon that the package was cut with.
 //!
 //! The build cuts outlines with a library that splits them at their crossings. Here nothing is cut: points are asked on which side of the polygon
 //! they lie, and how far from its outline.
 
 use std::f64::consts::TAU;
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId, cross};
-use corniche_tileset::{AreaRecord, FilePackage, decode_areas, decode_boundaries};
+use corniche_tileset::{AreaRecord, FilePackage, decode_areas, decode_lines};
 
 use super::{
     checks::{CheckId, Findings},
     each_tile::each_tile,
     error::VerifyError,
     geo_against_sv::distance,
+    lines::LineChecks,
 };
 use crate::Observer;
 
@@ -24,7 +26,7 @@ const BEYOND_FINEST_M: f64 = 0.3;
 /// Where the lattice of the package is coarser than that, so many of its steps.
 const BEYOND_STEPS: f64 = 3.0;
 
-/// Looks at the areas and boundaries of all tiles. `region` is the polygon.
+/// Looks at the areas and lines of all tiles. `region` is the polygon.
 pub(crate) fn verify(
     package: &FilePackage,
     region: &LatticeRegion,
@@ -43,10 +45,13 @@ pub(crate) fn verify(
                 format!("{} {} of tile {id} lies beyond it", area.class, area.object)
             });
         }
-        for boundary in decode_boundaries(&payload, id).unwrap_or_default() {
-            findings.look(CheckId::BoundaryPolygon, cut.holds_line(&boundary.points), || {
-                format!("{} way {} of tile {id} lies beyond it", boundary.class, boundary.way_id)
-            });
+        for layer in ClassedLayer::ALL {
+            for line in decode_lines(&payload, id, layer).unwrap_or_default() {
+                let check = LineChecks::of(layer).polygon;
+                findings.look(check, cut.holds_line(&line.points), || {
+                    format!("{} way {} of tile {id} lies beyond it", line.class, line.way_id)
+                });
+            }
         }
         Ok(findings)
     };

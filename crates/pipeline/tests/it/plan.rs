@@ -16,7 +16,7 @@ fn settings() -> PlanSettings {
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
     let table = FrcTable::new("few", classes, vec!["steps".to_owned()], 7).unwrap();
     PlanSettings {
-        boundaries: false,
+        lines: Vec::new(),
         dem: vec![sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: vec![sample("pass/pass.osm.pbf")],

@@ -162,7 +162,7 @@ pub(crate) fn settings(
 ) -> BuildSettings {
     BuildSettings {
         plan: PlanSettings {
-            boundaries: false,
+            lines: Vec::new(),
             dem: vec![dem],
             terrain_of: None,
             osm: osm.into_iter().collect(),

@@ -1,8 +1,8 @@
 //! The small package in pieces, so that each can be wrong by itself.
 
 use corniche_tileset::{
-    AreaCounts, AreaTableRecord, AreasRecord, BoundariesRecord, BoundaryCounts, InputRecord,
-    Manifest, SettingsRecord,
+    AreaCounts, AreaTableRecord, AreasRecord, InputRecord, LineCounts, LinesRecord, Manifest,
+    SettingsRecord,
 };
 
 use crate::{
@@ -67,13 +67,13 @@ pub(crate) fn metadata() -> serde_json::Value {
     let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
     let (table, sha256) = ("default".to_owned(), "0".repeat(64));
     let areas = AreaCounts { objects: 0, kept: vec![], lost: vec![] };
-    let boundaries = BoundaryCounts { ways: 0, kept: vec![], lost: vec![] };
+    let boundaries = LineCounts { ways: 0, kept: vec![], lost: vec![] };
     let sound = package::manifest();
     package::metadata(&Manifest {
         crs_wkt: "EPSG:32632".to_owned(),
         inputs: vec![extract],
         areas: Some(AreasRecord { counts: areas, levels: vec![] }),
-        boundaries: Some(BoundariesRecord { counts: boundaries, levels: vec![] }),
+        boundaries: Some(LinesRecord { counts: boundaries, levels: vec![] }),
         settings: SettingsRecord {
             areas: Some(AreaTableRecord { table, sha256 }),
             boundaries: true,

@@ -3,12 +3,12 @@
 //! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
 //! the first product, and comparisons with NaN would give wrong answers.
 
-use corniche_areas::{AreaClass, BoundaryClass};
+use corniche_areas::{AreaClass, ClassedLayer};
 use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex, TileId};
 use corniche_roads::FrcTable;
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{AreasRecord, BoundariesRecord, Manifest};
+use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
@@ -107,7 +107,7 @@ impl Manifest {
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         self.check_photos()?;
         self.check_areas()?;
-        self.check_boundaries()?;
+        ClassedLayer::ALL.into_iter().try_for_each(|layer| self.check_lines(layer))?;
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
         all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
@@ -136,14 +136,14 @@ impl Manifest {
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
     }
 
-    fn check_boundaries(&self) -> Result<(), String> {
-        let Some(BoundariesRecord { counts, levels }) = &self.boundaries else { return Ok(()) };
+    fn check_lines(&self, layer: ClassedLayer) -> Result<(), String> {
+        let Some(LinesRecord { counts, levels }) = self.lines(layer) else { return Ok(()) };
         let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
-        check_sum("boundaries.counts.kept.length_um", lengths_um)?;
+        check_sum(&format!("{}.counts.kept.length_um", layer.name()), lengths_um)?;
         let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
         let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
-        let is_class = |class| BoundaryClass::from_number(class).is_some();
-        self.check_layer("boundaries", levels, kept, is_class, &counts.lost)
+        let is_class = |class| layer.class(class).is_some();
+        self.check_layer(layer.name(), levels, kept, is_class, &counts.lost)
     }
 
     fn check_areas(&self) -> Result<(), String> {

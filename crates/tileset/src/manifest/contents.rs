@@ -1,5 +1,6 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, NodeIndex};
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize};
@@ -72,7 +73,7 @@ pub struct Manifest {
     pub areas: Option<AreasRecord>,
     /// The boundaries; left out in packages made without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub boundaries: Option<BoundariesRecord>,
+    pub boundaries: Option<LinesRecord>,
 }
 
 /// The part of the elevation files that a package is of.
@@ -105,6 +106,14 @@ impl Manifest {
         };
         let bounds = &self.data_bounds;
         [node(bounds.min_x, bounds.min_y), node(bounds.max_x, bounds.max_y)]
+    }
+
+    /// What is recorded of a layer of lines; `None` in packages made without.
+    #[must_use]
+    pub const fn lines(&self, layer: ClassedLayer) -> Option<&LinesRecord> {
+        match layer {
+            ClassedLayer::Boundaries => self.boundaries.as_ref(),
+        }
     }
 
     /// Rectangle of the nodes of all elevation files, working metres.
@@ -237,6 +246,15 @@ pub struct SettingsRecord {
 }
 
 impl SettingsRecord {
+    /// The layers of lines that there are.
+    #[must_use]
+    pub fn lines(&self) -> Vec<ClassedLayer> {
+        let has = |layer: &ClassedLayer| match layer {
+            ClassedLayer::Boundaries => self.boundaries,
+        };
+        ClassedLayer::ALL.into_iter().filter(has).collect()
+    }
+
     /// What the roads of each class are called, 0 first, where it is recorded.
     #[must_use]
     pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
@@ -350,29 +368,29 @@ pub struct InputRecord {
     pub sha256: String,
 }
 
-/// The boundaries of a package.
+/// A layer of lines of a package.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BoundariesRecord {
+pub struct LinesRecord {
     /// What was in the extract.
-    pub counts: BoundaryCounts,
-    /// What tiles have of them, by level; levels without boundaries are left out.
-    pub levels: Vec<BoundaryLevelRecord>,
+    pub counts: LineCounts,
+    /// What tiles have of them, by level; levels without any are left out.
+    pub levels: Vec<LineLevelRecord>,
 }
 
-/// Boundaries of the extract.
+/// Lines of a layer of the extract.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BoundaryCounts {
-    /// Ways that are boundaries; each counts once, in its most important class.
+pub struct LineCounts {
+    /// Ways that have a class; each counts once, in its most important class.
     pub ways: u64,
-    /// Boundaries that were read, by class, wherever they lie.
-    pub kept: Vec<BoundaryClassRecord>,
+    /// Ways that were read, by class, wherever they lie.
+    pub kept: Vec<LineClassRecord>,
     /// Ways that were left out, by reason.
     pub lost: Vec<(String, u64)>,
 }
 
-/// Boundaries of one class.
+/// Lines of one class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BoundaryClassRecord {
+pub struct LineClassRecord {
     /// Number of the class.
     pub class: u8,
     /// How many ways.
@@ -381,17 +399,17 @@ pub struct BoundaryClassRecord {
     pub length_um: u64,
 }
 
-/// The boundaries of a level.
+/// The lines of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BoundaryLevelRecord {
+pub struct LineLevelRecord {
     /// The level.
     pub level: u8,
-    /// Tiles with boundaries.
+    /// Tiles with some.
     pub tiles: u64,
-    /// Parts of boundaries in these tiles; what comes near several tiles counts in each.
+    /// Parts of lines in these tiles; what comes near several tiles counts in each.
     pub parts: u64,
     /// The number of their points.
     pub points: u64,
-    /// Stored bytes of their boundaries sections.
+    /// Stored bytes of their sections of the layer.
     pub bytes: u64,
 }

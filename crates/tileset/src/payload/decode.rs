@@ -1,5 +1,6 @@
 //! A payload is decoded: the sections that the caller wants.
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{GridFrame, TileId};
 use corniche_tin::Surface;
 
@@ -8,9 +9,7 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
 use crate::payload::section_kind::{GEO, Kind, SV, Sections, TwoKinds};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
-use crate::payload::{
-    areas, attributes, boundaries, envelope, road_tags, roads_geo, roads_sv, terrain,
-};
+use crate::payload::{areas, attributes, envelope, lines, road_tags, roads_geo, roads_sv, terrain};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
@@ -87,8 +86,10 @@ pub fn decode(
     if wanted.contains(Sections::AREAS) {
         areas::decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside(Kind::Areas))?;
     }
-    if wanted.contains(Sections::BOUNDARIES) {
-        boundaries::decode_in(&sections).map_err(inside(Kind::Boundaries))?;
+    for layer in ClassedLayer::ALL {
+        if wanted.contains(Sections::lines(layer)) {
+            lines::decode_in(&sections, layer).map_err(inside(Kind::of_lines(layer)))?;
+        }
     }
     Ok(TilePayload {
         id,

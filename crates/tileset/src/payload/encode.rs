@@ -1,5 +1,6 @@
 //! A tile is encoded as a payload: all its sections, with their sizes.
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
@@ -170,7 +171,7 @@ fn encode_sections(
         relief: size(Kind::Relief),
         photo: SectionSize::default(),
         areas: SectionSize::default(),
-        boundaries: SectionSize::default(),
+        lines: [SectionSize::default(); ClassedLayer::ALL.len()],
         geo_class_bytes,
         sv_class_bytes,
     };

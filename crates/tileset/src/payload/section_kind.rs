@@ -2,6 +2,7 @@
 
 use std::ops::BitOr;
 
+use corniche_areas::ClassedLayer;
 use serde::{Deserialize, Serialize};
 
 /// Declares the kinds, so that the list of all kinds has every kind.
@@ -43,6 +44,15 @@ kinds! {
     CodedAreas = 12, "areas section";
 }
 
+impl Kind {
+    /// The kind of the sections of a layer of lines.
+    pub(crate) const fn of_lines(layer: ClassedLayer) -> Self {
+        match layer {
+            ClassedLayer::Boundaries => Self::Boundaries,
+        }
+    }
+}
+
 /// The two kinds of section that roads of a method, or areas, can be in.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TwoKinds {
@@ -80,10 +90,14 @@ impl Sections {
     pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
     pub const AREAS: Self = Self::of(Kind::Areas).and(Self::of(Kind::CodedAreas));
-    /// Boundaries. [`decode`](crate::decode) checks them; [`decode_boundaries`](crate::decode_boundaries) gives them.
-    pub const BOUNDARIES: Self = Self::of(Kind::Boundaries);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
+
+    /// The lines of a layer. [`decode`](crate::decode) checks them; [`decode_lines`](crate::decode_lines) gives them.
+    #[must_use]
+    pub const fn lines(layer: ClassedLayer) -> Self {
+        Self::of(Kind::of_lines(layer))
+    }
 
     /// One bit for each kind, by its number.
     const fn of(kind: Kind) -> Self {

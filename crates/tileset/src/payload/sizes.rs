@@ -1,5 +1,6 @@
 //! How large the parts of a payload are, without decoding what they say.
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 
@@ -29,8 +30,8 @@ pub struct PayloadSizes {
     pub photo: SectionSize,
     /// The areas section.
     pub areas: SectionSize,
-    /// The boundaries section.
-    pub boundaries: SectionSize,
+    /// The section of each layer of lines, in order of [`ClassedLayer::ALL`].
+    pub lines: [SectionSize; ClassedLayer::ALL.len()],
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -66,7 +67,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         relief: size(Kind::Relief),
         photo: size(Kind::Photo),
         areas: size(Kind::Areas).or(size(Kind::CodedAreas)),
-        boundaries: size(Kind::Boundaries),
+        lines: ClassedLayer::ALL.map(|layer| size(Kind::of_lines(layer))),
         geo_class_bytes: of_classes(GEO)?,
         sv_class_bytes: of_classes(SV)?,
     })

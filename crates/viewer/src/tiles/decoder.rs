@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use corniche_areas::ClassedLayer;
 use corniche_geom::{TileId, TooMuchWork};
 use corniche_styles::Style;
-use corniche_tileset::{Manifest, Sections, decode, decode_areas, decode_boundaries, decode_photo};
+use corniche_tileset::{Manifest, Sections, decode, decode_areas, decode_lines, decode_photo};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -150,7 +151,7 @@ impl TileDecoder {
         let tile = TileGeometry::from_payload(&decoded, frame, quantum_m, margin_m, scale)?;
         let methods = self.line_methods();
         let boundaries = match self.boundaries {
-            Layer::Read => decode_boundaries(payload, id)?,
+            Layer::Read => decode_lines(payload, id, ClassedLayer::Boundaries)?,
             Layer::LeftOut => Vec::new(),
         };
         let boundaries: Vec<LayerLine> = boundaries.into_iter().map(LayerLine::from).collect();

@@ -9,7 +9,7 @@ mod lay;
 mod overlays;
 
 use corniche_geom::LatticePoint;
-use corniche_tileset::BoundaryRecord;
+use corniche_tileset::LineRecord;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use self::lay::{TileGround, lay};
@@ -43,8 +43,8 @@ pub struct LayerLine {
     pub points: Vec<LatticePoint>,
 }
 
-impl From<BoundaryRecord> for LayerLine {
-    fn from(BoundaryRecord { way_id, class, points }: BoundaryRecord) -> Self {
+impl From<LineRecord> for LayerLine {
+    fn from(LineRecord { way_id, class, points }: LineRecord) -> Self {
         Self { id: way_id, style: class.number(), points }
     }
 }

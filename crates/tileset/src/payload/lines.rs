@@ -1,29 +1,29 @@
-//! The boundaries of a tile: lines in plan, read and written apart from the rest of the payload, as most readers do not want them.
+//! The lines of a tile with a class each, such as boundaries: lines in plan, read and written apart from the rest of the payload, as most readers do not want them.
 
 #[cfg(feature = "write")]
 mod encode;
 
-use corniche_areas::BoundaryClass;
+use corniche_areas::{ClassedLayer, LineClass, line_text};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_BOUNDARIES, MAX_POINTS};
+use crate::limits::{MAX_CLASSED_LINES, MAX_POINTS};
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::{self, StoredSection};
 use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::section_kind::Kind;
 
 #[cfg(feature = "write")]
-pub use encode::{BoundariesSection, encode_boundaries, with_boundaries};
+pub use encode::{LinesSection, encode_lines, with_lines};
 
-/// A part of a boundary near a tile: segments that follow each other, of which each comes into the tile or its level's margin around it. They
+/// A part of a way of a layer of lines near a tile: segments that follow each other, of which each comes into the tile or its level's margin around it. They
 /// are not cut there.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BoundaryRecord {
+pub struct LineRecord {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// The most important of what it bounds.
-    pub class: BoundaryClass,
+    /// The most important of its classes.
+    pub class: LineClass,
     /// At least two points; neighbours are different. They may lie outside of the tile.
     pub points: Vec<LatticePoint>,
 }
@@ -33,27 +33,36 @@ const FARTHEST: i64 = 1 << 56;
 /// No lattice of points is wider than this many steps.
 const MOST_STEP: i64 = 1 << 40;
 
-/// Reads the boundaries of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
+/// Reads the lines of a layer of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
 /// [`limits`](crate::limits), whatever the bytes say.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the section is damaged.
-pub fn decode_boundaries(bytes: &[u8], id: TileId) -> Result<Vec<BoundaryRecord>, DecodeError> {
-    envelope::read_part(bytes, id, Kind::Boundaries.name(), decode_in)
+pub fn decode_lines(
+    bytes: &[u8],
+    id: TileId,
+    layer: ClassedLayer,
+) -> Result<Vec<LineRecord>, DecodeError> {
+    let part = Kind::of_lines(layer).name();
+    envelope::read_part(bytes, id, part, |sections| decode_in(sections, layer))
 }
 
-/// The boundaries of these sections of a payload.
-pub(crate) fn decode_in(sections: &[StoredSection<'_>]) -> Result<Vec<BoundaryRecord>, Damage> {
-    let section = envelope::section(sections, Kind::Boundaries)?;
-    Ok(section.map(|bytes| decode(&bytes)).transpose()?.unwrap_or_default())
+/// The lines of a layer of these sections of a payload.
+pub(crate) fn decode_in(
+    sections: &[StoredSection<'_>],
+    layer: ClassedLayer,
+) -> Result<Vec<LineRecord>, Damage> {
+    let section = envelope::section(sections, Kind::of_lines(layer))?;
+    Ok(section.map(|bytes| decode(&bytes, layer)).transpose()?.unwrap_or_default())
 }
 
 /// Reads the section's bytes.
-fn decode(bytes: &[u8]) -> Result<Vec<BoundaryRecord>, Damage> {
+fn decode(bytes: &[u8], layer: ClassedLayer) -> Result<Vec<LineRecord>, Damage> {
+    let invalid = |what| Damage::Invalid { what };
     let cursor = &mut Cursor::new(bytes);
     let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-    let step = step.ok_or(Damage::Invalid { what: "the spacing of the boundaries' lattice" })?;
-    let count = cursor.bounded(MAX_BOUNDARIES, "number of boundaries")?;
+    let step = step.ok_or(invalid(line_text!(layer, "the spacing of the " many "' lattice")))?;
+    let count = cursor.bounded(MAX_CLASSED_LINES, line_text!(layer, "number of " many))?;
     let [classes, ways, lengths] =
         [cursor.planes(count)?, cursor.planes(count)?, cursor.planes(count)?];
     let points_count = total(lengths)?;
@@ -62,20 +71,20 @@ fn decode(bytes: &[u8]) -> Result<Vec<BoundaryRecord>, Damage> {
     let mut east = Coordinates { steps: east.iter(), step, last: 0 };
     let mut north = Coordinates { steps: north.iter(), step, last: 0 };
     let mut way_id = 0_i64;
-    let mut boundaries = Vec::with_capacity(count);
+    let mut lines = Vec::with_capacity(count);
     for ((class, way), length) in classes.iter().zip(ways.iter()).zip(lengths.iter()) {
-        let class = u8::try_from(class).ok().and_then(BoundaryClass::from_number);
-        let class = class.ok_or(Damage::Invalid { what: "a class of boundaries" })?;
+        let class = u8::try_from(class).ok().and_then(|number| layer.class(number));
+        let class = class.ok_or(invalid(line_text!(layer, "a class of " many)))?;
         way_id = way_id.wrapping_add(zigzag(way));
         let points: Result<Vec<LatticePoint>, Damage> =
             (0..length + 2).map(|_| Ok(LatticePoint::new(east.next()?, north.next()?))).collect();
         let points = points?;
         if points.array_windows().any(|[one, next]| one == next) {
-            return Err(Damage::Invalid { what: "a boundary with a point twice" });
+            return Err(invalid(line_text!(layer, "a " one " with a point twice")));
         }
-        boundaries.push(BoundaryRecord { way_id, class, points });
+        lines.push(LineRecord { way_id, class, points });
     }
-    Ok(boundaries)
+    Ok(lines)
 }
 
 /// The number of points, refused beyond the limit before anything is allocated for it.
@@ -108,5 +117,5 @@ impl<S: Iterator<Item = u64>> Coordinates<S> {
 }
 
 #[cfg(test)]
-#[path = "boundaries_tests.rs"]
+#[path = "lines_tests.rs"]
 mod tests;

@@ -1,7 +1,8 @@
-//! Every tile has the segments of boundaries that come near it, and junctions stay.
+//! Every tile has the segments of lines that come near it, and junctions stay.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use corniche_areas::{BoundaryClass, ClassedLayer};
 use corniche_geom::{GridFrame, NodeIndex};
 use corniche_roads::{ClassFilter, FrcTable};
 
@@ -16,27 +17,31 @@ fn levels() -> Levels {
     Levels::new(frame, 1.0, &settings, 1.0)
 }
 
-fn splitting(levels: &Levels) -> BoundarySplitting<'_> {
+fn splitting(levels: &Levels) -> LineSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    BoundarySplitting { levels, data, clip: None, polygon: None }
+    LineSplitting { levels, data, clip: None, polygon: None }
+}
+
+fn line_class(class: BoundaryClass) -> LineClass {
+    ClassedLayer::Boundaries.class(class.number()).unwrap()
 }
 
 /// A wave across the whole of the root, in metres; its middle is a junction.
-fn wave(levels: &Levels, class: BoundaryClass) -> Boundary {
+fn wave(levels: &Levels, class: BoundaryClass) -> ClassedLine {
     let point = |k: i32| {
         let x = f64::from(k) * 20.0 - 5000.0;
         levels.frame().snap([x, 900.0 * (x / 700.0).sin()]).unwrap()
     };
     let points: Vec<LatticePoint> = (0..=500).map(point).collect();
-    Boundary { way_id: 7, class, points, fixed: vec![0, 250, 500] }
+    ClassedLine { way_id: 7, class: line_class(class), points, fixed: vec![0, 250, 500] }
 }
 
 #[test]
 fn every_tile_has_the_segments_that_come_near_it() {
     let levels = levels();
     let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
-    let mut by_tile: BTreeMap<TileId, Vec<BoundaryRecord>> = BTreeMap::new();
+    let mut by_tile: BTreeMap<TileId, Vec<LineRecord>> = BTreeMap::new();
     for (id, record) in splitting.split(&boundary) {
         by_tile.entry(id).or_default().push(record);
     }
@@ -90,8 +95,8 @@ fn small_units_are_stored_where_cells_are_small() {
     let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25 };
     let levels = Levels::new(frame, 1.0, &settings, 1.0);
     let splitting = splitting(&levels);
-    let shown = |class| -> Vec<u8> {
-        levels.numbers().filter(|&level| splitting.shows(level, class)).collect()
+    let shown = |class: BoundaryClass| -> Vec<u8> {
+        levels.numbers().filter(|&level| splitting.shows(level, line_class(class))).collect()
     };
     // Cells of 240, 120 and 60 m.
     assert_eq!(shown(BoundaryClass::Admin2), [0, 1, 2]);
@@ -109,7 +114,7 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
     let bounds = region.bounds();
     let boundary = wave(&levels, BoundaryClass::Admin2);
-    let splitting = BoundarySplitting { polygon: Some(&region), ..splitting(&levels) };
+    let splitting = LineSplitting { polygon: Some(&region), ..splitting(&levels) };
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
         let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);

@@ -1,21 +1,21 @@
-//! The boundaries of the extract: for each tile of each level, the section with what comes near it.
+//! A layer of lines of the extract: for each tile of each level, the section with what comes near it.
 
 use std::collections::BTreeMap;
 
-use corniche_areas::BoundaryClass;
+use corniche_areas::{ClassedLayer, LineClass, line_text};
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_osm::{Boundary, BoundarySummary};
+use corniche_osm::{ClassedLine, LineSummary};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{BoundaryRecord, encode_boundaries};
+use corniche_tileset::{LineRecord, encode_lines};
 use corniche_work::Stage;
 
-use super::split::BoundarySplitting;
+use super::split::LineSplitting;
 use crate::{
     BuildError,
     artifacts::{damaged, tile_of},
     layers::{
         SectionLayer,
-        layer_totals::BoundaryTotals,
+        layer_totals::LineTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
         tile_section::TileSection,
@@ -26,75 +26,80 @@ use crate::{
 /// Parts of a tile are sorted by class and way; those of one way by where they begin, so that their order depends on what they are alone.
 type PartOrder = (u8, i64, LatticePoint, u64);
 
-/// How boundaries are split, and measured.
+/// How lines are split, and measured.
 pub(crate) struct MeasuredSplitting<'a> {
-    pub(crate) splitting: BoundarySplitting<'a>,
+    pub(crate) splitting: LineSplitting<'a>,
     pub(crate) lengths: &'a TrueLengths<'a>,
 }
 
-/// Boundaries as they come in.
-pub(crate) struct BoundaryLayer<'a> {
+/// Lines of a layer as they come in.
+pub(crate) struct LinesLayer<'a> {
+    layer: ClassedLayer,
     splitting: MeasuredSplitting<'a>,
     store: &'a dyn Artifacts,
     parts: PartsByTile<'a, PartOrder>,
     /// The true lengths of all ways that were handed out, by class.
-    lengths_um: BTreeMap<BoundaryClass, u64>,
+    lengths_um: BTreeMap<LineClass, u64>,
 }
 
-impl<'a> BoundaryLayer<'a> {
+impl<'a> LinesLayer<'a> {
     pub(crate) fn new(
+        layer: ClassedLayer,
         splitting: MeasuredSplitting<'a>,
         (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
         memory_bytes: u64,
     ) -> Self {
         let parts = PartsByTile::new(scratch, memory_bytes);
-        Self { splitting, store, parts, lengths_um: BTreeMap::new() }
+        Self { layer, splitting, store, parts, lengths_um: BTreeMap::new() }
     }
 }
 
-/// A boundary that was split.
-pub(crate) struct SplitBoundary {
-    class: BoundaryClass,
+/// A line that was split.
+pub(crate) struct SplitLine {
+    class: LineClass,
     length_um: u64,
     parts: Vec<(TileId, PartOrder, Vec<u8>)>,
 }
 
 impl TileSplitting for MeasuredSplitting<'_> {
-    type Object = Boundary;
-    type Split = SplitBoundary;
+    type Object = ClassedLine;
+    type Split = SplitLine;
 
-    fn points(boundary: &Boundary) -> usize {
-        boundary.points.len()
+    fn points(line: &ClassedLine) -> usize {
+        line.points.len()
     }
 
-    fn split_object(&self, _: u64, boundary: Boundary) -> SplitBoundary {
-        let class = boundary.class;
-        let Ok(line) = Polyline::new(boundary.points.clone()) else {
-            return SplitBoundary { class, length_um: 0, parts: Vec::new() };
+    fn split_object(&self, _: u64, object: ClassedLine) -> SplitLine {
+        let class = object.class;
+        let Ok(line) = Polyline::new(object.points.clone()) else {
+            return SplitLine { class, length_um: 0, parts: Vec::new() };
         };
-        let part = |(number, (id, record)): (u64, (TileId, BoundaryRecord))| {
+        let part = |(number, (id, record)): (u64, (TileId, LineRecord))| {
             let order = (class.number(), record.way_id, record.points[0], number);
             (id, order, points_to_bytes(&record.points))
         };
-        SplitBoundary {
+        SplitLine {
             class,
             length_um: self.lengths.segments_um(&line).iter().sum(),
-            parts: (0..).zip(self.splitting.split(&boundary)).map(part).collect(),
+            parts: (0..).zip(self.splitting.split(&object)).map(part).collect(),
         }
     }
 }
 
-impl<'a> TileLayer for BoundaryLayer<'a> {
-    const STAGE: Stage = Stage::Boundaries;
+impl<'a> TileLayer for LinesLayer<'a> {
     type Splitting = MeasuredSplitting<'a>;
-    type Summary = BoundarySummary;
-    type Done = BoundaryTotals;
+    type Summary = LineSummary;
+    type Done = LineTotals;
+
+    fn stage(&self) -> Stage {
+        SectionLayer::Lines(self.layer).stage()
+    }
 
     fn splitting(&self) -> &MeasuredSplitting<'a> {
         &self.splitting
     }
 
-    fn take(&mut self, split: SplitBoundary) -> Result<(), BuildError> {
+    fn take(&mut self, split: SplitLine) -> Result<(), BuildError> {
         *self.lengths_um.entry(split.class).or_default() += split.length_um;
         split.parts.into_iter().try_for_each(|(id, order, bytes)| self.parts.push(id, order, bytes))
     }
@@ -103,34 +108,35 @@ impl<'a> TileLayer for BoundaryLayer<'a> {
     fn finish(
         self,
         _: u64,
-        summary: BoundarySummary,
+        summary: LineSummary,
         told: &LayerContext<'_>,
-    ) -> Result<BoundaryTotals, BuildError> {
+    ) -> Result<LineTotals, BuildError> {
         let (splitting, store) = (&self.splitting.splitting, self.store);
+        let (own, layer) = (self.layer, SectionLayer::Lines(self.layer));
         self.parts.for_each_tile(
             told.observer,
-            |parts: &mut Vec<BoundaryRecord>, tile, (class, way_id, ..), bytes| {
-                let class = BoundaryClass::from_number(class);
+            |parts: &mut Vec<LineRecord>, tile, (class, way_id, ..), bytes| {
+                let class = own.class(class);
                 let part = class.zip(points_of_bytes(&bytes)).ok_or_else(|| {
-                    let key = SectionLayer::Boundaries.section().item(tile);
-                    damaged(key, &"what was read back is no boundary")
+                    let key = layer.section().item(tile);
+                    damaged(key, &line_text!(own, "what was read back is no " one))
                 });
                 let (class, points) = part?;
-                parts.push(BoundaryRecord { way_id, class, points });
+                parts.push(LineRecord { way_id, class, points });
                 Ok(())
             },
-            |tile, parts| put_section(tile, &parts, splitting, store),
+            |tile, parts| put_section(own, tile, &parts, splitting, store),
         )?;
         let kept = summary.kept.iter().map(|(class, &ways)| {
             let length_um = self.lengths_um.get(class).copied().unwrap_or_default();
             (class.number(), (ways, length_um))
         });
-        let totals = BoundaryTotals {
+        let totals = LineTotals {
             objects: summary.ways,
             kept: kept.collect(),
-            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason().to_owned(), n)).collect(),
+            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason(own).to_owned(), n)).collect(),
         };
-        totals.put(SectionLayer::Boundaries, store)?;
+        totals.put(layer, store)?;
         Ok(totals)
     }
 }
@@ -148,19 +154,21 @@ fn points_of_bytes(bytes: &[u8]) -> Option<Vec<LatticePoint>> {
 }
 
 fn put_section(
+    own: ClassedLayer,
     tile: u64,
-    boundaries: &[BoundaryRecord],
-    splitting: &BoundarySplitting<'_>,
+    lines: &[LineRecord],
+    splitting: &LineSplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
-    let id: TileId = tile_of(SectionLayer::Boundaries.section().item(tile))?;
-    let Some(section) = encode_boundaries(id, splitting.step(id.z()), boundaries)? else {
+    let layer = SectionLayer::Lines(own);
+    let id: TileId = tile_of(layer.section().item(tile))?;
+    let Some(section) = encode_lines(id, own, splitting.step(id.z()), lines)? else {
         return Ok(());
     };
     let kept = TileSection {
         section: section.into_bytes(),
-        parts: boundaries.len() as u64,
-        points: boundaries.iter().map(|boundary| boundary.points.len() as u64).sum(),
+        parts: lines.len() as u64,
+        points: lines.iter().map(|line| line.points.len() as u64).sum(),
     };
-    kept.put(SectionLayer::Boundaries, store, id)
+    kept.put(layer, store, id)
 }

@@ -1,17 +1,17 @@
-//! Boundaries are made of ways and of the relations that hold them.
+//! Lines with classes are made of ways and of the relations that hold them.
 
 use std::{io, iter};
 
-use corniche_areas::BoundaryClass;
+use corniche_areas::{ClassedLayer, LineClass};
 use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::SortRecord as _;
 
-use super::{boundary::Boundary, summary::BoundarySummary};
+use super::{classed_line::ClassedLine, summary::LineSummary};
 use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
-    boundary_loss::BoundaryLoss,
     layer_sink::LayerSink,
+    line_loss::LineLoss,
     location,
     outlines::{
         located_ways::{LocatedWay, LocatedWays},
@@ -24,13 +24,17 @@ use crate::{
 /// It is told every so many ways how far the layer is.
 const WAYS_TO_TELL: u64 = 1 << 10;
 
-/// Members and ways come in order of way ids; `classes` are those of objects by their numbers.
-pub(crate) fn make_boundaries(
+/// The class's number of an object that gives its ways none; no class has it.
+pub(crate) const NO_CLASS: u8 = u8::MAX;
+
+/// Members and ways come in order of way ids; `classes` are the numbers of those of objects, by the objects' numbers.
+pub(crate) fn make_lines(
     reading: &Reading<'_>,
-    (mut members, classes): (SpoolReader<'_>, &[Option<BoundaryClass>]),
+    layer: ClassedLayer,
+    (mut members, classes): (SpoolReader<'_>, &[u8]),
     mut located: LocatedWays<'_>,
-    summary: &mut BoundarySummary,
-    (sink, on_defect): (&mut dyn LayerSink<Boundary, BoundarySummary>, &mut dyn FnMut(Defect)),
+    summary: &mut LineSummary,
+    (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
 ) -> Result<(), ReadOsmError> {
     let mut members =
         Members(Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose())));
@@ -43,7 +47,7 @@ pub(crate) fn make_boundaries(
             sink.reached(count.min(all), all);
         }
         count += 1;
-        let Some(class) = class else { continue };
+        let Some(class) = layer.class(class) else { continue };
         summary.ways += 1;
         while way.as_ref().is_none_or(|way| way.way_id < way_id) {
             way = located.next(reading)?;
@@ -55,7 +59,7 @@ pub(crate) fn make_boundaries(
             Some(way) if way.way_id == way_id => {
                 parts_of(reading, way, class).inspect(|_| tell_gaps(way, on_defect))
             }
-            _ => Err(BoundaryLoss::MissingWay),
+            _ => Err(LineLoss::MissingWay),
         };
         match made {
             Ok(parts) => {
@@ -66,7 +70,7 @@ pub(crate) fn make_boundaries(
             }
             Err(loss) => {
                 *summary.lost.entry(loss).or_default() += 1;
-                on_defect(Defect::LostBoundary { way_id, loss });
+                on_defect(Defect::LostLine { layer, way_id, loss });
             }
         }
     }
@@ -78,21 +82,21 @@ pub(crate) fn make_boundaries(
 struct Members<I: Iterator>(Ahead<I>);
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
-    /// The next way and the most important of the classes that objects give it.
+    /// The next way and the number of the most important of the classes that objects give it.
     fn next_way(
         &mut self,
         reading: &Reading<'_>,
-        classes: &[Option<BoundaryClass>],
-    ) -> Result<Option<(i64, Option<BoundaryClass>)>, ReadOsmError> {
-        let mut way: Option<(i64, Option<BoundaryClass>)> = None;
+        classes: &[u8],
+    ) -> Result<Option<(i64, u8)>, ReadOsmError> {
+        let mut way: Option<(i64, u8)> = None;
         while let Some(record) = self.0.peek().map_err(|error| reading.scratch_failed(error))? {
-            let own = classes.get(record.object_number as usize).copied().flatten();
+            let own = classes.get(record.object_number as usize).copied().unwrap_or(NO_CLASS);
             let way_id = record.member.way_id;
-            let (id, class) = way.get_or_insert((way_id, None));
+            let (id, class) = way.get_or_insert((way_id, NO_CLASS));
             if *id != way_id {
                 break;
             }
-            *class = [*class, own].into_iter().flatten().min();
+            *class = own.min(*class);
             self.0.take();
         }
         Ok(way)
@@ -120,8 +124,8 @@ fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(Defect)) {
 fn parts_of(
     reading: &Reading<'_>,
     way: &LocatedWay,
-    class: BoundaryClass,
-) -> Result<Vec<Boundary>, BoundaryLoss> {
+    class: LineClass,
+) -> Result<Vec<ClassedLine>, LineLoss> {
     let is_missing = |place: &location::Location| *place == location::MISSING;
     let is_valid =
         |place: &location::Location| !is_missing(place) && *place != location::OUT_OF_RANGE;
@@ -139,7 +143,7 @@ fn parts_of(
             point.filter(|_| is_valid(place)).map(|at| (at, is_shared))
         })
         .collect();
-    let parts: Vec<Boundary> = points
+    let parts: Vec<ClassedLine> = points
         .split(Option::is_none)
         .flat_map(|run| {
             split_at_seam(run.iter().flatten().copied().collect(), reading.request.seam)
@@ -152,15 +156,15 @@ fn parts_of(
     let valid: Vec<&location::Location> =
         way.places.iter().filter(|place| is_valid(place)).collect();
     Err(if way.places.iter().any(is_missing) {
-        BoundaryLoss::MissingNodes
+        LineLoss::MissingNodes
     } else if valid.len() < way.places.len() || valid.len() < 2 {
-        BoundaryLoss::OutOfRange
+        LineLoss::OutOfRange
     } else {
-        BoundaryLoss::OutsideProjection
+        LineLoss::OutsideProjection
     })
 }
 
-fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Option<Boundary> {
+fn part(way_id: i64, class: LineClass, run: Vec<(LatticePoint, bool)>) -> Option<ClassedLine> {
     let mut points: Vec<(LatticePoint, bool)> = Vec::new();
     for (at, is_shared) in run {
         match points.last_mut() {
@@ -176,5 +180,10 @@ fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Op
         (*is_shared || index == 0 || index == last).then_some(index as u32)
     });
     let fixed = fixed.collect();
-    Some(Boundary { way_id, class, fixed, points: points.into_iter().map(|(at, _)| at).collect() })
+    Some(ClassedLine {
+        way_id,
+        class,
+        fixed,
+        points: points.into_iter().map(|(at, _)| at).collect(),
+    })
 }

@@ -1,10 +1,10 @@
-//! The whole way of boundaries out of a package.
+//! The whole way of a layer of lines, such as boundaries, out of a package.
 
 use std::path::Path;
 
-use corniche_areas::{AreaObject, BoundaryClass};
+use corniche_areas::{AreaObject, BoundaryClass, ClassedLayer, LineClass};
 use corniche_geom::{LatticePoint, TileId};
-use corniche_tileset::{FilePackage, decode_boundaries, pmtiles_order};
+use corniche_tileset::{FilePackage, decode_lines, pmtiles_order};
 use corniche_work::Observer;
 
 use crate::{
@@ -20,8 +20,8 @@ use crate::{
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BoundariesSummary {
-    /// The level whose boundaries were taken.
+pub struct LinesSummary {
+    /// The level whose lines were taken.
     pub level: u8,
     /// Features written: ways of OSM.
     pub ways: u64,
@@ -33,13 +33,33 @@ pub struct BoundariesSummary {
     pub length_m: f64,
 }
 
-const FIELDS: &[Field] = &[
-    Field {
-        name: "way_id",
-        kind: FieldKind::Integer64,
-        unit: "",
-        meaning: "id of the way in OpenStreetMap",
-    },
+const WAY_ID: Field = Field {
+    name: "way_id",
+    kind: FieldKind::Integer64,
+    unit: "",
+    meaning: "id of the way in OpenStreetMap",
+};
+
+/// The fields of a layer that say its class.
+fn class_fields(layer: ClassedLayer) -> &'static [Field] {
+    match layer {
+        ClassedLayer::Boundaries => BOUNDARY_FIELDS,
+    }
+}
+
+/// What these fields say of a class.
+fn class_values(layer: ClassedLayer, class: LineClass) -> Vec<Value> {
+    let name = Value::Text(class.name().to_owned());
+    match layer {
+        ClassedLayer::Boundaries => {
+            let class = BoundaryClass::from_number(class.number());
+            let level = class.and_then(BoundaryClass::admin_level);
+            vec![name, level.map_or(Value::Null, |level| Value::Integer(level.into()))]
+        }
+    }
+}
+
+const BOUNDARY_FIELDS: &[Field] = &[
     Field {
         name: "class",
         kind: FieldKind::Text,
@@ -52,6 +72,9 @@ const FIELDS: &[Field] = &[
         unit: "",
         meaning: "OSM's `admin_level` of that; null for protected areas",
     },
+];
+
+const MEASURES: &[Field] = &[
     Field {
         name: "length_m",
         kind: FieldKind::Real,
@@ -72,64 +95,75 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// Writes the boundaries of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
+/// Writes a layer of lines of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
 /// Beside the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
 ///
 /// # Errors
-/// When the package has no boundaries or no such level, the request cannot be met, the package is damaged, or something cannot be
+/// When the package has no such layer or level, the request cannot be met, the package is damaged, or something cannot be
 /// written.
-pub fn export_boundaries(
+pub fn export_lines(
     package: &FilePackage,
-    request: &FeatureRequest<BoundaryClass>,
+    layer: ClassedLayer,
+    request: &FeatureRequest<LineClass>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<BoundariesSummary, ExportError> {
-    if package.manifest().boundaries.is_none() {
+) -> Result<LinesSummary, ExportError> {
+    if package.manifest().lines(layer).is_none() {
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoLayer { package, layer: Boundaries::NAME });
+        return Err(ExportError::NoLayer { package, layer: layer.name() });
     }
-    let source = FeatureSource::new(package, request, Boundaries::SHAPES)?;
+    let source = FeatureSource::new(package, request, Lines::SHAPES)?;
     let level = source.level;
-    let mut boundaries =
-        Boundaries(BoundariesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 });
-    write_features(&mut boundaries, &source, path, observer)?;
-    Ok(boundaries.0)
+    let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };
+    let mut lines = Lines { layer, summary };
+    write_features(&mut lines, &source, path, observer)?;
+    Ok(lines.summary)
 }
 
-/// Boundaries on their way into a file.
-struct Boundaries(BoundariesSummary);
+/// Lines of a layer on their way into a file.
+struct Lines {
+    layer: ClassedLayer,
+    summary: LinesSummary,
+}
 
-impl Features for Boundaries {
-    type Class = BoundaryClass;
+impl Features for Lines {
+    type Class = LineClass;
     type Piece = PlanPiece;
-    const NAME: &'static str = "boundaries";
     const SHAPES: ShapeKind = ShapeKind::PlanLines;
 
-    fn about(&self, source: &FeatureSource<'_, BoundaryClass>) -> About {
+    fn name(&self) -> &'static str {
+        self.layer.name()
+    }
+
+    fn about(&self, source: &FeatureSource<'_, LineClass>) -> About {
         About {
-            fields: FIELDS.to_vec(),
-            description: format!("Boundaries, as they are stored for {}.", source.cells()),
+            fields: [&[WAY_ID], class_fields(self.layer), MEASURES].concat(),
+            description: format!(
+                "{}, as they are stored for {}.",
+                self.layer.table().title,
+                source.cells()
+            ),
             metadata: Vec::new(),
         }
     }
 
     fn pieces(
         &mut self,
-        FeatureSource { package, request, .. }: &FeatureSource<'_, BoundaryClass>,
+        FeatureSource { package, request, .. }: &FeatureSource<'_, LineClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, ExportError> {
         let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
-        let boundaries = decode_boundaries(&bytes, tile).map_err(|source| {
-            ExportError::Damaged { layer: Self::NAME, source: Box::new(source) }
+        let lines = decode_lines(&bytes, tile, self.layer).map_err(|source| {
+            ExportError::Damaged { layer: self.name(), source: Box::new(source) }
         })?;
-        let wanted = boundaries.into_iter().filter(|one| request.classes.contains(&one.class));
+        let wanted = lines.into_iter().filter(|one| request.classes.contains(&one.class));
         Ok(wanted
-            .map(|boundary| PlanPiece {
-                object: AreaObject::Way(boundary.way_id),
+            .map(|line| PlanPiece {
+                object: AreaObject::Way(line.way_id),
                 tile: pmtiles_order(tile),
-                class: boundary.class.number(),
+                class: line.class.number(),
                 name: String::new(),
-                lines: vec![boundary.points],
+                lines: vec![line.points],
             })
             .collect())
     }
@@ -140,10 +174,10 @@ impl Features for Boundaries {
 
     fn records(
         &mut self,
-        FeatureSource { places, request, .. }: &FeatureSource<'_, BoundaryClass>,
+        FeatureSource { places, request, .. }: &FeatureSource<'_, LineClass>,
         pieces: &[PlanPiece],
     ) -> Result<Vec<Record>, ExportError> {
-        let class = class_of(pieces, BoundaryClass::from_number)?;
+        let class = class_of(pieces, |number| self.layer.class(number))?;
         let object = pieces[0].object;
         let vertex = |point: &LatticePoint| Vertex {
             at: [point.u as f64, point.v as f64],
@@ -165,22 +199,21 @@ impl Features for Boundaries {
         let segments = || lines.iter().flat_map(|line| line.array_windows());
         let length_m = segments().map(|[from, to]| places.distance_m(from.at, to.at)).sum::<f64>();
         let points = lines.iter().map(|line| line.len() as u64).sum::<u64>();
-        self.0.ways += 1;
-        self.0.lines += lines.len() as u64;
-        self.0.points += points;
-        self.0.length_m += length_m;
+        self.summary.ways += 1;
+        self.summary.lines += lines.len() as u64;
+        self.summary.points += points;
+        self.summary.length_m += length_m;
         let mut carried = Vec::with_capacity(lines.len());
         for line in &lines {
             carried.extend(places.carry(object, line)?);
         }
-        let values = vec![
-            Value::Integer(object.parts().1),
-            Value::Text(class.name().to_owned()),
-            class.admin_level().map_or(Value::Null, |level| Value::Integer(level.into())),
+        let mut values = vec![Value::Integer(object.parts().1)];
+        values.extend(class_values(self.layer, class));
+        values.extend([
             Value::Real((length_m * 1e6).round() / 1e6),
             Value::Integer(lines.len() as i64),
             Value::Integer(points as i64),
-        ];
+        ]);
         Ok(vec![Record { values, shape: Shape::Lines(carried) }])
     }
 }

@@ -1,13 +1,13 @@
-//! One boundary to its parts near the tiles of each level.
+//! One line with its class to its parts near the tiles of each level.
 
 use std::borrow::Cow;
 
-use corniche_areas::BoundaryClass;
+use corniche_areas::LineClass;
 use corniche_drape::{ClippedPart, clip_region};
 use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
-use corniche_osm::Boundary;
+use corniche_osm::ClassedLine;
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
-use corniche_tileset::BoundaryRecord;
+use corniche_tileset::LineRecord;
 
 use crate::{
     heights::data_tiles::DataTiles, layers::fixed_points::fixed_of_part, levels::Levels,
@@ -17,62 +17,52 @@ use crate::{
 /// On levels above the finest, lines are simplified by so many of the level's cells.
 const TOLERANCE_CELLS: f64 = 0.25;
 
-/// The coarsest cell, metres, on whose level boundaries of a class are stored; `None`: all. What is stored nowhere above need not be drawn
-/// there: districts and parks are too small.
-fn coarsest_cell_m(class: BoundaryClass) -> Option<f64> {
-    match class {
-        BoundaryClass::Admin2 | BoundaryClass::Admin3 | BoundaryClass::Admin4 => None,
-        BoundaryClass::Admin5 | BoundaryClass::Admin6 => Some(250.0),
-        BoundaryClass::Admin7 | BoundaryClass::Admin8 | BoundaryClass::Protected => Some(80.0),
-    }
-}
-
-/// How boundaries are split.
-pub(crate) struct BoundarySplitting<'a> {
+/// How the lines of a layer are split.
+pub(crate) struct LineSplitting<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) data: DataTiles,
     /// The bounds that were asked for: tiles that do not touch them get none.
     pub(crate) clip: Option<LatticeBounds>,
-    /// The polygon that was asked for: boundaries end at its outline.
+    /// The polygon that was asked for: lines end at its outline.
     pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
-impl BoundarySplitting<'_> {
+impl LineSplitting<'_> {
     /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
     pub(crate) fn step(&self, level: u8) -> i64 {
         points_step(self.levels.frame(), level)
     }
 
     /// Whether a class is stored on a level.
-    fn shows(&self, level: u8, class: BoundaryClass) -> bool {
+    fn shows(&self, level: u8, class: LineClass) -> bool {
         let frame = self.levels.frame();
         let cell_m = frame.level_cell(level).shorter_m();
-        level == frame.max_level() || coarsest_cell_m(class).is_none_or(|most_m| cell_m <= most_m)
+        level == frame.max_level() || class.coarsest_cell_m().is_none_or(|most_m| cell_m <= most_m)
     }
 
-    /// The parts of a boundary by tile.
-    pub(crate) fn split(&self, boundary: &Boundary) -> Vec<(TileId, BoundaryRecord)> {
-        let parts = self.parts(boundary);
-        let levels = self.levels.numbers().filter(|&level| self.shows(level, boundary.class));
+    /// The parts of a line by tile.
+    pub(crate) fn split(&self, object: &ClassedLine) -> Vec<(TileId, LineRecord)> {
+        let parts = self.parts(object);
+        let levels = self.levels.numbers().filter(|&level| self.shows(level, object.class));
         levels
             .flat_map(|level| parts.iter().flat_map(move |part| self.split_level(part, level)))
             .collect()
     }
 
-    /// The parts of a boundary in the polygon; without one, the boundary.
-    fn parts<'b>(&self, boundary: &'b Boundary) -> Vec<Cow<'b, Boundary>> {
-        let Some(region) = self.polygon else { return vec![Cow::Borrowed(boundary)] };
-        let Ok(line) = Polyline::new(boundary.points.clone()) else { return Vec::new() };
+    /// The parts of a line in the polygon; without one, the line.
+    fn parts<'b>(&self, object: &'b ClassedLine) -> Vec<Cow<'b, ClassedLine>> {
+        let Some(region) = self.polygon else { return vec![Cow::Borrowed(object)] };
+        let Ok(line) = Polyline::new(object.points.clone()) else { return Vec::new() };
         let cut = |part: ClippedPart| {
-            let fixed = fixed_of_part(&boundary.points, &boundary.fixed, &part);
+            let fixed = fixed_of_part(&object.points, &object.fixed, &part);
             let points = part.line.points().to_vec();
-            Cow::Owned(Boundary { way_id: boundary.way_id, class: boundary.class, points, fixed })
+            Cow::Owned(ClassedLine { way_id: object.way_id, class: object.class, points, fixed })
         };
         clip_region(&line, region).into_iter().map(cut).collect()
     }
 
-    fn split_level(&self, boundary: &Boundary, level: u8) -> Vec<(TileId, BoundaryRecord)> {
-        let points = self.line(boundary, level);
+    fn split_level(&self, object: &ClassedLine, level: u8) -> Vec<(TileId, LineRecord)> {
+        let points = self.line(object, level);
         let data = self.data.above(level);
         let mut near: Vec<(TileId, usize)> = Vec::new();
         for (segment, pair) in points.array_windows::<2>().enumerate() {
@@ -87,7 +77,7 @@ impl BoundarySplitting<'_> {
         let record = |run: &[(TileId, usize)]| {
             let (first, last) = (run[0].1, run[run.len() - 1].1);
             let points = points[first..=last + 1].to_vec();
-            (run[0].0, BoundaryRecord { way_id: boundary.way_id, class: boundary.class, points })
+            (run[0].0, LineRecord { way_id: object.way_id, class: object.class, points })
         };
         runs.map(record).collect()
     }
@@ -97,8 +87,8 @@ impl BoundarySplitting<'_> {
         self.clip.is_none_or(|clip| clip.intersects(&tile))
     }
 
-    /// A boundary as a level shows it: simplified, on the level's lattice.
-    fn line(&self, boundary: &Boundary, level: u8) -> Vec<LatticePoint> {
+    /// A line as a level shows it: simplified, on the level's lattice.
+    fn line(&self, object: &ClassedLine, level: u8) -> Vec<LatticePoint> {
         let frame = self.levels.frame();
         let tolerance_m = if level == frame.max_level() {
             0.0
@@ -106,17 +96,17 @@ impl BoundarySplitting<'_> {
             TOLERANCE_CELLS * frame.level_cell(level).shorter_m()
         };
         let (Ok(line), Some(class)) =
-            (Polyline::new(boundary.points.clone()), FunctionalRoadClass::new(0))
+            (Polyline::new(object.points.clone()), FunctionalRoadClass::new(0))
         else {
             return Vec::new();
         };
         // Simplification looks at the line and its fixed points alone.
         let road = Road {
-            way_id: boundary.way_id,
+            way_id: object.way_id,
             class,
             attributes: RoadAttributes::default(),
             line,
-            fixed: boundary.fixed.clone(),
+            fixed: object.fixed.clone(),
             node_ids: Vec::new(),
             same_places: Vec::new(),
         };

@@ -1,16 +1,19 @@
-//! Boundaries come back from their section, and damage is told.
+//! Lines with classes come back from their section, and damage is told.
 
+use corniche_areas::BoundaryClass;
 use proptest::prelude::*;
 
 use super::*;
+
+const LAYER: ClassedLayer = ClassedLayer::Boundaries;
 
 fn tile() -> TileId {
     TileId::new(1, 1, 0).unwrap()
 }
 
-fn boundary(way_id: i64, class: BoundaryClass, points: &[(i64, i64)]) -> BoundaryRecord {
+fn boundary(way_id: i64, class: BoundaryClass, points: &[(i64, i64)]) -> LineRecord {
     let points = points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
-    BoundaryRecord { way_id, class, points }
+    LineRecord { way_id, class: LAYER.class(class.number()).unwrap(), points }
 }
 
 #[test]
@@ -20,16 +23,16 @@ fn what_is_encoded_comes_back() {
         boundary(i64::MAX, BoundaryClass::Admin8, &[(64, 64), (0, 64)]),
         boundary(i64::MIN, BoundaryClass::Protected, &[(64, 64), (0, 64), (64, 64)]),
     ];
-    let section = encode_boundaries(tile(), 64, &boundaries).unwrap().unwrap();
+    let section = encode_lines(tile(), LAYER, 64, &boundaries).unwrap().unwrap();
     assert_eq!(section.decode(tile()).unwrap(), boundaries);
-    assert_eq!(encode_boundaries(tile(), 64, &[]).unwrap(), None);
+    assert_eq!(encode_lines(tile(), LAYER, 64, &[]).unwrap(), None);
 }
 
 #[test]
 fn what_cannot_be_read_is_not_written() {
     let refused = |step, points: &[(i64, i64)]| {
         let boundary = boundary(1, BoundaryClass::Admin2, points);
-        encode_boundaries(tile(), step, &[boundary]).unwrap_err().to_string()
+        encode_lines(tile(), LAYER, step, &[boundary]).unwrap_err().to_string()
     };
     assert!(refused(0, &[(0, 0), (1, 1)]).contains("without spacing"));
     assert!(refused(1, &[(0, 0)]).contains("less than two"));
@@ -45,7 +48,7 @@ proptest! {
         lines in prop::collection::vec((any::<i64>(), 0_u8..8, prop::collection::vec((-9000_i64..9000, -9000_i64..9000), 2..40)), 1..20),
     ) {
         let step = 1_i64 << step_bits;
-        let boundaries: Vec<BoundaryRecord> = lines
+        let boundaries: Vec<LineRecord> = lines
             .into_iter()
             .map(|(way_id, class, mut points)| {
                 points.dedup();
@@ -55,7 +58,7 @@ proptest! {
             })
             .filter(|boundary| boundary.points.len() >= 2)
             .collect();
-        if let Some(section) = encode_boundaries(tile(), step, &boundaries).unwrap() {
+        if let Some(section) = encode_lines(tile(), LAYER, step, &boundaries).unwrap() {
             prop_assert_eq!(section.decode(tile()).unwrap(), boundaries);
         }
     }
@@ -67,13 +70,13 @@ proptest! {
             boundary(7, BoundaryClass::Admin4, &[(0, 0), (-640, 128), (6400, 64), (64, 0)]),
             boundary(9, BoundaryClass::Admin6, &[(64, 64), (0, 64)]),
         ];
-        let section = encode_boundaries(tile(), 64, &boundaries).unwrap().unwrap();
+        let section = encode_lines(tile(), LAYER, 64, &boundaries).unwrap().unwrap();
         let mut bytes = section.into_bytes();
         if let Some(byte) = bytes.get_mut(at) {
             *byte = value;
         }
         bytes.truncate(bytes.len().saturating_sub(cut / 10));
-        if let Ok(read) = BoundariesSection::from_bytes(bytes).decode(tile()) {
+        if let Ok(read) = LinesSection::from_bytes(LAYER, bytes).decode(tile()) {
             for boundary in read {
                 prop_assert!(boundary.points.len() >= 2);
             }

@@ -1,8 +1,12 @@
-//! Boundaries and what is wrong with them are handed out in order of their ways.
+//! Lines of a layer and what is wrong with them are handed out in order of their ways.
 
-use corniche_areas::BoundaryClass;
+use corniche_areas::ClassedLayer;
 
-use super::{boundary::Boundary, make_boundaries::make_boundaries, summary::BoundarySummary};
+use super::{
+    classed_line::ClassedLine,
+    make_lines::{NO_CLASS, make_lines},
+    summary::LineSummary,
+};
 use crate::{
     Defect, ReadOsmError,
     layer_sink::LayerSink,
@@ -11,11 +15,12 @@ use crate::{
     reading::Reading,
 };
 
-/// Hands out boundaries, and what is wrong with them.
-pub(crate) fn hand_out_boundaries<'a>(
+/// Hands out the lines of a layer, and what is wrong with them.
+pub(crate) fn hand_out_lines<'a>(
     reading: &Reading<'a>,
+    layer: ClassedLayer,
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
-    sink: &mut dyn LayerSink<Boundary, BoundarySummary>,
+    sink: &mut dyn LayerSink<ClassedLine, LineSummary>,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
@@ -26,10 +31,10 @@ pub(crate) fn hand_out_boundaries<'a>(
     check_held(reading, held_bytes + count)?;
     let mut classes = Vec::with_capacity(count as usize);
     while let Some(object) = known.next(Known::decode).map_err(failed)? {
-        classes.push(object.class.and_then(BoundaryClass::from_number));
+        classes.push(object.class.unwrap_or(NO_CLASS));
     }
-    let mut summary = BoundarySummary { objects: count, ..BoundarySummary::default() };
-    make_boundaries(reading, (members, &classes), located, &mut summary, (sink, on_defect))?;
+    let mut summary = LineSummary { objects: count, ..LineSummary::default() };
+    make_lines(reading, layer, (members, &classes), located, &mut summary, (sink, on_defect))?;
     sink.end(summary);
     Ok(())
 }

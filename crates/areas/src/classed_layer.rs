@@ -1,0 +1,115 @@
+//! Layers of lines of which each has a class: the list of them, and what their tables of classes say.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::boundary_class::BoundaryClass;
+
+/// A text that names a layer of lines, one line of it or many: `line_text!(layer, "number of " many)`.
+#[macro_export]
+macro_rules! line_text {
+    ($layer:expr, $($before:literal)? one $($after:literal)?) => {
+        match $layer {
+            $crate::ClassedLayer::Boundaries => concat!($($before,)? "boundary", $($after)?),
+        }
+    };
+    ($layer:expr, $($before:literal)? many $($after:literal)?) => {
+        match $layer {
+            $crate::ClassedLayer::Boundaries => concat!($($before,)? "boundaries", $($after)?),
+        }
+    };
+}
+
+/// A layer of lines: ways of the extract with a class each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum ClassedLayer {
+    /// Administrative boundaries, and those of protected areas.
+    Boundaries,
+}
+
+/// The classes of a layer, by their numbers from 0, and what makes a line of it.
+#[derive(Debug)]
+pub struct ClassTable {
+    /// What the layer is called where a sentence begins.
+    pub title: &'static str,
+    /// The key of OSM without which nothing is a line of the layer.
+    pub key: &'static str,
+    /// The class of an object with these `(key, value)` tags, if it has one.
+    pub of_tags: fn(&[(&str, &str)]) -> Option<u8>,
+    /// Whether relations of the types `boundary` and `multipolygon` give their class to the ways around them.
+    pub has_relations: bool,
+    /// Names in settings, styles and exports, of the most important class first.
+    pub names: &'static [&'static str],
+    /// The coarsest cell, metres, on whose level a class is stored; `None`: all.
+    pub coarsest_cells_m: &'static [Option<f64>],
+}
+
+impl ClassedLayer {
+    /// All layers, in the order of their sections.
+    pub const ALL: [Self; 1] = [Self::Boundaries];
+
+    /// The table of its classes.
+    #[must_use]
+    pub const fn table(self) -> &'static ClassTable {
+        match self {
+            Self::Boundaries => &BoundaryClass::TABLE,
+        }
+    }
+
+    /// The layer's name in options, manifests and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        line_text!(self, many)
+    }
+
+    /// All classes, the most important first.
+    #[must_use]
+    pub fn classes(self) -> Vec<LineClass> {
+        (0..).map_while(|number| self.class(number)).collect()
+    }
+
+    /// The class with this number.
+    #[must_use]
+    pub fn class(self, number: u8) -> Option<LineClass> {
+        (usize::from(number) < self.table().names.len())
+            .then_some(LineClass { layer: self, number })
+    }
+}
+
+/// The class of a line. A class with a lower number is more important.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LineClass {
+    layer: ClassedLayer,
+    number: u8,
+}
+
+impl LineClass {
+    /// Its number in its layer, from 0.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self.number
+    }
+
+    /// Its name in settings, styles and exports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.layer.table().names[self.number as usize]
+    }
+
+    /// The coarsest cell, metres, on whose level its lines are stored; `None`: all.
+    #[must_use]
+    pub const fn coarsest_cell_m(self) -> Option<f64> {
+        self.layer.table().coarsest_cells_m[self.number as usize]
+    }
+}
+
+impl fmt::Display for LineClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+#[path = "classed_layer_tests.rs"]
+mod tests;
