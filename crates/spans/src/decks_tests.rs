@@ -207,7 +207,9 @@ proptest! {
             parts = vec![nodes[..=at_cut].to_vec(), nodes[at_cut..].to_vec()];
         }
         if is_turned {
-            parts.iter_mut().for_each(|part| part.reverse());
+            for part in &mut parts {
+                part.reverse();
+            }
         }
         let [one, two, three] = grounds();
         let mut split = vec![one];

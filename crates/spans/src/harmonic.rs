@@ -37,7 +37,8 @@ impl Harmonic {
         *self.ties[other].entry(one).or_default() += tie;
     }
 
-    /// The height of each joint: as held, and at free joints such that Σ (B_j − B_i) / L_ij = 0 over its lines. NaN where nothing holds it, and of
+    /// The height of each joint: as held, and at free joints such that the differences to its neighbours, each over the length between
+    /// them, add up to nothing. NaN where nothing holds it, and of
     /// those that are too intricate.
     ///
     /// Free joints are left out one after the other, those with the fewest neighbours first, and their neighbours tied to each other instead; then

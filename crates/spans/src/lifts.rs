@@ -21,8 +21,8 @@ pub(crate) struct Tent {
     reach_m: f64,
     /// How far its apex is from the ends of the edge.
     from_ends_m: [f64; 2],
-    /// Where along the edge it is highest, if it is there.
-    own_m: Option<f64>,
+    /// Where along the edge it is highest, metres, if it is there.
+    apex_at: Option<f64>,
 }
 
 impl Tent {
@@ -30,15 +30,15 @@ impl Tent {
     pub(crate) fn height_m(&self, along_m: f64, length_m: f64) -> f64 {
         let [first_m, last_m] = self.from_ends_m;
         let around_m = (first_m + along_m).min(last_m + length_m - along_m);
-        let direct_m = self.own_m.map_or(f64::INFINITY, |own_m| (own_m - along_m).abs());
+        let direct_m = self.apex_at.map_or(f64::INFINITY, |own_m| (own_m - along_m).abs());
         self.apex_m * (1.0 - around_m.min(direct_m) / self.reach_m).max(0.0)
     }
 
     /// Whether it is a lower tent over the same place than another one.
     pub(crate) fn is_below(&self, other: &Self) -> bool {
-        self.from_ends_m == other.from_ends_m
-            && self.own_m == other.own_m
-            && self.apex_m < other.apex_m
+        let place =
+            |tent: &Self| (tent.from_ends_m.map(f64::to_bits), tent.apex_at.map(f64::to_bits));
+        place(self) == place(other) && self.apex_m < other.apex_m
     }
 
     /// Where it bends along its edge.
@@ -47,8 +47,10 @@ impl Tent {
         let feet_m = [self.reach_m - first_m, length_m - (self.reach_m - last_m)];
         let valley_m = (length_m + last_m - first_m) / 2.0;
         let reach_m = self.reach_m;
-        let own =
-            self.own_m.into_iter().flat_map(move |own_m| [own_m - reach_m, own_m, own_m + reach_m]);
+        let own = self
+            .apex_at
+            .into_iter()
+            .flat_map(move |own_m| [own_m - reach_m, own_m, own_m + reach_m]);
         feet_m
             .into_iter()
             .chain([valley_m])
@@ -114,7 +116,7 @@ impl Reach {
             apex_m,
             reach_m: self.support_m,
             from_ends_m: spans.edges[edge].joints.map(to_m),
-            own_m: (edge == self.at.edge).then_some(self.at.along_m),
+            apex_at: (edge == self.at.edge).then_some(self.at.along_m),
         };
         edges.into_iter().map(|edge| (edge, tent(edge))).collect()
     }

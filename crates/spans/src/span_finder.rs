@@ -33,7 +33,7 @@ impl Spans {
             let found = chains.get(chain);
             let Some(kind) = SpanKind::of(network.structure_of(&found)) else { continue };
             let points = network.points_of_chain(&found);
-            let ends = [points.first(), points.last()].map(|point| point.copied());
+            let ends = [points.first(), points.last()].map(Option::<&LatticePoint>::copied);
             let [Some(first), Some(last)] = ends else { continue };
             let pairs = points.array_windows();
             let length_m = pairs.map(|[a, b]| distance_m(a.in_steps(), b.in_steps())).sum();
@@ -116,7 +116,7 @@ impl Finder<'_> {
     /// The way at an end of a chain.
     fn way_at(&self, end: u32) -> i64 {
         let links = self.chains.get(ChainNumber(end as usize / 2)).links;
-        let link = if end % 2 == 0 { links.first() } else { links.last() };
+        let link = if is_last(end) { links.last() } else { links.first() };
         link.map_or(0, |&link| self.network.way_of(link).way_id)
     }
 
@@ -124,7 +124,7 @@ impl Finder<'_> {
     fn direction(&self, end: u32) -> [f64; 2] {
         let chain = self.chains.get(ChainNumber(end as usize / 2));
         let mut points = self.network.points_of_chain(&chain);
-        if end % 2 == 1 {
+        if is_last(end) {
             points.reverse();
         }
         let Some(from) = points.first().map(|point| point.in_steps()) else { return [0.0; 2] };
@@ -134,6 +134,11 @@ impl Finder<'_> {
         let to = others.find(away).unwrap_or(last);
         [to[0] - from[0], to[1] - from[1]]
     }
+}
+
+/// Whether an end of a chain is its last one.
+fn is_last(end: u32) -> bool {
+    end % 2 == 1
 }
 
 /// Gives each edge the number of its span: edges that share a joint have the same. Returns how many spans there are.

@@ -8,8 +8,10 @@ use crate::{
     test_network::{Way, distance_m, network, way},
 };
 
-/// The supports by node id, and the reasons with their ways.
-fn found(ways: &[Way<'_>]) -> (usize, Vec<(i64, Option<Support>)>, Vec<(SpanReason, i64)>) {
+/// How many spans there are, the supports by node id, and the reasons with their ways.
+type Found = (usize, Vec<(i64, Option<Support>)>, Vec<(SpanReason, i64)>);
+
+fn found(ways: &[Way<'_>]) -> Found {
     let (network, chains) = network(ways);
     let spans = Spans::find(&network, &chains, &distance_m);
     let mut joints: Vec<(i64, Option<Support>)> = spans
