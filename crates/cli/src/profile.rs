@@ -106,7 +106,10 @@ fn to_text(found: &Profile) -> String {
     // Writing to a String cannot fail.
     let _ = if found.smooth.is_some() {
         let within_m = found.height_tolerance_m;
-        writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices")
+        let is_deck = |point: &ProfilePoint| matches!(point.height_source, "deck" | "tunnel");
+        let decks =
+            if points(found).any(is_deck) { "; bridges and tunnels are estimates" } else { "" };
+        writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices{decks}")
     } else {
         let within_m = found.height_tolerance_m;
         writeln!(

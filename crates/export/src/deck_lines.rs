@@ -4,7 +4,7 @@ use corniche_roads::Structure;
 use corniche_spans::SpanKind;
 
 use crate::{
-    grades::{SmoothLine, stretch_of_way},
+    grades::{SmoothLine, Station, stretch_of_way},
     piece::Vertex,
 };
 
@@ -39,36 +39,52 @@ pub(crate) fn on_deck(
     let place_m = |at_m: &f64| {
         if *at_m >= length_m { to_m } else { from_m + at_m * (to_m - from_m) / length_m }
     };
-    let places_m: Vec<f64> = along_m.iter().map(place_m).collect();
-    let mut all: Vec<(f64, Vertex)> = Vec::with_capacity(ground.len());
-    let mut before: Option<(f64, Vertex, f64)> = None;
-    let mut bends =
-        deck.stations.iter().filter(|bend| bend.along_m > from_m && bend.along_m < to_m).peekable();
-    for (&at_m, vertex) in places_m.iter().zip(ground) {
-        let raised_m = deck.at(at_m)?.ground_m;
-        let over_m = kind.away() * (raised_m - vertex.z_m);
-        if let Some((before_m, from, before_over_m)) = before {
-            let between = |share: f64, z_m: f64| {
-                let at =
-                    [0, 1].map(|axis| from.at[axis] + share * (vertex.at[axis] - from.at[axis]));
-                (before_m + share * (at_m - before_m), Vertex { at, z_m, is_source: false })
-            };
-            let meets = (before_over_m < 0.0) != (over_m < 0.0);
-            if meets {
-                let share = before_over_m / (before_over_m - over_m);
-                all.push(between(share, from.z_m + share * (vertex.z_m - from.z_m)));
-            }
-            while let Some(bend) = bends.next_if(|bend| bend.along_m < at_m) {
-                if !meets && over_m >= 0.0 && bend.along_m > before_m {
-                    all.push(between((bend.along_m - before_m) / (at_m - before_m), bend.ground_m));
-                }
+    let mut places: Vec<Place> = Vec::with_capacity(ground.len());
+    let inner = |bend: &&Station| bend.along_m > from_m && bend.along_m < to_m;
+    let mut bends = deck.stations.iter().filter(inner).peekable();
+    for (at_m, vertex) in along_m.iter().map(place_m).zip(ground) {
+        let before = places.last().copied();
+        // Where the deck bends between two vertices, the ground is straight.
+        while let (Some(from), Some(bend)) = (before, bends.next_if(|bend| bend.along_m < at_m)) {
+            let share = (bend.along_m - from.along_m) / (at_m - from.along_m);
+            if share > 0.0 {
+                let ground = between(from.ground, *vertex, share);
+                places.push(Place { along_m: bend.along_m, ground, deck_m: bend.ground_m });
             }
         }
-        let z_m = if over_m > 0.0 { raised_m } else { vertex.z_m };
-        all.push((at_m, Vertex { z_m, ..*vertex }));
-        before = Some((at_m, *vertex, over_m));
+        places.push(Place { along_m: at_m, ground: *vertex, deck_m: deck.at(at_m)?.ground_m });
+    }
+    let mut all: Vec<(f64, Vertex)> = Vec::with_capacity(places.len());
+    let mut before: Option<(Place, f64)> = None;
+    for place in places {
+        let over_m = kind.away() * (place.deck_m - place.ground.z_m);
+        if let Some((from, from_over_m)) = before
+            && (from_over_m < 0.0) != (over_m < 0.0)
+        {
+            let share = from_over_m / (from_over_m - over_m);
+            let along_m = from.along_m + share * (place.along_m - from.along_m);
+            all.push((along_m, between(from.ground, place.ground, share)));
+        }
+        let z_m = if over_m > 0.0 { place.deck_m } else { place.ground.z_m };
+        all.push((place.along_m, Vertex { z_m, ..place.ground }));
+        before = Some((place, over_m));
     }
     Some(without_straight(&all))
+}
+
+/// The ground and the deck at a distance along the way.
+#[derive(Clone, Copy)]
+struct Place {
+    along_m: f64,
+    ground: Vertex,
+    deck_m: f64,
+}
+
+/// A place on the ground between two others, which is no point of the way.
+fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
+    let mix = |from: f64, to: f64| from + share * (to - from);
+    let at = [0, 1].map(|axis| mix(from.at[axis], to.at[axis]));
+    Vertex { at, z_m: mix(from.z_m, to.z_m), is_source: false }
 }
 
 /// The vertices without those that are no points of the way and lie on a straight line between the others.

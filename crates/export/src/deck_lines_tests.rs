@@ -61,6 +61,48 @@ fn bridges_are_never_below_the_ground_and_tunnels_never_above() {
     assert_eq!(raised(Structure::Tunnel, &ground(-1.0), flat()), under);
 }
 
+/// Bends between two vertices of the ground count on both sides of where the deck meets it, and lie on the ground where that is higher.
+#[test]
+fn bends_are_kept_where_the_ground_is_near() {
+    let two = |from: (f64, f64), to: (f64, f64)| {
+        [(0.0, 100.0, true), (from.0, from.1, false), (to.0, to.1, false), (80.0, 100.0, true)]
+            .map(|(east, z_m, is_source)| vertex(east, z_m, is_source))
+    };
+    let close = |found: Vec<(f64, f64)>, expected: &[(f64, f64)]| {
+        let is_near = |(one, other): (&(f64, f64), &(f64, f64))| {
+            (one.0 - other.0).abs() < 0.05 && (one.1 - other.1).abs() < 0.01
+        };
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(is_near),
+            "{found:?}"
+        );
+    };
+    // A valley of the deck that the ground fills.
+    let valley = deck(&[(0.0, 100.0), (20.0, 101.0), (40.0, 100.0), (60.0, 100.9), (80.0, 100.0)]);
+    let found = raised(Structure::Bridge, &two((22.0, 100.6), (58.0, 100.6)), valley);
+    let expected =
+        [(0.0, 100.0), (20.0, 101.0), (28.0, 100.6), (53.33, 100.6), (60.0, 100.9), (80.0, 100.0)];
+    close(found, &expected);
+    // A lift between two places under the ground.
+    let tent = || deck(&[(0.0, 100.0), (40.0, 101.0), (80.0, 100.0)]);
+    let found = raised(Structure::Bridge, &two((20.0, 100.7), (60.0, 100.7)), tent());
+    let expected = [
+        (0.0, 100.0),
+        (20.0, 100.7),
+        (28.0, 100.7),
+        (40.0, 101.0),
+        (52.0, 100.7),
+        (60.0, 100.7),
+        (80.0, 100.0),
+    ];
+    close(found, &expected);
+    // A bend and a meeting in one segment.
+    let steep = deck(&[(0.0, 100.0), (30.0, 101.0), (80.0, 100.0)]);
+    let found = raised(Structure::Bridge, &two((5.0, 100.3), (45.0, 99.0)), steep);
+    let expected = [(0.0, 100.0), (5.0, 100.3), (6.99, 100.23), (30.0, 101.0), (80.0, 100.0)];
+    close(found, &expected);
+}
+
 /// The bends of a lift are vertices, also on a part of the way.
 #[test]
 fn a_deck_has_vertices_where_it_bends() {

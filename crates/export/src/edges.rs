@@ -87,7 +87,7 @@ fields! { FIELDS, values, edge: &Edge<'_>:
     "weighted_grade_pct", Real, "%", "size of the grade, up or down, weighted by length", optional(edge.weighted_pct());
     "steepest_pct", Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter",
         optional(edge.steepest_pct());
-    "from_height_m", Real, "m", "height of the smooth line at the first node: the same for all edges there",
+    "from_height_m", Real, "m", "height of the smooth line at the first node: the same for all edges there, but of a way that only touches a deck its own",
         optional(edge.height_m(0));
     "to_height_m", Real, "m", "height of the smooth line at the last node", optional(edge.height_m(1));
     "bridge_share", Real, "", "part of its length on bridges, 0 to 1", real(edge.shares.share(edge.shares.bridge_m));
@@ -170,7 +170,7 @@ pub fn export_edges(
         }
         file.push(Record { values: values(&edge), shape: Shape::Lines(carried) })?;
     }
-    file.tell_heights(dem_heights(tolerance_m));
+    file.tell_heights(dem_heights(tolerance_m, true));
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(summary)

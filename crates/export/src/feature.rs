@@ -108,8 +108,8 @@ fields! { DEM_FIELDS, dem_values, road: &Road<'_>:
         on_ground(road, road.measures.descent_m);
     "ground_steepest_pct", Real, "%", "steepest grade of the line itself over 20 m or more; null where no part is as long, and as above",
         percent_on_ground(road, road.measures.steepest);
-    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line, of decks without the ground in their way; null as above",
-        smooth(road, |grades| Some(grades.most_off_m));
+    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line; null for bridges and tunnels",
+        if road.heights.on_deck { Value::Null } else { smooth(road, |grades| Some(grades.most_off_m)) };
     "smoothed_by", Text, "", "`chain`: from junction to junction, as --osm allows; `way`: by the way alone; null as above",
         smoothed_by(road);
     "grade_over_limit", Integer, "", "1 where `steepest_pct` is more than roads of that `highway` are built with, else 0; null where either is unknown",

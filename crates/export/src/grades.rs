@@ -15,7 +15,5 @@ mod smoothing;
 
 pub(crate) use measured_chains::MeasuredChains;
 pub(crate) use on_way::{most_steps, stretch_of_way};
-#[cfg(test)]
-pub(crate) use smooth_line::Station;
-pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine};
+pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine, Station};
 pub(crate) use smoothing::Smoothing;

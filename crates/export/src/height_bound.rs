@@ -12,8 +12,11 @@ pub(crate) fn height_bound(manifest: &Manifest, level: u8) -> Option<String> {
     Some(format!("Heights are within {bound_m} m of the elevation data, at its samples."))
 }
 
-/// The same of lines on the elevation files themselves.
-pub(crate) fn dem_heights(tolerance_m: f64) -> String {
+/// The same of lines on the elevation files themselves, and on decks.
+pub(crate) fn dem_heights(tolerance_m: f64, has_decks: bool) -> String {
     let tolerance_m = (tolerance_m * 1000.0 - 1e-6).ceil() / 1000.0;
-    format!("Heights are those of the elevation data, within {tolerance_m} m between vertices.")
+    let decks = if has_decks { " Those of bridges and tunnels are estimates." } else { "" };
+    format!(
+        "Heights are those of the elevation data, within {tolerance_m} m between vertices.{decks}"
+    )
 }

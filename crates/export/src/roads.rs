@@ -167,7 +167,9 @@ impl Features for Roads<'_> {
     fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
         match self.dem {
             None => height_bound(source.package.manifest(), source.level),
-            Some(_) => Some(dem_heights(self.summary.height_tolerance_m)),
+            Some(_) => {
+                Some(dem_heights(self.summary.height_tolerance_m, self.summary.spans.is_some()))
+            }
         }
     }
 

@@ -17,7 +17,7 @@ pub struct CrossingPlace {
     pub chain: ChainNumber,
     /// OSM's id of the way there.
     pub way_id: i64,
-    /// The distance along the chain, metres.
+    /// The distance along the chain, metres; on the ground nobody needs it, and it is 0.
     pub along_m: f64,
     /// What it is there; `None` on the ground.
     pub kind: Option<SpanKind>,
@@ -139,7 +139,10 @@ fn segments(
         let mut points = network.points_of_link(link);
         let Some(mut before) = points.next() else { continue };
         for point in points {
-            let length_m = distance_m(before.in_steps(), point.in_steps());
+            let length_m = match kind {
+                Some(_) => distance_m(before.in_steps(), point.in_steps()),
+                None => 0.0,
+            };
             let place = CrossingPlace { chain, way_id: way.way_id, along_m, kind, layer, steepest };
             segments.push(Segment { ends: [before, point], place, length_m });
             along_m += length_m;

@@ -5,8 +5,8 @@ use corniche_network::{ChainNumber, NodeNumber};
 use crate::{
     crossings::{Crossing, CrossingPlace, Order},
     harmonic::Harmonic,
-    lifts::{OnEdge, Reach, Tent},
-    spans::{Edge, SpanKind, SpanProblem, SpanReason, Spans},
+    lifts::{OnEdge, Reach, Tent, put_up},
+    spans::{Edge, Joint, SpanKind, SpanProblem, SpanReason, Spans},
 };
 
 /// What is wanted between what crosses, metres.
@@ -19,8 +19,8 @@ const LEAST_FLANK: f64 = 0.02;
 const MOST_PASSES: usize = 8;
 /// Where decks are lifted, heights are given so often along them, metres: between the bends of a tent another one may be higher.
 const STATION_M: f64 = 10.0;
-/// So many lifts on one chain are made; no real one needs a tenth.
-const MOST_TENTS: usize = 256;
+/// What is nearer to an end of an edge is at it, metres.
+const END_M: f64 = 1e-6;
 /// Less is no reason to lift, metres.
 const ENOUGH_M: f64 = 1e-6;
 
@@ -47,32 +47,32 @@ pub struct Decks {
 }
 
 impl Decks {
-    /// Solves the heights of spans over the ground, whose height at a place of the lattice `ground_m` gives; `None` where there is none.
+    /// The places of the lattice whose ground [`Decks::solve`] needs, in this order.
+    pub fn places(spans: &Spans, crossings: &[Crossing]) -> impl Iterator<Item = [f64; 2]> {
+        let joints = spans.joints.iter().map(|joint| joint.at.in_steps());
+        joints.chain(crossings.iter().map(|crossing| crossing.at))
+    }
+
+    /// Solves the heights of spans over the ground, whose heights at [`Decks::places`] are given; `None` where there is none.
     ///
     /// At supports they are the ground's; between them they are harmonic along the chains, which for two supports is a straight line. At crossings
     /// bridges are lifted and tunnels lowered until there is a metre between them and what they cross, with flanks no steeper than roads of that
     /// kind are built, less what the span itself has, and 2 % at least; 0.3 m are always made.
-    ///
-    /// # Errors
-    /// Those of `ground_m`.
-    pub fn solve<E>(
-        spans: Spans,
-        crossings: &[Crossing],
-        mut ground_m: impl FnMut([f64; 2]) -> Result<Option<f64>, E>,
-    ) -> Result<Self, E> {
-        let mut held_m = Vec::with_capacity(spans.joints.len());
+    #[must_use]
+    pub fn solve(spans: Spans, crossings: &[Crossing], grounds_m: &[Option<f64>]) -> Self {
+        let (of_joints_m, of_crossings_m) = grounds_m.split_at(spans.joints.len());
         let mut problems = spans.problems();
-        for (number, joint) in spans.joints.iter().enumerate() {
-            let own_m = match joint.support {
-                Some(_) => ground_m(joint.at.in_steps())?,
-                None => None,
-            };
-            if joint.support.is_some() && own_m.is_none() {
+        let held = |(number, (joint, own_m)): (usize, (&Joint, &Option<f64>))| {
+            if joint.support.is_none() {
+                return f64::NAN;
+            }
+            if own_m.is_none() {
                 let way_id = spans.way_of_joint(number);
                 problems.push(SpanProblem { reason: SpanReason::NoGround, way_id });
             }
-            held_m.push(own_m.unwrap_or(f64::NAN));
-        }
+            own_m.unwrap_or(f64::NAN)
+        };
+        let held_m: Vec<f64> = spans.joints.iter().zip(of_joints_m).enumerate().map(held).collect();
         let joints_m = solved(&spans, &held_m);
         problems.extend(too_intricate(&spans, &held_m, &joints_m));
         let mut decks = Self {
@@ -82,13 +82,9 @@ impl Decks {
             free_heights: Vec::with_capacity(crossings.len()),
             problems,
         };
-        let mut grounds_m = Vec::with_capacity(crossings.len());
-        for crossing in crossings {
-            grounds_m.push(ground_m(crossing.at)?);
-        }
-        decks.lift(crossings, &grounds_m, &held_m);
-        decks.judge(crossings, &grounds_m);
-        Ok(decks)
+        decks.lift(crossings, of_crossings_m, &held_m);
+        decks.judge(crossings, of_crossings_m);
+        decks
     }
 
     /// The nodes at which spans are carried, with their heights; those without ground are left out.
@@ -131,7 +127,9 @@ impl Decks {
         let mut bends_m: Vec<f64> = tents.iter().flat_map(|tent| tent.bends_m(length_m)).collect();
         if !tents.is_empty() {
             let count = (length_m / STATION_M).ceil();
-            bends_m.extend((1..count as usize).map(|k| k as f64 * length_m / count));
+            let [first, last] =
+                [from_m, to_m].map(|at_m| (at_m / length_m * count).floor().max(0.0) as usize);
+            bends_m.extend((first..=last).map(|k| k as f64 * length_m / count));
         }
         bends_m.retain(|&at_m| at_m > from_m && at_m < to_m);
         bends_m.sort_by(f64::total_cmp);
@@ -143,11 +141,11 @@ impl Decks {
     fn base_m(&self, OnEdge { edge, along_m }: OnEdge) -> f64 {
         let edge = &self.spans.edges[edge];
         let [from_m, to_m] = edge.joints.map(|joint| self.joints_m[joint as usize]);
-        let share = along_m / edge.length_m;
-        if share >= 1.0 {
+        // Sums of lengths are rounded: near enough to an end is the end, whose height is the support's to the bit.
+        if along_m >= edge.length_m - END_M {
             to_m
-        } else if share > 0.0 {
-            from_m + share * (to_m - from_m)
+        } else if along_m > END_M {
+            from_m + along_m / edge.length_m * (to_m - from_m)
         } else {
             from_m
         }
@@ -185,22 +183,23 @@ impl Decks {
             let (own, other) = moved(crossing).filter(|_| crossing.order == Order::Known)?;
             let edge = self.spans.edge_of(own.chain)?;
             let at = OnEdge { edge, along_m: own.along_m };
-            let is_held = |joint: usize| held_m[joint].is_finite();
-            let reach = Reach::of(&self.spans, &is_held, at)?;
-            Some((own.layer.unsigned_abs(), number, at, reach, own, other, grounds_m[number]?))
+            let ground_m = grounds_m[number].unwrap_or(f64::NAN);
+            Some((own.layer.unsigned_abs(), number, at, own, other, ground_m))
         };
         let mut all: Vec<_> = crossings.iter().enumerate().filter_map(known).collect();
         all.sort_by_key(|(layer, number, ..)| (*layer, *number));
         let grades = self.median_grades();
+        let is_held = |joint: usize| held_m[joint].is_finite();
         for _ in 0..MOST_PASSES {
             let mut is_changed = false;
-            for (_, _, at, reach, own, other, ground_m) in &all {
+            for (_, _, at, own, other, ground_m) in &all {
                 let edge = &self.spans.edges[at.edge];
                 let away = edge.kind.away();
                 let room_m = away * (self.raised_m(*at) - self.crossing_m(other, *ground_m));
                 if room_m.is_nan() || room_m >= FREE_HEIGHT_M - ENOUGH_M {
                     continue;
                 }
+                let Some(reach) = Reach::of(&self.spans, &is_held, *at) else { continue };
                 let wanted_m =
                     FREE_HEIGHT_M - away * (self.base_m(*at) - self.crossing_m(other, *ground_m));
                 let limit = own.steepest - grades[edge.span as usize];
@@ -208,15 +207,8 @@ impl Decks {
                 let least_m = wanted_m - FREE_HEIGHT_M + LEAST_FREE_HEIGHT_M;
                 let apex_m = wanted_m.min(gentle_m.max(least_m));
                 let before_m = away * (self.raised_m(*at) - self.base_m(*at));
-                let has_room = self.tents[at.edge].len() < MOST_TENTS && reach.support_m > 0.0;
-                if apex_m <= before_m + ENOUGH_M || !has_room {
-                    continue;
-                }
-                is_changed = true;
-                for (edge, tent) in reach.tents(&self.spans, apex_m) {
-                    // A tent over the same place replaces the one that was too low.
-                    self.tents[edge].retain(|other| !other.is_below(&tent));
-                    self.tents[edge].push(tent);
+                if apex_m > before_m + ENOUGH_M && reach.support_m > 0.0 {
+                    is_changed |= put_up(&mut self.tents, reach.tents(&self.spans, apex_m));
                 }
             }
             if !is_changed {
@@ -258,8 +250,10 @@ impl Decks {
             let mut reason = None;
             if crossing.order == Order::Tie {
                 reason = Some(SpanReason::LayerTie);
-            } else if let Some(ground_m) = ground_m {
-                let [upper_m, lower_m] = own.map(|place| self.crossing_m(&place, *ground_m));
+            } else {
+                // Where there is no ground, two bridges have their heights yet.
+                let ground_m = ground_m.unwrap_or(f64::NAN);
+                let [upper_m, lower_m] = own.map(|place| self.crossing_m(&place, ground_m));
                 free_m = Some(upper_m - lower_m).filter(|free_m| free_m.is_finite());
                 if free_m.is_some_and(|free_m| free_m < FREE_HEIGHT_M - ENOUGH_M) {
                     reason = Some(SpanReason::OrderUnreachable);

@@ -1,7 +1,5 @@
 //! Decks between supports, lifts at crossings, and what is told of them.
 
-use std::convert::Infallible;
-
 use corniche_network::{Chains, Network};
 use corniche_roads::Structure::{Bridge, Ground, Tunnel};
 use proptest::prelude::*;
@@ -22,8 +20,10 @@ fn solved<T>(
     let (network, chains) = network(ways);
     let spans = Spans::find(&network, &chains, &distance_m);
     let crossings = crossings(&network, &chains, &distance_m).unwrap();
-    let ground = |at: [f64; 2]| Ok::<_, Infallible>(ground_m(at.map(|part| part / 1000.0)));
-    let decks = Decks::solve(spans, &crossings, ground).unwrap();
+    let places = Decks::places(&spans, &crossings);
+    let grounds_m: Vec<Option<f64>> =
+        places.map(|at| ground_m(at.map(|part| part / 1000.0))).collect();
+    let decks = Decks::solve(spans, &crossings, &grounds_m);
     test(&decks, &network, &chains)
 }
 

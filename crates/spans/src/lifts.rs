@@ -13,6 +13,11 @@ use std::{
 
 use crate::spans::{Edge, Spans};
 
+/// How many joints a tent may stand over. Real spans have some hundred at most, and all of their lifts could stand over all.
+const MOST_JOINTS: usize = 1024;
+/// So many tents may stand on one edge; no real one needs a tenth.
+const MOST_TENTS: usize = 256;
+
 /// A tent, as far as it stands on one edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tent {
@@ -76,7 +81,7 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Goes along edges from a place until it comes to a support; `None` where there is none.
+    /// Goes along edges from a place until it comes to a support; `None` where there is none within [`MOST_JOINTS`].
     pub(crate) fn of(spans: &Spans, held: &dyn Fn(usize) -> bool, at: OnEdge) -> Option<Self> {
         let mut joints = BTreeMap::new();
         // Distances are not negative: as bits they are in the order of their values.
@@ -87,6 +92,9 @@ impl Reach {
             waiting.push(Reverse((to_m.to_bits(), joint)));
         }
         while let Some(Reverse((bits, joint))) = waiting.pop() {
+            if joints.len() > MOST_JOINTS {
+                break;
+            }
             let to_m = f64::from_bits(bits);
             if held(joint as usize) {
                 return Some(Self { at, support_m: to_m, joints });
@@ -120,4 +128,17 @@ impl Reach {
         };
         edges.into_iter().map(|edge| (edge, tent(edge))).collect()
     }
+}
+
+/// Puts up tents, all or none: without some of them a deck would be torn at its joints. Returns whether there is room for them.
+pub(crate) fn put_up(tents: &mut [Vec<Tent>], all: Vec<(usize, Tent)>) -> bool {
+    if all.iter().any(|(edge, _)| tents[*edge].len() >= MOST_TENTS) {
+        return false;
+    }
+    for (edge, tent) in all {
+        // A tent over the same place replaces the one that was too low.
+        tents[edge].retain(|other| !other.is_below(&tent));
+        tents[edge].push(tent);
+    }
+    true
 }

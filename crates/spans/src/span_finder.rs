@@ -12,6 +12,8 @@ use crate::{
 
 /// The direction in which a chain leaves its node is that of its first metres.
 const DIRECTION_M: f64 = 10.0;
+/// Of more ends at a node than this no others are looked at: no real node has as many, and each is compared with each.
+const MOST_ENDS: usize = 64;
 
 impl Spans {
     /// The spans of a network. `chains` are those of [`corniche_network::Breaks::JunctionsAndStructures`], so it does not matter how ways are split.
@@ -20,9 +22,9 @@ impl Spans {
     /// for example, carries nothing:
     ///
     /// ```text
-    ///    ═══════●─── ground        ═══●═══        ═════╗
-    ///    a support                    │ steps          ●─── ground
-    ///                                 free        ═════╝  two decks that end there: a support
+    ///    ═══════●─── ground        ═══●═══        ═════╗                        │
+    ///    a support                    │ steps          ●─── ground      ═══════●═══════  a street between two bridges:
+    ///                                 free        ═════╝  a support            │         a support
     /// ```
     #[must_use]
     pub fn find(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Self {
@@ -89,22 +91,29 @@ impl Finder<'_> {
         let of_kind = |wanted: Option<SpanKind>| {
             ends.iter().copied().filter(move |&end| kind_of(end) == wanted)
         };
-        let own: Vec<[f64; 2]> = of_kind(Some(kind)).map(|end| self.direction(end)).collect();
+        let passes_through = |kind: Option<SpanKind>| {
+            let directions: Vec<[f64; 2]> =
+                of_kind(kind).take(MOST_ENDS).map(|end| self.direction(end)).collect();
+            let mut rest = &directions[..];
+            while let [one, others @ ..] = rest {
+                if others.iter().any(|other| one[0] * other[0] + one[1] * other[1] < 0.0) {
+                    return true;
+                }
+                rest = others;
+            }
+            false
+        };
+        let own = of_kind(Some(kind)).count();
         let mut grounds = of_kind(None).map(|end| self.way_at(end));
-        let is_opposite =
-            |one: [f64; 2], other: [f64; 2]| one[0] * other[0] + one[1] * other[1] < 0.0;
-        let passes_through = own
-            .iter()
-            .enumerate()
-            .any(|(k, &one)| own[k + 1..].iter().any(|&other| is_opposite(one, other)));
-        if passes_through {
+        // Where a street passes through, too, it lies between two bridges, and carries both.
+        if passes_through(Some(kind)) && !passes_through(None) {
             return (None, grounds.min());
         }
         let support = if grounds.next().is_some() {
             Some(Support::Ground)
-        } else if own.len() < ends.len() {
+        } else if own < ends.len() {
             Some(Support::OtherKind)
-        } else if own.len() == 1 && kind == SpanKind::Bridge {
+        } else if own == 1 && kind == SpanKind::Bridge {
             Some(Support::OpenEnd)
         } else {
             // The end of a tunnel where nothing goes on lies inside the mountain as well as anywhere: the ground says nothing of it.

@@ -53,6 +53,18 @@ fn a_way_that_touches_a_deck_carries_nothing_but_where_the_deck_ends() {
     assert_eq!(found(&ways), (1, joints, vec![(GroundWayOnDeck, 2)]));
 }
 
+/// A street that passes through between two bridges lies on ground and carries both.
+#[test]
+fn a_street_between_two_bridges_carries_them() {
+    let ways = [
+        way(1, Ground, &[(1, 0, 0), (2, 100, 0)]),
+        way(2, Bridge, &[(2, 100, 0), (3, 150, 0), (4, 200, 0)]),
+        way(3, Ground, &[(4, 200, 0), (5, 300, 0)]),
+        way(4, Ground, &[(6, 150, -50), (3, 150, 0), (7, 150, 50)]),
+    ];
+    assert_eq!(found(&ways), (1, vec![(2, ON_GROUND), (3, ON_GROUND), (4, ON_GROUND)], vec![]));
+}
+
 #[test]
 fn ends_where_nothing_goes_on_carry_bridges_and_leave_tunnels_free() {
     let ways = [

@@ -482,6 +482,44 @@ fn decks_do_not_depend_on_how_bridges_are_split() {
     }
 }
 
+/// A profile over a bridge is that of its deck, in both directions; on a coarse level it still is.
+#[test]
+fn profiles_go_over_decks() {
+    let folder = tempfile::tempdir().unwrap();
+    let ways: [PlainWay<'_>; 3] = [(&[1, 2], ""), (&[4, 3, 2], "bridge"), (&[4, 9], "")];
+    let [dem, osm, package] = package_of(folder.path(), "profile", &ways);
+    let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+    let run = |ways: &str, options: &[&str]| -> Vec<Row> {
+        let csv = folder.path().join("profile.csv");
+        let way = ["profile", text(&package), "--way", ways, "--csv", text(&csv), "-O", "-q"];
+        let ran = succeed(corniche([&way[..], &inputs, options].concat()));
+        assert!(ran.out.contains("bridges and tunnels are estimates"), "{}", ran.out);
+        assert!(!ran.out.contains("without"), "{}", ran.out);
+        let table = fs::read_to_string(csv).unwrap();
+        let cells = |line: &str| -> Vec<String> { line.split(',').map(str::to_owned).collect() };
+        let mut lines = table.lines().map(cells);
+        let names = lines.next().unwrap();
+        lines.map(|line| names.iter().cloned().zip(line).collect()).collect()
+    };
+    let heights = |rows: &[Row]| -> Vec<f64> {
+        let on_deck = rows.iter().filter(|row| row["height_source"] == "deck");
+        on_deck.map(|row| number(row, "height_m")).collect()
+    };
+    let there = run("1,2,3", &[]);
+    assert!(there.iter().all(|row| row["part"] == "0" && !row["smooth_m"].is_empty()));
+    let mut back = heights(&run("3,2,1", &[]));
+    back.reverse();
+    let own = heights(&there);
+    assert!(own.len() >= 4, "{own:?}");
+    // Where two ways meet a vertex is the first one's: one end of the bridge is missing on each way.
+    let [first, last] = [own[0], own[own.len() - 2]];
+    assert!(back.iter().any(|height_m| (height_m - first).abs() < 0.01), "{own:?} {back:?}");
+    assert!(back.iter().any(|height_m| (height_m - last).abs() < 0.01), "{own:?} {back:?}");
+    let ends = |rows: &[f64]| rows[rows.len() - 1];
+    let coarse = heights(&run("1,2,3", &["--level", "0"]));
+    assert!((ends(&coarse) - ends(&own)).abs() < 0.01, "{coarse:?} {own:?}");
+}
+
 /// Other elevation files and extracts are refused, and nothing is written.
 #[test]
 fn files_of_another_package_are_refused() {

@@ -91,7 +91,17 @@ impl<'a> MeasuredChains<'a> {
         let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
         let spans = Spans::find(network, &chains, &distance_m);
         let crossings = crossings(network, &chains, &distance_m).map_err(ExportError::Spans)?;
-        let decks = Decks::solve(spans, &crossings, |at| nodes.height_m(at))?;
+        let wanted: Vec<[f64; 2]> = Decks::places(&spans, &crossings).collect();
+        let mut by_block: Vec<usize> = (0..wanted.len()).collect();
+        by_block.sort_by_key(|&place| nodes.block_of(wanted[place]));
+        let mut grounds_m = vec![None; wanted.len()];
+        for some in by_block.chunks(TOLD_CHAINS) {
+            observer.check()?;
+            for &place in some {
+                grounds_m[place] = nodes.height_m(wanted[place])?;
+            }
+        }
+        let decks = Decks::solve(spans, &crossings, &grounds_m);
         let mut measured = Self {
             network,
             places,

@@ -64,7 +64,10 @@ fn nearest(from: Station, to: Station, at: [f64; 2]) -> [f64; 2] {
     let share = if square > 0.0 { (run[0] * off[0] + run[1] * off[1]) / square } else { 0.0 };
     let share = share.clamp(0.0, 1.0);
     let steps = (off[0] - share * run[0]).hypot(off[1] - share * run[1]);
-    [steps, from.along_m + share * (to.along_m - from.along_m)]
+    // To the bit at its end, as lines are looked up by it.
+    let along_m =
+        if share >= 1.0 { to.along_m } else { from.along_m + share * (to.along_m - from.along_m) };
+    [steps, along_m]
 }
 
 #[cfg(test)]
