@@ -39,7 +39,7 @@ pub(crate) fn on_deck(
     let place_m = |at_m: &f64| {
         if *at_m >= length_m { to_m } else { from_m + at_m * (to_m - from_m) / length_m }
     };
-    let mut places: Vec<Place> = Vec::with_capacity(ground.len());
+    let mut places: Vec<OverGround> = Vec::with_capacity(ground.len());
     let inner = |bend: &&Station| bend.along_m > from_m && bend.along_m < to_m;
     let mut bends = deck.stations.iter().filter(inner).peekable();
     for (at_m, vertex) in along_m.iter().map(place_m).zip(ground) {
@@ -49,13 +49,13 @@ pub(crate) fn on_deck(
             let share = (bend.along_m - from.along_m) / (at_m - from.along_m);
             if share > 0.0 {
                 let ground = between(from.ground, *vertex, share);
-                places.push(Place { along_m: bend.along_m, ground, deck_m: bend.ground_m });
+                places.push(OverGround { along_m: bend.along_m, ground, deck_m: bend.ground_m });
             }
         }
-        places.push(Place { along_m: at_m, ground: *vertex, deck_m: deck.at(at_m)?.ground_m });
+        places.push(OverGround { along_m: at_m, ground: *vertex, deck_m: deck.at(at_m)?.ground_m });
     }
     let mut all: Vec<(f64, Vertex)> = Vec::with_capacity(places.len());
-    let mut before: Option<(Place, f64)> = None;
+    let mut before: Option<(OverGround, f64)> = None;
     for place in places {
         let over_m = kind.away() * (place.deck_m - place.ground.z_m);
         if let Some((from, from_over_m)) = before
@@ -74,7 +74,7 @@ pub(crate) fn on_deck(
 
 /// The ground and the deck at a distance along the way.
 #[derive(Clone, Copy)]
-struct Place {
+struct OverGround {
     along_m: f64,
     ground: Vertex,
     deck_m: f64,

@@ -30,7 +30,7 @@ pub struct CrossingPlace {
 /// Whether it is known what is above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// By what they are, or by their layers.
+    /// It is, by what they are or by their layers.
     Known,
     /// Both are bridges, or both tunnels, of one layer.
     Tie,

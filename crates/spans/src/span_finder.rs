@@ -12,7 +12,7 @@ use crate::{
 
 /// The direction in which a chain leaves its node is that of its first metres.
 const DIRECTION_M: f64 = 10.0;
-/// Of more ends at a node than this no others are looked at: no real node has as many, and each is compared with each.
+/// So many ends at a node are compared with each other; no real node has as many.
 const MOST_ENDS: usize = 64;
 
 impl Spans {

@@ -72,7 +72,7 @@ pub(crate) fn facts(args: &VectorArgs, heights: &str, manifest: &Manifest) -> St
 }
 
 /// A line of bridges and tunnels, and of what is to be known of them; nothing where there is none.
-pub(super) fn spans_text(facts: &SpanFacts) -> String {
+pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     if facts.spans == 0 {
         return String::new();
     }
