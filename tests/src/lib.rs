@@ -73,8 +73,11 @@ pub fn shell(commands: &str, folder: &Path) -> Ran {
     let program = binary();
     let folders = program.parent().map(Path::to_path_buf).into_iter();
     let path = std::env::var_os("PATH").unwrap_or_default();
+    // With the path of the shell, it is spawned without a fork, after which PROJ's handlers wait for ever now and then for what another thread holds.
+    let bash =
+        std::env::split_paths(&path).map(|folder| folder.join("bash")).find(|bash| bash.is_file());
     let path = std::env::join_paths(folders.chain(std::env::split_paths(&path)));
-    let mut shell = Command::new("bash");
+    let mut shell = Command::new(bash.expect("bash is on the path"));
     shell.args(["-e", "-o", "pipefail", "-c", commands]).current_dir(folder);
     match shell.env("PATH", path.expect("the path was one before")).output() {
         Ok(output) => output.into(),
