@@ -184,29 +184,30 @@ impl Decks {
             let edge = self.spans.edge_of(own.chain)?;
             let at = OnEdge { edge, along_m: own.along_m };
             let ground_m = grounds_m[number].unwrap_or(f64::NAN);
-            Some((own.layer.unsigned_abs(), number, at, own, other, ground_m))
+            Some((at, own, other, ground_m))
         };
         let mut all: Vec<_> = crossings.iter().enumerate().filter_map(known).collect();
-        all.sort_by_key(|(layer, number, ..)| (*layer, *number));
+        all.sort_by_key(|(_, own, ..)| own.layer.unsigned_abs());
         let grades = self.median_grades();
         let is_held = |joint: usize| held_m[joint].is_finite();
         for _ in 0..MOST_PASSES {
             let mut is_changed = false;
-            for (_, _, at, own, other, ground_m) in &all {
+            for (at, own, other, ground_m) in &all {
                 let edge = &self.spans.edges[at.edge];
                 let away = edge.kind.away();
-                let room_m = away * (self.raised_m(*at) - self.crossing_m(other, *ground_m));
+                let other_m = self.crossing_m(other, *ground_m);
+                let [raised_m, base_m] = [self.raised_m(*at), self.base_m(*at)];
+                let room_m = away * (raised_m - other_m);
                 if room_m.is_nan() || room_m >= FREE_HEIGHT_M - ENOUGH_M {
                     continue;
                 }
                 let Some(reach) = Reach::of(&self.spans, &is_held, *at) else { continue };
-                let wanted_m =
-                    FREE_HEIGHT_M - away * (self.base_m(*at) - self.crossing_m(other, *ground_m));
+                let wanted_m = FREE_HEIGHT_M - away * (base_m - other_m);
                 let limit = own.steepest - grades[edge.span as usize];
                 let gentle_m = limit.max(LEAST_FLANK) * reach.support_m;
                 let least_m = wanted_m - FREE_HEIGHT_M + LEAST_FREE_HEIGHT_M;
                 let apex_m = wanted_m.min(gentle_m.max(least_m));
-                let before_m = away * (self.raised_m(*at) - self.base_m(*at));
+                let before_m = away * (raised_m - base_m);
                 if apex_m > before_m + ENOUGH_M && reach.support_m > 0.0 {
                     is_changed |= put_up(&mut self.tents, reach.tents(&self.spans, apex_m));
                 }

@@ -15,7 +15,7 @@ fn found(ways: &[Way<'_>]) -> Found {
     let (network, chains) = network(ways);
     let spans = Spans::find(&network, &chains, &distance_m);
     let mut joints: Vec<(i64, Option<Support>)> = spans
-        .joints()
+        .joints
         .iter()
         .map(|joint| (network.node_id(joint.node).unwrap(), joint.support))
         .collect();

@@ -126,6 +126,7 @@ pub struct SpanProblem {
 pub struct Spans {
     /// In the order of their chains.
     pub(crate) edges: Vec<Edge>,
+    /// Those of bridges and of tunnels apart.
     pub(crate) joints: Vec<Joint>,
     /// The ends of edges at each joint: twice the number of the edge, plus one for its last end.
     pub(crate) edges_at: IndexLists,
@@ -143,12 +144,6 @@ impl Spans {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
-    }
-
-    /// All joints, those of bridges and of tunnels apart.
-    #[must_use]
-    pub fn joints(&self) -> &[Joint] {
-        &self.joints
     }
 
     /// The edge of a chain; `None` on the ground.
