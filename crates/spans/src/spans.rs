@@ -126,7 +126,7 @@ pub struct SpanProblem {
 pub struct Spans {
     /// In the order of their chains.
     pub(crate) edges: Vec<Edge>,
-    /// Those of bridges and of tunnels apart.
+    /// Bridges and tunnels have different ones, also at the same node.
     pub(crate) joints: Vec<Joint>,
     /// The ends of edges at each joint: twice the number of the edge, plus one for its last end.
     pub(crate) edges_at: IndexLists,
