@@ -67,6 +67,9 @@ fn line(defect: &Defect) -> String {
             let detail = if *is_whole { "the whole road" } else { "a part of it" };
             let _ = writeln!(line, ",way,{way_id},,{length_m:.3},{detail}");
         }
+        Defect::Span { way_id, .. } => {
+            let _ = writeln!(line, ",way,{way_id},,,a bridge or a tunnel");
+        }
     }
     line
 }

@@ -294,7 +294,16 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
             .map_err(|error| presets::refuse("--classes", &error))?,
         None => table,
     };
-    Ok(RoadSettings { table, filter, simplify_cells })
+    let spans = match options.structures.as_deref() {
+        None | Some("ground") => false,
+        Some("spans") => true,
+        Some(other) => {
+            return Err(Failure::unusable(format!(
+                "structures must be \"ground\" or \"spans\", not {other:?}"
+            )));
+        }
+    };
+    Ok(RoadSettings { table, filter, simplify_cells, spans })
 }
 
 /// Program and version.

@@ -19,6 +19,13 @@ pub enum Defect {
         /// Whether nothing of the road is kept.
         is_whole: bool,
     },
+    /// Something to know of a bridge or a tunnel.
+    Span {
+        /// A way of it.
+        way_id: i64,
+        /// The name of the reason.
+        reason: String,
+    },
 }
 
 /// Why a road was lost.
@@ -54,6 +61,7 @@ impl Defect {
         match self {
             Self::Osm(defect) => defect.reason().to_owned(),
             Self::LostRoad { loss, .. } => loss.reason().to_owned(),
+            Self::Span { reason, .. } => reason.clone(),
         }
     }
 }

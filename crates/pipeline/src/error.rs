@@ -80,6 +80,10 @@ pub enum BuildError {
     DamagedPackage { path: PathBuf, what: String },
     #[error("{path:?} cannot be used; build from the elevation files with --dem")]
     PackageTile { path: PathBuf, source: corniche_tileset::ReadError },
+    #[error(
+        "bridges and tunnels of {osm:?} cross other roads more often than any real ones; build with --structures ground, and they lie on the ground"
+    )]
+    ManyCrossings { osm: Vec<PathBuf> },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
     #[error(

@@ -22,7 +22,7 @@ use std::{
 
 use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
-use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize};
+use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize, SpansSection};
 use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
@@ -33,21 +33,25 @@ use crate::artifacts::Kind;
 pub(crate) enum SectionLayer {
     Areas,
     Lines(ClassedLayer),
+    Spans,
 }
 
 impl SectionLayer {
     /// How many there are.
-    const COUNT: usize = 1 + ClassedLayer::ALL.len();
+    const COUNT: usize = 2 + ClassedLayer::ALL.len();
 
     /// All of them, in the order of their sections.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
-        iter::once(Self::Areas).chain(ClassedLayer::ALL.map(Self::Lines))
+        iter::once(Self::Areas)
+            .chain(ClassedLayer::ALL.map(Self::Lines))
+            .chain(iter::once(Self::Spans))
     }
 
     fn place(self) -> usize {
         match self {
             Self::Areas => 0,
             Self::Lines(layer) => 1 + layer as usize,
+            Self::Spans => Self::COUNT - 1,
         }
     }
 
@@ -56,6 +60,7 @@ impl SectionLayer {
         match self {
             Self::Areas => Stage::MapAreas,
             Self::Lines(ClassedLayer::Boundaries) => Stage::Boundaries,
+            Self::Spans => Stage::Spans,
         }
     }
 
@@ -64,6 +69,7 @@ impl SectionLayer {
         match self {
             Self::Areas => Kind::AreaSection,
             Self::Lines(ClassedLayer::Boundaries) => Kind::BoundarySection,
+            Self::Spans => Kind::SpanSection,
         }
     }
 
@@ -72,6 +78,7 @@ impl SectionLayer {
         match self {
             Self::Areas => Kind::AreaTotals,
             Self::Lines(ClassedLayer::Boundaries) => Kind::BoundaryTotals,
+            Self::Spans => Kind::SpanTotals,
         }
     }
 
@@ -88,6 +95,9 @@ impl SectionLayer {
             }
             Self::Lines(layer) => {
                 corniche_tileset::with_lines(payload, id, LinesSection::from_bytes(layer, section))
+            }
+            Self::Spans => {
+                corniche_tileset::with_spans(payload, id, SpansSection::from_bytes(section))
             }
         }
     }

@@ -30,6 +30,7 @@ mod points_step;
 mod roads;
 mod settings;
 mod settings_record;
+mod spans;
 mod steps;
 mod terrain;
 mod tile;

@@ -141,6 +141,8 @@ pub struct RoadSettings {
     pub filter: ClassFilter,
     /// Simplification tolerance, in cells of the level; 0 keeps every point. The finest level always does.
     pub simplify_cells: f64,
+    /// Whether bridges and tunnels leave the ground: tiles then tell how high they are.
+    pub spans: bool,
 }
 
 /// What a run may use. It changes no byte of a package.

@@ -36,7 +36,7 @@ pub(crate) fn of(
         open;
     let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
         plan;
-    let RoadSettings { table, filter, simplify_cells } = roads;
+    let RoadSettings { table, filter, simplify_cells, spans } = roads;
     SettingsRecord {
         max_error_m,
         fill_voids: *fill_voids,
@@ -63,6 +63,7 @@ pub(crate) fn of(
         photo,
         areas: areas.map(area_table_record),
         boundaries: lines.contains(&ClassedLayer::Boundaries),
+        spans: *spans,
     }
 }
 
@@ -115,7 +116,8 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
 
 /// The settings for roads that a package records, with its table of classes; `None` where the record makes no filter.
 pub(crate) fn roads(record: &SettingsRecord, table: FrcTable) -> Option<RoadSettings> {
-    Some(RoadSettings { table, filter: filter(record)?, simplify_cells: record.simplify_cells })
+    let &SettingsRecord { simplify_cells, spans, .. } = record;
+    Some(RoadSettings { table, filter: filter(record)?, simplify_cells, spans })
 }
 
 /// Which levels show which class; `None` where the record makes no filter.

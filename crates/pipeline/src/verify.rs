@@ -35,6 +35,7 @@ mod roads_of_parent;
 mod roads_on_tin;
 mod samples;
 mod seams;
+mod spans;
 mod temporary_store;
 mod tile_place;
 mod tile_sums;
@@ -91,6 +92,7 @@ fn look_at_all(
     for layer in ClassedLayer::ALL {
         lines::verify(package, layer, settings.threads, &mut findings, observer)?;
     }
+    spans::verify(package, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;

@@ -132,6 +132,10 @@ pub struct RoadOptions {
     /// [default: 0.25]
     #[arg(long, value_name = "CELLS")]
     pub simplify: Option<f64>,
+    /// Where bridges and tunnels are: on the ground; or spans, above and below it as well as there, for programs that know them. Heights of spans are
+    /// estimates [default: ground]
+    #[arg(long, value_name = "ground|spans", value_parser = ["ground", "spans"])]
+    pub structures: Option<String>,
     /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
     #[arg(skip)]
     pub class_max_cell: Option<BTreeMap<String, f64>>,
@@ -250,6 +254,7 @@ impl RoadOptions {
             classes: self.classes.or_from(other.classes),
             all_classes: self.all_classes.or_from(other.all_classes),
             simplify: self.simplify.or_from(other.simplify),
+            structures: self.structures.or_from(other.structures),
             class_max_cell: self.class_max_cell.or_from(other.class_max_cell),
         }
     }

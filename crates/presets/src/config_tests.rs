@@ -103,6 +103,7 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         classes: Some(Classes::parse(&n.to_string()).unwrap()),
         all_classes: true,
         simplify: Some(number),
+        structures: Some(text("spans")),
         class_max_cell: Some(BTreeMap::from([(text("class"), number)])),
     };
     let areas = AreaOptions { table: Some(text("areas")), boundaries: Some(text("on")) };

@@ -87,6 +87,22 @@ impl Decks {
         decks
     }
 
+    /// The same decks on another ground, as coarse levels have it, whose heights at the joints are given: solved anew, with the lifts that they have.
+    #[must_use]
+    pub fn on(&self, grounds_m: &[Option<f64>]) -> Self {
+        let joints = self.spans.joints.iter().zip(grounds_m);
+        let held_m: Vec<f64> = joints
+            .map(|(joint, own_m)| own_m.filter(|_| joint.support.is_some()).unwrap_or(f64::NAN))
+            .collect();
+        Self {
+            joints_m: solved(&self.spans, &held_m),
+            tents: self.tents.clone(),
+            spans: self.spans.clone(),
+            free_heights: Vec::new(),
+            problems: Vec::new(),
+        }
+    }
+
     /// The nodes at which spans are carried, with their heights; those without ground are left out.
     pub fn supports(&self) -> impl Iterator<Item = (NodeNumber, f64)> + '_ {
         let all = self.spans.joints.iter().zip(&self.joints_m);

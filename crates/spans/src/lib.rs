@@ -21,10 +21,12 @@ mod span_finder;
 mod spans;
 #[cfg(test)]
 mod test_network;
+mod vicinity;
 
 pub use crossings::{Crossing, CrossingPlace, Order, crossings};
 pub use decks::{Decks, FreeHeight};
 pub use spans::{Joint, SpanKind, SpanProblem, SpanReason, Spans, Support};
+pub use vicinity::Vicinity;
 
 /// The true distance between two places of the lattice in plan, metres.
 pub type Distance<'a> = dyn Fn([f64; 2], [f64; 2]) -> f64 + 'a;

@@ -122,7 +122,7 @@ pub struct SpanProblem {
 }
 
 /// All bridges and tunnels of a network.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Spans {
     /// In the order of their chains.
     pub(crate) edges: Vec<Edge>,
@@ -144,6 +144,31 @@ impl Spans {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
+    }
+
+    /// Their joints.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// For each joint a chain that meets it, and how far along it the joint is, metres.
+    pub fn places_of_joints(&self) -> impl Iterator<Item = Option<(ChainNumber, f64)>> + '_ {
+        (0..self.joints.len()).map(|joint| {
+            let end = *self.edges_at.of(joint).first()?;
+            let edge = &self.edges[end as usize / 2];
+            Some((edge.chain, if end % 2 == 1 { edge.length_m } else { 0.0 }))
+        })
+    }
+
+    /// How many are of a kind.
+    #[must_use]
+    pub fn count_of(&self, kind: SpanKind) -> u64 {
+        let mut of_kind: Vec<u32> =
+            self.edges.iter().filter(|edge| edge.kind == kind).map(|edge| edge.span).collect();
+        of_kind.sort_unstable();
+        of_kind.dedup();
+        of_kind.len() as u64
     }
 
     /// The edge of a chain; `None` on the ground.

@@ -36,7 +36,7 @@ mod payload;
 pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
     DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord,
-    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord,
+    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, SpanCounts, SpansRecord, Manifest, PhotoLevelRecord,
     PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord,
     SampleSums, ScaleRecord, SettingsRecord, VerticalRecord,
 };

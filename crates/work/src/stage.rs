@@ -47,6 +47,8 @@ pub enum Stage {
     Tiles,
     /// Make the tiles of all levels but the finest.
     CoarseTiles,
+    /// Solve the heights of bridges and tunnels, and cut them by tile.
+    Spans,
     /// Write the package.
     Package,
     /// Check a package.
@@ -67,7 +69,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::Hash,
         Self::Extract,
         Self::MapAreas,
@@ -80,6 +82,7 @@ impl Stage {
         Self::Samples,
         Self::Tiles,
         Self::CoarseTiles,
+        Self::Spans,
         Self::Package,
         Self::Verify,
         Self::ExportTiles,
@@ -107,6 +110,7 @@ impl Stage {
             Self::Samples => ("samples", "measuring at samples", Unit::Things("blocks")),
             Self::Tiles => ("tiles", "making tiles", TILES),
             Self::CoarseTiles => ("coarse-tiles", "making coarse tiles", TILES),
+            Self::Spans => ("spans", "solving bridges and tunnels", Unit::Things("tiles")),
             Self::Package => ("package", "writing package", TILES),
             Self::Verify => ("verify", "verifying", TILES),
             Self::ExportTiles => ("export-tiles", "reading tiles", TILES),

@@ -20,7 +20,7 @@ const MAY_USE: [(&str, &[&str]); 31] = [
     ("web-styles", &["styles"]),
     ("live", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
-    ("pipeline", &["tileset", "osm", "network", "photo", "store", "objects", "work"]),
+    ("pipeline", &["tileset", "osm", "spans", "photo", "store", "objects", "work"]),
     ("export", &["tileset", "spans", "dem", "store", "styles", "work"]),
     ("matching", &["tileset", "photo", "work"]),
     ("overlay", &["tileset", "dem"]),

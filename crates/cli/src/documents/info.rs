@@ -21,6 +21,7 @@ use super::{
     areas::{AreaTableDocument, AreasDocument},
     growth::RowDocument,
     lines::LinesDocument,
+    spans::SpansDocument,
 };
 
 /// What a package holds.
@@ -97,6 +98,9 @@ pub(crate) struct ManifestDocument {
     /// The boundaries, in the classes "admin-2" to "admin-8" and "protected"; left out in packages made without.
     #[serde(skip_serializing_if = "Option::is_none")]
     boundaries: Option<LinesDocument>,
+    /// Bridges and tunnels off the ground, whose heights are estimates; left out in packages made without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spans: Option<SpansDocument>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -207,6 +211,9 @@ struct SettingsDocument {
     /// Whether there are boundaries; left out without any.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     boundaries: bool,
+    /// Whether bridges and tunnels leave the ground; left out without.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    spans: bool,
 }
 
 /// How the photos of a package were made.
@@ -292,6 +299,7 @@ impl From<&Manifest> for ManifestDocument {
             photos: manifest.photos.into_iter().map(Into::into).collect(),
             areas: manifest.areas.map(Into::into),
             boundaries,
+            spans: manifest.spans.map(Into::into),
         }
     }
 }
@@ -345,6 +353,7 @@ impl From<SettingsRecord> for SettingsDocument {
                 .map(|PhotoRecord { levels, quality }| PhotoDocument { levels, quality }),
             areas: settings.areas.map(Into::into),
             boundaries: settings.boundaries,
+            spans: settings.spans,
         }
     }
 }

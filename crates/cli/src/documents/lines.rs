@@ -43,7 +43,7 @@ struct LineLossDocument {
 /// The lines of a level.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct LineLevelDocument {
+pub(crate) struct LineLevelDocument {
     /// Level, 0 = root.
     level: u8,
     /// Tiles with some.
@@ -65,18 +65,17 @@ impl LinesDocument {
             length_um: kept.length_um,
         });
         let lost = counts.lost.into_iter();
-        let level = |LineLevelRecord { level, tiles, parts, points, bytes }| LineLevelDocument {
-            level,
-            tiles,
-            parts,
-            points,
-            bytes,
-        };
         Self {
             ways: counts.ways,
             kept: kept.collect(),
             lost: lost.map(|(reason, ways)| LineLossDocument { reason, ways }).collect(),
-            levels: levels.into_iter().map(level).collect(),
+            levels: levels.into_iter().map(Into::into).collect(),
         }
+    }
+}
+
+impl From<LineLevelRecord> for LineLevelDocument {
+    fn from(LineLevelRecord { level, tiles, parts, points, bytes }: LineLevelRecord) -> Self {
+        Self { level, tiles, parts, points, bytes }
     }
 }

@@ -113,6 +113,7 @@ fn properties(manifest: &Manifest) -> [Property; 18] {
         photo: _,
         areas: _,
         boundaries: _,
+        spans: _,
     } = &manifest.settings;
     [
         ("extract", inputs(manifest, &["osm"])),

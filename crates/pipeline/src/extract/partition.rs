@@ -188,6 +188,7 @@ fn road_layer<'a>(
         node_bounds: input.node_bounds,
         clip: input.clip,
         polygon: input.polygon,
+        spans: input.settings.spans,
     };
     RoadLayer::new(splitting, places, input.memory_bytes)
 }
@@ -219,7 +220,7 @@ fn on_extract(
         table: &input.settings.table,
         frame: input.levels.frame(),
         projection: input.projection,
-        node_ids: false,
+        node_ids: input.settings.spans,
         pool: input.pool,
         memory_bytes: input.memory_bytes,
     };

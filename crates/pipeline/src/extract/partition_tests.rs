@@ -71,7 +71,7 @@ impl World {
         let frame = GridFrame::new([0.0; 2], 10.0, corner, 2).unwrap();
         let table = FrcTable::new("t", vec![("primary".into(), 2)], vec!["no".into()], 8).unwrap();
         let filter = ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap();
-        let settings = RoadSettings { table, filter, simplify_cells: 0.5 };
+        let settings = RoadSettings { table, filter, simplify_cells: 0.5, spans: false };
         let levels = Levels::new(frame, 2.5, &settings, 1.0);
         let projection = FlatProjection::new([111_320.0; 2]);
         let bounds = Bounds { ..frame.tile_bounds(TileId::ROOT) };

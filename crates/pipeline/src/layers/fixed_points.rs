@@ -2,6 +2,7 @@
 
 use corniche_drape::ClippedPart;
 use corniche_geom::LatticePoint;
+use corniche_roads::Road;
 
 /// The index of the point of a line that a point of its part is; `None` for a cut.
 pub(crate) fn point_of_line(
@@ -28,4 +29,27 @@ pub(crate) fn fixed_of_part(
         of_line.is_some_and(|of_line| fixed.binary_search(&(of_line as u32)).is_ok())
     };
     (0..part.line.points().len()).filter(is_fixed).map(|index| index as u32).collect()
+}
+
+/// A part of a road, as a road. Its ends, where they are cuts, are no nodes.
+pub(crate) fn road_of_part(road: &Road, part: ClippedPart) -> Road {
+    let points = road.line.points();
+    let last = part.line.points().len() - 1;
+    let stop = |index: usize| {
+        let of_road = point_of_line(points, &part, index);
+        let fixed = of_road.and_then(|at| road.fixed.binary_search(&(at as u32)).ok());
+        let node_id = fixed.and_then(|at| road.node_ids.get(at).copied().flatten());
+        let is_kept = fixed.is_some() || index == 0 || index == last;
+        is_kept.then_some((index as u32, node_id))
+    };
+    let stops: Vec<(u32, Option<i64>)> = (0..=last).filter_map(stop).collect();
+    Road {
+        way_id: road.way_id,
+        class: road.class,
+        attributes: road.attributes.clone(),
+        fixed: stops.iter().map(|(index, _)| *index).collect(),
+        node_ids: stops.iter().map(|(_, node_id)| *node_id).collect(),
+        same_places: road.same_places.clone(),
+        line: part.line,
+    }
 }

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, TileId};
+use corniche_roads::Structure;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::pieces::{RoadPiece, Run, TilePieces};
 use crate::levels::Levels;
+use crate::spans::ground_lines::{self, GroundLine};
 use crate::true_lengths::{gaps_um, pieces_um};
 
 /// Sums over the roads of a class on a level.
@@ -72,6 +74,8 @@ pub(crate) struct TileToLayOn<'a> {
     pub(crate) owned: OwnedBorders,
     /// The bounds that were asked for: at the finest level roads end there.
     pub(crate) clip: Option<LatticeBounds>,
+    /// Whether bridges and tunnels become spans.
+    pub(crate) spans: bool,
 }
 
 /// What becomes of a tile's roads if it is a finest tile without ground.
@@ -107,6 +111,8 @@ pub(crate) struct Laid {
     pub(crate) attributes: BTreeMap<i64, RoadRecord>,
     pub(crate) fates: Vec<(u32, RoadFate)>,
     pub(crate) classes: BTreeMap<u8, ClassSums>,
+    /// The ground beneath bridges and tunnels, where they become spans.
+    pub(crate) ground_lines: Vec<GroundLine>,
     /// Next part number of each way, GEO and SV.
     parts: BTreeMap<i64, [u32; 2]>,
 }
@@ -126,7 +132,7 @@ impl Laid {
         sums.source_vertices += road.source_points;
         sums.simplified_vertices += road.simplified_points;
         let before = self.geo.len() + self.sv.len();
-        let fate = self.lay_geo(road, on, levels);
+        let fate = self.lay_geo((ordinal, road), on, levels);
         self.lay_sv(road, on, levels);
         if self.geo.len() + self.sv.len() > before {
             self.attributes.entry(road.way_id).or_insert_with(|| RoadRecord {
@@ -139,8 +145,14 @@ impl Laid {
         }
     }
 
-    fn lay_geo(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) -> RoadFate {
-        let &TileToLayOn { id, surface, owned, clip } = on;
+    fn lay_geo(
+        &mut self,
+        (ordinal, road): (u32, &RoadPiece),
+        on: &TileToLayOn<'_>,
+        levels: &Levels,
+    ) -> RoadFate {
+        let &TileToLayOn { id, surface, owned, clip, spans } = on;
+        let is_span = spans && road.attributes.structure != Structure::Ground;
         let bounds = levels.frame().tile_lattice_bounds(id);
         let is_finest = id.z() == levels.frame().max_level();
         // On coarser levels ground ends before the bounds, and roads with it.
@@ -156,6 +168,13 @@ impl Laid {
                     let void_um = gaps_um(&pieces, &draped.gaps);
                     let all_um: u64 = pieces.iter().map(|[from, to]| to - from).sum();
                     fate.merge(&RoadFate { kept_um: all_um - void_um, void_um });
+                }
+                if is_span {
+                    let mut after = 0;
+                    let own = draped.lines.iter().filter_map(|line| {
+                        ground_lines::line_of((ordinal, road), (run, &part), (line, surface), &mut after)
+                    });
+                    self.ground_lines.extend(own);
                 }
                 for line in draped.lines {
                     let (way_id, class, part) = (road.way_id, road.class, *next_part);

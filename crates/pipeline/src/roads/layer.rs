@@ -1,5 +1,7 @@
 //! The roads of the extract: for each tile of each level the pieces that it needs, and the true lengths of all.
 
+use std::collections::BTreeSet;
+
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
@@ -18,7 +20,11 @@ use crate::{
         layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
     },
+    spans::near_roads,
 };
+
+/// Roads are near a node of a bridge or a tunnel within this, in working metres: their directions there count.
+const NEAR_M: f64 = 20.0;
 
 /// Roads as they come in.
 pub(crate) struct RoadLayer<'a> {
@@ -27,6 +33,8 @@ pub(crate) struct RoadLayer<'a> {
     totals: RoadTotals,
     lengths: LengthsWriter<'a>,
     pieces: PartsByTile<'a, u32>,
+    /// The finest tiles with bridges or tunnels, by their place in the package, where these become spans.
+    span_tiles: BTreeSet<u64>,
 }
 
 impl<'a> RoadLayer<'a> {
@@ -44,6 +52,7 @@ impl<'a> RoadLayer<'a> {
             },
             lengths: LengthsWriter::new(store),
             pieces: PartsByTile::new(scratch, memory_bytes),
+            span_tiles: BTreeSet::new(),
         }
     }
 }
@@ -88,6 +97,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
                 self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
             self.totals.bounds = Some([all.min, all.max]);
         }
+        self.span_tiles.extend(&road.span_tiles);
         self.lengths.push(road.length)?;
         pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
     }
@@ -108,6 +118,10 @@ impl<'a> TileLayer for RoadLayer<'a> {
             },
             |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
         )?;
+        if self.splitting.spans {
+            let reach = NEAR_M / self.splitting.levels.frame().lattice_step_m();
+            near_roads::keep(&self.span_tiles, self.store, reach, told.pool)?;
+        }
         Ok((self.totals, summary))
     }
 }

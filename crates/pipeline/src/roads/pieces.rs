@@ -42,8 +42,13 @@ pub(crate) struct RoadPiece {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Run {
     pub(crate) line: Polyline,
-    /// The true length of each segment in micrometres on the finest level; empty on other levels.
+    /// The true length of each segment in micrometres on the finest level, and of bridges and tunnels, where spans are wanted, on all; of what is
+    /// simplified it is that of the source line. Else empty.
     pub(crate) segments_um: Vec<u64>,
+    /// How far along the road it begins, micrometres; 0 where lengths are not known.
+    pub(crate) from_um: u64,
+    /// The nodes at which other roads may join, on the finest level where spans are wanted: which points they are, and their ids.
+    pub(crate) nodes: Vec<(u32, i64)>,
 }
 
 /// The pieces of all roads of a tile with the roads' ordinals, ascending.
@@ -123,6 +128,12 @@ impl RoadPiece {
             for &segment_um in &run.segments_um {
                 push_varint(&mut bytes, segment_um);
             }
+            push_varint(&mut bytes, run.from_um);
+            push_varint(&mut bytes, run.nodes.len() as u64);
+            for &(index, node_id) in &run.nodes {
+                push_varint(&mut bytes, index.into());
+                put_signed(&mut bytes, node_id);
+            }
         }
         bytes
     }
@@ -172,10 +183,15 @@ impl Run {
         for _ in 0..lengths {
             segments_um.push(rest.unsigned()?);
         }
+        let from_um = rest.unsigned()?;
+        let mut nodes = Vec::with_capacity(rest.count()?);
+        for _ in 0..nodes.capacity() {
+            nodes.push((u32::try_from(rest.unsigned()?).ok()?, rest.signed()?));
+        }
         let line = Polyline::new(points).ok()?;
         // Equal neighbours would have been merged: a run has none.
         let is_whole = line.points().len() == count && (lengths == 0 || lengths == count - 1);
-        is_whole.then_some(Self { line, segments_um })
+        is_whole.then_some(Self { line, segments_um, from_um, nodes })
     }
 }
 

@@ -14,7 +14,8 @@ fn runs() -> impl Strategy<Value = Vec<Run>> {
         |(points, has_lengths, length_um)| {
             let line = Polyline::new(points).ok()?;
             let count = if has_lengths { line.points().len() - 1 } else { 0 };
-            Some(Run { line, segments_um: vec![length_um; count] })
+            let nodes = if has_lengths { vec![(1, length_um as i64)] } else { Vec::new() };
+            Some(Run { line, segments_um: vec![length_um; count], from_um: length_um, nodes })
         },
     );
     vec(run, 0..4)

@@ -4,13 +4,14 @@ use std::{borrow::Cow, sync::Arc};
 
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use corniche_tileset::pmtiles_order;
 
 use super::{
     pieces::{RoadPiece, Run},
     totals::RoadLength,
 };
-use crate::layers::fixed_points::fixed_of_part;
+use crate::layers::fixed_points::road_of_part;
 use crate::levels::Levels;
 use crate::tiles_near::for_each_tile_near;
 use crate::true_lengths::{TrueLengths, pieces_um};
@@ -27,6 +28,8 @@ pub(crate) struct RoadSplitting<'a> {
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for: roads end at its outline.
     pub(crate) polygon: Option<&'a LatticeRegion>,
+    /// Whether bridges and tunnels become spans: then pieces tell where along their road they lie, and which nodes they have.
+    pub(crate) spans: bool,
 }
 
 /// A road, split.
@@ -36,6 +39,8 @@ pub(crate) struct SplitRoad {
     pub(crate) bounds: Option<LatticeBounds>,
     /// The pieces with their tiles, on all levels.
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
+    /// The finest of these tiles, by their place in the package, if it is a bridge or a tunnel that becomes a span.
+    pub(crate) span_tiles: Vec<u64>,
 }
 
 impl RoadSplitting<'_> {
@@ -69,7 +74,11 @@ impl RoadSplitting<'_> {
                 self.split_level(&parts, &attributes, level, &mut pieces);
             }
         }
+        let finest = self.levels.frame().max_level();
+        let is_span = self.spans && road.attributes.structure != Structure::Ground;
+        let of_spans = pieces.iter().filter(|(id, _)| is_span && id.z() == finest);
         SplitRoad {
+            span_tiles: of_spans.map(|(id, _)| pmtiles_order(*id)).collect(),
             length: RoadLength {
                 way_id: road.way_id,
                 length_um,
@@ -86,11 +95,11 @@ impl RoadSplitting<'_> {
     /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
     fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
         let Some(region) = self.polygon else {
-            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
         };
         let parts = corniche_drape::clip_region(&road.line, region);
         if parts.first().is_some_and(|part| part.line == road.line) {
-            return vec![RoadPart { road: Cow::Borrowed(road), segments_um }];
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
         }
         parts.into_iter().map(|part| RoadPart::cut(road, part, &segments_um)).collect()
     }
@@ -107,7 +116,7 @@ impl RoadSplitting<'_> {
         let lines: Vec<LevelLine<'_>> = parts
             .iter()
             .filter(|part| self.is_near(LatticeBounds::of(part.road.line.points()), level))
-            .map(|part| LevelLine::new(part, level, levels))
+            .map(|part| LevelLine::new(part, level, levels, self.spans))
             .collect();
         let mut near = Vec::new();
         for (of, line) in lines.iter().enumerate() {
@@ -165,25 +174,21 @@ struct RoadPart<'r> {
     road: Cow<'r, Road>,
     /// True lengths of its segments.
     segments_um: Vec<u64>,
+    /// How far along the road it begins, micrometres.
+    from_um: u64,
 }
 
 impl RoadPart<'_> {
     /// What was cut out of a road, whose segments have these lengths.
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
-        let own_um = pieces_um(&road.line, &part, segments_um).map(|[from, to]| to - from);
-        let own_um = own_um.collect();
-        let fixed = fixed_of_part(road.line.points(), &road.fixed, &part);
-        let line = part.line;
-        let own = Road {
-            way_id: road.way_id,
-            class: road.class,
-            attributes: road.attributes.clone(),
-            line,
-            fixed,
-            node_ids: Vec::new(),
-            same_places: Vec::new(),
-        };
-        Self { road: Cow::Owned(own), segments_um: own_um }
+        let pieces: Vec<[u64; 2]> = pieces_um(&road.line, &part, segments_um).collect();
+        let before_um: u64 =
+            part.segments.first().map_or(0, |&first| segments_um[..first].iter().sum());
+        Self {
+            from_um: before_um + pieces.first().map_or(0, |[from, _]| *from),
+            segments_um: pieces.iter().map(|[from, to]| to - from).collect(),
+            road: Cow::Owned(road_of_part(road, part)),
+        }
     }
 
     fn length_in_um(&self, bounds: &LatticeBounds) -> u64 {
@@ -199,20 +204,35 @@ impl RoadPart<'_> {
 /// A part as a level shows it.
 struct LevelLine<'p> {
     line: Polyline,
-    /// True lengths of its segments, on the finest level alone.
-    segments_um: &'p [u64],
+    /// True lengths of its segments on the finest level, and of bridges and tunnels where they become spans; else empty.
+    segments_um: Cow<'p, [u64]>,
+    /// How far along the road it begins.
+    from_um: u64,
+    /// Its nodes at which other roads may join, by the index of their point; on the finest level alone.
+    nodes: Vec<(usize, i64)>,
     source: PointsByTile,
     simplified: PointsByTile,
 }
 
 impl<'p> LevelLine<'p> {
-    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels) -> Self {
-        let line = corniche_roads::simplify(&part.road, levels.simplify_tolerance_steps(level));
+    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels, spans: bool) -> Self {
+        let road = &part.road;
+        let line = corniche_roads::simplify(road, levels.simplify_tolerance_steps(level));
         // On the finest level the line is the source line, not simplified.
         let is_finest = level == levels.frame().max_level();
+        let is_span = spans && road.attributes.structure != Structure::Ground;
+        let segments_um = match (is_finest, is_span) {
+            (true, _) => Cow::Borrowed(&part.segments_um[..]),
+            (false, true) => Cow::Owned(simplified_um(&road.line, &part.segments_um, &line)),
+            (false, false) => Cow::Borrowed(&[][..]),
+        };
+        let nodes = road.fixed.iter().zip(&road.node_ids);
+        let nodes = nodes.filter(|_| spans && is_finest);
         Self {
-            segments_um: if is_finest { &part.segments_um } else { &[] },
-            source: PointsByTile::of(&part.road.line, level, levels),
+            segments_um,
+            from_um: part.from_um,
+            nodes: nodes.filter_map(|(&at, id)| Some((at as usize, (*id)?))).collect(),
+            source: PointsByTile::of(&road.line, level, levels),
             simplified: PointsByTile::of(&line, level, levels),
             line,
         }
@@ -222,8 +242,33 @@ impl<'p> LevelLine<'p> {
     fn run(&self, [first, last]: [usize; 2]) -> Option<Run> {
         let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
         let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
-        Some(Run { line, segments_um })
+        let before_um: u64 = self.segments_um.iter().take(first).sum();
+        let is_own = |(at, _): &&(usize, i64)| (first..=last + 1).contains(at);
+        let nodes = self.nodes.iter().filter(is_own);
+        Some(Run {
+            line,
+            from_um: if segments_um.is_empty() { 0 } else { self.from_um + before_um },
+            segments_um,
+            nodes: nodes.map(|&(at, id)| ((at - first) as u32, id)).collect(),
+        })
     }
+}
+
+/// The lengths of a line between the points that its simplification keeps.
+fn simplified_um(line: &Polyline, segments_um: &[u64], simplified: &Polyline) -> Vec<u64> {
+    let mut lengths = line.points()[1..].iter().zip(segments_um);
+    let length = |to: &LatticePoint| {
+        let mut sum_um = 0;
+        for (point, segment_um) in lengths.by_ref() {
+            sum_um += segment_um;
+            // Places that a line visits twice are kept, so the first one is the right one.
+            if point == to {
+                break;
+            }
+        }
+        sum_um
+    };
+    simplified.points()[1..].iter().map(length).collect()
 }
 
 /// How many of a line's points belong to each tile of a level: each point belongs to one tile at most.

@@ -149,6 +149,7 @@ fn worlds() -> impl Strategy<Value = World> {
                 table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
                 filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
                 simplify_cells,
+                spans: false,
             };
             let levels = Levels::new(frame, cell.shorter_m(), &settings, 1.0);
             // What lies in the table has other lengths than what does not, so that it shows which of them was taken.
@@ -237,7 +238,7 @@ proptest! {
             (0..).zip(&roads).map(|(ordinal, points)| world.road(ordinal, points)).collect();
         let lengths = world.lengths();
         let splitting =
-            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, node_bounds: world.data_bounds, clip: None, polygon: None };
+            RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, node_bounds: world.data_bounds, clip: None, polygon: None, spans: false };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
             for (id, piece) in splitting.split(road).pieces {
@@ -255,7 +256,7 @@ proptest! {
                 continue;
             }
             let (surface, owned) = (world.surface(id), world.owned(id));
-            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None }, &world.levels);
+            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None, spans: false }, &world.levels);
             let bounds = world.levels.frame().tile_lattice_bounds(id);
             let is_finest = id.z() == world.levels.frame().max_level();
             let found = OnTile {
@@ -296,6 +297,7 @@ impl Large {
             table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
             filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
             simplify_cells: 0.5,
+            spans: false,
         };
         let projection = FlatProjection::new([1e5; 2]);
         let bounds = frame.tile_bounds(TileId::ROOT);
@@ -337,6 +339,7 @@ impl Large {
             node_bounds,
             clip: None,
             polygon: None,
+            spans: false,
         }
         .split(&road)
     }

@@ -4,7 +4,7 @@ use corniche_areas::ClassedLayer;
 use corniche_tileset::{
     AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
     LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleErrorRecord,
-    ScaleRecord, VerticalRecord,
+    ScaleRecord, SpansRecord, VerticalRecord,
 };
 
 use super::sums::TileSums;
@@ -19,6 +19,7 @@ use crate::{
     manifest_texts,
     roads::{counts::road_counts, losses, totals::RoadTotals},
     settings_record,
+    spans::totals::SpanTotals,
 };
 
 /// Everything that goes into the manifest.
@@ -30,6 +31,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) areas: Option<AreaTotals>,
     /// In order of [`ClassedLayer::ALL`].
     pub(crate) lines: Vec<Option<LineTotals>>,
+    pub(crate) spans: Option<SpanTotals>,
     pub(crate) tiles: &'a TileSums,
 }
 
@@ -91,6 +93,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         photos: photos(outcome),
         areas: areas(outcome),
         boundaries: lines(outcome, ClassedLayer::Boundaries),
+        spans: spans(outcome),
     }
 }
 
@@ -183,6 +186,15 @@ fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
 
 fn lines(outcome: &Outcome<'_>, layer: ClassedLayer) -> Option<LinesRecord> {
     let counts = outcome.lines.get(layer as usize)?.as_ref()?.counts();
+    Some(LinesRecord { counts, levels: line_levels(outcome, SectionLayer::Lines(layer)) })
+}
+
+fn spans(outcome: &Outcome<'_>) -> Option<SpansRecord> {
+    let counts = outcome.spans.as_ref()?.counts();
+    Some(SpansRecord { counts, levels: line_levels(outcome, SectionLayer::Spans) })
+}
+
+fn line_levels(outcome: &Outcome<'_>, layer: SectionLayer) -> Vec<LineLevelRecord> {
     let level = |(level, SectionSums { tiles, parts, points, bytes })| LineLevelRecord {
         level,
         tiles,
@@ -190,8 +202,7 @@ fn lines(outcome: &Outcome<'_>, layer: ClassedLayer) -> Option<LinesRecord> {
         points,
         bytes,
     };
-    let levels = sections(outcome, SectionLayer::Lines(layer)).map(level).collect();
-    Some(LinesRecord { counts, levels })
+    sections(outcome, layer).map(level).collect()
 }
 
 /// The sums of a layer on the levels that have some of it.

@@ -9,7 +9,7 @@ use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
 use super::{
     hashes,
     manifest::{self, Outcome},
-    roads,
+    roads, spans,
     sums::TileSums,
     top,
 };
@@ -50,6 +50,7 @@ pub(crate) fn make(
     scratch: &dyn Scratch,
     target: &Target<'_>,
 ) -> Result<Manifest, BuildError> {
+    spans::make(context)?;
     let heights = match context.source {
         GroundSource::Dem(dem) => {
             let pyramid = context.pyramid_of(dem);
@@ -67,6 +68,10 @@ pub(crate) fn make(
                 return Err(BuildError::Missing { what: format!("the tile {id}"), step: "tiles" });
             }
             tiles.add(id.z(), &record);
+            if context.store.has(Kind::SpanSection.item(item)) {
+                let (_, own) = spans::added(context, id, payload(context, id)?)?;
+                tiles.add_spans(id.z(), own);
+            }
             fold.add(&record.fates)?;
         }
         context.observer.check()?;
@@ -88,6 +93,7 @@ pub(crate) fn make(
         lines: (ClassedLayer::ALL.iter())
             .map(|&layer| LayerTotals::get(SectionLayer::Lines(layer), context.store))
             .collect::<Result<_, _>>()?,
+        spans: artifacts::get(context.store, Kind::SpanTotals.item(0))?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {
@@ -138,6 +144,12 @@ fn check_levels(
     Ok(())
 }
 
+/// The payload of a tile that has one.
+fn payload(context: &Context<'_>, id: TileId) -> Result<Vec<u8>, BuildError> {
+    let key = Kind::Payload.of_tile(id);
+    context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))
+}
+
 /// Writes the package.
 fn write(
     context: &Context<'_>,
@@ -154,10 +166,8 @@ fn write(
         .map_err(failed)?;
     for item in payloads {
         context.observer.check()?;
-        let key = Kind::Payload.item(item);
-        let id = artifacts::tile_of(key)?;
-        let bytes = context.store.get(key)?;
-        let bytes = bytes.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
+        let id = artifacts::tile_of(Kind::Payload.item(item))?;
+        let (bytes, _) = spans::added(context, id, payload(context, id)?)?;
         writer.add(id, &bytes).map_err(failed)?;
         context.observer.advance(Stage::Package, 1);
     }

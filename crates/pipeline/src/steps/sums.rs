@@ -6,7 +6,7 @@ use corniche_tileset::{SampleSums, VerticalRecord};
 
 use crate::{
     context::Context,
-    layers::{ByLayer, SectionLayer, tile_section::SectionSums},
+    layers::{ByLayer, SectionLayer, tile_section::{SectionOfTile, SectionSums}},
     roads::lay::ClassSums,
     tile::record::{LevelShare, TileRecord},
 };
@@ -53,6 +53,11 @@ impl TileSums {
             samples: vec![SampleSums::new(quantum_m); context.levels.numbers().count()],
             least_measured_m: VerticalRecord::least_measured_error_m(quantum_m),
         }
+    }
+
+    /// Adds the spans of a tile.
+    pub(crate) fn add_spans(&mut self, level: u8, own: SectionOfTile) {
+        self.levels.entry(level).or_default().sections[SectionLayer::Spans].add(own);
     }
 
     /// Adds the tile of a level.

@@ -27,6 +27,7 @@ use crate::{
         pieces::TilePieces,
         shares::share,
     },
+    spans::ground_lines,
 };
 
 /// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
@@ -50,10 +51,12 @@ pub(crate) fn with_ground(
         let placement = Placement::of_tile(frame, id, levels.quantum_m());
         let surface = Surface::new(&meshed.tin, placement);
         let clip = context.clip();
-        let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip };
+        let spans = context.settings.roads.spans;
+        let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip, spans };
         Laid::of_tile(&pieces, &on, levels)
     };
     let fates = std::mem::take(&mut laid.fates);
+    ground_lines::put(&laid.ground_lines, context.store, id)?;
     let laid_classes = std::mem::take(&mut laid.classes);
     let (vertices, triangles) =
         (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);

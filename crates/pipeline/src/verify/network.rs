@@ -1,6 +1,6 @@
 //! The roads of a package's extract as a network, for who measures along them.
 
-use corniche_drape::{ClippedPart, OwnedBorders};
+use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_network::{Network, NetworkBuilder};
 use corniche_osm::{ExtractSummary, LayerSink, Layers, read_extract};
@@ -15,7 +15,7 @@ use crate::{
     BuildError, Observer, Stage,
     extract::placed_reading::PlacedReading,
     inputs::{Inputs, OtherInputs},
-    layers::fixed_points::point_of_line,
+    layers::fixed_points::road_of_part,
 };
 
 /// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice. Roads are cut
@@ -88,35 +88,12 @@ impl LayerSink<Road, ExtractSummary> for Found {
             self.roads.push(&road);
         } else {
             for part in corniche_drape::clip_parts(&road.line, &self.data, OwnedBorders::ALL) {
-                self.roads.push(&part_of_road(&road, part));
+                self.roads.push(&road_of_part(&road, part));
             }
         }
     }
 
     fn end(&mut self, _: ExtractSummary) {}
-}
-
-/// A part of a road. Its ends, where they are cuts, are no nodes.
-fn part_of_road(road: &Road, part: ClippedPart) -> Road {
-    let points = road.line.points();
-    let last = part.line.points().len() - 1;
-    let stop = |index: usize| {
-        let of_road = point_of_line(points, &part, index);
-        let fixed = of_road.and_then(|at| road.fixed.binary_search(&(at as u32)).ok());
-        let node_id = fixed.and_then(|at| road.node_ids.get(at).copied().flatten());
-        let is_kept = fixed.is_some() || index == 0 || index == last;
-        is_kept.then_some((index as u32, node_id))
-    };
-    let stops: Vec<(u32, Option<i64>)> = (0..=last).filter_map(stop).collect();
-    Road {
-        way_id: road.way_id,
-        class: road.class,
-        attributes: road.attributes.clone(),
-        fixed: stops.iter().map(|(index, _)| *index).collect(),
-        node_ids: stops.iter().map(|(_, node_id)| *node_id).collect(),
-        same_places: road.same_places.clone(),
-        line: part.line,
-    }
 }
 
 #[cfg(test)]

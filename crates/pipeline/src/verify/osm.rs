@@ -31,6 +31,7 @@ use crate::{
         totals::RoadTotals,
     },
     settings_record,
+    spans::{ground_lines, span_network::SpanInputs},
     true_lengths::TrueLengths,
     workers,
 };
@@ -101,7 +102,8 @@ fn compare_all(
     };
     let roads = partition(&input, store, &scratch, observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
-    let laying = Laying { package, levels: &levels, data: [first, last] };
+    let spans = settings.spans;
+    let laying = Laying { package, levels: &levels, data: [first, last], spans };
     let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
@@ -110,6 +112,17 @@ fn compare_all(
     }
     for layer in lines {
         osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
+    }
+    if settings.spans {
+        let data = input.node_bounds;
+        let inputs = SpanInputs {
+            osm: &paths,
+            store,
+            frame: &frame,
+            coordinates: &manifest.coordinates,
+            within: input.clip.map_or(data, |clip| clip.intersection(&data)),
+        };
+        osm_layers::compare_spans(package, inputs, request.threads, findings, observer)?;
     }
     if let Some(region) = &polygon {
         polygon_cut::verify(package, region, request.threads, findings, observer)?;
@@ -218,6 +231,7 @@ fn lay(
         |index, found: Found| {
             findings.merge(found.findings);
             fates.add(&found.fates)?;
+            ground_lines::put(&found.ground_lines, store, ids[index])?;
             for (class, found) in found.classes {
                 classes.entry((ids[index].z(), class)).or_default().merge(&found);
             }

@@ -4,8 +4,8 @@ use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_geom::TileId;
 use corniche_store::Artifacts;
 use corniche_tileset::{
-    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, decode_areas,
-    decode_lines,
+    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, Sections, SpanRun,
+    SpansSection, decode_areas, decode_lines, decode_spans,
 };
 
 use super::{
@@ -22,6 +22,7 @@ use crate::{
         tile_section::TileSection,
     },
     settings_record,
+    spans::{solving::SpanSolving, span_network::SpanInputs},
 };
 
 /// The table that the package's areas were made with, out of the one that is given; `None` if the package has no areas.
@@ -95,6 +96,39 @@ pub(crate) fn compare_lines(
     let recorded = package.manifest().lines(layer).map(|of| of.counts.clone());
     findings.look(checks.osm_counts, found == recorded, || {
         format!("{recorded:?} are recorded, {found:?} are in the extract")
+    });
+    Ok(())
+}
+
+/// Solves bridges and tunnels again on the ground of the package, and compares them with those of each tile.
+pub(crate) fn compare_spans(
+    package: &FilePackage,
+    of: SpanInputs<'_>,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = package.manifest();
+    let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
+    let tin = |id| {
+        let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
+        Ok(payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin))
+    };
+    let solving = SpanSolving { of, quantum_m, tin: &tin, threads, observer };
+    let counts = solving.solve()?.counts();
+    let how = HowCompared {
+        layer: SectionLayer::Spans,
+        check: CheckId::OsmSpans,
+        recorded: |payload: &[u8], id| decode_spans(payload, id, frame, quantum_m).ok(),
+        expected: |section, id| SpansSection::from_bytes(section).decode(id, frame).ok(),
+        name: |run: &SpanRun| {
+            format!("a run of way {} with {} points", run.way_id, run.points.len())
+        },
+    };
+    compare(package, of.store, threads, &how, findings, observer)?;
+    let recorded = manifest.spans.as_ref().map(|spans| &spans.counts);
+    findings.look(CheckId::OsmSpanCounts, recorded == Some(&counts), || {
+        format!("{recorded:?} are recorded, {counts:?} are in the extract")
     });
     Ok(())
 }

@@ -19,6 +19,7 @@ use crate::{
         lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
         pieces::TilePieces,
     },
+    spans::ground_lines::GroundLine,
 };
 
 /// What is needed to lay roads again.
@@ -27,6 +28,8 @@ pub(crate) struct Laying<'a> {
     pub(crate) levels: &'a Levels,
     /// First and last of the finest tiles of the data.
     pub(crate) data: [TileId; 2],
+    /// Whether the package has spans.
+    pub(crate) spans: bool,
 }
 
 /// What a worker found in a tile.
@@ -35,6 +38,8 @@ pub(crate) struct Found {
     pub(crate) fates: Vec<(u32, RoadFate)>,
     /// Sums by class, for a tile with ground.
     pub(crate) classes: BTreeMap<u8, ClassSums>,
+    /// The ground beneath bridges and tunnels.
+    pub(crate) ground_lines: Vec<GroundLine>,
 }
 
 pub(crate) fn look_at(
@@ -44,7 +49,7 @@ pub(crate) fn look_at(
     pieces: &TilePieces,
 ) -> Found {
     let mut found =
-        Found { findings: Findings::default(), fates: Vec::new(), classes: BTreeMap::new() };
+        Found { findings: Findings::default(), fates: Vec::new(), classes: BTreeMap::new(), ground_lines: Vec::new() };
     let manifest = laying.package.manifest();
     let frame = &manifest.frame;
     let payload = laying.package.payload(id, Sections::ALL).ok().flatten();
@@ -60,11 +65,13 @@ pub(crate) fn look_at(
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
     let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
-    let on = TileToLayOn { id, surface: &surface, owned, clip: clip_of(manifest) };
+    let (clip, spans) = (clip_of(manifest), laying.spans);
+    let on = TileToLayOn { id, surface: &surface, owned, clip, spans };
     let mut laid = Laid::of_tile(pieces, &on, laying.levels);
     laid.sort();
     compare(payload, &laid, &mut found.findings);
     (found.fates, found.classes) = (laid.fates, laid.classes);
+    found.ground_lines = laid.ground_lines;
     found
 }
 

@@ -182,6 +182,7 @@ pub(crate) fn settings(
                 table: table(),
                 filter: ClassFilter::usual(),
                 simplify_cells: 0.25,
+                spans: false,
             },
             photo: PhotoChoice::Off,
             areas: None,

@@ -74,6 +74,9 @@ pub struct Manifest {
     /// The boundaries; left out in packages made without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundaries: Option<LinesRecord>,
+    /// Bridges and tunnels off the ground; left out in packages made without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spans: Option<SpansRecord>,
 }
 
 /// The part of the elevation files that a package is of.
@@ -243,6 +246,9 @@ pub struct SettingsRecord {
     /// Whether there are boundaries (`--boundaries`); left out without any.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub boundaries: bool,
+    /// Whether bridges and tunnels leave the ground (`--structures spans`); left out without.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub spans: bool,
 }
 
 impl SettingsRecord {
@@ -366,6 +372,28 @@ pub struct InputRecord {
     pub bytes: u64,
     /// SHA-256 of as many bytes; empty for an elevation file outside the bounds of the package, of which no sample is used.
     pub sha256: String,
+}
+
+/// The bridges and tunnels of a package, whose heights are estimates.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SpansRecord {
+    /// What was found in the extract.
+    pub counts: SpanCounts,
+    /// The runs off the ground that tiles have, by level; levels without any are left out.
+    pub levels: Vec<LineLevelRecord>,
+}
+
+/// Bridges and tunnels, each with all ways that it connects.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SpanCounts {
+    /// Bridges.
+    pub bridges: u64,
+    /// Tunnels.
+    pub tunnels: u64,
+    /// Where they cross other roads or each other.
+    pub crossings: u64,
+    /// How often there is a reason to look at one.
+    pub reasons: Vec<(String, u64)>,
 }
 
 /// A layer of lines of a package.

@@ -1,0 +1,13 @@
+//! Bridges and tunnels above and below the ground: what is read of them, the ground beneath them, and the runs that tiles hold.
+//!
+//! ```text
+//!  pieces of roads ─► roads near spans ─► network ─► spans, crossings ─┐
+//!  tiles ─► ground beneath bridges and tunnels, by tile ──────────────┴─► decks of each level ─► runs by tile
+//! ```
+
+pub(crate) mod ground_lines;
+pub(crate) mod near_roads;
+pub(crate) mod runs;
+pub(crate) mod solving;
+pub(crate) mod span_network;
+pub(crate) mod totals;

@@ -1,0 +1,214 @@
+//! The roads of which bridges and tunnels are known: themselves, and the pieces of others that can carry, touch or cross them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_geom::{LatticePoint, Polyline};
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use corniche_spans::Vicinity;
+use corniche_store::Artifacts;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    BuildError,
+    artifacts::{self, Kind},
+    roads::pieces::{RoadPiece, TilePieces},
+};
+
+/// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
+const BLOCK_ROADS: usize = 4096;
+/// Tiles whose pieces are read side by side.
+const TILES_AT_ONCE: usize = 64;
+
+/// A piece of a road.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct NearRoad {
+    /// The number of its road.
+    pub(crate) ordinal: u32,
+    pub(crate) way_id: i64,
+    pub(crate) class: FunctionalRoadClass,
+    /// Which of [`Structure::ALL`] it is on.
+    structure: u8,
+    layer: i8,
+    highway: String,
+    /// How far along its road it begins, micrometres.
+    pub(crate) from_um: u64,
+    points: Vec<LatticePoint>,
+    /// The true lengths of its segments, micrometres.
+    pub(crate) segments_um: Vec<u64>,
+    /// Its nodes at which roads may join: which points they are, and their ids.
+    nodes: Vec<(u32, i64)>,
+}
+
+impl NearRoad {
+    /// The same as a road. Its ends stay, where they are nodes and where not.
+    pub(crate) fn road(&self) -> Option<Road> {
+        let last = self.points.len().checked_sub(1)? as u32;
+        let mut stops: BTreeMap<u32, Option<i64>> = BTreeMap::from([(0, None), (last, None)]);
+        stops.extend(self.nodes.iter().map(|&(index, node_id)| (index, Some(node_id))));
+        Some(Road {
+            way_id: self.way_id,
+            class: self.class,
+            attributes: RoadAttributes {
+                structure: *Structure::ALL.get(usize::from(self.structure))?,
+                layer: self.layer,
+                highway: self.highway.clone(),
+                ..RoadAttributes::default()
+            },
+            line: Polyline::new(self.points.clone()).ok()?,
+            fixed: stops.keys().copied().collect(),
+            node_ids: stops.values().copied().collect(),
+            same_places: Vec::new(),
+        })
+    }
+}
+
+/// A segment of a road, by where along the road it begins.
+struct Segment {
+    to_um: u64,
+    ends: [LatticePoint; 2],
+    nodes: [Option<i64>; 2],
+}
+
+/// What was found of a road.
+struct Found {
+    road: RoadPiece,
+    segments: BTreeMap<u64, Segment>,
+}
+
+/// Gathers the roads near all bridges and tunnels from the finest tiles with such, and keeps them. What lies within `reach` lattice steps of a
+/// node of theirs is near.
+pub(crate) fn keep(
+    tiles: &BTreeSet<u64>,
+    store: &dyn Artifacts,
+    reach: f64,
+    pool: &rayon::ThreadPool,
+) -> Result<(), BuildError> {
+    let tiles: Vec<u64> = tiles.iter().copied().collect();
+    let mut all: BTreeMap<u32, Found> = BTreeMap::new();
+    for some in tiles.chunks(TILES_AT_ONCE) {
+        let found: Result<Vec<_>, BuildError> =
+            pool.install(|| some.par_iter().map(|&tile| in_tile(tile, store, reach)).collect());
+        for (ordinal, own) in found?.into_iter().flatten() {
+            match all.get_mut(&ordinal) {
+                Some(known) => known.segments.extend(own.segments),
+                None => drop(all.insert(ordinal, own)),
+            }
+        }
+    }
+    let roads: Vec<NearRoad> =
+        all.into_iter().flat_map(|(ordinal, found)| joined(ordinal, &found)).collect();
+    let mut blocks = roads.chunks(BLOCK_ROADS);
+    for block in 0.. {
+        let own = blocks.next().unwrap_or_default();
+        artifacts::put(store, Kind::SpanRoads.item(block), &own)?;
+        if own.len() < BLOCK_ROADS {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// All roads near spans, in their order.
+pub(crate) fn load(store: &dyn Artifacts) -> Result<Vec<NearRoad>, BuildError> {
+    let mut all = Vec::new();
+    for block in 0.. {
+        let key = Kind::SpanRoads.item(block);
+        let own: Option<Vec<NearRoad>> = artifacts::get(store, key)?;
+        let own = own.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;
+        let is_last = own.len() < BLOCK_ROADS;
+        all.extend(own);
+        if is_last {
+            break;
+        }
+    }
+    Ok(all)
+}
+
+/// What a finest tile has of bridges, tunnels and roads near them.
+fn in_tile(
+    tile: u64,
+    store: &dyn Artifacts,
+    reach: f64,
+) -> Result<Vec<(u32, Found)>, BuildError> {
+    let id = artifacts::tile_of(Kind::RoadPieces.item(tile))?;
+    let pieces = TilePieces::load(store, id)?;
+    let all: Vec<(u32, Found)> =
+        pieces.roads.into_iter().map(|(ordinal, road)| (ordinal, Found::of(road))).collect();
+    let is_span = |found: &Found| found.road.attributes.structure != Structure::Ground;
+    let of_spans = || all.iter().filter(|(_, found)| is_span(found)).map(|(_, found)| found);
+    let segments = || of_spans().flat_map(|found| found.segments.values());
+    let nodes = segments().flat_map(|segment| {
+        let both = segment.ends.into_iter().zip(segment.nodes);
+        both.filter_map(|(at, node)| node.map(|_| at))
+    });
+    let near = Vicinity::new(segments().map(|segment| segment.ends), nodes, reach);
+    let mut kept = Vec::new();
+    for (ordinal, mut found) in all {
+        if !is_span(&found) {
+            found.segments.retain(|_, segment| near.may_meet(segment.ends));
+        }
+        if !found.segments.is_empty() {
+            kept.push((ordinal, found));
+        }
+    }
+    Ok(kept)
+}
+
+impl Found {
+    fn of(mut road: RoadPiece) -> Self {
+        let mut segments = BTreeMap::new();
+        for run in std::mem::take(&mut road.runs) {
+            let mut from_um = run.from_um;
+            let mut nodes = run.nodes.iter().peekable();
+            let mut node_at = |index: usize| {
+                while nodes.next_if(|(at, _)| (*at as usize) < index).is_some() {}
+                nodes.peek().filter(|(at, _)| *at as usize == index).map(|(_, id)| *id)
+            };
+            for (index, (&ends, &length_um)) in
+                run.line.points().array_windows().zip(&run.segments_um).enumerate()
+            {
+                let to_um = from_um + length_um;
+                let nodes = [node_at(index), node_at(index + 1)];
+                segments.insert(from_um, Segment { to_um, ends, nodes });
+                from_um = to_um;
+            }
+        }
+        Self { road, segments }
+    }
+}
+
+/// The pieces of a road that its segments make, those that follow each other together.
+fn joined(ordinal: u32, Found { road, segments }: &Found) -> Vec<NearRoad> {
+    let mut pieces: Vec<NearRoad> = Vec::new();
+    let mut before = None;
+    for (&from_um, segment) in segments {
+        let [from, to] = segment.ends;
+        if before != Some((from_um, from)) {
+            pieces.push(NearRoad {
+                ordinal,
+                way_id: road.way_id,
+                class: road.class,
+                structure: road.attributes.structure as u8,
+                layer: road.attributes.layer,
+                highway: road.attributes.highway.clone(),
+                from_um,
+                points: vec![from],
+                segments_um: Vec::new(),
+                nodes: segment.nodes[0].map(|id| (0, id)).into_iter().collect(),
+            });
+        }
+        if let Some(piece) = pieces.last_mut() {
+            let index = piece.points.len() as u32;
+            piece.nodes.extend(segment.nodes[1].map(|id| (index, id)));
+            piece.points.push(to);
+            piece.segments_um.push(segment.to_um - from_um);
+        }
+        before = Some((segment.to_um, to));
+    }
+    pieces
+}
+
+#[cfg(test)]
+#[path = "near_roads_tests.rs"]
+mod tests;

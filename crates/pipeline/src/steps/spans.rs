@@ -1,0 +1,84 @@
+//! What a merge does first: the heights of bridges and tunnels on each level, and their runs by tile.
+
+use corniche_geom::TileId;
+use corniche_tin::Tin;
+
+use crate::{
+    BuildError, Defect,
+    artifacts::{self, Kind},
+    context::Context,
+    layers::{
+        SectionLayer,
+        tile_section::{SectionOfTile, TileSection},
+    },
+    spans::{solving::SpanSolving, span_network::SpanInputs},
+    terrain::ground::GroundSource,
+    tile::mesh::Meshed,
+};
+
+/// Whether the package of a build has spans.
+pub(crate) fn are_wanted(context: &Context<'_>) -> bool {
+    context.settings.roads.spans && !context.settings.osm.is_empty()
+}
+
+/// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
+/// to be known of them.
+pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
+    if !are_wanted(context) {
+        return Ok(());
+    }
+    let key = Kind::SpanTotals.item(0);
+    let totals = match artifacts::get(context.store, key)? {
+        Some(totals) => totals,
+        None => {
+            let data = context.node_bounds();
+            let inputs = SpanInputs {
+                osm: &context.settings.osm,
+                store: context.store,
+                frame: context.frame(),
+                coordinates: context.coordinates,
+                within: context.clip().map_or(data, |clip| clip.intersection(&data)),
+            };
+            let solving = SpanSolving {
+                of: inputs,
+                quantum_m: context.levels.quantum_m(),
+                tin: &|id| tin_of(context, id),
+                threads: context.threads(),
+                observer: context.observer,
+            };
+            let totals = solving.solve()?;
+            artifacts::put(context.store, key, &totals)?;
+            totals
+        }
+    };
+    for (reason, way_id) in totals.problems {
+        context.observer.defect(&Defect::Span { way_id, reason });
+    }
+    Ok(())
+}
+
+/// The TIN of a coarse tile; `None` where it has no ground.
+fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, BuildError> {
+    match context.source {
+        GroundSource::Dem(_) if context.store.has(Kind::Tin.of_tile(id)) => {
+            Ok(Meshed::get(context.store, id)?.map(|meshed| meshed.tin))
+        }
+        GroundSource::Dem(_) => Ok(None),
+        GroundSource::Package(terrain) => Ok(terrain.ground(id)?.map(|(_, ground)| ground.tin)),
+    }
+}
+
+/// The payload of a tile with its section of spans, and what that takes.
+pub(crate) fn added(
+    context: &Context<'_>,
+    id: TileId,
+    payload: Vec<u8>,
+) -> Result<(Vec<u8>, SectionOfTile), BuildError> {
+    let Some(TileSection { section, parts, points }) =
+        TileSection::get(SectionLayer::Spans, context.store, id)?
+    else {
+        return Ok((payload, SectionOfTile::default()));
+    };
+    let (bytes, size) = SectionLayer::Spans.add_to(&payload, id, section)?;
+    Ok((bytes, SectionOfTile { parts, points, bytes: size.stored }))
+}

@@ -1,0 +1,252 @@
+//! The bridges and tunnels of all tiles: where they end, on which side of the ground they are, and what neighbours have of them.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+};
+
+use corniche_geom::{LatticeBounds, LatticePoint, TileId};
+use corniche_roads::Structure;
+use corniche_tileset::{
+    FilePackage, GeoRoad, LineLevelRecord, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload,
+    decode, decode_spans, payload_sizes,
+};
+use corniche_tin::{Placement, Surface, Tin};
+
+use super::{
+    checks::{CheckId, Findings},
+    error::VerifyError,
+    layer_sums::{Counts, OfTile, look_at_layer},
+    tile_place::TilePlace,
+    triangle_soup::TriangleSoup,
+};
+use crate::Observer;
+
+/// A bridge may be below the ground by this, and a tunnel above it: points are put on a lattice of a millimetre.
+const SIDE_M: f64 = 0.01;
+/// Places on the lattice are the same within so many steps.
+const NEAR_STEPS: f64 = 2.0;
+
+/// An end of a way's line on the border of a tile: its level, way and place.
+type BorderEnd = (u8, i64, LatticePoint);
+/// What a tile has there: the height of a run in steps, `None` on the ground.
+type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
+
+pub(crate) fn verify(
+    package: &FilePackage,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = package.manifest();
+    let record = manifest.spans.as_ref();
+    let is_wanted = manifest.settings.spans && manifest.counts.roads_in > 0;
+    findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
+        "spans are counted and were not asked for, or the other way round".to_owned()
+    });
+    let Some(record) = record else { return Ok(()) };
+    let level = |&LineLevelRecord { level, tiles, parts, points, bytes }: &LineLevelRecord| {
+        (level, Counts { tiles, parts, points, bytes })
+    };
+    let recorded = (CheckId::SpanSums, record.levels.iter().map(level).collect());
+    let ends: Mutex<EndsByPlace> = Mutex::default();
+    let look_at = |id| look_at(package, id, &ends);
+    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
+    for ((level, way_id, at), of_tiles) in ends {
+        let [(first, height), others @ ..] = &of_tiles[..] else { continue };
+        let agree = others.iter().all(|(_, other)| other == height);
+        findings.look(CheckId::SpanSeams, agree, || {
+            format!("way {way_id} at {at:?} of level {level}: {height:?} steps in tile {first}, {others:?} beside it")
+        });
+    }
+    Ok(())
+}
+
+fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTile {
+    let mut found = OfTile::default();
+    // Tiles that cannot be read are told elsewhere.
+    let Some(bytes) = package.tile(id).ok().flatten() else { return found };
+    let manifest = package.manifest();
+    let quantum_m = manifest.vertical.quantum_m;
+    let Ok(runs) = decode_spans(&bytes, id, &manifest.frame, quantum_m) else { return found };
+    let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO).and(Sections::ATTRIBUTES);
+    let Ok(payload) = decode(&bytes, id, &manifest.frame, quantum_m, wanted) else { return found };
+    let Some(terrain) = &payload.terrain else { return found };
+    let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
+    let surface = Surface::new(&terrain.tin, placement);
+    let lines = lines_of_structures(&payload, &surface);
+    let bounds = manifest.frame.tile_lattice_bounds(id);
+    put_ends((id, &bounds), &lines, &runs, ends);
+    if runs.is_empty() {
+        return found;
+    }
+    let place = TilePlace::of(&manifest.frame, id);
+    let ground = TriangleSoup::placed(&terrain.tin, quantum_m, place.steps);
+    for run in &runs {
+        let own = lines.iter().filter(|line| line.way_id == run.way_id);
+        let own: Vec<&Line> = own.filter(|line| line.structure == run.structure).collect();
+        let tile = Tile { id, place, ground: &ground, tin: &terrain.tin, quantum_m };
+        tile.look_at_ends(run, &own, &mut found.findings);
+        tile.look_at_side(run, &own, &mut found.findings);
+    }
+    let points = runs.iter().map(|run| run.points.len() as u64).sum();
+    let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
+    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
+    found
+}
+
+/// A GEO line of a bridge or a tunnel: its places in lattice steps, with heights.
+struct Line {
+    way_id: i64,
+    structure: Structure,
+    vertices: Vec<[f64; 3]>,
+}
+
+impl Line {
+    /// Its first and its last place.
+    fn ends(&self) -> [[f64; 2]; 2] {
+        [self.vertices.first(), self.vertices.last()]
+            .map(|end| end.map_or([f64::NAN; 2], |&[u, v, _]| [u, v]))
+    }
+}
+
+fn lines_of_structures(payload: &TilePayload, surface: &Surface) -> Vec<Line> {
+    let structures: BTreeMap<i64, Structure> = payload
+        .attributes
+        .iter()
+        .map(|record| (record.way_id, record.attributes.structure))
+        .filter(|(_, structure)| *structure != Structure::Ground)
+        .collect();
+    let line = |road: &GeoRoad| {
+        let structure = *structures.get(&road.way_id)?;
+        let vertices = corniche_drape::positions(&road.line, surface).ok()?;
+        Some(Line { way_id: road.way_id, structure, vertices })
+    };
+    payload.roads_geo.iter().filter_map(line).collect()
+}
+
+/// Adds what a tile has on its border: ends of lines, and the heights of runs that end there.
+fn put_ends(
+    (id, bounds): (TileId, &LatticeBounds),
+    lines: &[Line],
+    runs: &[SpanRun],
+    all: &Mutex<EndsByPlace>,
+) {
+    let mut own: BTreeMap<BorderEnd, Option<i64>> = BTreeMap::new();
+    let is_on_border = |at: &LatticePoint| {
+        at.u == bounds.min.u || at.u == bounds.max.u || at.v == bounds.min.v || at.v == bounds.max.v
+    };
+    for line in lines {
+        for [u, v] in line.ends() {
+            let at = LatticePoint::new(u.round() as i64, v.round() as i64);
+            if is_on_border(&at) {
+                own.entry((id.z(), line.way_id, at)).or_default();
+            }
+        }
+    }
+    for run in runs {
+        for end in [run.points.first(), run.points.last()].into_iter().flatten() {
+            if let (SpanHeight::Steps(steps), true) = (end.height, is_on_border(&end.at)) {
+                own.insert((id.z(), run.way_id, end.at), Some(steps));
+            }
+        }
+    }
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    for (place, height) in own {
+        all.entry(place).or_default().push((id, height));
+    }
+}
+
+/// The ground of a tile.
+struct Tile<'a> {
+    id: TileId,
+    place: TilePlace,
+    ground: &'a TriangleSoup,
+    tin: &'a Tin,
+    quantum_m: f64,
+}
+
+impl Tile<'_> {
+    /// A run ends on the ground of its way, in the triangle that it names, or where the line of its way ends.
+    fn look_at_ends(&self, run: &SpanRun, lines: &[&Line], findings: &mut Findings) {
+        for end in [run.points.first(), run.points.last()].into_iter().flatten() {
+            let [u, v] = end.at.in_steps();
+            let is_near =
+                |[a, b]: [f64; 2]| (a - u).abs() <= NEAR_STEPS && (b - v).abs() <= NEAR_STEPS;
+            let holds = match end.height {
+                SpanHeight::Ground { triangle } => {
+                    let is_on_line = lines.iter().any(|line| {
+                        let mut pairs = line.vertices.array_windows();
+                        pairs.any(|&[from, to]| share_of([from, to], [u, v]).is_some())
+                    });
+                    is_on_line && self.holds(triangle, end.at)
+                }
+                SpanHeight::Steps(_) => lines.iter().any(|line| line.ends().into_iter().any(is_near)),
+            };
+            findings.look(CheckId::SpanEnds, holds, || {
+                format!("a run of way {} in tile {} ends at {:?}", run.way_id, self.id, end.at)
+            });
+        }
+    }
+
+    /// Whether a triangle of the tile holds a point.
+    fn holds(&self, triangle: u32, at: LatticePoint) -> bool {
+        let Some(corners) = self.tin.triangles().get(triangle as usize) else { return false };
+        let [column, row] = self.place.cells(self.place.local(at));
+        let corners = corners.map(|index| {
+            let vertex = self.tin.vertices()[index as usize];
+            [f64::from(vertex.column), f64::from(vertex.row)]
+        });
+        let twice = |a: [f64; 2], b: [f64; 2]| {
+            (b[0] - a[0]) * (row - a[1]) - (b[1] - a[1]) * (column - a[0])
+        };
+        let sides = [0, 1, 2].map(|k| twice(corners[k], corners[(k + 1) % 3]));
+        // A step of the lattice is far less than a thousandth of a cell, and sides are at most 256 cells long.
+        let limit = 256.0 / 1000.0;
+        sides.iter().all(|&side| side <= limit) || sides.iter().all(|&side| side >= -limit)
+    }
+
+    /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
+    fn look_at_side(&self, run: &SpanRun, lines: &[&Line], findings: &mut Findings) {
+        let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
+        let height_m = |point: &SpanPoint| match point.height {
+            SpanHeight::Steps(steps) => Some(steps as f64 * self.quantum_m),
+            SpanHeight::Ground { .. } => self.ground_m(point.at.in_steps()),
+        };
+        let mut lowest_m = f64::INFINITY;
+        for [from, to] in run.points.array_windows() {
+            let (Some(from_m), Some(to_m)) = (height_m(from), height_m(to)) else { continue };
+            let [a, b] = [from.at.in_steps(), to.at.in_steps()];
+            let ends = [[a[0], a[1], from_m], [b[0], b[1], to_m]];
+            let inner = lines.iter().flat_map(|line| &line.vertices);
+            let inner = inner.filter_map(|&[u, v, ground_m]| {
+                let share = share_of(ends, [u, v])?;
+                Some(away * (from_m + share * (to_m - from_m) - ground_m))
+            });
+            lowest_m = inner.fold(lowest_m, f64::min);
+            for (point, own_m) in [(a, from_m), (b, to_m)] {
+                if let Some(ground_m) = self.ground_m(point) {
+                    lowest_m = lowest_m.min(away * (own_m - ground_m));
+                }
+            }
+        }
+        findings.look(CheckId::SpanSide, lowest_m >= -SIDE_M, || {
+            format!("a run of way {} in tile {} is {:.3} m on the wrong side of the ground", run.way_id, self.id, -lowest_m)
+        });
+    }
+
+    fn ground_m(&self, at: [f64; 2]) -> Option<f64> {
+        self.ground.height_m(self.place.cells(self.place.local_of(at)))
+    }
+}
+
+/// Where a place lies on a straight line in plan, as a share of it; `None` where it is not on it.
+fn share_of([[au, av, _], [bu, bv, _]]: [[f64; 3]; 2], [u, v]: [f64; 2]) -> Option<f64> {
+    let [du, dv] = [bu - au, bv - av];
+    let length = du.hypot(dv);
+    let along = ((u - au) * du + (v - av) * dv) / length;
+    let across = ((u - au) * dv - (v - av) * du) / length;
+    let is_on = across.abs() <= NEAR_STEPS && along >= -NEAR_STEPS && along <= length + NEAR_STEPS;
+    is_on.then_some((along / length).clamp(0.0, 1.0))
+}
