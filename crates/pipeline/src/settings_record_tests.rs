@@ -20,7 +20,12 @@ fn settings() -> Settings {
     };
     (
         terrain,
-        RoadSettings { table: table("one"), filter: ClassFilter::usual(), simplify_cells: 0.25, spans: false },
+        RoadSettings {
+            table: table("one"),
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+            spans: false,
+        },
     )
 }
 

@@ -104,6 +104,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
             photo: None,
             areas: None,
             boundaries: false,
+            spans: false,
         },
         settings_sha256: String::new(),
         inputs: vec![],
@@ -113,6 +114,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         photos: Vec::new(),
         areas: None,
         boundaries: None,
+        spans: None,
     }
 }
 

@@ -10,7 +10,7 @@ pub(crate) mod check;
 
 pub use contents::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
+    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, SpanCounts, SpansRecord,
     Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord,
     VerticalRecord,
 };

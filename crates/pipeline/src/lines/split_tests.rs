@@ -13,7 +13,8 @@ use crate::RoadSettings;
 fn levels() -> Levels {
     let frame = GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
     let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
-    let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
+    let settings =
+        RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
     Levels::new(frame, 1.0, &settings, 1.0)
 }
 
@@ -92,7 +93,8 @@ fn junctions_stay_and_coarse_levels_have_fewer_points() {
 fn small_units_are_stored_where_cells_are_small() {
     let frame = GridFrame::new([0.0, 0.0], 60.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
     let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
-    let settings = RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
+    let settings =
+        RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
     let levels = Levels::new(frame, 1.0, &settings, 1.0);
     let splitting = splitting(&levels);
     let shown = |class: BoundaryClass| -> Vec<u8> {

@@ -101,7 +101,12 @@ fn some_tiles_tell_how_the_ground_is() {
             max_error_m: Some(2.5),
             ..TerrainSettings::default()
         },
-        roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25, spans: false },
+        roads: RoadSettings {
+            table,
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+            spans: false,
+        },
         photo: PhotoChoice::Off,
         areas: None,
         attribution: Vec::new(),

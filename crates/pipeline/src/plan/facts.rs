@@ -133,6 +133,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         photo,
         areas,
         boundaries,
+        spans,
     } = record;
     let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
         Some(cell_m) => format!("{class}: {cell_m}"),
@@ -170,6 +171,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
             ),
         ),
         fact("class-max-cell (--all-classes)", &list(classes)),
+        fact("--structures", &if *spans { "spans" } else { "ground" }),
         fact("--simplify", simplify_cells),
         fact("--photo-levels", &given(photo.map(|photo| photo.levels).as_ref())),
         fact("--photo-quality", &given(photo.map(|photo| photo.quality).as_ref())),

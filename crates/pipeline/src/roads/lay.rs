@@ -172,7 +172,12 @@ impl Laid {
                 if is_span {
                     let mut after = 0;
                     let own = draped.lines.iter().filter_map(|line| {
-                        ground_lines::line_of((ordinal, road), (run, &part), (line, surface), &mut after)
+                        ground_lines::line_of(
+                            (ordinal, road),
+                            (run, &part),
+                            (line, surface),
+                            &mut after,
+                        )
                     });
                     self.ground_lines.extend(own);
                 }

@@ -126,11 +126,7 @@ pub(crate) fn load(store: &dyn Artifacts) -> Result<Vec<NearRoad>, BuildError> {
 }
 
 /// What a finest tile has of bridges, tunnels and roads near them.
-fn in_tile(
-    tile: u64,
-    store: &dyn Artifacts,
-    reach: f64,
-) -> Result<Vec<(u32, Found)>, BuildError> {
+fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Found)>, BuildError> {
     let id = artifacts::tile_of(Kind::RoadPieces.item(tile))?;
     let pieces = TilePieces::load(store, id)?;
     let all: Vec<(u32, Found)> =

@@ -79,10 +79,9 @@ pub(crate) fn runs_of(
         let [from, to] = [first.saturating_sub(1), (first + off + 1).min(stations.len())];
         let own = &stations[from..to];
         let is_needed = |index: usize| {
-            let is_beside_ground =
-                [index.wrapping_sub(1), index + 1].iter().any(|&beside| {
-                    own.get(beside).is_none_or(|station| station.deck_m.is_none())
-                });
+            let is_beside_ground = [index.wrapping_sub(1), index + 1]
+                .iter()
+                .any(|&beside| own.get(beside).is_none_or(|station| station.deck_m.is_none()));
             is_beside_ground || own[index].ground.is_none_or(|vertex| vertex.is_source)
         };
         let point = |station: &Station| {
@@ -92,8 +91,10 @@ pub(crate) fn runs_of(
             };
             SpanPoint { at: station.at, height }
         };
-        let points: Vec<SpanPoint> =
-            (0..own.len()).filter(|&index| is_needed(index)).map(|index| point(&own[index])).collect();
+        let points: Vec<SpanPoint> = (0..own.len())
+            .filter(|&index| is_needed(index))
+            .map(|index| point(&own[index]))
+            .collect();
         if points.len() >= 2 {
             runs.push(SpanRun { way_id: line.way_id, class: line.class, structure, points });
         }

@@ -5,15 +5,11 @@ use std::path::PathBuf;
 use corniche_drape::OwnedBorders;
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticePoint, wgs84};
 use corniche_network::{Breaks, ChainNumber, Chains, Network, NetworkBuilder};
-use corniche_store::Artifacts;
 use corniche_spans::{Crossing, Decks, Distance, SpanKind, Spans, crossings};
+use corniche_store::Artifacts;
 
 use super::near_roads::{self, NearRoad};
-use crate::{
-    BuildError,
-    layers::fixed_points::road_of_part,
-    true_lengths::pieces_um,
-};
+use crate::{BuildError, layers::fixed_points::road_of_part, true_lengths::pieces_um};
 
 /// Where bridges and tunnels are found.
 #[derive(Clone, Copy)]
@@ -65,10 +61,8 @@ impl SpanNetwork {
         let degrees = |at| table.wgs84_from_working(frame.position_of_fraction_m(at));
         let distance_m = |from, to| wgs84::short_distance_m(degrees(from), degrees(to));
         let spans = Spans::find(&network, &chains, &distance_m);
-        let crossings =
-            crossings(&network, &chains, &distance_m).map_err(|_| BuildError::ManyCrossings {
-                osm: inputs.osm.to_vec(),
-            })?;
+        let crossings = crossings(&network, &chains, &distance_m)
+            .map_err(|_| BuildError::ManyCrossings { osm: inputs.osm.to_vec() })?;
         let on_chains_m = links_on_chains(&network, &chains, &distance_m);
         let mut stretches = Vec::new();
         for (way, place) in network.ways().iter().zip(&places) {
@@ -105,11 +99,15 @@ impl SpanNetwork {
     }
 
     /// Where bends of a deck between two places of a road lie along it, ascending; both are on one stretch.
-    pub(crate) fn bends(&self, decks: &Decks, ordinal: u32, [from_um, to_um]: [u64; 2]) -> Vec<u64> {
+    pub(crate) fn bends(
+        &self,
+        decks: &Decks,
+        ordinal: u32,
+        [from_um, to_um]: [u64; 2],
+    ) -> Vec<u64> {
         let mut bends = Vec::new();
-        let first = self
-            .stretches
-            .partition_point(|own| (own.ordinal, own.to_um) <= (ordinal, from_um));
+        let first =
+            self.stretches.partition_point(|own| (own.ordinal, own.to_um) <= (ordinal, from_um));
         let own = self.stretches[first..]
             .iter()
             .take_while(|own| own.ordinal == ordinal && own.from_um < to_um);
@@ -221,11 +219,7 @@ fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<Place>) {
 }
 
 /// Where each link begins and ends along its chain, metres, by [`Chains::place_of`].
-fn links_on_chains(
-    network: &Network,
-    chains: &Chains,
-    distance_m: &Distance<'_>,
-) -> Vec<[f64; 2]> {
+fn links_on_chains(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Vec<[f64; 2]> {
     let mut all = Vec::with_capacity(chains.link_count());
     for chain in chains.numbers() {
         let mut along_m = 0.0;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use corniche_areas::ClassedLayer;
+use corniche_geom::TileId;
 use corniche_store::{OpenMode, Scratch, open_own};
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
 

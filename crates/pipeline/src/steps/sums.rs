@@ -6,7 +6,10 @@ use corniche_tileset::{SampleSums, VerticalRecord};
 
 use crate::{
     context::Context,
-    layers::{ByLayer, SectionLayer, tile_section::{SectionOfTile, SectionSums}},
+    layers::{
+        ByLayer, SectionLayer,
+        tile_section::{SectionOfTile, SectionSums},
+    },
     roads::lay::ClassSums,
     tile::record::{LevelShare, TileRecord},
 };

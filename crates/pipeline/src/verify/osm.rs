@@ -110,7 +110,7 @@ fn compare_all(
     if area_table.is_some() {
         osm_layers::compare_areas(package, store, request.threads, findings, observer)?;
     }
-    for layer in lines {
+    for &layer in &lines {
         osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
     }
     if settings.spans {

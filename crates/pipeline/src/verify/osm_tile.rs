@@ -48,8 +48,12 @@ pub(crate) fn look_at(
     id: TileId,
     pieces: &TilePieces,
 ) -> Found {
-    let mut found =
-        Found { findings: Findings::default(), fates: Vec::new(), classes: BTreeMap::new(), ground_lines: Vec::new() };
+    let mut found = Found {
+        findings: Findings::default(),
+        fates: Vec::new(),
+        classes: BTreeMap::new(),
+        ground_lines: Vec::new(),
+    };
     let manifest = laying.package.manifest();
     let frame = &manifest.frame;
     let payload = laying.package.payload(id, Sections::ALL).ok().flatten();

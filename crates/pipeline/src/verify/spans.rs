@@ -182,7 +182,9 @@ impl Tile<'_> {
                     });
                     is_on_line && self.holds(triangle, end.at)
                 }
-                SpanHeight::Steps(_) => lines.iter().any(|line| line.ends().into_iter().any(is_near)),
+                SpanHeight::Steps(_) => {
+                    lines.iter().any(|line| line.ends().into_iter().any(is_near))
+                }
             };
             findings.look(CheckId::SpanEnds, holds, || {
                 format!("a run of way {} in tile {} ends at {:?}", run.way_id, self.id, end.at)
@@ -232,7 +234,10 @@ impl Tile<'_> {
             }
         }
         findings.look(CheckId::SpanSide, lowest_m >= -SIDE_M, || {
-            format!("a run of way {} in tile {} is {:.3} m on the wrong side of the ground", run.way_id, self.id, -lowest_m)
+            format!(
+                "a run of way {} in tile {} is {:.3} m on the wrong side of the ground",
+                run.way_id, self.id, -lowest_m
+            )
         });
     }
 

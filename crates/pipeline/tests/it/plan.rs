@@ -24,7 +24,12 @@ fn settings() -> PlanSettings {
             plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
             ..TerrainSettings::default()
         },
-        roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25, spans: false },
+        roads: RoadSettings {
+            table,
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+            spans: false,
+        },
         photo: PhotoChoice::Off,
         areas: None,
         attribution: vec!["a credit".to_owned()],

@@ -66,7 +66,12 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
         terrain_of: None,
         osm: Vec::new(),
         terrain: TerrainSettings::default(),
-        roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25, spans: false },
+        roads: RoadSettings {
+            table,
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+            spans: false,
+        },
         photo: PhotoChoice::Off,
         areas: None,
         attribution: Vec::new(),
