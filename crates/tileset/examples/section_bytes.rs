@@ -23,7 +23,7 @@ const PHOTO_PARTS: [&str; 3] = ["coverage", "heads and tables", "coded blocks"];
 /// Bytes of a package.
 #[derive(Default)]
 struct Sums {
-    sections: [u64; 9],
+    sections: [u64; 10],
     relief: [u64; RELIEF_PARTS.len()],
     areas: [u64; AREA_PARTS.len()],
     photo: [u64; PHOTO_PARTS.len()],
@@ -58,6 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "photo",
             "areas",
             "boundaries",
+            "spans",
         ];
         table("sections", &names, &sums.sections, whole);
         table("relief", &RELIEF_PARTS, &sums.relief, whole);
@@ -67,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn stored(sizes: &PayloadSizes) -> [u64; 9] {
+fn stored(sizes: &PayloadSizes) -> [u64; 10] {
     [
         sizes.terrain,
         sizes.roads_geo,
@@ -78,6 +79,7 @@ fn stored(sizes: &PayloadSizes) -> [u64; 9] {
         sizes.photo,
         sizes.areas,
         sizes.lines[ClassedLayer::Boundaries as usize],
+        sizes.spans,
     ]
     .map(|size| size.stored)
 }

@@ -50,13 +50,14 @@ pub use package::{
 pub use package::{WriteError, Writer};
 pub use payload::{
     AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, LineRecord, PHOTO_BORDER,
-    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
-    TerrainSummary, TilePayload, decode, decode_areas, decode_lines, decode_photo, payload_sizes,
-    terrain_summary,
+    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight, SpanPoint, SpanRun,
+    SvRoad, Terrain, TerrainSummary, TilePayload, decode, decode_areas, decode_lines, decode_photo,
+    decode_spans, payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, area_part_sizes, encode,
-    encode_areas, encode_lines, encode_photo, encode_with_ground_of, photo_section,
-    terrain_part_sizes, with_areas, with_lines, with_photo,
+    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, SpansSection,
+    area_part_sizes, encode, encode_areas, encode_lines, encode_photo, encode_spans,
+    encode_with_ground_of, photo_section, terrain_part_sizes, with_areas, with_lines, with_photo,
+    with_spans,
 };

@@ -20,6 +20,7 @@ mod relief;
 mod road_tags;
 mod roads_geo;
 mod roads_sv;
+mod spans;
 mod terrain;
 
 mod class_table;
@@ -54,6 +55,9 @@ pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
 pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
+pub use spans::{SpanHeight, SpanPoint, SpanRun, decode_spans};
+#[cfg(feature = "write")]
+pub use spans::{SpansSection, encode_spans, with_spans};
 pub use summary::terrain_summary;
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TerrainSummary, TilePayload};
 

@@ -116,6 +116,11 @@ impl Heads {
         heads.iter().try_for_each(|head| order.check(head))?;
         Ok(Self { heads, points })
     }
+
+    /// How many points each line has.
+    pub(crate) fn point_counts(&self) -> impl ExactSizeIterator<Item = usize> + Clone {
+        self.heads.iter().map(|head| head.points)
+    }
 }
 
 #[cfg(feature = "write")]

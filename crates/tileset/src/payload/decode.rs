@@ -9,7 +9,9 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
 use crate::payload::section_kind::{GEO, Kind, SV, Sections, TwoKinds};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
-use crate::payload::{areas, attributes, envelope, lines, road_tags, roads_geo, roads_sv, terrain};
+use crate::payload::{
+    areas, attributes, envelope, lines, road_tags, roads_geo, roads_sv, spans, terrain,
+};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
@@ -51,7 +53,9 @@ pub fn decode(
         Ok(found.map(|(bytes, is_coded)| (bytes, is_coded.then_some(frame))))
     };
     let roads_geo = read_roads(GEO, Sections::ROADS_GEO)?;
-    let needs_terrain = wanted.contains(Sections::TERRAIN) || roads_geo.is_some();
+    let spans = read(Kind::Spans, Sections::SPANS)?;
+    let needs_terrain =
+        wanted.contains(Sections::TERRAIN) || roads_geo.is_some() || spans.is_some();
     let ground = if needs_terrain {
         let bytes = envelope::section(&sections, Kind::Terrain).map_err(inside(Kind::Terrain))?;
         bytes
@@ -61,6 +65,11 @@ pub fn decode(
     } else {
         None
     };
+    if let Some(bytes) = spans {
+        let ground = ground.as_ref().ok_or(spans::WITHOUT_GROUND).map_err(inside(Kind::Spans))?;
+        let triangles = ground.tin.triangles().len();
+        spans::decode(&bytes, context.corner, triangles).map_err(inside(Kind::Spans))?;
+    }
     let relief = read(Kind::Relief, Sections::RELIEF)?
         .map(|bytes| Relief::decode(&bytes))
         .transpose()

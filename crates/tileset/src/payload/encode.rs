@@ -172,6 +172,7 @@ fn encode_sections(
         photo: SectionSize::default(),
         areas: SectionSize::default(),
         lines: [SectionSize::default(); ClassedLayer::ALL.len()],
+        spans: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,
     };

@@ -3,7 +3,6 @@
 use corniche_geom::LatticePoint;
 use corniche_varints::zigzag;
 
-use crate::payload::class_table::Heads;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
@@ -17,24 +16,24 @@ pub(crate) fn is_near(point: LatticePoint, corner: LatticePoint) -> bool {
     point.u.abs_diff(corner.u).max(point.v.abs_diff(corner.v)) <= REACH_STEPS
 }
 
-/// The points of all lines of a class, the first relative to `corner`. Neighbours in a line differ.
+/// The points of lines that have so many each, the first relative to `corner`. Neighbours in a line differ. The caller bounds the numbers.
 pub(crate) fn decode_points(
     cursor: &mut Cursor<'_>,
-    heads: &Heads,
+    lines: impl ExactSizeIterator<Item = usize> + Clone,
     corner: LatticePoint,
 ) -> Result<Vec<LatticePoint>, Damage> {
     const STILL: Damage = Damage::Invalid { what: "a segment without length" };
-    let count = heads.points;
+    let count = lines.clone().sum();
     let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
     // Every point except a line's first takes at least one byte, so the number of points is bounded by the bytes.
-    if count > heads.heads.len() && east.is_absent() && north.is_absent() {
+    if count > lines.len() && east.is_absent() && north.is_absent() {
         return Err(STILL);
     }
     let mut at = corner;
     let mut points = Vec::with_capacity(count);
     let mut steps = east.iter().zip(north.iter());
-    for head in &heads.heads {
-        for (number, (du, dv)) in steps.by_ref().take(head.points).enumerate() {
+    for points_of_line in lines {
+        for (number, (du, dv)) in steps.by_ref().take(points_of_line).enumerate() {
             if number > 0 && du == 0 && dv == 0 {
                 return Err(STILL);
             }

@@ -69,7 +69,7 @@ impl Section<'_> {
     ) -> Result<(), Damage> {
         let mut blob = Cursor::new(blob);
         let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
-        let points = decode_points(&mut blob, &heads, corner)?;
+        let points = decode_points(&mut blob, heads.point_counts(), corner)?;
         let mut points = points.as_slice();
         for head in &heads.heads {
             let (of_line, rest) = points.split_at_checked(head.points).ok_or(Damage::TooShort)?;

@@ -61,7 +61,7 @@ impl Section {
         let mut blob = Cursor::new(blob);
         let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
         heads.heads.iter().try_for_each(check_head)?;
-        let points = decode_points(&mut blob, &heads, corner)?;
+        let points = decode_points(&mut blob, heads.point_counts(), corner)?;
         let segments = heads.points - heads.heads.len();
         let (lows, spans) = (blob.planes(segments)?, blob.planes(segments)?);
         blob.finish()?;

@@ -42,6 +42,7 @@ kinds! {
     CodedGeo = 10, "GEO roads section";
     CodedSv = 11, "SV roads section";
     CodedAreas = 12, "areas section";
+    Spans = 13, "spans section";
 }
 
 impl Kind {
@@ -90,6 +91,9 @@ impl Sections {
     pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
     pub const AREAS: Self = Self::of(Kind::Areas).and(Self::of(Kind::CodedAreas));
+    /// Runs of bridges and tunnels that are off the ground. [`decode`](crate::decode) checks them, and reads the ground too, on which their ends lie;
+    /// [`decode_spans`](crate::decode_spans) gives them.
+    pub const SPANS: Self = Self::of(Kind::Spans);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

@@ -22,9 +22,10 @@ fn each_kind_has_a_bit_of_its_own_and_all_has_every_bit() {
         Sections::PHOTO,
         Sections::AREAS,
         Sections::lines(ClassedLayer::Boundaries),
+        Sections::SPANS,
     ];
     assert_eq!(named.into_iter().fold(Sections::NONE, BitOr::bitor), Sections::ALL);
-    assert_eq!(named.map(|section| section.0.count_ones()), [1, 2, 2, 2, 1, 1, 2, 1]);
+    assert_eq!(named.map(|section| section.0.count_ones()), [1, 2, 2, 2, 1, 1, 2, 1, 1]);
 }
 
 #[test]

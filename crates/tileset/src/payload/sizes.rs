@@ -32,6 +32,8 @@ pub struct PayloadSizes {
     pub areas: SectionSize,
     /// The section of each layer of lines, in order of [`ClassedLayer::ALL`].
     pub lines: [SectionSize; ClassedLayer::ALL.len()],
+    /// The spans section.
+    pub spans: SectionSize,
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -68,6 +70,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         photo: size(Kind::Photo),
         areas: size(Kind::Areas).or(size(Kind::CodedAreas)),
         lines: ClassedLayer::ALL.map(|layer| size(Kind::of_lines(layer))),
+        spans: size(Kind::Spans),
         geo_class_bytes: of_classes(GEO)?,
         sv_class_bytes: of_classes(SV)?,
     })

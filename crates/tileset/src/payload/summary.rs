@@ -5,9 +5,8 @@ use corniche_geom::{GridFrame, TileId};
 use crate::payload::context::Context;
 use crate::payload::damage::DecodeError;
 use crate::payload::envelope;
-use crate::payload::number_codes::Cursor;
 use crate::payload::section_kind::Kind;
-use crate::payload::terrain::record::Record;
+use crate::payload::terrain;
 use crate::payload::tile_payload::TerrainSummary;
 
 /// Reads what the ground of a tile states about itself; `None` without ground. Its triangles are not decoded: this is for tiles that
@@ -25,12 +24,8 @@ pub fn terrain_summary(
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
     let sections = envelope::open(bytes, id).map_err(failed("header"))?;
-    let inside = failed(Kind::Terrain.name());
-    let section = envelope::section(&sections, Kind::Terrain).map_err(inside)?;
-    let record = section
-        .map(|section| Record::read(&mut Cursor::new(&section), context.scale))
-        .transpose()
-        .map_err(inside)?;
+    let record = terrain::record_in(&sections, context.scale);
+    let record = record.map_err(failed(Kind::Terrain.name()))?;
     Ok(record.map(|record| TerrainSummary {
         geometric_error_m: record.geometric_error_m,
         height_range_m: record.height_range_m,

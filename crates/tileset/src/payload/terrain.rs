@@ -11,6 +11,6 @@ mod normals;
 mod positions;
 mod symbols;
 
-pub(crate) use decode::decode;
+pub(crate) use decode::{decode, record_in};
 #[cfg(feature = "write")]
 pub(crate) use encode::{encode, part_sizes};

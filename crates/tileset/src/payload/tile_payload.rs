@@ -7,7 +7,8 @@ use corniche_tin::Tin;
 
 use crate::payload::relief::Relief;
 
-/// All that a tile holds, decoded, but for its photo ([`decode_photo`](crate::decode_photo)). A section that is absent from the bytes is empty or `None` here.
+/// All that a tile holds, decoded, but for what is read by itself: its photo ([`decode_photo`](crate::decode_photo)), areas, lines and spans. A section
+/// that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
     /// The tile.

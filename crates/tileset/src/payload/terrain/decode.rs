@@ -6,8 +6,10 @@ use crate::limits::{MAX_VERTICES, max_walk_steps};
 use crate::payload::connectivity::{Answer, Edges, Guide, NAMED, NONE, walk};
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
+use crate::payload::envelope::{self, StoredSection};
 use crate::payload::number_codes::Cursor;
 use crate::payload::range_coder::Reader;
+use crate::payload::section_kind::Kind;
 use crate::payload::terrain::heights::code_heights;
 use crate::payload::terrain::normals::{code_normals, guess_normals};
 use crate::payload::terrain::positions::code_positions;
@@ -15,6 +17,15 @@ use crate::payload::terrain::record::{Record, Scale};
 use crate::payload::terrain::symbols::Symbols;
 use crate::payload::tile_payload::Terrain;
 use crate::payload::work_limit::Work;
+
+/// The fixed part of the terrain section among these; `None` without ground.
+pub(crate) fn record_in(
+    sections: &[StoredSection<'_>],
+    scale: Scale,
+) -> Result<Option<Record>, Damage> {
+    let section = envelope::section(sections, Kind::Terrain)?;
+    section.map(|section| Record::read(&mut Cursor::new(&section), scale)).transpose()
+}
 
 pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let mut cursor = Cursor::new(bytes);

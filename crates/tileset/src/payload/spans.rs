@@ -1,0 +1,159 @@
+//! The spans of a tile: stretches of bridges and tunnels that are off the ground, read and written apart from the rest of the payload.
+
+#[cfg(feature = "write")]
+mod encode;
+mod span_run;
+
+use std::iter;
+
+use corniche_geom::{GridFrame, LatticePoint, TileId};
+use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_varints::zigzag;
+
+use crate::limits::{MAX_LINES, MAX_POINTS};
+use crate::payload::class_table::take_points;
+use crate::payload::context::Context;
+use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::envelope;
+use crate::payload::number_codes::Cursor;
+use crate::payload::points::decode_points;
+use crate::payload::section_kind::Kind;
+use crate::payload::terrain;
+
+#[cfg(feature = "write")]
+pub use encode::{SpansSection, encode_spans, with_spans};
+pub use span_run::{SpanHeight, SpanPoint, SpanRun};
+
+/// Bits of a run's first number.
+const FIRST_ON_GROUND: u64 = 1;
+const LAST_ON_GROUND: u64 = 2;
+const TUNNEL: u64 = 4;
+/// The class is in the bits from this one on.
+const CLASS_BIT: u32 = 3;
+
+/// There is ground beneath bridges and above tunnels.
+pub(crate) const WITHOUT_GROUND: Damage =
+    Damage::Invalid { what: "spans in a tile without ground" };
+
+/// Reads the spans of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
+/// [`limits`](crate::limits), whatever the bytes say. Triangles that points name are those of the tile's TIN.
+///
+/// `frame` and `quantum_m` are those of the package's manifest. The triangles themselves are not decoded.
+///
+/// # Errors
+/// When the bytes are not a payload of tile `id`, or the section is damaged.
+pub fn decode_spans(
+    bytes: &[u8],
+    id: TileId,
+    frame: &GridFrame,
+    quantum_m: f64,
+) -> Result<Vec<SpanRun>, DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
+    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let inside = failed(Kind::Spans.name());
+    let Some(section) = envelope::section(&sections, Kind::Spans).map_err(inside)? else {
+        return Ok(Vec::new());
+    };
+    let ground = terrain::record_in(&sections, context.scale);
+    let ground = ground.map_err(failed(Kind::Terrain.name()))?;
+    let triangles = ground.ok_or(WITHOUT_GROUND).map_err(inside)?.triangles;
+    decode(&section, context.corner, triangles).map_err(inside)
+}
+
+/// Reads the section's bytes, in a tile with so many triangles.
+pub(crate) fn decode(
+    bytes: &[u8],
+    corner: LatticePoint,
+    triangles: usize,
+) -> Result<Vec<SpanRun>, Damage> {
+    let cursor = &mut Cursor::new(bytes);
+    let count = cursor.bounded(MAX_LINES, "number of runs")?;
+    let [codes, ways, lengths] =
+        [cursor.planes(count)?, cursor.planes(count)?, cursor.planes(count)?];
+    let mut room = MAX_POINTS;
+    let mut points_of = Vec::with_capacity(count);
+    for length in lengths.iter() {
+        let points = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(2);
+        take_points(&mut room, points)?;
+        points_of.push(points);
+    }
+    let points = decode_points(cursor, points_of.iter().copied(), corner)?;
+    let ends = FIRST_ON_GROUND | LAST_ON_GROUND;
+    let on_ground = codes.iter().map(|code| (code & ends).count_ones() as usize).sum();
+    let [steps, named] = [cursor.planes(points.len() - on_ground)?, cursor.planes(on_ground)?];
+    cursor.finish()?;
+    let mut heights = Heights { steps: steps.iter(), named: named.iter(), last: 0, triangles };
+    let mut points = points.as_slice();
+    let mut runs: Vec<SpanRun> = Vec::with_capacity(count);
+    let mut way_id = 0_i64;
+    for ((code, way), length) in codes.iter().zip(ways.iter()).zip(points_of) {
+        way_id = way_id.wrapping_add(zigzag(way));
+        let (of_run, rest) = points.split_at_checked(length).ok_or(Damage::TooShort)?;
+        points = rest;
+        let run = SpanRun {
+            way_id,
+            class: class(code)?,
+            structure: if code & TUNNEL == 0 { Structure::Bridge } else { Structure::Tunnel },
+            points: heights.lift(of_run, code)?,
+        };
+        if runs.last().is_some_and(|last| last.key() > run.key()) {
+            return Err(Damage::Invalid { what: "runs are not sorted" });
+        }
+        runs.push(run);
+    }
+    Ok(runs)
+}
+
+/// The class in a run's first number.
+fn class(code: u64) -> Result<FunctionalRoadClass, Damage> {
+    let class = u8::try_from(code >> CLASS_BIT).ok().and_then(FunctionalRoadClass::new);
+    class.ok_or(Damage::Invalid { what: "a class of runs" })
+}
+
+/// Heights of points that are off the ground, each as the difference to the one before, and the triangles of the others.
+struct Heights<S, N> {
+    steps: S,
+    named: N,
+    last: i64,
+    /// How many triangles the tile has.
+    triangles: usize,
+}
+
+impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
+    /// The points of a run with their heights.
+    fn lift(&mut self, points: &[LatticePoint], code: u64) -> Result<Vec<SpanPoint>, Damage> {
+        let is_last = iter::repeat_n(false, points.len().saturating_sub(1)).chain([true]);
+        let is_first = iter::once(true).chain(iter::repeat(false));
+        let lifted = points.iter().zip(is_first.zip(is_last)).map(|(&at, (is_first, is_last))| {
+            let on_ground = (is_first && code & FIRST_ON_GROUND != 0)
+                || (is_last && code & LAST_ON_GROUND != 0);
+            let height = if on_ground { self.triangle()? } else { self.height()? };
+            Ok(SpanPoint { at, height })
+        });
+        lifted.collect()
+    }
+
+    fn height(&mut self) -> Result<SpanHeight, Damage> {
+        let by = zigzag(self.steps.next().unwrap_or_default());
+        let height = self.last.checked_add(by).filter(|&steps| is_height(steps));
+        self.last = height.ok_or(Damage::Invalid { what: "a height" })?;
+        Ok(SpanHeight::Steps(self.last))
+    }
+
+    fn triangle(&mut self) -> Result<SpanHeight, Damage> {
+        let named = u32::try_from(self.named.next().unwrap_or_default()).ok();
+        let triangle = named.filter(|&named| (named as usize) < self.triangles);
+        let triangle = triangle.ok_or(Damage::Invalid { what: "a triangle under a run" })?;
+        Ok(SpanHeight::Ground { triangle })
+    }
+}
+
+/// Whether a height in steps is one that ground can have.
+fn is_height(steps: i64) -> bool {
+    i32::try_from(steps).is_ok()
+}
+
+#[cfg(test)]
+#[path = "spans_tests.rs"]
+mod tests;

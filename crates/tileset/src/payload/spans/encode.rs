@@ -1,0 +1,164 @@
+//! The spans of a tile are encoded as a section.
+
+use corniche_geom::{GridFrame, LatticePoint, TileId};
+use corniche_roads::Structure;
+use corniche_varints::{push_varint, to_zigzag};
+
+use super::{
+    CLASS_BIT, FIRST_ON_GROUND, LAST_ON_GROUND, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
+    is_height,
+};
+use crate::limits::{MAX_LINES, MAX_POINTS, MAX_TRIANGLES};
+use crate::payload::damage::{DecodeError, EncodeError};
+use crate::payload::envelope::{self, Content, SectionSize};
+use crate::payload::number_codes::put_planes;
+use crate::payload::points::put_points;
+use crate::payload::section_kind::Kind;
+
+/// A tile's spans as the section of a payload.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SpansSection {
+    bytes: Vec<u8>,
+}
+
+impl SpansSection {
+    /// Its bytes.
+    #[must_use]
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+
+    /// The runs that it holds. That their triangles exist is not checked: a section does not know the tile's ground.
+    ///
+    /// # Errors
+    /// When the bytes are damaged.
+    pub fn decode(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<SpanRun>, DecodeError> {
+        let failed = |damage| DecodeError { tile, part: Kind::Spans.name(), damage };
+        decode(&self.bytes, corner(tile, frame), MAX_TRIANGLES).map_err(failed)
+    }
+
+    /// The section with these bytes, which [`SpansSection::into_bytes`] gave.
+    #[must_use]
+    pub fn from_bytes(bytes: Vec<u8>) -> Self {
+        Self { bytes }
+    }
+}
+
+/// What points are relative to.
+fn corner(tile: TileId, frame: &GridFrame) -> LatticePoint {
+    frame.lattice_of_node(frame.tile_corner(tile))
+}
+
+/// Encodes the spans of a tile; `None` if there are none. Equal runs make equal bytes.
+///
+/// Runs are in order of class, then way id, then as they lie along their way.
+///
+/// # Errors
+/// When runs are not in order, a run is on the ground, has too few points, one twice in a row or one on the ground between its ends, a point is
+/// far from the tile or higher than ground can be, or there is more than a reader accepts.
+pub fn encode_spans(
+    tile: TileId,
+    frame: &GridFrame,
+    runs: &[SpanRun],
+) -> Result<Option<SpansSection>, EncodeError> {
+    if runs.is_empty() {
+        return Ok(None);
+    }
+    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Spans.name(), what };
+    check(runs).map_err(refused)?;
+    let bytes = section_bytes(runs, corner(tile, frame)).map_err(refused)?;
+    Ok(Some(SpansSection { bytes }))
+}
+
+fn section_bytes(runs: &[SpanRun], corner: LatticePoint) -> Result<Vec<u8>, &'static str> {
+    let mut bytes = Vec::new();
+    push_varint(&mut bytes, runs.len() as u64);
+    put_planes(&mut bytes, &runs.iter().map(code).collect::<Vec<_>>());
+    let mut last_id = 0_i64;
+    let way_steps = runs.iter().map(|run| {
+        let before = std::mem::replace(&mut last_id, run.way_id);
+        to_zigzag(run.way_id.wrapping_sub(before))
+    });
+    put_planes(&mut bytes, &way_steps.collect::<Vec<_>>());
+    let lengths = runs.iter().map(|run| run.points.len() as u64 - 2);
+    put_planes(&mut bytes, &lengths.collect::<Vec<_>>());
+    let points = || runs.iter().flat_map(|run| &run.points);
+    put_points(&mut bytes, &points().map(|point| point.at).collect::<Vec<_>>(), corner)?;
+    let (mut steps, mut triangles, mut last) = (Vec::new(), Vec::new(), 0);
+    for point in points() {
+        match point.height {
+            SpanHeight::Steps(height) => {
+                steps.push(to_zigzag(height - last));
+                last = height;
+            }
+            SpanHeight::Ground { triangle } => triangles.push(u64::from(triangle)),
+        }
+    }
+    put_planes(&mut bytes, &steps);
+    put_planes(&mut bytes, &triangles);
+    Ok(bytes)
+}
+
+/// A run's first number.
+fn code(run: &SpanRun) -> u64 {
+    let flag = |is_set, bit| if is_set { bit } else { 0 };
+    u64::from(run.class.number()) << CLASS_BIT
+        | flag(run.structure == Structure::Tunnel, TUNNEL)
+        | flag(run.points.last().is_some_and(is_on_ground), LAST_ON_GROUND)
+        | flag(run.points.first().is_some_and(is_on_ground), FIRST_ON_GROUND)
+}
+
+fn is_on_ground(point: &SpanPoint) -> bool {
+    matches!(point.height, SpanHeight::Ground { .. })
+}
+
+fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
+    let points = || runs.iter().flat_map(|run| &run.points);
+    if runs.iter().any(|run| run.structure == Structure::Ground) {
+        return Err("a run on the ground");
+    }
+    if runs.iter().any(|run| run.points.len() < 2) {
+        return Err("a run of less than two points");
+    }
+    if runs.iter().any(|run| run.points.array_windows().any(|[a, b]| a.at == b.at)) {
+        return Err("a run with a point twice");
+    }
+    let inner = |run: &SpanRun| run.points[1..run.points.len() - 1].iter().any(is_on_ground);
+    if runs.iter().any(inner) {
+        return Err("a point on the ground between the ends of its run");
+    }
+    if !runs.is_sorted_by_key(SpanRun::key) {
+        return Err("runs that are not sorted by class and way id");
+    }
+    let is_known = |point: &SpanPoint| match point.height {
+        SpanHeight::Steps(steps) => is_height(steps),
+        SpanHeight::Ground { triangle } => (triangle as usize) < MAX_TRIANGLES,
+    };
+    if !points().all(is_known) {
+        return Err("a height that no ground has");
+    }
+    if runs.len() > MAX_LINES || points().count() > MAX_POINTS {
+        return Err("more spans than readers accept");
+    }
+    Ok(())
+}
+
+/// A payload with spans more; all its other sections stay as they are. Returns the size of the new section, too.
+///
+/// # Errors
+/// When the bytes are no payload of the tile, or it has spans already, or no ground.
+pub fn with_spans(
+    payload: &[u8],
+    tile: TileId,
+    spans: SpansSection,
+) -> Result<(Vec<u8>, SectionSize), EncodeError> {
+    let has_ground = envelope::open(payload, tile)
+        .is_ok_and(|sections| envelope::find(&sections, Kind::Terrain).is_some());
+    let section = (Kind::Spans, Content::Raw(spans.bytes));
+    let (bytes, sizes) = envelope::with_section(payload, tile, section, "beside other spans")?;
+    if !has_ground {
+        let section = Kind::Spans.name();
+        return Err(EncodeError::Unencodable { tile, section, what: "without ground" });
+    }
+    Ok((bytes, sizes.last().copied().unwrap_or_default()))
+}
