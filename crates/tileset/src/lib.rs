@@ -36,9 +36,9 @@ mod payload;
 pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
     DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord,
-    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, SpanCounts, SpansRecord, Manifest, PhotoLevelRecord,
+    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord,
     PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord,
-    SampleSums, ScaleRecord, SettingsRecord, VerticalRecord,
+    SampleSums, ScaleRecord, SettingsRecord, SpanCounts, SpansRecord, VerticalRecord,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};

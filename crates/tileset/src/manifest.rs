@@ -10,9 +10,9 @@ pub(crate) mod check;
 
 pub use contents::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, SpanCounts, SpansRecord,
+    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
     Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord,
-    VerticalRecord,
+    SpanCounts, SpansRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
