@@ -59,6 +59,7 @@ mod settings_files;
 mod several_extracts;
 mod shares;
 mod shells;
+mod spans;
 mod styles;
 mod terrain;
 mod terrain_reuse;

@@ -6,7 +6,7 @@ use std::{
 };
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId};
-use corniche_roads::Structure;
+use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{
     FilePackage, GeoRoad, LineLevelRecord, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload,
     decode, decode_spans, payload_sizes,
@@ -84,8 +84,9 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
     let place = TilePlace::of(&manifest.frame, id);
     let ground = TriangleSoup::placed(&terrain.tin, quantum_m, place.steps);
     for run in &runs {
-        let own = lines.iter().filter(|line| line.way_id == run.way_id);
-        let own: Vec<&Line> = own.filter(|line| line.structure == run.structure).collect();
+        let kind = (run.way_id, run.class, run.structure);
+        let own = lines.iter().filter(|line| (line.way_id, line.class, line.structure) == kind);
+        let own: Vec<&Line> = own.collect();
         let tile = Tile { id, place, ground: &ground, tin: &terrain.tin, quantum_m };
         tile.look_at_ends(run, &own, &mut found.findings);
         tile.look_at_side(run, &own, &mut found.findings);
@@ -99,6 +100,7 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
 /// A GEO line of a bridge or a tunnel: its places in lattice steps, with heights.
 struct Line {
     way_id: i64,
+    class: FunctionalRoadClass,
     structure: Structure,
     vertices: Vec<[f64; 3]>,
 }
@@ -121,7 +123,7 @@ fn lines_of_structures(payload: &TilePayload, surface: &Surface) -> Vec<Line> {
     let line = |road: &GeoRoad| {
         let structure = *structures.get(&road.way_id)?;
         let vertices = corniche_drape::positions(&road.line, surface).ok()?;
-        Some(Line { way_id: road.way_id, structure, vertices })
+        Some(Line { way_id: road.way_id, class: road.class, structure, vertices })
     };
     payload.roads_geo.iter().filter_map(line).collect()
 }

@@ -25,4 +25,5 @@ mod verify_payload;
 mod verify_photos;
 mod verify_roads;
 mod verify_sees;
+mod verify_spans;
 mod voids;

@@ -1,0 +1,94 @@
+//! `corniche build --structures spans`: bridges and tunnels off the ground, by whole builds, in parts, on recorded terrain and within bounds.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{fs, path::Path};
+
+use e2e::{
+    COARSE, build_pass, built_in_parts, copy_pass, corniche, json, manifest, real_data, sample,
+    text,
+};
+
+const SPANS: [&str; 4] = ["--structures", "spans", "--classes", "0-8"];
+
+/// `verify` with the extract holds, and looks at spans.
+fn holds(package: &Path, osm: &Path) {
+    let report = json(&["verify", "--json", text(package), "--osm", text(osm)]);
+    for check in report["checks"].as_array().unwrap() {
+        let id = check["id"].as_str().unwrap();
+        assert_ne!(check["holds"], false, "{check:#}");
+        if ["spans.ends", "spans.side", "spans.sums", "osm.spans", "osm.spans.counts"].contains(&id)
+        {
+            assert!(check["checked"].as_u64().unwrap() > 0, "{check:#}");
+        }
+    }
+}
+
+/// The sample has seven bridges and two tunnels; without spans its tiles are the same but for these.
+#[test]
+fn the_sample_has_its_bridges_and_tunnels() {
+    let folder = tempfile::tempdir().unwrap();
+    let [spans, ground] = ["spans", "ground"].map(|name| folder.path().join(name));
+    copy_pass(&spans, &SPANS);
+    copy_pass(&ground, &SPANS[2..]);
+    let osm = sample("pass/pass.osm.pbf");
+    holds(&spans, &osm);
+    let [with, without] = [&spans, &ground].map(|package| manifest(package));
+    let found = &with["spans"];
+    assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(7), Some(2)]);
+    assert_eq!(found["crossings"], 6);
+    assert_eq!(without.get("spans"), None);
+    for what in ["levels", "growth", "counts"] {
+        assert_eq!(with[what], without[what], "{what}");
+    }
+}
+
+/// Parts, a build on the terrain of a package, and one that goes on after a kill make the same bytes as one build.
+#[test]
+fn spans_do_not_depend_on_how_a_package_is_built() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    copy_pass(&at("whole.pmtiles"), &SPANS);
+    let whole = fs::read(at("whole.pmtiles")).unwrap();
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    let options = [&SPANS[..], &COARSE].concat();
+    let inputs = [&["--dem", text(&dem), "--osm", text(&osm)][..], &options].concat();
+    assert!(built_in_parts(folder.path(), &inputs) == whole, "in parts");
+    let (ground, again) = (at("ground.pmtiles"), at("again.pmtiles"));
+    build_pass(&ground, &["--classes", "0-3"]);
+    let words =
+        ["build", "-q", "--terrain", text(&ground), "--osm", text(&osm), "-o", text(&again)];
+    let ran = corniche(words.iter().chain(&SPANS));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(fs::read(&again).unwrap() == whole, "on the terrain of a package");
+}
+
+/// Bounds through bridges: what ends there is carried there.
+#[test]
+fn spans_end_at_the_bounds() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("part.pmtiles");
+    let info = folder.path().join("all.pmtiles");
+    copy_pass(&info, &SPANS);
+    let bounds = &manifest(&info)["wgs84_bounds"];
+    let [west, south, east, north] =
+        ["min_x", "min_y", "max_x", "max_y"].map(|side| bounds[side].as_f64().unwrap());
+    let half = format!("{west},{south},{},{}", (west + east) / 2.0, (south + north) / 2.0);
+    build_pass(&package, &[&SPANS[..], &["--bounds", &half]].concat());
+    holds(&package, &sample("pass/pass.osm.pbf"));
+}
+
+#[test]
+fn spans_of_liechtenstein_hold() {
+    let files = ["N47E009.hgt", "N47E010.hgt", "liechtenstein-2021-10-28.osm.pbf"]
+        .map(|name| real_data(&format!("liechtenstein/{name}")));
+    let [Some(west), Some(east), Some(osm)] = files else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("li.pmtiles");
+    let words = ["build", "-q", "--dem", text(&west), text(&east), "--osm", text(&osm)];
+    let ran = corniche(words.iter().chain(&["-o", text(&package)]).chain(&SPANS));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    holds(&package, &osm);
+    let found = &manifest(&package)["spans"];
+    assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(268), Some(22)]);
+}
