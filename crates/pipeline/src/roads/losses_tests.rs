@@ -91,7 +91,7 @@ fn padding_is_outside_the_data() {
         .iter()
         .map(|defect| match defect {
             Defect::LostRoad { way_id, loss, .. } => (*way_id, *loss),
-            Defect::Osm(_) => panic!("{defect:?}"),
+            Defect::Osm(_) | Defect::Span { .. } => panic!("{defect:?}"),
         })
         .collect();
     let (beside, void) = (Loss::OutsideData, Loss::NoGround);

@@ -29,7 +29,7 @@ fn parts_of_a_road_keep_its_nodes_and_end_at_none() {
     let data = LatticeBounds { min: at(0, -100), max: at(100, 100) };
     let parts: Vec<Road> = corniche_drape::clip_parts(&road.line, &data, OwnedBorders::ALL)
         .into_iter()
-        .map(|part| part_of_road(&road, part))
+        .map(|part| road_of_part(&road, part))
         .collect();
     let expected = [
         (
