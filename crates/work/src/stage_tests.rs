@@ -21,18 +21,19 @@ fn every_stage_is_listed_once_in_order() {
             Stage::Samples => 9,
             Stage::Tiles => 10,
             Stage::CoarseTiles => 11,
-            Stage::Package => 12,
-            Stage::Verify => 13,
-            Stage::ExportTiles => 14,
-            Stage::ExportBlocks => 15,
-            Stage::ExportChains => 16,
-            Stage::ExportFeatures => 17,
-            Stage::Match => 18,
-            Stage::Fly => 19,
+            Stage::Spans => 12,
+            Stage::Package => 13,
+            Stage::Verify => 14,
+            Stage::ExportTiles => 15,
+            Stage::ExportBlocks => 16,
+            Stage::ExportChains => 17,
+            Stage::ExportFeatures => 18,
+            Stage::Match => 19,
+            Stage::Fly => 20,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 20);
+    assert_eq!(Stage::ALL.len(), 21);
 }
 
 #[test]
