@@ -10,6 +10,7 @@ pub(crate) mod info;
 pub(crate) mod lines;
 pub(crate) mod plan;
 pub(crate) mod progress;
+pub(crate) mod spans;
 pub(crate) mod tile;
 pub(crate) mod verify;
 
