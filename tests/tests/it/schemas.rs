@@ -111,7 +111,7 @@ fn spans_of_a_tile_are_told() {
     let tiles = package::ids().into_iter().map(|id| (id, package::encoded_with_spans(id)));
     fs::write(&path, package::written_with(&package::manifest(), tiles)).unwrap();
     let tile = json(&["tile", text(&path), "2/2/1", "--json"]);
-    check("tile", &[tile.clone()]);
+    check("tile", std::slice::from_ref(&tile));
     // The tile's corner is node (0, 768) of cells of 10 m; heights are in quarters of a metre.
     let at = |column: f64, row: f64| [0.5 + 10.0 * column, 0.25 + 10.0 * (768.0 - row)];
     let point = |column, row, height_m: f64| {

@@ -39,7 +39,7 @@ fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
     let more = (points - 2).to_le_bytes();
     columns[LENGTHS] = column(8, runs, 0);
     for (plane, byte) in more.into_iter().enumerate() {
-        columns[LENGTHS][1 + plane * runs..1 + (plane + 1) * runs].fill(byte);
+        columns[LENGTHS][1 + plane * runs..=(plane + 1) * runs].fill(byte);
     }
     columns[EAST] = column(1, runs * points, 2);
     columns
