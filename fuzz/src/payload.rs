@@ -5,7 +5,9 @@ use corniche_testing::{
     package::{QUANTUM_M, context},
     payload::{Section, payload as payload_of, with_right_checksums},
 };
-use corniche_tileset::{Sections, decode, decode_photo, encode};
+use corniche_tileset::{
+    PayloadContext, Sections, decode, decode_photo, decode_spans, encode, encode_spans,
+};
 
 /// A tile of these bytes is decoded or refused; what is decoded encodes, and decodes to itself.
 ///
@@ -30,9 +32,24 @@ pub fn payload(data: &[u8]) {
                 Err(error) => panic!("what was decoded cannot be encoded: {error}"),
             };
             assert_eq!(read(&encoded.bytes).as_ref(), Ok(&tile), "another tile came back");
+            spans_come_back(&bytes, id, &context);
         }
         Err(error) => assert_eq!(error.tile, id, "the error names the tile: {error}"),
     }
+}
+
+/// The spans of a tile that was decoded encode, and decode to themselves.
+fn spans_come_back(bytes: &[u8], id: TileId, context: &PayloadContext) {
+    let runs = match decode_spans(bytes, id, &context.frame, context.quantum_m) {
+        Ok(runs) => runs,
+        Err(error) => panic!("what was checked cannot be decoded: {error}"),
+    };
+    let section = match encode_spans(id, &context.frame, &runs) {
+        Ok(section) => section,
+        Err(error) => panic!("spans that were decoded cannot be encoded: {error}"),
+    };
+    let again = section.map(|section| section.decode(id, &context.frame));
+    assert_eq!(again.unwrap_or(Ok(Vec::new())), Ok(runs), "other spans came back");
 }
 
 /// Tile 1/1/0, of the grid of the small package.

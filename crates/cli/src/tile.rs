@@ -3,8 +3,8 @@
 use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{
-    AreaRecord, FilePackage, LineRecord, Manifest, Sections, Terrain, TilePayload, decode_areas,
-    decode_lines,
+    AreaRecord, FilePackage, LineRecord, Manifest, Sections, SpanPoint, SpanRun, Terrain,
+    TilePayload, decode_areas, decode_lines, decode_spans,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -13,6 +13,7 @@ use crate::{
     documents::{
         areas::TileAreaDocument,
         boundaries::TileBoundaryDocument,
+        spans::TileSpanDocument,
         tile::{
             GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, Written,
             normal,
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
         // The command line has one of them.
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
     };
-    let layers = PlanLayers::read(&package, payload.id)?;
+    let layers = TileLayers::read(&package, payload.id)?;
     if args.json {
         let document = document(package.manifest(), &payload, layers, args.coordinates)?;
         messages::answer_document(&document)?;
@@ -46,21 +47,25 @@ fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Fai
     package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 
-/// What a tile has of the layers in plan.
-struct PlanLayers {
+/// What a tile has of the layers that are read by themselves.
+struct TileLayers {
     areas: Vec<AreaRecord>,
     boundaries: Vec<LineRecord>,
+    spans: Vec<SpanRun>,
 }
 
-impl PlanLayers {
+impl TileLayers {
     fn read(package: &FilePackage, id: TileId) -> Result<Self, Failure> {
         let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
         let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
-        let areas = decode_areas(&bytes, id, &package.manifest().frame);
+        let Manifest { frame, vertical, .. } = package.manifest();
+        let areas = decode_areas(&bytes, id, frame);
         let boundaries = decode_lines(&bytes, id, ClassedLayer::Boundaries);
+        let spans = decode_spans(&bytes, id, frame, vertical.quantum_m);
         Ok(Self {
             areas: areas.map_err(|error| unusable(&error))?,
             boundaries: boundaries.map_err(|error| unusable(&error))?,
+            spans: spans.map_err(|error| unusable(&error))?,
         })
     }
 }
@@ -154,7 +159,7 @@ fn tile_at(
     })
 }
 
-fn to_text(payload: &TilePayload, layers: &PlanLayers, digits: Digits) -> String {
+fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
     let count = |number: usize| digits.count(number as u64);
     if let Some(terrain) = &payload.terrain {
@@ -169,7 +174,11 @@ fn to_text(payload: &TilePayload, layers: &PlanLayers, digits: Digits) -> String
     table.row(["GEO vertices".into(), count(vertices)]);
     table.row(["SV lines".into(), count(payload.roads_sv.len())]);
     table.row(["ways".into(), count(payload.attributes.len())]);
-    let layers = [("areas", layers.areas.len()), ("boundaries", layers.boundaries.len())];
+    let layers = [
+        ("areas", layers.areas.len()),
+        ("boundaries", layers.boundaries.len()),
+        ("spans", layers.spans.len()),
+    ];
     for (name, number) in layers.into_iter().filter(|(_, number)| *number > 0) {
         table.row([name.into(), count(number)]);
     }
@@ -197,7 +206,7 @@ impl Places {
 fn document<'a>(
     manifest: &'a Manifest,
     payload: &'a TilePayload,
-    layers: PlanLayers,
+    layers: TileLayers,
     coordinates: Coordinates,
 ) -> Result<TileDocument<'a>, Failure> {
     let frame = &manifest.frame;
@@ -213,9 +222,15 @@ fn document<'a>(
     bounds.include(places.of([min_x, min_y]));
     bounds.include(places.of([max_x, max_y]));
     let terrain = payload.terrain.as_ref();
-    let roads_geo = match terrain {
-        Some(terrain) => roads_geo(manifest, payload, terrain, &places)?,
-        None => Vec::new(),
+    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
+    let surface = terrain.map(|terrain| Surface::new(&terrain.tin, placement));
+    // Without ground a tile has neither.
+    let (roads_geo, spans) = match &surface {
+        Some(surface) => (
+            roads_geo(manifest, payload, surface, &places)?,
+            spans(manifest, id, &layers.spans, surface, &places)?,
+        ),
+        None => (Vec::new(), Vec::new()),
     };
     Ok(TileDocument {
         id: id.to_string(),
@@ -242,6 +257,7 @@ fn document<'a>(
             .into_iter()
             .map(|line| TileBoundaryDocument::of(line, frame, &|position| places.of(position)))
             .collect(),
+        spans,
     })
 }
 
@@ -264,14 +280,12 @@ fn tin(manifest: &Manifest, id: TileId, terrain: &Terrain, places: &Places) -> T
 fn roads_geo(
     manifest: &Manifest,
     payload: &TilePayload,
-    terrain: &Terrain,
+    surface: &Surface,
     places: &Places,
 ) -> Result<Vec<GeoRoadDocument>, Failure> {
     let frame = &manifest.frame;
-    let placement = Placement::of_tile(frame, payload.id, manifest.vertical.quantum_m);
-    let surface = Surface::new(&terrain.tin, placement);
     let road = |road: &corniche_tileset::GeoRoad| {
-        let positions = corniche_drape::positions(&road.line, &surface)
+        let positions = corniche_drape::positions(&road.line, surface)
             .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
         let place = |[u, v, height_m]: [f64; 3]| {
             places.with_height(frame.position_of_fraction_m([u, v]), height_m)
@@ -284,6 +298,28 @@ fn roads_geo(
         })
     };
     payload.roads_geo.iter().map(road).collect()
+}
+
+fn spans(
+    manifest: &Manifest,
+    id: TileId,
+    runs: &[SpanRun],
+    surface: &Surface,
+    places: &Places,
+) -> Result<Vec<TileSpanDocument>, Failure> {
+    let span = |run: &SpanRun| {
+        let place = |point: &SpanPoint| {
+            let height_m = point.height_m(surface, manifest.vertical.quantum_m)?;
+            Some(places.with_height(manifest.frame.position_m(point.at), height_m))
+        };
+        let line: Option<Vec<[f64; 3]>> = run.points.iter().map(place).collect();
+        let line = line.ok_or_else(|| {
+            let way = run.way_id;
+            Failure::unusable(format!("tile {id}: a span of way {way} ends beside the ground"))
+        })?;
+        Ok(TileSpanDocument::of(run, line))
+    };
+    runs.iter().map(span).collect()
 }
 
 fn sv_road(manifest: &Manifest, road: &corniche_tileset::SvRoad, places: Places) -> SvRoadDocument {

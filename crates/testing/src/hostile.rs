@@ -7,6 +7,7 @@ mod lie_cases;
 mod metadata_cases;
 mod parts;
 mod road_cases;
+mod span_cases;
 mod tile_cases;
 
 pub use case::{Case, Outcome};
@@ -16,10 +17,11 @@ pub use lie_cases::{COMMANDING, commanding_texts};
 type Family = (&'static str, fn() -> Vec<Case>);
 
 /// The cases by what is wrong, each family made when it is asked for: some are large.
-pub const FAMILIES: [Family; 5] = [
+pub const FAMILIES: [Family; 6] = [
     ("file", file_cases::all),
     ("metadata", metadata_cases::all),
     ("tile", tile_cases::all),
     ("roads", road_cases::all),
     ("lies", lie_cases::all),
+    ("spans", span_cases::all),
 ];

@@ -6,11 +6,11 @@ use corniche_drape::{SvLine, drape};
 use corniche_geom::{
     Bounds, Cell, CoordinateTable, GridFrame, LatticePoint, NodeIndex, Polyline, TileId,
 };
-use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::{
     Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadContext, RoadRecord,
-    SampleErrorRecord, ScaleRecord, SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
-    Writer, encode, pmtiles_order,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, SpanHeight, SpanPoint, SpanRun, SvRoad,
+    Terrain, TilePayload, VerticalRecord, Writer, encode, encode_spans, pmtiles_order, with_spans,
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
@@ -197,6 +197,37 @@ pub fn payload(id: TileId) -> TilePayload {
 #[must_use]
 pub fn encoded(id: TileId) -> Vec<u8> {
     encode(&payload(id), &context()).unwrap().bytes
+}
+
+/// Spans of a tile of the small package: a bridge from a vertex of the ground to one in the air, and a tunnel below the ground.
+#[must_use]
+pub fn spans(id: TileId) -> Vec<SpanRun> {
+    let placement = Placement::of_tile(&frame(), id, QUANTUM_M);
+    let surface = Surface::new(&payload(id).terrain.unwrap().tin, placement);
+    let [east, north] = placement.node_steps;
+    let at = |column: i64, row: i64| {
+        LatticePoint::new(placement.corner.u + column * east, placement.corner.v - row * north)
+    };
+    let low =
+        |at| SpanPoint { at, height: SpanHeight::Ground { triangle: surface.locate(at).unwrap() } };
+    let high = |at, steps| SpanPoint { at, height: SpanHeight::Steps(steps) };
+    let class = FunctionalRoadClass::new(3).unwrap();
+    let run = |way_id, structure, points| SpanRun { way_id, class, structure, points };
+    vec![
+        run(
+            7,
+            Structure::Bridge,
+            vec![low(at(64, 64)), high(at(70, 65), 401), high(at(80, 65), 399)],
+        ),
+        run(9, Structure::Tunnel, vec![high(at(10, 200), -7), low(at(20, 201))]),
+    ]
+}
+
+/// A tile of the small package with these spans, as bytes.
+#[must_use]
+pub fn encoded_with_spans(id: TileId) -> Vec<u8> {
+    let section = encode_spans(id, &frame(), &spans(id)).unwrap().unwrap();
+    with_spans(&encoded(id), id, section).unwrap().0
 }
 
 /// The small package as the writer writes it.

@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use corniche_geom::{HeightGrid, TileId};
 use corniche_testing::{
-    package::{context, encoded, ids, manifest, metadata},
+    package::{context, encoded, encoded_with_spans, ids, manifest, metadata},
     pmtiles::{Entry, directory, file, gzip},
 };
 use corniche_tileset::{
@@ -87,6 +87,11 @@ fn whole_payload() -> Vec<u8> {
     [&[1], &encoded(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
 }
 
+/// A payload with spans, too.
+fn payload_with_spans() -> Vec<u8> {
+    [&[1], &encoded_with_spans(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
+}
+
 #[test]
 fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
     let bytes = relief_seed();
@@ -112,7 +117,10 @@ fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
 fn the_seeds_of_the_fuzz_targets_are_as_they_are_made_here() {
     let all = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
     check(&all.join("package"), seeds());
-    check(&all.join("payload"), BTreeMap::from([("photo", photo()), ("whole", whole_payload())]));
+    let of_payload =
+        [("photo", photo()), ("spans", payload_with_spans()), ("whole", whole_payload())];
+    check(&all.join("payload"), BTreeMap::from(of_payload));
+    corniche_fuzz::payload(&payload_with_spans());
 }
 
 fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {

@@ -4,6 +4,7 @@
 
 use std::{collections::BTreeSet, fs};
 
+use corniche_testing::package;
 use e2e::{copy_pass, corniche, json, manifest, root, sample, text, write_ascii_grid};
 use serde_json::{Value, json as value};
 
@@ -100,6 +101,41 @@ fn what_is_printed_fits_its_schema() {
         tiles.iter().step_by(7).map(|id| json(&["tile", package, id, "--json"])).collect();
     documents.push(json(&["tile", package, "0/0/0", "--json", "--coordinates", "crs"]));
     check("tile", &documents);
+}
+
+/// A bridge that begins at a vertex of the ground, and a tunnel: each point where it is, as high as it is.
+#[test]
+fn spans_of_a_tile_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("spans.pmtiles");
+    let tiles = package::ids().into_iter().map(|id| (id, package::encoded_with_spans(id)));
+    fs::write(&path, package::written_with(&package::manifest(), tiles)).unwrap();
+    let tile = json(&["tile", text(&path), "2/2/1", "--json"]);
+    check("tile", std::slice::from_ref(&tile));
+    // The tile's corner is node (0, 768) of cells of 10 m; heights are in quarters of a metre.
+    let at = |column: f64, row: f64| [0.5 + 10.0 * column, 0.25 + 10.0 * (768.0 - row)];
+    let point = |column, row, height_m: f64| {
+        let [x, y] = at(column, row);
+        value!([x, y, height_m])
+    };
+    let bridge = [point(64.0, 64.0, 10.0), point(70.0, 65.0, 100.25), point(80.0, 65.0, 99.75)];
+    let spans = &tile["spans"];
+    assert_eq!(spans.as_array().unwrap().len(), 2);
+    assert_eq!(
+        spans[0],
+        value!({ "way_id": 7, "frc": 3, "structure": "bridge", "line": bridge, "on_ground": [true, false] })
+    );
+    let is_vertex = |vertex: &Value| *vertex == spans[0]["line"][0];
+    assert!(tile["tin"]["vertices"].as_array().unwrap().iter().any(is_vertex));
+    // A row of 64 cells is 7.5 m higher than the one north of it, and the second column 2.5 m higher than the first.
+    let ground_m = (30.0 * (201.0 / 64.0) + 10.0 * (20.0 / 64.0)) * 0.25;
+    let tunnel = [point(10.0, 200.0, -1.75), point(20.0, 201.0, ground_m)];
+    assert_eq!(
+        spans[1],
+        value!({ "way_id": 9, "frc": 3, "structure": "tunnel", "line": tunnel, "on_ground": [false, true] })
+    );
+    let told = corniche(["tile", text(&path), "2/2/1"]).out;
+    assert!(told.lines().any(|line| line.split_whitespace().eq(["spans", "2"])), "{told}");
 }
 
 /// All that a tile holds: normals as many as vertices and of length 1, attributes of exactly the ways that occur.

@@ -3,7 +3,11 @@
 use corniche_tileset::RoadRecord;
 use serde::{Serialize, Serializer};
 
-use super::{areas::TileAreaDocument, boundaries::TileBoundaryDocument};
+use super::{
+    areas::TileAreaDocument,
+    boundaries::TileBoundaryDocument,
+    spans::{TileSpanDocument, structure_name},
+};
 
 /// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
 pub(crate) struct Written<'a, Item>(Box<dyn Fn() -> Items<'a, Item> + 'a>);
@@ -63,6 +67,9 @@ pub(crate) struct TileDocument<'a> {
     /// Parts of boundaries near the tile; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) boundaries: Vec<TileBoundaryDocument>,
+    /// Stretches of bridges that are above the ground, and of tunnels that are below; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) spans: Vec<TileSpanDocument>,
 }
 
 /// Triangles of the ground.
@@ -144,7 +151,7 @@ pub(crate) struct WayDocument {
 
 impl From<&RoadRecord> for WayDocument {
     fn from(record: &RoadRecord) -> Self {
-        use corniche_roads::{Form, Oneway, Structure};
+        use corniche_roads::{Form, Oneway};
         let attributes = &record.attributes;
         let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());
         Self {
@@ -155,11 +162,7 @@ impl From<&RoadRecord> for WayDocument {
                 Form::Link => "link",
                 Form::Roundabout => "roundabout",
             },
-            structure: match attributes.structure {
-                Structure::Ground => "ground",
-                Structure::Bridge => "bridge",
-                Structure::Tunnel => "tunnel",
-            },
+            structure: structure_name(attributes.structure),
             layer: attributes.layer,
             oneway: match attributes.oneway {
                 Oneway::No => "no",

@@ -83,6 +83,12 @@ pub(crate) fn metadata() -> serde_json::Value {
     })
 }
 
+/// `count` numbers in planes of which every byte is `byte`.
+pub(crate) fn planes(blob: &mut Vec<u8>, planes: u8, count: usize, byte: u8) {
+    blob.push(planes);
+    blob.resize(blob.len() + usize::from(planes) * count, byte);
+}
+
 /// A section as one zstd frame.
 pub(crate) fn zstd_section(kind: u16, raw: &[u8]) -> Section {
     let stored = zstd::bulk::compress(raw, 3).unwrap();

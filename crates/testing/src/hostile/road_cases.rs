@@ -12,7 +12,7 @@ use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use super::{
     case::{Case, Outcome, refused},
-    parts::{payload, raw_sections, zstd_section},
+    parts::{payload, planes, raw_sections, zstd_section},
     tile_cases::{with_sections, with_tile},
 };
 
@@ -40,12 +40,6 @@ fn heads(lines: usize, points: u64) -> Vec<u8> {
     blob.resize(2 * lines, 0);
     (0..lines).for_each(|_| put_varint(&mut blob, 4 * points));
     blob
-}
-
-/// `count` numbers in planes of which every byte is `byte`.
-fn planes(blob: &mut Vec<u8>, planes: u8, count: usize, byte: u8) {
-    blob.push(planes);
-    blob.resize(blob.len() + usize::from(planes) * count, byte);
 }
 
 /// An SV section of lines that go east by two steps a point.

@@ -4,6 +4,7 @@ from .attributes import Attributes
 from .errors import ContainerError, PayloadError, ReadError, UnknownTile
 from .package import Package, Tile
 from .roads import CROSSING, SOURCE, TIN_VERTEX, Road
+from .spans import Span
 from .terrain import Terrain
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "PayloadError",
     "ReadError",
     "Road",
+    "Span",
     "Terrain",
     "Tile",
     "UnknownTile",

@@ -18,6 +18,7 @@ from .grid import Grid
 from .height import Ground, tiles_at
 from .payload import sections
 from .roads import Road, read_roads
+from .spans import Span, read_spans
 from .terrain import Terrain, read_terrain
 
 
@@ -36,6 +37,8 @@ class Tile:
     terrain: Terrain | None
     roads: list[Road]
     attributes: list[Attributes]
+    #: Runs of bridges and tunnels that are off the ground, to be taken in place of what lies on it of the roads of the same ways.
+    spans: list[Span]
     sections: dict[int, bytes]
 
     def fields(self, road: Road) -> dict[str, Any]:
@@ -100,17 +103,25 @@ class Package:
         """Decodes a tile."""
         found = self._sections((z, x, y))
         terrain = self._terrain((z, x, y), found)
-        roads: list[Road] = []
-        kind = 10 if 10 in found else 2
-        if kind in found:
-            if terrain is None or {2, 10} <= found.keys():
-                raise PayloadError(f"tile {z}/{x}/{y} has GEO roads without ground, or twice")
-            roads = read_roads(found[kind], kind == 10, terrain, self.grid, (z, x, y))
         what = f"tile {z}/{x}/{y}"
+        roads, spans = self._on_ground((z, x, y), found, terrain, what)
         if 5 in found and 4 not in found:
             raise PayloadError(f"{what} has tags without attributes")
         attributes = read_attributes(found[4], f"attributes of {what}", found.get(5), f"tags of {what}") if 4 in found else []
-        return Tile(z, x, y, terrain, roads, attributes, found)
+        return Tile(z, x, y, terrain, roads, attributes, spans, found)
+
+    def _on_ground(
+        self, name: tuple[int, int, int], found: dict[int, bytes], terrain: Terrain | None, what: str
+    ) -> tuple[list[Road], list[Span]]:
+        """What lies on the triangles, or ends there."""
+        kinds = {2, 10, 13} & found.keys()
+        if not kinds:
+            return [], []
+        if terrain is None or {2, 10} <= kinds:
+            raise PayloadError(f"{what} has GEO roads or spans without ground, or GEO roads twice")
+        ground = Ground.of(terrain, self.grid, name)
+        roads = [road for kind in sorted(kinds - {13}) for road in read_roads(found[kind], kind == 10, ground, self.grid, name)]
+        return roads, read_spans(found[13], ground, self.grid, name) if 13 in kinds else []
 
     def _sections(self, name: tuple[int, int, int]) -> dict[int, bytes]:
         place, what = self._places.get(name), "tile {}/{}/{}".format(*name)

@@ -16,7 +16,7 @@ from .errors import PayloadError
 from .grid import Grid
 from .height import Ground
 from .mesh import Point, orient
-from .terrain import Terrain
+from .points import lattice_points
 
 #: What a vertex of a line is.
 SOURCE, CROSSING, TIN_VERTEX = 1, 2, 3
@@ -36,7 +36,7 @@ class Road:
     kinds: NDArray[np.int8]
 
 
-def read_roads(data: bytes, is_coded: bool, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
+def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
     """Decodes the section; `is_coded` tells whether it is one of range-coded bits."""
     what = "GEO roads of tile {}/{}/{}".format(*tile)
     whole = Cursor(data, what)
@@ -44,7 +44,7 @@ def read_roads(data: bytes, is_coded: bool, terrain: Terrain, grid: Grid, tile: 
     if is_coded and not all(0 < step < math.inf for step in step_m):
         raise PayloadError(f"{what}: the steps of the grid are beyond their limits")
     counts = [(int.from_bytes(whole.take(4), "little"), int.from_bytes(whole.take(4), "little")) for _ in range(9)]
-    follower = _Follower(Ground.of(terrain, grid, tile), what)
+    follower = _Follower(ground, what)
     roads = []
     for number, (lines, size) in enumerate(counts):
         content = whole.take(size)
@@ -81,18 +81,10 @@ def _lines(cursor: Cursor, count: int, corner: Point) -> list[Line]:
         head = cursor.varint()
         line.flags = head & 3
         sizes.append(head >> 2)
-    total = sum(sizes)
-    if total > 1 << 22:
-        raise PayloadError(f"{cursor.what}: too many points")
     if not lines:
         return lines
-    du, dv = cursor.planes(total), cursor.planes(total)
-    (u, v), at = corner, 0
-    for line, size in zip(lines, sizes, strict=True):
-        for i in range(at, at + size):
-            u, v = u + unzigzag(du[i]), v + unzigzag(dv[i])
-            line.points.append((u, v))
-        at += size
+    for line, points in zip(lines, lattice_points(cursor, sizes, corner), strict=True):
+        line.points = points
     return lines
 
 

@@ -1,0 +1,134 @@
+//! Hostile packages with a wrong section of spans.
+
+use crate::{payload::Section, pmtiles::put_varint};
+
+use super::{
+    case::{Case, Outcome, refused},
+    parts::{planes, raw_sections, zstd_section},
+    tile_cases::with_sections,
+};
+
+const SPANS: u16 = 13;
+
+/// The columns of a section: classes and ends, ways, lengths, points east and north, heights, triangles.
+const CODES: usize = 0;
+const WAYS: usize = 1;
+const LENGTHS: usize = 2;
+const EAST: usize = 3;
+const HEIGHTS: usize = 5;
+const TRIANGLES: usize = 6;
+
+/// A section of so many runs with these columns.
+fn section(runs: u64, columns: &[Vec<u8>]) -> Vec<u8> {
+    let mut raw = Vec::new();
+    put_varint(&mut raw, runs);
+    raw.extend(columns.concat());
+    raw
+}
+
+/// A column of so many numbers, each of so many bytes, which are all the same.
+fn column(width: u8, count: usize, byte: u8) -> Vec<u8> {
+    let mut column = Vec::new();
+    planes(&mut column, width, count, byte);
+    column
+}
+
+/// Columns of runs of class 0 that go east by a step a point, at a height of 0.
+fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
+    let mut columns = vec![vec![0]; 7];
+    let more = (points - 2).to_le_bytes();
+    columns[LENGTHS] = column(8, runs, 0);
+    for (plane, byte) in more.into_iter().enumerate() {
+        columns[LENGTHS][1 + plane * runs..=(plane + 1) * runs].fill(byte);
+    }
+    columns[EAST] = column(1, runs * points, 2);
+    columns
+}
+
+/// A package whose tile has ground and this section.
+fn beside_ground(raw: &[u8]) -> Vec<u8> {
+    // Short ones do not become smaller.
+    let spans = if raw.len() < 1000 {
+        Section::plain(SPANS, raw.to_vec())
+    } else {
+        zstd_section(SPANS, raw)
+    };
+    with_sections(&[Section::plain(1, raw_sections().swap_remove(0)), spans])
+}
+
+pub(crate) fn all() -> Vec<Case> {
+    let read = |name, runs: usize, points| {
+        let bytes = beside_ground(&section(runs as u64, &columns(runs, points)));
+        Case { name, bytes, outcome: Outcome::Read, limit_mib: 512 }
+    };
+    let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
+    // Two runs of three points with another column.
+    let with = |at: usize, column: Vec<u8>| {
+        let mut columns = columns(2, 3);
+        columns[at] = column;
+        beside_ground(&section(2, &columns))
+    };
+    // One of which the first point is on the ground: five heights and a triangle.
+    let on_ground = |triangle: &[u8]| {
+        let mut columns = columns(2, 3);
+        columns[CODES] = vec![1, 1, 0];
+        columns[TRIANGLES] = [&[triangle.len() as u8], triangle].concat();
+        beside_ground(&section(2, &columns))
+    };
+    let empty = |runs| beside_ground(&section(runs, &vec![vec![0]; 7]));
+    let whole = section(2, &columns(2, 3));
+    vec![
+        read("a million runs of two points", 1 << 20, 2),
+        read("four million points of a run", 1, 1 << 22),
+        refused("more runs than may be", empty((1 << 20) + 1), "number of runs"),
+        refused("2^64 - 1 runs", empty(u64::MAX), "number of runs"),
+        // Points take memory once their steps are known to have bytes.
+        limited(16, refused("a million runs, no bytes", empty(1 << 20), "segment without length")),
+        refused("runs of 2^64 points", with(LENGTHS, column(8, 2, 255)), "points of a section"),
+        refused(
+            "runs of a few points too many",
+            {
+                let mut columns = columns(1, 2);
+                columns[LENGTHS] = vec![3, 255, 255, 63];
+                beside_ground(&section(1, &columns))
+            },
+            "points of a section",
+        ),
+        refused("points beyond the bytes", with(LENGTHS, vec![2, 0, 0, 1, 1]), "end too early"),
+        refused("class 9", with(CODES, column(1, 2, 72)), "a class of runs"),
+        refused("class 2^61 - 1", with(CODES, column(8, 2, 255)), "a class of runs"),
+        refused("classes upside down", with(CODES, vec![1, 8, 0]), "runs are not sorted"),
+        refused("ways upside down", with(WAYS, column(1, 2, 1)), "runs are not sorted"),
+        refused("points in one place", with(EAST, column(0, 6, 0)), "segment without length"),
+        refused("a step of 0", with(EAST, vec![1, 2, 2, 0, 2, 2, 2]), "segment without length"),
+        refused("points at the end of the world", with(EAST, column(8, 6, 255)), "far away"),
+        refused("points a little too far", with(EAST, column(8, 6, 1)), "far away"),
+        refused("heights of 2^63", with(HEIGHTS, column(8, 6, 255)), "not valid: a height"),
+        refused("heights beyond 32 bits", with(HEIGHTS, column(4, 6, 254)), "not valid: a height"),
+        Case {
+            name: "a triangle that there is",
+            bytes: on_ground(&[29]),
+            outcome: Outcome::Read,
+            limit_mib: 4,
+        },
+        refused("a triangle too many", on_ground(&[30]), "a triangle under a run"),
+        refused("triangle 2^32", on_ground(&[0, 0, 0, 0, 1]), "a triangle under a run"),
+        refused(
+            "a triangle without its point",
+            with(TRIANGLES, vec![1, 3]),
+            "left over at the end",
+        ),
+        refused("nine planes", with(HEIGHTS, vec![9]), "more than eight byte planes"),
+        refused("spans cut short", beside_ground(&whole[..whole.len() - 1]), "end too early"),
+        refused(
+            "spans and a byte",
+            beside_ground(&[&whole[..], &[0]].concat()),
+            "left over at the end",
+        ),
+        refused(
+            "spans without ground",
+            with_sections(&[Section::plain(SPANS, whole)]),
+            "in a tile without ground",
+        ),
+    ]
+}

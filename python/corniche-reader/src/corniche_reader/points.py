@@ -1,0 +1,27 @@
+"""Points of lines, each as the difference to the one before (item 4 of section 6 of the format)."""
+
+from __future__ import annotations
+
+from .codes import Cursor, unzigzag
+from .errors import PayloadError
+from .mesh import Point
+
+#: All lines of a section together have no more points (section 11 of the format).
+MOST_POINTS = 1 << 22
+
+
+def lattice_points(cursor: Cursor, sizes: list[int], corner: Point) -> list[list[Point]]:
+    """The points of lines that have so many each; the first of all is relative to the tile's corner."""
+    total = sum(sizes)
+    if total > MOST_POINTS:
+        raise PayloadError(f"{cursor.what}: too many points")
+    du, dv = cursor.planes(total), cursor.planes(total)
+    (u, v), at, lines = corner, 0, []
+    for size in sizes:
+        points = []
+        for i in range(at, at + size):
+            u, v = u + unzigzag(du[i]), v + unzigzag(dv[i])
+            points.append((u, v))
+        lines.append(points)
+        at += size
+    return lines

@@ -1,0 +1,71 @@
+"""The spans section (kind 13 of the format): runs of bridges and tunnels that are off the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .codes import Cursor, unzigzag
+from .errors import PayloadError
+from .grid import Grid
+from .height import Ground
+from .points import lattice_points
+
+#: Section 11 of the format.
+MOST_RUNS, FARTHEST_STEPS, MOST_HEIGHT = 1 << 20, 1 << 55, 1 << 31
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of a bridge above the ground of its tile, or of a tunnel below it."""
+
+    way_id: int
+    road_class: int
+    #: `bridge` or `tunnel`.
+    structure: str
+    #: [x, y, z] of each vertex: working metres, and the height in metres, which is an estimate.
+    vertices: NDArray[np.float64]
+    #: Whether the first vertex, and the last, lies on the ground.
+    on_ground: tuple[bool, bool]
+
+
+def read_spans(data: bytes, ground: Ground, grid: Grid, tile: tuple[int, int, int]) -> list[Span]:
+    """Decodes the section of a tile with this ground."""
+    what = "spans of tile {}/{}/{}".format(*tile)
+    cursor = Cursor(data, what)
+    count = cursor.varint()
+    if count > MOST_RUNS:
+        raise PayloadError(f"{what}: too many runs")
+    codes, ways, sizes = (cursor.planes(count) for _ in range(3))
+    corner = grid.lattice_of_node(tile, 0, 0)
+    lines = lattice_points(cursor, [size + 2 for size in sizes], corner)
+    ends = [(bool(code & 1), bool(code & 2)) for code in codes]
+    on_ground = sum(map(sum, ends))
+    heights, triangles = cursor.planes(sum(map(len, lines)) - on_ground), cursor.planes(on_ground)
+    cursor.end()
+    steps, named = iter(heights), iter(triangles)
+    spans: list[Span] = []
+    way = height = 0
+    for code, way_step, points, (first, last) in zip(codes, ways, lines, ends, strict=True):
+        way = (way + unzigzag(way_step) + (1 << 63)) % (1 << 64) - (1 << 63)
+        if code >> 3 > 8 or (spans and (spans[-1].road_class, spans[-1].way_id) > (code >> 3, way)):
+            raise PayloadError(f"{what}: there is no such class, or runs are not sorted")
+        vertices = np.empty((len(points), 3))
+        for i, point in enumerate(points):
+            if i and point == points[i - 1] or max(abs(point[0] - corner[0]), abs(point[1] - corner[1])) > FARTHEST_STEPS:
+                raise PayloadError(f"{what}: a run has a point twice, or one far away")
+            if i == 0 and first or i == len(points) - 1 and last:
+                triangle = next(named)
+                if triangle >= len(ground.mesh.triangles):
+                    raise PayloadError(f"{what}: there is no triangle {triangle}")
+                vertices[i, 2] = ground.height_in(triangle, point)
+            else:
+                height += unzigzag(next(steps))
+                if not -MOST_HEIGHT <= height < MOST_HEIGHT:
+                    raise PayloadError(f"{what}: a height beyond 32 bits")
+                vertices[i, 2] = float(height) * grid.quantum_m
+            vertices[i, :2] = grid.working(*point)
+        spans.append(Span(way, code >> 3, "tunnel" if code & 4 else "bridge", vertices, (first, last)))
+    return spans
