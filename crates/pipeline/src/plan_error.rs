@@ -3,7 +3,7 @@
 use corniche_roads::FrcTableError;
 
 /// Version of a plan's JSON; other versions are refused.
-pub(crate) const PLAN_VERSION: u32 = 6;
+pub(crate) const PLAN_VERSION: u32 = 7;
 
 /// Why a text is no plan, or a plan cannot be used here.
 #[derive(Debug, thiserror::Error)]

@@ -37,6 +37,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         photo: ours.photo,
         areas: ours.areas.clone(),
         boundaries: ours.boundaries,
+        spans: ours.spans,
         ..package.clone()
     };
     // A polygon is the same under another name.
@@ -61,6 +62,7 @@ pub(crate) fn network_differences(ours: &SettingsRecord, package: &SettingsRecor
         simplify_cells: package.simplify_cells,
         areas: package.areas.clone(),
         boundaries: package.boundaries,
+        spans: package.spans,
         ..ours.clone()
     };
     differences_from(ours, &theirs)
