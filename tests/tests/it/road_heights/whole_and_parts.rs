@@ -17,7 +17,7 @@ fn a_package_built_in_parts_exports_the_bytes_of_the_whole() {
     }
     let [dem, osm] = pass_inputs();
     let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
-    let bound = ["--max-error", "5"];
+    let bound = ["--max-error", "10"];
     build_from([&dem, &osm], &whole, &[&bound[..], &["-q"]].concat());
     let built = built_in_subtrees(folder.path(), &[&inputs[..], &bound].concat(), 1);
     fs::write(&merged, built).unwrap();
@@ -26,13 +26,9 @@ fn a_package_built_in_parts_exports_the_bytes_of_the_whole() {
         succeed(export(package, what, &target, &[&["-O"], options].concat()));
         fs::read(target).unwrap()
     };
-    for (what, ending, options) in [
-        ("roads", "gpkg", &inputs[..]),
-        ("roads", "csv", &inputs[..2]),
-        ("roads", "fgb", &[]),
-        ("edges", "gpkg", &inputs),
-        ("edges", "csv", &inputs),
-    ] {
+    for (what, ending, options) in
+        [("roads", "gpkg", &inputs[..]), ("roads", "fgb", &[]), ("edges", "csv", &inputs)]
+    {
         let [one, other] =
             [&whole, &merged].map(|package| exported(package, what, ending, options));
         assert!(one == other && one.len() > 1000, "{what}, {ending}, {options:?}");
