@@ -68,10 +68,10 @@ fn to_text(
         count(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
         bytes(size),
-        some(summary.without_ground, "more are left out, without ground"),
+        some(summary.without_ground, "left out, without ground"),
         some(
             summary.without_ascent,
-            "have no ascent, because the ground ends, or nothing carries a bridge or a tunnel",
+            "without an ascent, because the ground ends, or nothing carries a bridge or a tunnel",
         ),
         facts(&args.vector, &summary.heights, manifest),
         summary.height_tolerance_m,
