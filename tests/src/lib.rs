@@ -342,20 +342,35 @@ pub fn build_from([dem, osm]: [&Path; 2], package: &Path, options: &[&str]) {
 /// When one of the commands fails.
 #[must_use]
 pub fn built_in_parts<S: AsRef<str>>(folder: &Path, inputs: &[S]) -> Vec<u8> {
+    built_in_subtrees(folder, inputs, 0)
+}
+
+/// The same, with a part for each subtree of a level.
+///
+/// # Panics
+/// When one of the commands fails.
+#[must_use]
+pub fn built_in_subtrees<S: AsRef<str>>(folder: &Path, inputs: &[S], level: u8) -> Vec<u8> {
     let succeed = |words: &[&str]| {
         let ran = corniche(words);
         assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+        ran.out
     };
     let [plan, store, merged] =
         ["plan.json", "store", "merged.pmtiles"].map(|name| folder.join(name));
     let (plan, store) = (text(&plan), text(&store));
     let inputs: Vec<&str> = inputs.iter().map(AsRef::as_ref).collect();
+    let subtrees = succeed(&[&["plan", "--subtrees", &level.to_string()], &inputs[..]].concat());
     succeed(&[&["plan", "-o", plan], &inputs[..]].concat());
     for step in ["hashes", "roads", "heights", "top", "tiles"] {
-        let subtree: &[&str] =
-            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
-        let words = ["part", plan, "-q", "--step", step];
-        succeed(&[&words[..], subtree, &["--store", store]].concat());
+        let words = ["part", plan, "-q", "--store", store, "--step", step];
+        if matches!(step, "heights" | "tiles") {
+            for subtree in subtrees.lines() {
+                succeed(&[&words[..], &["--subtree", subtree]].concat());
+            }
+        } else {
+            succeed(&words);
+        }
     }
     succeed(&["merge", plan, "-q", "-o", text(&merged), "--store", store]);
     fs::read(&merged).unwrap_or_else(|error| panic!("{}: {error}", merged.display()))

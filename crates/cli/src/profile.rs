@@ -70,7 +70,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }
-    messages::answer(&to_text(&found))?;
+    messages::answer(&to_text(&found, network.is_some()))?;
     Ok(ExitCode::Done)
 }
 
@@ -90,7 +90,8 @@ fn points(found: &Profile) -> impl Iterator<Item = &ProfilePoint> {
     found.parts.iter().flat_map(|part| &part.points)
 }
 
-fn to_text(found: &Profile) -> String {
+/// What a profile is; `has_network` says whether the roads of the extract were at hand.
+fn to_text(found: &Profile, has_network: bool) -> String {
     let heights = || points(found).map(|point| point.height_m);
     let [lowest, highest] =
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
@@ -117,18 +118,23 @@ fn to_text(found: &Profile) -> String {
             "         within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own"
         )
     };
-    if let Some((smooth, most_off_m)) = found.smooth {
+    let has_grades = found.on_structures_m < found.length_2d_m;
+    if let (Some((smooth, most_off_m)), true) = (found.smooth, has_grades) {
         text.push_str(&grades_text(&smooth, "50 m"));
         let _ = writeln!(
             text,
             "         of a smooth line, which is up to {most_off_m:.1} m from the ground; of the ground itself:"
         );
     }
-    text.push_str(&grades_text(&found.grades, "20 m"));
+    if has_grades {
+        text.push_str(&grades_text(&found.grades, "20 m"));
+    }
     if found.on_structures_m > 0.0 {
+        let hint = if has_network { "" } else { "; --dem with --osm estimates their own" };
+        let begin = if has_grades { "         without" } else { "Up, down not known of" };
         let _ = writeln!(
             text,
-            "         without {:.1} m of bridges and tunnels: heights there are those of the ground below or above",
+            "{begin} {:.1} m of bridges and tunnels: heights there are those of the ground below or above{hint}",
             found.on_structures_m
         );
     }

@@ -43,6 +43,8 @@ pub struct EdgesSummary {
     pub length_m: f64,
     /// What heights are, in words.
     pub heights: String,
+    /// How far heights are from the elevation files between vertices at most, metres; without bridges and tunnels.
+    pub height_tolerance_m: f64,
     /// The bridges and tunnels of the network.
     pub spans: SpanFacts,
 }
@@ -131,9 +133,9 @@ pub fn export_edges(
         without_ascent: 0,
         length_m: 0.0,
         heights: places.heights().to_owned(),
+        height_tolerance_m: 0.0,
         spans: SpanFacts::of(measured.decks()),
     };
-    let mut tolerance_m = 0.0_f64;
     let edges = Chains::of(network, Breaks::Junctions);
     observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
     // By both of their nodes, whichever way they were found by.
@@ -165,12 +167,12 @@ pub fn export_edges(
         let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
         let mut carried = Vec::new();
         for line in laid {
-            tolerance_m = tolerance_m.max(line.tolerance_m);
+            summary.height_tolerance_m = summary.height_tolerance_m.max(line.tolerance_m);
             carried.extend(places.carry(object, &line.vertices)?);
         }
         file.push(Record { values: values(&edge), shape: Shape::Lines(carried) })?;
     }
-    file.tell_heights(dem_heights(tolerance_m, true));
+    file.tell_heights(dem_heights(summary.height_tolerance_m, true));
     file.finish()?;
     observer.end(Stage::ExportFeatures);
     Ok(summary)

@@ -18,6 +18,21 @@ use crate::{
     vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
 };
 
+/// Looks whether lines with heights can be had from a package as they are asked for, before anything is read.
+///
+/// # Errors
+/// When the package has no such level, or the request cannot be met.
+pub fn check_lines_request(
+    package: &FilePackage,
+    level: Option<u8>,
+    (format, coordinates): (VectorFormat, Coordinates),
+) -> Result<(), ExportError> {
+    let classes: Vec<()> = Vec::new();
+    let request =
+        FeatureRequest { format, level, classes, bounds: None, coordinates, memory_bytes: 0 };
+    FeatureSource::new(package, &request, ShapeKind::Lines).map(drop)
+}
+
 /// A layer of a package on its way into a file: what is its own.
 pub(crate) trait Features {
     /// The classes of its objects.

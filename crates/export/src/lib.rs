@@ -81,6 +81,7 @@ pub use elevation::Elevation;
 pub use error::{CutError, ExportError};
 pub use feature::{HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
+pub use features::check_lines_request;
 pub use geotiff::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 pub use growth::{WayGrowth, growth_by_way};
 pub use lines::{LinesSummary, export_lines};

@@ -49,7 +49,7 @@ impl<'a> Places<'a> {
         let of_package = if known.is_some() {
             format!("{datum}, metres")
         } else {
-            format!("as in the package, metres (datum: {datum})")
+            format!("metres, datum of the package: {datum}")
         };
         let projection = || crs.projection(area).map(Box::new).map_err(crs_failed);
         let (target, wkt, heights) = match coordinates {

@@ -124,7 +124,7 @@ pub fn profile(
         tolerance_m = own.iter().map(|piece| piece.heights.tolerance_m).fold(tolerance_m, f64::max);
         of_ways.push(lines(&own));
     }
-    let parts = in_a_row(way_ids, of_ways);
+    let (legs, parts) = in_a_row(way_ids, of_ways);
     let mut smooth_ways = BTreeMap::new();
     if let (Some(elevation), Some(network)) = (heights.elevation, heights.network) {
         let mut nodes = DemNodes::new(elevation, &manifest.frame);
@@ -132,7 +132,7 @@ pub fn profile(
         let chains = MeasuredChains::measure(network, &places, &mut nodes, smoothing, observer)?;
         smooth_ways.extend(way_ids.iter().map(|&way_id| (way_id, chains.of_way(way_id))));
     }
-    Telling { level, places, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
+    Telling { level, places, legs, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
         .tell(parts, heights.elevation)
 }
 
@@ -152,9 +152,10 @@ pub fn profile_of_lines(
     let manifest = package.manifest();
     let places = Places::new(manifest, Coordinates::Package)?;
     let laid = laid_lines(package, lines, level, observer)?;
-    let numbered = (1..).zip(laid).flat_map(|(number, parts)| {
+    let legs = (1..).take(lines.len()).map(|way_id| Leg { way_id, is_turned: false }).collect();
+    let numbered = laid.into_iter().enumerate().flat_map(|(leg, parts)| {
         let of_line = move |part: Vec<Vertex>| -> ProfileLine {
-            part.into_iter().map(|vertex| (number, vertex)).collect()
+            part.into_iter().map(|vertex| (leg, vertex)).collect()
         };
         parts.into_iter().map(of_line)
     });
@@ -165,7 +166,7 @@ pub fn profile_of_lines(
     let tolerance_m = manifest.levels.get(usize::from(level));
     let tolerance_m = tolerance_m.map_or(0.0, |record| record.geometric_error_m);
     let (structures, smooth_ways) = (BTreeMap::new(), BTreeMap::new());
-    Telling { level, places, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
+    Telling { level, places, legs, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
         .tell(parts, elevation)
 }
 
@@ -173,10 +174,11 @@ pub fn profile_of_lines(
 struct Telling<'a> {
     level: u8,
     places: Places<'a>,
+    legs: Vec<Leg>,
     /// What carries each way.
     structures: BTreeMap<i64, Structure>,
-    /// Bridges and tunnels whose decks are known.
-    on_deck: BTreeSet<i64>,
+    /// Legs over bridges and through tunnels whose decks are known.
+    on_deck: BTreeSet<usize>,
     /// The smooth line of each way, where those of chains are known.
     smooth_ways: BTreeMap<i64, Vec<SmoothLine>>,
     /// How far the ground is from the elevation files at most, metres.
@@ -266,17 +268,17 @@ impl Telling<'_> {
         self.tolerance_m = 0.0;
         let mut laid_parts: Vec<ProfileLine> = Vec::new();
         for part in parts {
-            // Way by way, so that each vertex knows its own.
+            // Leg by leg, so that each vertex knows its own.
             let mut first = 0;
             while first + 1 < part.len() {
-                let way_id = part[first + 1].0;
-                let own = part[first + 1..].iter().take_while(|(of, _)| *of == way_id).count();
+                let leg = part[first + 1].0;
+                let own = part[first + 1..].iter().take_while(|(of, _)| *of == leg).count();
                 let run: Vec<Vertex> =
                     part[first..=first + own].iter().map(|(_, vertex)| *vertex).collect();
                 for DemLine { mut vertices, tolerance_m, .. } in lay(nodes, &run)? {
-                    if let Some(raised) = self.raised(way_id, &vertices) {
+                    if let Some(raised) = self.raised(leg, &vertices) {
                         vertices = raised;
-                        self.on_deck.insert(way_id);
+                        self.on_deck.insert(leg);
                     } else {
                         self.tolerance_m = self.tolerance_m.max(tolerance_m);
                     }
@@ -284,7 +286,7 @@ impl Telling<'_> {
                     let goes_on = |before: &&mut ProfileLine| {
                         before.last().map(|(_, vertex)| vertex.at) == begin
                     };
-                    let vertices = vertices.into_iter().map(|vertex| (way_id, vertex));
+                    let vertices = vertices.into_iter().map(|vertex| (leg, vertex));
                     match laid_parts.last_mut().filter(goes_on) {
                         Some(before) => before.extend(vertices.skip(1)),
                         None => laid_parts.push(vertices.collect()),
@@ -296,68 +298,59 @@ impl Telling<'_> {
         Ok(laid_parts)
     }
 
-    /// A line of a bridge or a tunnel on its deck, in whichever direction; `None` where it is none, or not known.
-    fn raised(&self, way_id: i64, ground: &[Vertex]) -> Option<Vec<Vertex>> {
-        let (structure, way) = (self.structure(way_id), self.smooth_ways.get(&way_id)?);
+    /// A line of a bridge or a tunnel on its deck; `None` where it is none, or not known.
+    fn raised(&self, leg: usize, ground: &[Vertex]) -> Option<Vec<Vertex>> {
+        let Leg { way_id, is_turned } = self.legs[leg];
+        let (structure, way) = (self.structure(leg), self.smooth_ways.get(&way_id)?);
         let most_steps = most_steps(self.places.manifest(), self.level);
         let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
-        let of = |ground: &[Vertex]| on_deck(structure, ground, (way, most_steps), &distance_m);
-        of(ground).or_else(|| {
-            let turned: Vec<Vertex> = ground.iter().rev().copied().collect();
-            of(&turned).map(|mut raised| {
-                raised.reverse();
-                raised
-            })
-        })
+        let ground = along_way(ground.iter().copied(), is_turned);
+        let raised = on_deck(structure, &ground, (way, most_steps), &distance_m)?;
+        Some(along_way(raised.into_iter(), is_turned))
     }
 
-    /// Whether heights along a way are its own.
-    fn is_measured(&self, way_id: i64) -> bool {
-        self.structure(way_id) == Structure::Ground || self.on_deck.contains(&way_id)
+    /// Whether heights along a leg are its own.
+    fn is_measured(&self, leg: usize) -> bool {
+        self.structure(leg) == Structure::Ground || self.on_deck.contains(&leg)
     }
 
-    fn structure(&self, way_id: i64) -> Structure {
-        self.structures.get(&way_id).copied().unwrap_or_default()
+    fn structure(&self, leg: usize) -> Structure {
+        self.structures.get(&self.legs[leg].way_id).copied().unwrap_or_default()
     }
 
-    /// The smooth line of some vertices of a way, where those of chains are known.
-    fn of_chains(&self, run: &[(i64, Vertex)], profile: &[[f64; 2]]) -> Option<SmoothLine> {
-        let way = self.smooth_ways.get(&run.last()?.0)?;
-        let mut vertices: Vec<Vertex> = run.iter().map(|(_, vertex)| *vertex).collect();
+    /// The smooth line of some vertices of a leg, where those of chains are known.
+    fn of_chains(&self, run: &[(usize, Vertex)], profile: &[[f64; 2]]) -> Option<SmoothLine> {
+        let Leg { way_id, is_turned } = self.legs[run.last()?.0];
+        let way = self.smooth_ways.get(&way_id)?;
         let [begin_m, end_m] = [profile.first()?[0], profile.last()?[0]];
-        let part = |stretch: [f64; 2]| {
-            let parts = way.iter().map(|line| line.part(stretch));
-            parts.max_by_key(|part| part.stations.len())
-        };
         let most_steps = most_steps(self.places.manifest(), self.level);
-        let length_m = end_m - begin_m;
-        if let Some(stretch) = stretch_of_way(way, &vertices, length_m, most_steps) {
-            let mut line = part(stretch)?;
-            line.stations.iter_mut().for_each(|station| station.along_m += begin_m - stretch[0]);
-            return Some(line);
+        let vertices = along_way(run.iter().map(|(_, vertex)| *vertex), is_turned);
+        let stretch = stretch_of_way(way, &vertices, end_m - begin_m, most_steps)?;
+        let parts = way.iter().map(|line| line.part(stretch));
+        let mut line = parts.max_by_key(|part| part.stations.len())?;
+        if is_turned {
+            line.stations.reverse();
         }
-        vertices.reverse();
-        let stretch = stretch_of_way(way, &vertices, length_m, most_steps)?;
-        let mut line = part(stretch)?;
-        line.stations.reverse();
         for station in &mut line.stations {
-            station.along_m = begin_m + stretch[1] - station.along_m;
+            let [from_m, to_m] = stretch;
+            let along_m = station.along_m;
+            station.along_m = begin_m + if is_turned { to_m - along_m } else { along_m - from_m };
         }
         Some(line)
     }
 
-    /// The vertices between which the heights of a part are its own, not those beneath a bridge or above a tunnel; way by way where smooth lines are those of ways. A segment
-    /// belongs to the way of its second vertex.
+    /// The vertices between which the heights of a part are its own, not those beneath a bridge or above a tunnel; leg by leg where smooth lines are those of ways. A segment
+    /// belongs to the leg of its second vertex.
     fn runs_on_ground(&self, part: &ProfileLine) -> Vec<Range<usize>> {
         let mut runs: Vec<Range<usize>> = Vec::new();
         for end in 1..part.len() {
             if !self.is_measured(part[end].0) {
                 continue;
             }
-            let is_of_same_way =
+            let is_of_same_leg =
                 self.smooth_ways.is_empty() || end < 2 || part[end - 1].0 == part[end].0;
             match runs.last_mut() {
-                Some(run) if run.end == end && is_of_same_way => run.end = end + 1,
+                Some(run) if run.end == end && is_of_same_leg => run.end = end + 1,
                 _ => runs.push(end - 1..end + 1),
             }
         }
@@ -376,22 +369,22 @@ impl Telling<'_> {
             let line = smooth.get(run)?;
             Some([line.height_m(along_m), line.grade(along_m)])
         };
-        let point = |(index, ((way_id, vertex), (at, grade)))| {
-            let (way_id, vertex): (&i64, &Vertex) = (way_id, vertex);
+        let point = |(index, ((leg, vertex), (at, grade)))| {
+            let (&leg, vertex): (&usize, &Vertex) = (leg, vertex);
             let &[along_m, height_m]: &[f64; 2] = at;
             ProfilePoint {
-                way_id: *way_id,
+                way_id: self.legs[leg].way_id,
                 distance_m: begin_m + along_m,
                 height_m,
                 grade,
                 position_deg: self.places.wgs84(vertex.at),
-                height_source: from.text(self.structure(*way_id), self.on_deck.contains(way_id)),
+                height_source: from.text(self.structure(leg), self.on_deck.contains(&leg)),
                 smooth: smooth_at(index, along_m),
             }
         };
         let measured = profile.iter().zip(grades(profile));
         part.iter()
-            .map(|(way_id, vertex)| (way_id, vertex))
+            .map(|(leg, vertex)| (leg, vertex))
             .zip(measured)
             .enumerate()
             .map(point)
@@ -417,16 +410,31 @@ fn pieces(
     Ok(pieces)
 }
 
-type ProfileLine = Vec<(i64, Vertex)>;
+/// A way as it is followed once, or a line of a file. A way may be followed again, also back at once.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    way_id: i64,
+    /// Whether it is followed against its direction.
+    is_turned: bool,
+}
+
+/// Vertices, each with the number of its leg.
+type ProfileLine = Vec<(usize, Vertex)>;
+
+/// Vertices of a leg in the direction of its way; or those of a way in the direction of its leg.
+fn along_way(vertices: impl DoubleEndedIterator<Item = Vertex>, is_turned: bool) -> Vec<Vertex> {
+    if is_turned { vertices.rev().collect() } else { vertices.collect() }
+}
 
 /// The lines of all ways in a row, turned so that they go on; those that meet become one part.
-fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
+fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileLine>) {
     let ends = |lines: &[Line]| -> [Option<[f64; 2]>; 2] {
         let first = lines.first().and_then(|line| line.vertices.first());
         let last = lines.last().and_then(|line| line.vertices.last());
         [first, last].map(|vertex| vertex.map(|vertex| vertex.at))
     };
     let all_ends: Vec<_> = of_ways.iter().map(|lines| ends(lines)).collect();
+    let mut legs = Vec::with_capacity(way_ids.len());
     let mut parts: Vec<ProfileLine> = Vec::new();
     let mut end: Option<[f64; 2]> = None;
     for (index, (&way_id, mut lines)) in way_ids.iter().zip(of_ways).enumerate() {
@@ -437,6 +445,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
             // The first way: its beginning is where the second one goes on.
             None => next.contains(&first) && !next.contains(&last) && first.is_some(),
         };
+        legs.push(Leg { way_id, is_turned });
         if is_turned {
             lines.reverse();
             for line in &mut lines {
@@ -446,7 +455,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
         for line in lines {
             let begin = line.vertices.first().map(|vertex| vertex.at);
             let goes_on = end.is_some() && begin == end;
-            let vertices = line.vertices.into_iter().map(|vertex| (way_id, vertex));
+            let vertices = line.vertices.into_iter().map(|vertex| (index, vertex));
             match parts.last_mut().filter(|_| goes_on) {
                 Some(part) => part.extend(vertices.skip(1)),
                 None => parts.push(vertices.collect()),
@@ -454,7 +463,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> Vec<ProfileLine> {
             end = parts.last().and_then(|part| part.last()).map(|(_, vertex)| vertex.at);
         }
     }
-    parts
+    (legs, parts)
 }
 
 /// Lines of which each begins where the one before ends are one part: also where a line ends at the end of the map and goes on at its other end.

@@ -17,17 +17,24 @@ fn ways_are_turned_so_that_they_go_on() {
     let first = vec![line(&[at(3.0), at(2.0), at(1.0)])];
     let second = vec![line(&[at(3.0), at(4.0)])];
     let third = vec![line(&[at(9.0), at(6.0), at(4.0)])];
-    let parts = in_a_row(&[1, 2, 3], vec![first.clone(), second, third]);
+    let (legs, parts) = in_a_row(&[11, 12, 13], vec![first.clone(), second, third]);
     assert_eq!(places(&parts), [[1.0, 2.0, 3.0, 4.0, 6.0, 9.0]]);
-    let ids: Vec<i64> = parts[0].iter().map(|(way_id, _)| *way_id).collect();
-    assert_eq!(ids, [1, 1, 1, 2, 3, 3]);
+    let numbers: Vec<usize> = parts[0].iter().map(|(leg, _)| *leg).collect();
+    assert_eq!(numbers, [0, 0, 0, 1, 2, 2]);
+    let legs: Vec<_> = legs.iter().map(|leg| (leg.way_id, leg.is_turned)).collect();
+    assert_eq!(legs, [(11, true), (12, false), (13, true)]);
     // Alone, a way keeps its direction; ways that do not meet are parts.
-    assert_eq!(places(&in_a_row(&[1], vec![first.clone()])), [[3.0, 2.0, 1.0]]);
-    let apart = in_a_row(&[1, 2], vec![first, vec![line(&[at(7.0), at(8.0)])]]);
+    assert_eq!(places(&in_a_row(&[1], vec![first.clone()]).1), [[3.0, 2.0, 1.0]]);
+    let (_, apart) = in_a_row(&[1, 2], vec![first.clone(), vec![line(&[at(7.0), at(8.0)])]]);
     assert_eq!(places(&apart), [vec![3.0, 2.0, 1.0], vec![7.0, 8.0]]);
+    // There and back: two legs of one way.
+    let (legs, back) = in_a_row(&[1, 1], vec![first.clone(), first]);
+    assert_eq!(places(&back), [[3.0, 2.0, 1.0, 2.0, 3.0]]);
+    assert_eq!(back[0].iter().map(|(leg, _)| *leg).collect::<Vec<_>>(), [0, 0, 0, 1, 1]);
+    assert_eq!([legs[0].is_turned, legs[1].is_turned], [false, true]);
     // A way with a gap is turned as a whole.
     let gap = vec![line(&[at(5.0), at(4.0)]), line(&[at(2.0), at(1.0)])];
-    let parts = in_a_row(&[1, 2], vec![vec![line(&[at(0.0), at(1.0)])], gap]);
+    let (_, parts) = in_a_row(&[1, 2], vec![vec![line(&[at(0.0), at(1.0)])], gap]);
     assert_eq!(places(&parts), [vec![0.0, 1.0, 2.0], vec![4.0, 5.0]]);
 }
 

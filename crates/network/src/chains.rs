@@ -31,7 +31,7 @@ pub struct Link {
 /// A sequence of stretches, from node to node.
 #[derive(Debug, Clone, Copy)]
 pub struct Chain<'a> {
-    /// Where it begins and where it ends. Of two different nodes the first has the smaller number.
+    /// Where it begins and where it ends. Of two different nodes the first has the smaller number; one that comes back to its node runs counterclockwise.
     pub ends: [NodeNumber; 2],
     /// Its stretches, in order; at least one.
     pub links: &'a [Link],
@@ -104,6 +104,14 @@ impl Chains {
                 _ => break node,
             }
         };
+        let start = self.starts.last().copied().unwrap_or_default();
+        if from == to && is_clockwise(network, &self.links[start..]) {
+            self.links[start..].reverse();
+            for (place, link) in (start..).zip(&mut self.links[start..]) {
+                link.is_against = !link.is_against;
+                self.places[link.stretch as usize] = place as u32;
+            }
+        }
         self.starts.push(self.links.len());
         self.ends.push([NodeNumber(from), NodeNumber(to)]);
     }
@@ -209,6 +217,24 @@ impl Network {
             points.extend(self.points_of_link(link).skip(usize::from(!points.is_empty())));
         }
         points
+    }
+}
+
+/// Whether links that come back to where they begin run clockwise: the same whichever way roads were drawn. Of those with no area inside, whether the
+/// other direction comes first in the order of points.
+fn is_clockwise(network: &Network, links: &[Link]) -> bool {
+    let points = || links.iter().flat_map(|&link| network.points_of_link(link));
+    let Some(from) = points().next() else { return false };
+    let off = |point: LatticePoint| [point.u - from.u, point.v - from.v].map(i128::from);
+    let mut twice_area = 0;
+    let mut before = [0; 2];
+    for here in points().map(off) {
+        twice_area += before[0] * here[1] - here[0] * before[1];
+        before = here;
+    }
+    match twice_area.signum() {
+        0 => links.iter().rev().flat_map(|&link| network.points_of_link(link).rev()).lt(points()),
+        sign => sign < 0,
     }
 }
 

@@ -76,6 +76,38 @@ fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
     }
 }
 
+/// Loops and rings run counterclockwise however they were drawn, with links whose places are known; those with no area inside are the same both ways.
+#[test]
+fn what_comes_back_runs_counterclockwise() {
+    // Nodes lie on a parabola: through ascending ids it turns to the left.
+    let shapes: [&[i64]; 4] = [&[1, 2, 3, 4, 1], &[1, 4, 5, 6, 9, 1], &[1, 2, 1], &[3, 2, 1, 2, 3]];
+    for shape in shapes {
+        let mut back = shape.to_vec();
+        back.reverse();
+        let found = [shape.to_vec(), back].map(|nodes| {
+            let network = network(&[road(1, &nodes, Structure::Ground)]);
+            let chains = Chains::of(&network, Breaks::Junctions);
+            for number in chains.numbers() {
+                for (index, &link) in chains.get(number).links.iter().enumerate() {
+                    assert_eq!(chains.of_link(link), (number, index));
+                }
+            }
+            let lines: Vec<Vec<i64>> = chains
+                .numbers()
+                .map(|number| {
+                    let points = network.points_of_chain(&chains.get(number));
+                    points.iter().map(|point| point.u / 1000).collect()
+                })
+                .collect();
+            lines
+        });
+        assert_eq!(found[0], found[1]);
+        if shape.len() > 4 && shape[0] == 1 {
+            assert_eq!(found[0], [shape]);
+        }
+    }
+}
+
 #[test]
 fn structures_are_chains_of_their_own_where_that_is_wanted() {
     let roads = [

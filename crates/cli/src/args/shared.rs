@@ -51,7 +51,7 @@ impl RecordedArgs {
 // The extracts that a package was made from.
 #[derive(Debug, Args)]
 pub(crate) struct ExtractArgs {
-    /// With --dem: the extracts the package was made from; grades are then those of lines from junction to junction
+    /// With --dem: the extracts the package was made from: grades are those of lines from junction to junction, bridges and tunnels get their own heights
     #[arg(long, value_name = "FILE", num_args = 1.., requires = "dem")]
     pub(crate) osm: Vec<PathBuf>,
     /// With --osm: the FRC table it was made with [default: the preset of the recorded name]

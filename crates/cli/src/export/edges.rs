@@ -24,6 +24,7 @@ pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
         extract: &args.extract,
         vector: &args.vector,
         cpu: &args.cpu,
+        level: None,
         usage,
     };
     let LinesExport { format, coordinates, package, output, elevation, network } =
@@ -57,14 +58,22 @@ fn to_text(
     size: u64,
 ) -> String {
     let count = |number| Digits::of_notes().count(number);
+    let some = |number, what: &str| match number {
+        0 => String::new(),
+        _ => format!("; {} {what}", count(number)),
+    };
     format!(
-        "{}: {} edges, {}, {}; {} more have no ground, {} no ascent (where the ground ends, or nothing carries a bridge or a tunnel)\n{}",
+        "{}: {} edges, {}, {}{}{}\n{}\nheights are those of the DEM, within {:.3} m between vertices",
         in_line(&args.vector.file.output.to_string_lossy()),
         count(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
         bytes(size),
-        count(summary.without_ground),
-        count(summary.without_ascent),
+        some(summary.without_ground, "left out, without ground"),
+        some(
+            summary.without_ascent,
+            "without an ascent, because the ground ends, or nothing carries a bridge or a tunnel",
+        ),
         facts(&args.vector, &summary.heights, manifest),
+        summary.height_tolerance_m,
     ) + &spans_text(&summary.spans)
 }

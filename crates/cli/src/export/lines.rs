@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_export::{Coordinates, VectorFormat};
+use corniche_export::{Coordinates, VectorFormat, check_lines_request};
 use corniche_network::Network;
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
@@ -22,6 +22,7 @@ pub(crate) struct LinesArgs<'a> {
     pub(crate) extract: &'a ExtractArgs,
     pub(crate) vector: &'a VectorArgs,
     pub(crate) cpu: &'a ThreadsArg,
+    pub(crate) level: Option<u8>,
     /// How to name the package.
     pub(crate) usage: &'a str,
 }
@@ -37,13 +38,14 @@ pub(crate) struct LinesExport {
 }
 
 impl LinesExport {
-    /// Opens the inputs and begins the file, whose layer is called `layer`. An unusable place is reported before any work is done.
+    /// Opens the inputs and begins the file, whose layer is called `layer`. An unusable place, and what cannot be met, is reported before any work is done.
     pub(crate) fn begin(args: &LinesArgs<'_>, layer: &str) -> Result<Self, Failure> {
-        let LinesArgs { from, extract, vector, cpu, usage } = args;
+        let LinesArgs { from, extract, vector, cpu, level, usage } = args;
         let format = format(vector.format, &vector.file.output)?;
         let coordinates = coordinates(vector)?;
         let (place, [dem, osm]) = from.files(&extract.osm, usage)?;
         let package = packages::open_with_datum(&place, &vector.datum)?;
+        check_lines_request(&package, *level, (format, coordinates))?;
         let files = dem.iter().chain(&osm).map(PathBuf::as_path);
         let inputs: Vec<&Path> = [place.name()].into_iter().chain(files).collect();
         let name = format!("{layer}.{}", format.ending());

@@ -22,6 +22,7 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         extract: &args.extract,
         vector: &args.vector,
         cpu: &args.cpu,
+        level: args.at.level,
         usage: "corniche export roads PACKAGE -o FILE --dem FILE...",
     };
     let LinesExport { format, coordinates, package, output, elevation, network } =
