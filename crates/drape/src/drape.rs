@@ -18,6 +18,8 @@ const STEPS_OF_VERTEX: usize = 32;
 pub struct Drape {
     /// The parts over ground, in order.
     pub lines: Vec<DrapedLine>,
+    /// For each of them the segment on which it begins; of one that begins at a point it is the segment that comes to the point, if there is one.
+    pub starts: Vec<usize>,
     /// What lies over no ground, in order.
     pub gaps: Vec<Gap>,
 }
@@ -55,7 +57,8 @@ pub fn drape_within(line: &Polyline, surface: &Surface, work: &Work) -> Result<D
     let points = line.points();
     let room = 2 * points.len();
     let drape = Drape::default();
-    let mut walk = Walk { surface, drape, segment: 0, part: None, room, near: Vec::new(), work };
+    let mut walk =
+        Walk { surface, drape, segment: 0, begun: 0, part: None, room, near: Vec::new(), work };
     let mut place = PlaceOnTin::of(points[0], surface);
     walk.arrive(points[0], place);
     for (segment, pair) in points.windows(2).enumerate() {
@@ -72,6 +75,8 @@ struct Walk<'a> {
     drape: Drape,
     /// The segment being followed.
     segment: usize,
+    /// The segment on which the part began.
+    begun: usize,
     /// The part being laid, while on ground.
     part: Option<DrapedLine>,
     /// Vertices that the first part is made for; it may get more.
@@ -139,6 +144,7 @@ impl Walk<'_> {
                             (DrapedVertex::Vertex { vertex }, ray.leave_vertex(vertex))
                         }
                     };
+                    self.begun = self.segment;
                     self.part = Some(DrapedLine {
                         lead_in: Some(p),
                         vertices: vec![first],
@@ -198,6 +204,9 @@ impl Walk<'_> {
     #[inline]
     fn push(&mut self, vertex: DrapedVertex) {
         self.work.add(STEPS_OF_VERTEX);
+        if self.part.is_none() {
+            self.begun = self.segment;
+        }
         self.part
             .get_or_insert_with(|| DrapedLine {
                 lead_in: None,
@@ -218,6 +227,7 @@ impl Walk<'_> {
         }
         if part.vertices.len() >= 2 {
             self.drape.lines.push(part);
+            self.drape.starts.push(self.begun);
         }
     }
 }

@@ -64,6 +64,16 @@ impl<'a> TrueLengths<'a> {
     }
 }
 
+/// Where each segment of a line begins along a road, micrometres, the first one at `from_um`.
+pub(crate) fn starts_um(from_um: u64, segments_um: &[u64]) -> Vec<u64> {
+    let next = |along_um: &mut u64, length_um: &u64| {
+        let from_um = *along_um;
+        *along_um += length_um;
+        Some(from_um)
+    };
+    segments_um.iter().scan(from_um, next).collect()
+}
+
 /// How far along a segment from p to q a point on it lies, as a share of the segment: 0 at p, 1 at q, and the same from
 /// whichever tile it is asked.
 pub(crate) fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {

@@ -24,4 +24,4 @@ pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
 pub use grade_limit::grade_limit;
 pub use road::{Form, FunctionalRoadClass, Oneway, OwnWidth, Road, RoadAttributes, Structure};
-pub use simplify::simplify;
+pub use simplify::{kept_points, simplify};

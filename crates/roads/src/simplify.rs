@@ -21,11 +21,24 @@ use crate::Road;
 /// on the direction of the way. `geo`'s implementation promises neither of the last two; tests compare with it elsewhere.
 #[must_use]
 pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
+    let kept = kept_points(road, tolerance_steps);
+    let points = road.line.points();
+    if kept.len() == points.len() {
+        return road.line.clone();
+    }
+    // A polyline has two different neighbours somewhere; each stretch keeps one such pair if it has one.
+    let kept = kept.into_iter().map(|index| points[index]).collect();
+    Polyline::new(kept).unwrap_or_else(|_| road.line.clone())
+}
+
+/// The indices of the points that [`simplify`] keeps, ascending.
+#[must_use]
+pub fn kept_points(road: &Road, tolerance_steps: f64) -> Vec<usize> {
     // With this comparison NaN keeps every point, too.
     let reduces = tolerance_steps > 0.0;
     let points = road.line.points();
     if !reduces || points.len() <= 2 {
-        return road.line.clone();
+        return (0..points.len()).collect();
     }
     let last = points.len() - 1;
     let mut keep = vec![false; points.len()];
@@ -43,10 +56,7 @@ pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
             start = end;
         }
     }
-    let kept =
-        points.iter().zip(&keep).filter(|&(_, &keep)| keep).map(|(&point, _)| point).collect();
-    // A polyline has two different neighbours somewhere; each stretch keeps one such pair if it has one.
-    Polyline::new(kept).unwrap_or_else(|_| road.line.clone())
+    (0..points.len()).filter(|&index| keep[index]).collect()
 }
 
 /// Marks the points of `points[first..=last]` that stay, its ends being kept already.

@@ -1,5 +1,7 @@
 //! The heights of decks and tunnels.
 
+use std::sync::Arc;
+
 use corniche_network::{ChainNumber, NodeNumber};
 
 use crate::{
@@ -36,7 +38,7 @@ pub struct FreeHeight {
 /// How high bridges and tunnels are.
 #[derive(Debug)]
 pub struct Decks {
-    spans: Spans,
+    spans: Arc<Spans>,
     /// The height of each joint, NaN where it is not known.
     joints_m: Vec<f64>,
     /// The tents on each edge.
@@ -59,7 +61,7 @@ impl Decks {
     /// bridges are lifted and tunnels lowered until there is a metre between them and what they cross, with flanks no steeper than roads of that
     /// kind are built, less what the span itself has, and 2 % at least; 0.3 m are always made.
     #[must_use]
-    pub fn solve(spans: Spans, crossings: &[Crossing], grounds_m: &[Option<f64>]) -> Self {
+    pub fn solve(spans: Arc<Spans>, crossings: &[Crossing], grounds_m: &[Option<f64>]) -> Self {
         let (of_joints_m, of_crossings_m) = grounds_m.split_at(spans.joints.len());
         let mut problems = spans.problems();
         let held = |(number, (joint, own_m)): (usize, (&Joint, &Option<f64>))| {
@@ -97,7 +99,7 @@ impl Decks {
         Self {
             joints_m: solved(&self.spans, &held_m),
             tents: self.tents.clone(),
-            spans: self.spans.clone(),
+            spans: Arc::clone(&self.spans),
             free_heights: Vec::new(),
             problems: Vec::new(),
         }

@@ -23,7 +23,7 @@ fn solved<T>(
     let places = Decks::places(&spans, &crossings);
     let grounds_m: Vec<Option<f64>> =
         places.map(|at| ground_m(at.map(|part| part / 1000.0))).collect();
-    let decks = Decks::solve(spans, &crossings, &grounds_m);
+    let decks = Decks::solve(spans.into(), &crossings, &grounds_m);
     test(&decks, &network, &chains)
 }
 

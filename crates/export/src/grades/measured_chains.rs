@@ -3,6 +3,7 @@
 use std::{
     collections::{HashMap, HashSet},
     ops::Range,
+    sync::Arc,
 };
 
 use corniche_geom::{IndexLists, LatticePoint};
@@ -101,7 +102,7 @@ impl<'a> MeasuredChains<'a> {
                 grounds_m[place] = nodes.height_m(wanted[place])?;
             }
         }
-        let decks = Decks::solve(spans, &crossings, &grounds_m);
+        let decks = Decks::solve(Arc::new(spans), &crossings, &grounds_m);
         let mut measured = Self {
             network,
             places,

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::pieces::{RoadPiece, Run, TilePieces};
 use crate::levels::Levels;
-use crate::spans::ground_lines::{self, GroundLine};
-use crate::true_lengths::{gaps_um, pieces_um};
+use crate::spans::ground_lines::{GroundLine, PartOfRun, line_of};
+use crate::true_lengths::{gaps_um, pieces_um, starts_um};
 
 /// Sums over the roads of a class on a level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -160,6 +160,8 @@ impl Laid {
         let [next_part, _] = self.parts.entry(road.way_id).or_default();
         let mut fate = RoadFate::default();
         for run in &road.runs {
+            let starts_um =
+                if is_span { starts_um(run.from_um, &run.segments_um) } else { Vec::new() };
             for part in corniche_drape::clip_parts_within(&run.line, &bounds, owned, &within) {
                 let draped = corniche_drape::drape(&part.line, surface);
                 if is_finest {
@@ -170,16 +172,11 @@ impl Laid {
                     fate.merge(&RoadFate { kept_um: all_um - void_um, void_um });
                 }
                 if is_span {
-                    let mut after = 0;
-                    let own = draped.lines.iter().filter_map(|line| {
-                        ground_lines::line_of(
-                            (ordinal, road),
-                            (run, &part),
-                            (line, surface),
-                            &mut after,
-                        )
-                    });
-                    self.ground_lines.extend(own);
+                    let own = PartOfRun { run, starts_um: &starts_um, part: &part };
+                    let lines = draped.lines.iter().zip(draped.starts.iter().copied());
+                    self.ground_lines.extend(
+                        lines.filter_map(|line| line_of((ordinal, road), &own, line, surface)),
+                    );
                 }
                 for line in draped.lines {
                     let (way_id, class, part) = (road.way_id, road.class, *next_part);

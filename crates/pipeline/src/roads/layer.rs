@@ -23,7 +23,7 @@ use crate::{
     spans::near_roads,
 };
 
-/// Roads are near a node of a bridge or a tunnel within this, in working metres: their directions there count.
+/// Roads are near a node of a bridge or a tunnel within this, in true metres: their directions there count.
 const NEAR_M: f64 = 20.0;
 
 /// Roads as they come in.
@@ -35,6 +35,8 @@ pub(crate) struct RoadLayer<'a> {
     pieces: PartsByTile<'a, u32>,
     /// The finest tiles with bridges or tunnels, by their place in the package, where these become spans.
     span_tiles: BTreeSet<u64>,
+    /// Pairs of nodes that lie at one place.
+    same_places: Vec<[i64; 2]>,
 }
 
 impl<'a> RoadLayer<'a> {
@@ -53,6 +55,7 @@ impl<'a> RoadLayer<'a> {
             lengths: LengthsWriter::new(store),
             pieces: PartsByTile::new(scratch, memory_bytes),
             span_tiles: BTreeSet::new(),
+            same_places: Vec::new(),
         }
     }
 }
@@ -98,6 +101,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
             self.totals.bounds = Some([all.min, all.max]);
         }
         self.span_tiles.extend(&road.span_tiles);
+        self.same_places.extend(&road.same_places);
         self.lengths.push(road.length)?;
         pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
     }
@@ -119,8 +123,9 @@ impl<'a> TileLayer for RoadLayer<'a> {
             |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
         )?;
         if self.splitting.spans {
-            let reach = NEAR_M / self.splitting.levels.frame().lattice_step_m();
-            near_roads::keep(&self.span_tiles, self.store, reach, told.pool)?;
+            let reach = self.splitting.levels.steps_of_true(NEAR_M);
+            let spans = (&self.span_tiles, &self.same_places[..]);
+            near_roads::keep(spans, self.store, reach, told.pool)?;
         }
         Ok((self.totals, summary))
     }

@@ -184,10 +184,13 @@ impl Run {
             segments_um.push(rest.unsigned()?);
         }
         let from_um = rest.unsigned()?;
-        let mut nodes = Vec::with_capacity(rest.count()?);
-        for _ in 0..nodes.capacity() {
+        let of_nodes = rest.count()?;
+        let mut nodes = Vec::with_capacity(of_nodes);
+        for _ in 0..of_nodes {
             nodes.push((u32::try_from(rest.unsigned()?).ok()?, rest.signed()?));
         }
+        let mut lengths_um = segments_um.iter();
+        lengths_um.try_fold(from_um, |sum: u64, length_um| sum.checked_add(*length_um))?;
         let line = Polyline::new(points).ok()?;
         // Equal neighbours would have been merged: a run has none.
         let is_whole = line.points().len() == count && (lengths == 0 || lengths == count - 1);

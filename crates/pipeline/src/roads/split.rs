@@ -14,7 +14,7 @@ use super::{
 use crate::layers::fixed_points::road_of_part;
 use crate::levels::Levels;
 use crate::tiles_near::for_each_tile_near;
-use crate::true_lengths::{TrueLengths, pieces_um};
+use crate::true_lengths::{TrueLengths, pieces_um, starts_um};
 
 /// What splitting needs.
 pub(crate) struct RoadSplitting<'a> {
@@ -41,6 +41,8 @@ pub(crate) struct SplitRoad {
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
     /// The finest of these tiles, by their place in the package, if it is a bridge or a tunnel that becomes a span.
     pub(crate) span_tiles: Vec<u64>,
+    /// Pairs of its nodes that lie at one place, where spans are wanted.
+    pub(crate) same_places: Vec<[i64; 2]>,
 }
 
 impl RoadSplitting<'_> {
@@ -79,6 +81,7 @@ impl RoadSplitting<'_> {
         let of_spans = pieces.iter().filter(|(id, _)| is_span && id.z() == finest);
         SplitRoad {
             span_tiles: of_spans.map(|(id, _)| pmtiles_order(*id)).collect(),
+            same_places: if self.spans { road.same_places.clone() } else { Vec::new() },
             length: RoadLength {
                 way_id: road.way_id,
                 length_um,
@@ -206,8 +209,8 @@ struct LevelLine<'p> {
     line: Polyline,
     /// True lengths of its segments on the finest level, and of bridges and tunnels where they become spans; else empty.
     segments_um: Cow<'p, [u64]>,
-    /// How far along the road it begins.
-    from_um: u64,
+    /// How far along the road each segment begins; empty where no spans are wanted.
+    starts_um: Vec<u64>,
     /// Its nodes at which other roads may join, by the index of their point; on the finest level alone.
     nodes: Vec<(usize, i64)>,
     source: PointsByTile,
@@ -223,14 +226,18 @@ impl<'p> LevelLine<'p> {
         let is_span = spans && road.attributes.structure != Structure::Ground;
         let segments_um = match (is_finest, is_span) {
             (true, _) => Cow::Borrowed(&part.segments_um[..]),
-            (false, true) => Cow::Owned(simplified_um(&road.line, &part.segments_um, &line)),
+            (false, true) => {
+                let kept =
+                    corniche_roads::kept_points(road, levels.simplify_tolerance_steps(level));
+                Cow::Owned(simplified_um(&road.line, &part.segments_um, &kept))
+            }
             (false, false) => Cow::Borrowed(&[][..]),
         };
         let nodes = road.fixed.iter().zip(&road.node_ids);
         let nodes = nodes.filter(|_| spans && is_finest);
         Self {
+            starts_um: if spans { starts_um(part.from_um, &segments_um) } else { Vec::new() },
             segments_um,
-            from_um: part.from_um,
             nodes: nodes.filter_map(|(&at, id)| Some((at as usize, (*id)?))).collect(),
             source: PointsByTile::of(&road.line, level, levels),
             simplified: PointsByTile::of(&line, level, levels),
@@ -242,33 +249,33 @@ impl<'p> LevelLine<'p> {
     fn run(&self, [first, last]: [usize; 2]) -> Option<Run> {
         let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
         let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
-        let before_um: u64 = self.segments_um.iter().take(first).sum();
-        let is_own = |(at, _): &&(usize, i64)| (first..=last + 1).contains(at);
-        let nodes = self.nodes.iter().filter(is_own);
+        let [from, to] =
+            [first, last + 2].map(|end| self.nodes.partition_point(|(at, _)| *at < end));
+        let nodes = self.nodes[from..to].iter();
         Some(Run {
             line,
-            from_um: if segments_um.is_empty() { 0 } else { self.from_um + before_um },
+            from_um: self.starts_um.get(first).copied().unwrap_or_default(),
             segments_um,
             nodes: nodes.map(|&(at, id)| ((at - first) as u32, id)).collect(),
         })
     }
 }
 
-/// The lengths of a line between the points that its simplification keeps.
-fn simplified_um(line: &Polyline, segments_um: &[u64], simplified: &Polyline) -> Vec<u64> {
-    let mut lengths = line.points()[1..].iter().zip(segments_um);
-    let length = |to: &LatticePoint| {
-        let mut sum_um = 0;
-        for (point, segment_um) in lengths.by_ref() {
-            sum_um += segment_um;
-            // Places that a line visits twice are kept, so the first one is the right one.
-            if point == to {
-                break;
-            }
+/// The lengths of a line between the points that its simplification keeps, of which equal neighbours are one.
+fn simplified_um(line: &Polyline, segments_um: &[u64], kept: &[usize]) -> Vec<u64> {
+    let points = line.points();
+    let mut lengths_um = Vec::with_capacity(kept.len());
+    let mut before_um = 0;
+    for [from, to] in kept.array_windows() {
+        before_um += segments_um[*from..*to].iter().sum::<u64>();
+        if points[*from] != points[*to] {
+            lengths_um.push(std::mem::take(&mut before_um));
         }
-        sum_um
-    };
-    simplified.points()[1..].iter().map(length).collect()
+    }
+    if let Some(last_um) = lengths_um.last_mut() {
+        *last_um += before_um;
+    }
+    lengths_um
 }
 
 /// How many of a line's points belong to each tile of a level: each point belongs to one tile at most.

@@ -3,6 +3,7 @@
 use corniche_drape::{ClippedPart, DrapedLine, DrapedVertex, positions};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_spans::SpanKind;
 use corniche_store::Artifacts;
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
@@ -21,7 +22,7 @@ pub(crate) struct GroundLine {
     pub(crate) ordinal: u32,
     pub(crate) way_id: i64,
     pub(crate) class: FunctionalRoadClass,
-    /// Whether it is a tunnel, or a bridge.
+    /// Whether it is a tunnel; else it is a bridge.
     pub(crate) is_tunnel: bool,
     /// In the direction of the way; two at least.
     pub(crate) vertices: Vec<GroundVertex>,
@@ -33,6 +34,8 @@ pub(crate) struct GroundVertex {
     pub(crate) at: LatticePoint,
     /// The triangle of the tile that gives it its height.
     pub(crate) triangle: u32,
+    /// The triangle beneath the line to the next vertex.
+    pub(crate) next_triangle: u32,
     pub(crate) height_m: f64,
     /// How far along its road it is, micrometres.
     pub(crate) along_um: u64,
@@ -41,6 +44,10 @@ pub(crate) struct GroundVertex {
 }
 
 impl GroundLine {
+    pub(crate) fn kind(&self) -> SpanKind {
+        if self.is_tunnel { SpanKind::Tunnel } else { SpanKind::Bridge }
+    }
+
     pub(crate) fn structure(&self) -> Structure {
         if self.is_tunnel { Structure::Tunnel } else { Structure::Bridge }
     }
@@ -58,20 +65,23 @@ impl GroundLine {
     }
 }
 
-/// The line of a part of a run that is laid on the ground; `None` where less than two vertices have a place on the lattice. `after` is the point of
-/// the part after which it goes on: lines come in their order.
+/// A part of a run of a bridge or a tunnel, and where each segment of the run begins along its road.
+pub(crate) struct PartOfRun<'a> {
+    pub(crate) run: &'a Run,
+    pub(crate) starts_um: &'a [u64],
+    pub(crate) part: &'a ClippedPart,
+}
+
+/// A line of a part that is laid on the ground and begins on segment `begun` of it; `None` where less than two vertices have a place on the lattice.
 pub(crate) fn line_of(
     (ordinal, road): (u32, &RoadPiece),
-    (run, part): (&Run, &ClippedPart),
-    (line, surface): (&DrapedLine, &Surface),
-    after: &mut usize,
+    PartOfRun { run, starts_um, part }: &PartOfRun<'_>,
+    (line, begun): (&DrapedLine, usize),
+    surface: &Surface,
 ) -> Option<GroundLine> {
     let points = part.line.points();
-    let first = line.lead_in.or(match line.vertices.first() {
-        Some(DrapedVertex::Source { point, .. }) => Some(*point),
-        _ => None,
-    })?;
-    *after += points[*after..].iter().position(|point| *point == first)?;
+    // The point of the part that was passed last.
+    let mut passed = begun;
     let mut vertices: Vec<GroundVertex> = Vec::with_capacity(line.vertices.len());
     for (vertex, position) in line.vertices.iter().zip(positions(line, surface).ok()?) {
         let at = match vertex {
@@ -79,26 +89,31 @@ pub(crate) fn line_of(
             _ => LatticePoint::new(position[0].round() as i64, position[1].round() as i64),
         };
         let is_source = matches!(vertex, DrapedVertex::Source { .. });
-        if is_source && points.get(*after + 1) == Some(&at) {
-            *after += 1;
+        // A point ends the segment that comes to it; only the first point of the part has none.
+        let segment = passed.min(part.segments.len().checked_sub(1)?);
+        if is_source && points.get(passed + 1) == Some(&at) {
+            passed += 1;
         }
-        // A vertex at a point belongs to the segment before it, but for the first one.
-        let segment = match points.get(*after) {
-            Some(point) if is_source && *point == at && *after > 0 => *after - 1,
-            _ => *after,
-        };
         let of_run = *part.segments.get(segment)?;
         let ends = [run.line.points()[of_run], run.line.points()[of_run + 1]];
-        let before_um: u64 = run.segments_um.iter().take(of_run).sum();
-        let own_um = cut_um(share(ends, at), run.segments_um[of_run]);
+        let own_um = cut_um(share(ends, at), *run.segments_um.get(of_run)?);
+        let along_um = starts_um[of_run] + own_um;
         // Which triangle it is must not depend on where the line comes from.
         let Some(triangle) = surface.locate(at) else { continue };
-        let along_um = run.from_um + before_um + own_um;
-        if vertices.last().is_some_and(|last| last.at == at || last.along_um >= along_um) {
+        let is_behind = |last: &mut GroundVertex| last.at == at || last.along_um >= along_um;
+        if is_source {
+            // Edges of the TIN that are less than a step before a point are crossed at the point.
+            while vertices.pop_if(is_behind).is_some() {}
+        } else if vertices.last_mut().is_some_and(is_behind) {
             continue;
         }
         let height_m = surface.height_at_point_m(triangle, at);
-        vertices.push(GroundVertex { at, triangle, height_m, along_um, is_source });
+        if let Some(last) = vertices.last_mut() {
+            last.next_triangle = surface.locate(between([last.at, at], 0.5)).unwrap_or(triangle);
+        }
+        let next_triangle = triangle;
+        let vertex = GroundVertex { at, triangle, next_triangle, height_m, along_um, is_source };
+        vertices.push(vertex);
     }
     (vertices.len() >= 2).then(|| GroundLine {
         ordinal,
@@ -107,6 +122,13 @@ pub(crate) fn line_of(
         is_tunnel: road.attributes.structure == Structure::Tunnel,
         vertices,
     })
+}
+
+/// The lattice point at a share of the way from one point to another.
+pub(crate) fn between(ends: [LatticePoint; 2], share: f64) -> LatticePoint {
+    let [from, to] = ends.map(LatticePoint::in_steps);
+    let mix = |axis: usize| (from[axis] + share * (to[axis] - from[axis])).round() as i64;
+    LatticePoint::new(mix(0), mix(1))
 }
 
 /// Keeps the lines of a tile, if it has any.

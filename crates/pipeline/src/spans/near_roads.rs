@@ -38,6 +38,8 @@ pub(crate) struct NearRoad {
     pub(crate) segments_um: Vec<u64>,
     /// Its nodes at which roads may join: which points they are, and their ids.
     nodes: Vec<(u32, i64)>,
+    /// Pairs of nodes that lie at one place; all are told by the first road.
+    same_places: Vec<[i64; 2]>,
 }
 
 impl NearRoad {
@@ -58,14 +60,13 @@ impl NearRoad {
             line: Polyline::new(self.points.clone()).ok()?,
             fixed: stops.keys().copied().collect(),
             node_ids: stops.values().copied().collect(),
-            same_places: Vec::new(),
+            same_places: self.same_places.clone(),
         })
     }
 }
 
-/// A segment of a road, by where along the road it begins.
+/// A segment of a road.
 struct Segment {
-    to_um: u64,
     ends: [LatticePoint; 2],
     nodes: [Option<i64>; 2],
 }
@@ -73,13 +74,14 @@ struct Segment {
 /// What was found of a road.
 struct Found {
     road: RoadPiece,
-    segments: BTreeMap<u64, Segment>,
+    /// By where along the road they begin and end.
+    segments: BTreeMap<[u64; 2], Segment>,
 }
 
 /// Gathers the roads near all bridges and tunnels from the finest tiles with such, and keeps them. What lies within `reach` lattice steps of a
 /// node of theirs is near.
 pub(crate) fn keep(
-    tiles: &BTreeSet<u64>,
+    (tiles, same_places): (&BTreeSet<u64>, &[[i64; 2]]),
     store: &dyn Artifacts,
     reach: f64,
     pool: &rayon::ThreadPool,
@@ -96,8 +98,11 @@ pub(crate) fn keep(
             }
         }
     }
-    let roads: Vec<NearRoad> =
+    let mut roads: Vec<NearRoad> =
         all.into_iter().flat_map(|(ordinal, found)| joined(ordinal, &found)).collect();
+    if let Some(first) = roads.first_mut() {
+        first.same_places = same_places.to_vec();
+    }
     let mut blocks = roads.chunks(BLOCK_ROADS);
     for block in 0.. {
         let own = blocks.next().unwrap_or_default();
@@ -129,30 +134,30 @@ pub(crate) fn load(store: &dyn Artifacts) -> Result<Vec<NearRoad>, BuildError> {
 fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Found)>, BuildError> {
     let id = artifacts::tile_of(Kind::RoadPieces.item(tile))?;
     let pieces = TilePieces::load(store, id)?;
-    let all: Vec<(u32, Found)> =
-        pieces.roads.into_iter().map(|(ordinal, road)| (ordinal, Found::of(road))).collect();
-    let is_span = |found: &Found| found.road.attributes.structure != Structure::Ground;
-    let of_spans = || all.iter().filter(|(_, found)| is_span(found)).map(|(_, found)| found);
-    let segments = || of_spans().flat_map(|found| found.segments.values());
+    let (of_spans, others): (Vec<_>, Vec<_>) = pieces
+        .roads
+        .into_iter()
+        .partition(|(_, road)| road.attributes.structure != Structure::Ground);
+    let of_spans: Vec<(u32, Found)> =
+        of_spans.into_iter().map(|(ordinal, road)| (ordinal, Found::of(road, |_| true))).collect();
+    let segments = || of_spans.iter().flat_map(|(_, found)| found.segments.values());
     let nodes = segments().flat_map(|segment| {
         let both = segment.ends.into_iter().zip(segment.nodes);
         both.filter_map(|(at, node)| node.map(|_| at))
     });
     let near = Vicinity::new(segments().map(|segment| segment.ends), nodes, reach);
-    let mut kept = Vec::new();
-    for (ordinal, mut found) in all {
-        if !is_span(&found) {
-            found.segments.retain(|_, segment| near.may_meet(segment.ends));
-        }
-        if !found.segments.is_empty() {
-            kept.push((ordinal, found));
-        }
-    }
-    Ok(kept)
+    let near_ones = others.into_iter().map(|(ordinal, road)| {
+        let found = Found::of(road, |ends| near.may_meet(ends));
+        (ordinal, found)
+    });
+    let near_ones: Vec<(u32, Found)> =
+        near_ones.filter(|(_, found)| !found.segments.is_empty()).collect();
+    Ok(of_spans.into_iter().chain(near_ones).collect())
 }
 
 impl Found {
-    fn of(mut road: RoadPiece) -> Self {
+    /// The segments of a road that are wanted.
+    fn of(mut road: RoadPiece, is_wanted: impl Fn([LatticePoint; 2]) -> bool) -> Self {
         let mut segments = BTreeMap::new();
         for run in std::mem::take(&mut road.runs) {
             let mut from_um = run.from_um;
@@ -166,7 +171,9 @@ impl Found {
             {
                 let to_um = from_um + length_um;
                 let nodes = [node_at(index), node_at(index + 1)];
-                segments.insert(from_um, Segment { to_um, ends, nodes });
+                if is_wanted(ends) {
+                    segments.insert([from_um, to_um], Segment { ends, nodes });
+                }
                 from_um = to_um;
             }
         }
@@ -178,7 +185,7 @@ impl Found {
 fn joined(ordinal: u32, Found { road, segments }: &Found) -> Vec<NearRoad> {
     let mut pieces: Vec<NearRoad> = Vec::new();
     let mut before = None;
-    for (&from_um, segment) in segments {
+    for (&[from_um, to_um], segment) in segments {
         let [from, to] = segment.ends;
         if before != Some((from_um, from)) {
             pieces.push(NearRoad {
@@ -192,15 +199,16 @@ fn joined(ordinal: u32, Found { road, segments }: &Found) -> Vec<NearRoad> {
                 points: vec![from],
                 segments_um: Vec::new(),
                 nodes: segment.nodes[0].map(|id| (0, id)).into_iter().collect(),
+                same_places: Vec::new(),
             });
         }
         if let Some(piece) = pieces.last_mut() {
             let index = piece.points.len() as u32;
             piece.nodes.extend(segment.nodes[1].map(|id| (index, id)));
             piece.points.push(to);
-            piece.segments_um.push(segment.to_um - from_um);
+            piece.segments_um.push(to_um - from_um);
         }
-        before = Some((segment.to_um, to));
+        before = Some((to_um, to));
     }
     pieces
 }

@@ -42,7 +42,7 @@ fn what_lies_near_a_bridge_is_kept() {
     let key = Kind::RoadPieces.of_tile(id);
     store.put(key, &writer.into_bytes()).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    keep(&BTreeSet::from([key.item]), &store, 100.0, &pool).unwrap();
+    keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
     let kept = load(&store).unwrap();
     let found: Vec<(u32, usize, u64)> =
         kept.iter().map(|road| (road.ordinal, road.points.len(), road.from_um)).collect();

@@ -12,7 +12,7 @@ use corniche_spans::{Decks, SpanKind};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
 
 use super::{
-    ground_lines::{GroundLine, GroundVertex},
+    ground_lines::{GroundLine, GroundVertex, between},
     span_network::{OnRoad, SpanNetwork},
 };
 
@@ -20,12 +20,23 @@ use super::{
 const ON_GROUND_M: f64 = 1e-6;
 
 /// A place of a deck.
+#[derive(Clone, Copy)]
 struct Station {
     at: LatticePoint,
-    /// `None` where it is on the ground.
-    deck_m: Option<f64>,
-    /// The vertex of the ground there; `None` where the deck bends between two.
-    ground: Option<GroundVertex>,
+    along_um: u64,
+    /// The triangle of the tile that gives the ground its height here.
+    triangle: u32,
+    /// How far the deck is off the ground, metres: below 0 where it is within; `None` where its height is not known.
+    off_m: Option<f64>,
+    deck_m: f64,
+    /// Whether a run bends here.
+    is_bend: bool,
+}
+
+impl Station {
+    fn is_off(&self) -> bool {
+        self.off_m.is_some_and(|off_m| off_m > ON_GROUND_M)
+    }
 }
 
 /// The runs of a line. Heights are multiples of `quantum_m`, rounded away from the ground, so a bridge is never below it, and a tunnel never above.
@@ -34,80 +45,106 @@ pub(crate) fn runs_of(
     (network, decks): (&SpanNetwork, &Decks),
     quantum_m: f64,
 ) -> Vec<SpanRun> {
-    let structure = line.structure();
-    let Some(kind) = SpanKind::of(structure) else { return Vec::new() };
-    let deck_m = |along_um: u64| {
-        let (chain, along_m) = network.on_chain(OnRoad { ordinal: line.ordinal, along_um })?;
-        decks.height_m(chain, along_m)
-    };
-    let off_ground_m = |along_um: u64, ground_m: f64| {
-        deck_m(along_um).filter(|deck_m| kind.away() * (deck_m - ground_m) > ON_GROUND_M)
-    };
-    let mut stations: Vec<Station> = Vec::new();
-    let mut before: Option<&GroundVertex> = None;
-    for vertex in &line.vertices {
-        if let Some(from) = before {
-            let ends_um = [from.along_um, vertex.along_um];
-            for along_um in network.bends(decks, line.ordinal, ends_um) {
-                let share = (along_um - ends_um[0]) as f64 / (ends_um[1] - ends_um[0]) as f64;
-                let ground_m = from.height_m + share * (vertex.height_m - from.height_m);
-                let at = between([from.at, vertex.at], share);
-                let is_between = stations.last().is_none_or(|last| last.at != at);
-                // Where a deck bends below the ground it is not seen.
-                let deck_m = off_ground_m(along_um, ground_m);
-                if deck_m.is_some() && is_between && at != vertex.at {
-                    stations.push(Station { at, deck_m, ground: None });
-                }
-            }
-        }
-        let deck_m = off_ground_m(vertex.along_um, vertex.height_m);
-        stations.push(Station { at: vertex.at, deck_m, ground: Some(*vertex) });
-        before = Some(vertex);
-    }
-    let steps = |deck_m: f64| match kind {
+    let steps = |deck_m: f64| match line.kind() {
         SpanKind::Bridge => (deck_m / quantum_m).ceil() as i64,
         SpanKind::Tunnel => (deck_m / quantum_m).floor() as i64,
     };
+    let stations = stations(line, (network, decks));
     let mut runs = Vec::new();
     let mut first = 0;
     while first < stations.len() {
-        let off = stations[first..].iter().take_while(|station| station.deck_m.is_some()).count();
+        let off = stations[first..].iter().take_while(|station| station.is_off()).count();
         if off == 0 {
             first += 1;
             continue;
         }
         let [from, to] = [first.saturating_sub(1), (first + off + 1).min(stations.len())];
         let own = &stations[from..to];
-        let is_needed = |index: usize| {
-            let is_beside_ground = [index.wrapping_sub(1), index + 1]
-                .iter()
-                .any(|&beside| own.get(beside).is_none_or(|station| station.deck_m.is_none()));
-            is_beside_ground || own[index].ground.is_none_or(|vertex| vertex.is_source)
-        };
+        let is_needed = |index: usize| index == 0 || index + 1 == own.len() || own[index].is_bend;
         let point = |station: &Station| {
-            let height = match (station.deck_m, station.ground) {
-                (None, Some(vertex)) => SpanHeight::Ground { triangle: vertex.triangle },
-                (deck_m, _) => SpanHeight::Steps(steps(deck_m.unwrap_or_default())),
+            let height = if station.is_off() {
+                SpanHeight::Steps(steps(station.deck_m))
+            } else {
+                SpanHeight::Ground { triangle: station.triangle }
             };
             SpanPoint { at: station.at, height }
         };
-        let points: Vec<SpanPoint> = (0..own.len())
-            .filter(|&index| is_needed(index))
-            .map(|index| point(&own[index]))
-            .collect();
+        let mut points: Vec<SpanPoint> =
+            (0..own.len()).filter(|&at| is_needed(at)).map(|at| point(&own[at])).collect();
+        // What is on the ground at one end counts, of two places on one point of the lattice.
+        points.dedup_by(|next, before| {
+            let is_same = next.at == before.at;
+            if is_same && matches!(next.height, SpanHeight::Ground { .. }) {
+                before.height = next.height;
+            }
+            is_same
+        });
         if points.len() >= 2 {
-            runs.push(SpanRun { way_id: line.way_id, class: line.class, structure, points });
+            let (way_id, class, structure) = (line.way_id, line.class, line.structure());
+            runs.push(SpanRun { way_id, class, structure, points });
         }
         first += off;
     }
     runs
 }
 
-/// The lattice point at a share of the way from one point to another.
-fn between(ends: [LatticePoint; 2], share: f64) -> LatticePoint {
-    let [from, to] = ends.map(LatticePoint::in_steps);
-    let mix = |axis: usize| (from[axis] + share * (to[axis] - from[axis])).round() as i64;
-    LatticePoint::new(mix(0), mix(1))
+/// All places of a line at which its deck or the ground bends, or where they meet.
+fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<Station> {
+    let station = |vertex: GroundVertex, is_bend: bool| {
+        let on_road = OnRoad { ordinal: line.ordinal, along_um: vertex.along_um };
+        let deck_m =
+            network.on_chain(on_road).and_then(|(chain, along_m)| decks.height_m(chain, along_m));
+        Station {
+            at: vertex.at,
+            along_um: vertex.along_um,
+            triangle: vertex.triangle,
+            off_m: deck_m.map(|deck_m| line.kind().away() * (deck_m - vertex.height_m)),
+            deck_m: deck_m.unwrap_or(vertex.height_m),
+            is_bend,
+        }
+    };
+    let mut stations: Vec<Station> = Vec::new();
+    let mut push = |next: Station, triangle: u32| {
+        if let Some(&last) = stations.last()
+            && let (Some(from_m), Some(to_m)) = (last.off_m, next.off_m)
+            && last.is_off() != next.is_off()
+            && from_m * to_m < 0.0
+        {
+            // Between two stations deck and ground are straight: they meet here.
+            let share = from_m / (from_m - to_m);
+            let at = between([last.at, next.at], share);
+            if at != last.at && at != next.at {
+                let along = share * (next.along_um - last.along_um) as f64;
+                let along_um = last.along_um + along.round() as u64;
+                let off_m = Some(0.0);
+                stations.push(Station { at, along_um, triangle, off_m, is_bend: false, ..last });
+            }
+        }
+        stations.push(next);
+    };
+    let mut before: Option<&GroundVertex> = None;
+    for vertex in &line.vertices {
+        if let Some(from) = before {
+            let ends_um = [from.along_um, vertex.along_um];
+            let mut last_at = from.at;
+            for along_um in network.bends(decks, line.ordinal, ends_um) {
+                let share = (along_um - ends_um[0]) as f64 / (ends_um[1] - ends_um[0]) as f64;
+                let at = between([from.at, vertex.at], share);
+                if at == last_at || at == vertex.at {
+                    continue;
+                }
+                last_at = at;
+                let height_m = from.height_m + share * (vertex.height_m - from.height_m);
+                let triangle = from.next_triangle;
+                let bend = GroundVertex { at, along_um, triangle, height_m, ..*from };
+                push(station(bend, true), triangle);
+            }
+        }
+        let triangle = before.map_or(vertex.triangle, |from| from.next_triangle);
+        push(station(*vertex, vertex.is_source), triangle);
+        before = Some(vertex);
+    }
+    stations
 }
 
 #[cfg(test)]

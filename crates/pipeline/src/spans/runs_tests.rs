@@ -55,7 +55,7 @@ impl World {
         let key = Kind::RoadPieces.of_tile(TileId::ROOT);
         store.put(key, &writer.into_bytes()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        near_roads::keep(&BTreeSet::from([key.item]), &store, 100.0, &pool).unwrap();
+        near_roads::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
         let projection = FlatProjection::new([1e5; 2]);
         let bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 2048.0, max_y: 2048.0 };
         let coordinates = CoordinateTable::sample(&projection, bounds, 0.01).unwrap();
@@ -73,7 +73,7 @@ impl World {
             places.iter().map(|place| place.map(|at| (at.ordinal, at.along_um)).unwrap()).collect();
         assert_eq!(along, [(1, 0), (1, 400_000_000)]);
         let grounds_m = [Some(100.0), Some(140.0)];
-        let decks = Decks::solve(network.spans.clone(), &network.crossings, &grounds_m);
+        let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
         Self { network, decks, metre }
     }
 
@@ -82,6 +82,7 @@ impl World {
         let vertex = |&(metres, height_m): &(i64, f64)| GroundVertex {
             at: LatticePoint::new((600 + metres) * self.metre, 1000 * self.metre),
             triangle: metres as u32,
+            next_triangle: metres as u32 + 1,
             height_m,
             along_um: metres as u64 * 1_000_000,
             is_source: metres == 0 || metres == 400,
@@ -97,27 +98,19 @@ impl World {
     }
 }
 
-/// Over a valley the deck is straight: vertices of the ground between its ends are left out but for those beside the ends.
+/// Over a valley the deck is straight from support to support: vertices of the ground between them are left out.
 #[test]
 fn a_deck_over_a_valley_is_one_run() {
     let world = World::new();
     let runs = world.runs(&[(0, 100.0), (100, 60.0), (200, 20.0), (300, 60.0), (400, 140.0)]);
     let points: Vec<(i64, SpanHeight)> =
         runs[0].points.iter().map(|point| (point.at.u / world.metre - 600, point.height)).collect();
-    let steps = |height_m: f64| SpanHeight::Steps((height_m / QUANTUM_M) as i64);
+    let ground = |metres| (metres, SpanHeight::Ground { triangle: metres as u32 });
     assert_eq!(runs.len(), 1);
-    assert_eq!(
-        points,
-        [
-            (0, SpanHeight::Ground { triangle: 0 }),
-            (100, steps(110.0)),
-            (300, steps(130.0)),
-            (400, SpanHeight::Ground { triangle: 400 }),
-        ]
-    );
+    assert_eq!(points, [ground(0), ground(400)]);
 }
 
-/// Where a hill comes in its way, a bridge lies on the ground; it leaves it at vertices.
+/// Where a hill comes in its way, a bridge lies on the ground, from where the two meet: at 80 m and 312.5 m.
 #[test]
 fn a_hill_parts_a_deck() {
     let world = World::new();
@@ -127,7 +120,9 @@ fn a_hill_parts_a_deck() {
         .iter()
         .map(|run| [0, run.points.len() - 1].map(|at| run.points[at].at.u / world.metre - 600))
         .collect();
-    assert_eq!(ends, [[0, 150], [250, 400]]);
+    assert_eq!(ends, [[0, 80], [312, 400]]);
+    let last = runs[0].points.last().unwrap();
+    assert_eq!(last.height, SpanHeight::Ground { triangle: 51 }, "that of the edge from 50 m");
     // Where all is ground, there is no run.
     assert_eq!(world.runs(&[(0, 100.0), (200, 160.0), (400, 140.0)]), []);
 }

@@ -3,7 +3,7 @@
 //! Spans go through many tiles, and decks of a level need the ground of that level at all their supports, so they are solved when all tiles are
 //! there. Of all tiles together the network of bridges and tunnels is in memory, and nothing else.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_spans::Decks;
@@ -56,7 +56,7 @@ impl SpanSolving<'_> {
             &network.places(),
             by_level.get(&finest).map_or(&[][..], Vec::as_slice),
         )?;
-        let decks = Decks::solve(network.spans.clone(), &network.crossings, &grounds_m);
+        let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
         let joints = network.joints();
         for (level, tiles) in by_level {
             let of_level;

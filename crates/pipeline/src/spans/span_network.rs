@@ -1,6 +1,6 @@
 //! The network of bridges, tunnels and the roads near them, with where along its road each stretch lies.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticePoint, wgs84};
@@ -37,7 +37,7 @@ pub(crate) struct OnRoad {
 pub(crate) struct SpanNetwork {
     /// In the order of their roads, and along each.
     stretches: Vec<Stretch>,
-    pub(crate) spans: Spans,
+    pub(crate) spans: Arc<Spans>,
     pub(crate) crossings: Vec<Crossing>,
 }
 
@@ -83,7 +83,7 @@ impl SpanNetwork {
                 from_um = to_um;
             }
         }
-        Ok(Self { stretches, spans, crossings })
+        Ok(Self { stretches, spans: Arc::new(spans), crossings })
     }
 
     /// The chain at a place of a bridge or a tunnel, and how far along it the place is, metres.

@@ -63,7 +63,11 @@ fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, BuildError> 
         GroundSource::Dem(_) if context.store.has(Kind::Tin.of_tile(id)) => {
             Ok(Meshed::get(context.store, id)?.map(|meshed| meshed.tin))
         }
-        GroundSource::Dem(_) => Ok(None),
+        // A tile without ground has no payload.
+        GroundSource::Dem(_) if !context.store.has(Kind::Payload.of_tile(id)) => Ok(None),
+        GroundSource::Dem(_) => {
+            Err(BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" })
+        }
         GroundSource::Package(terrain) => Ok(terrain.ground(id)?.map(|(_, ground)| ground.tin)),
     }
 }

@@ -85,7 +85,7 @@ pub(crate) fn with_ground(
         bytes = corniche_tileset::with_photo(&bytes, id, &photo)?;
     }
     let mut sections = ByLayer::<SectionOfTile>::default();
-    for layer in SectionLayer::all() {
+    for layer in SectionLayer::of_extract() {
         let Some(TileSection { section, parts, points }) =
             TileSection::get(layer, context.store, id)?
         else {

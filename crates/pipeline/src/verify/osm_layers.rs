@@ -15,7 +15,7 @@ use super::{
     lines::LineChecks,
 };
 use crate::{
-    Observer,
+    BuildError, Observer,
     layers::{
         SectionLayer,
         layer_totals::{AreaTotals, LineTotals},
@@ -115,7 +115,14 @@ pub(crate) fn compare_spans(
         Ok(payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin))
     };
     let solving = SpanSolving { of, quantum_m, tin: &tin, threads, observer };
-    let counts = solving.solve()?.counts();
+    let counts = match solving.solve() {
+        Ok(totals) => totals.counts(),
+        Err(BuildError::Encode(error)) => {
+            findings.look(CheckId::OsmSpans, false, || error.to_string());
+            return Ok(());
+        }
+        Err(error) => return Err(error.into()),
+    };
     let how = HowCompared {
         layer: SectionLayer::Spans,
         check: CheckId::OsmSpans,

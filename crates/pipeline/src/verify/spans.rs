@@ -5,13 +5,13 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{
-    FilePackage, GeoRoad, LineLevelRecord, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload,
+    FilePackage, LineLevelRecord, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload,
     decode, decode_spans, payload_sizes,
 };
-use corniche_tin::{Placement, Surface, Tin};
+use corniche_tin::{Placement, Surface};
 
 use super::{
     checks::{CheckId, Findings},
@@ -20,12 +20,15 @@ use super::{
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
-use crate::Observer;
+use crate::{Observer, inputs::InputKind};
 
 /// A bridge may be below the ground by this, and a tunnel above it: points are put on a lattice of a millimetre.
 const SIDE_M: f64 = 0.01;
 /// Places on the lattice are the same within so many steps.
 const NEAR_STEPS: f64 = 2.0;
+
+/// Steps of work on a tile: each vertex that is compared with a segment of a run is one.
+const MOST_STEPS: u64 = 1 << 28;
 
 /// An end of a way's line on the border of a tile: its level, way and place.
 type BorderEnd = (u8, i64, LatticePoint);
@@ -40,15 +43,16 @@ pub(crate) fn verify(
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     let record = manifest.spans.as_ref();
-    let is_wanted = manifest.settings.spans && manifest.counts.roads_in > 0;
+    let has_extract = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
+    let is_wanted = manifest.settings.spans && has_extract;
     findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
         "spans are counted and were not asked for, or the other way round".to_owned()
     });
-    let Some(record) = record else { return Ok(()) };
     let level = |&LineLevelRecord { level, tiles, parts, points, bytes }: &LineLevelRecord| {
         (level, Counts { tiles, parts, points, bytes })
     };
-    let recorded = (CheckId::SpanSums, record.levels.iter().map(level).collect());
+    let levels = record.iter().flat_map(|record| &record.levels);
+    let recorded = (CheckId::SpanSums, levels.map(level).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let look_at = |id| look_at(package, id, &ends);
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
@@ -70,26 +74,35 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
     let manifest = package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
     let Ok(runs) = decode_spans(&bytes, id, &manifest.frame, quantum_m) else { return found };
-    let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO).and(Sections::ATTRIBUTES);
+    let of_structures = structures(&bytes, id, manifest);
+    if runs.is_empty() && of_structures.is_empty() {
+        return found;
+    }
+    let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
     let Ok(payload) = decode(&bytes, id, &manifest.frame, quantum_m, wanted) else { return found };
     let Some(terrain) = &payload.terrain else { return found };
     let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
-    let lines = lines_of_structures(&payload, &surface);
+    let lines = lines_of_structures(&payload, &of_structures, &surface);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     put_ends((id, &bounds), &lines, &runs, ends);
-    if runs.is_empty() {
-        return found;
-    }
     let place = TilePlace::of(&manifest.frame, id);
     let ground = TriangleSoup::placed(&terrain.tin, quantum_m, place.steps);
+    let work = Work::new(MOST_STEPS);
+    let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
-        let kind = (run.way_id, run.class, run.structure);
-        let own = lines.iter().filter(|line| (line.way_id, line.class, line.structure) == kind);
-        let own: Vec<&Line> = own.collect();
-        let tile = Tile { id, place, ground: &ground, tin: &terrain.tin, quantum_m };
-        tile.look_at_ends(run, &own, &mut found.findings);
-        tile.look_at_side(run, &own, &mut found.findings);
+        let own = lines.get(&(run.way_id, run.class, run.structure == Structure::Tunnel));
+        let own = own.map_or(&[][..], Vec::as_slice);
+        tile.look_at_ends(run, own, &mut found.findings);
+        tile.look_at_side(run, own, &mut found.findings);
+        if let Err(error) = work.check() {
+            found.findings.look(CheckId::SpanSide, false, || {
+                format!(
+                    "tile {id}: it has more runs over more ground than any writer has made: {error}"
+                )
+            });
+            break;
+        }
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
     let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
@@ -97,41 +110,45 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
     found
 }
 
-/// A GEO line of a bridge or a tunnel: its places in lattice steps, with heights.
-struct Line {
-    way_id: i64,
-    class: FunctionalRoadClass,
-    structure: Structure,
-    vertices: Vec<[f64; 3]>,
+/// The places of a GEO line of a bridge or a tunnel in lattice steps, with heights.
+type Line = Vec<[f64; 3]>;
+/// Lines by way, class and whether it is a tunnel.
+type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), Vec<Line>>;
+
+/// The ways of a tile that are bridges or tunnels.
+fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, Structure> {
+    let quantum_m = manifest.vertical.quantum_m;
+    let read = decode(bytes, id, &manifest.frame, quantum_m, Sections::ATTRIBUTES);
+    let records = read.map(|payload| payload.attributes).unwrap_or_default();
+    let ways = records.into_iter().map(|record| (record.way_id, record.attributes.structure));
+    ways.filter(|(_, structure)| *structure != Structure::Ground).collect()
 }
 
-impl Line {
-    /// Its first and its last place.
-    fn ends(&self) -> [[f64; 2]; 2] {
-        [self.vertices.first(), self.vertices.last()]
-            .map(|end| end.map_or([f64::NAN; 2], |&[u, v, _]| [u, v]))
+fn lines_of_structures(
+    payload: &TilePayload,
+    structures: &BTreeMap<i64, Structure>,
+    surface: &Surface,
+) -> Lines {
+    let mut lines = Lines::new();
+    for road in &payload.roads_geo {
+        let Some(structure) = structures.get(&road.way_id) else { continue };
+        if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
+            let key = (road.way_id, road.class, *structure == Structure::Tunnel);
+            lines.entry(key).or_default().push(vertices);
+        }
     }
+    lines
 }
 
-fn lines_of_structures(payload: &TilePayload, surface: &Surface) -> Vec<Line> {
-    let structures: BTreeMap<i64, Structure> = payload
-        .attributes
-        .iter()
-        .map(|record| (record.way_id, record.attributes.structure))
-        .filter(|(_, structure)| *structure != Structure::Ground)
-        .collect();
-    let line = |road: &GeoRoad| {
-        let structure = *structures.get(&road.way_id)?;
-        let vertices = corniche_drape::positions(&road.line, surface).ok()?;
-        Some(Line { way_id: road.way_id, class: road.class, structure, vertices })
-    };
-    payload.roads_geo.iter().filter_map(line).collect()
+/// The first and the last place of a line.
+fn ends_of(line: &Line) -> [[f64; 2]; 2] {
+    [line.first(), line.last()].map(|end| end.map_or([f64::NAN; 2], |&[u, v, _]| [u, v]))
 }
 
 /// Adds what a tile has on its border: ends of lines, and the heights of runs that end there.
 fn put_ends(
     (id, bounds): (TileId, &LatticeBounds),
-    lines: &[Line],
+    lines: &Lines,
     runs: &[SpanRun],
     all: &Mutex<EndsByPlace>,
 ) {
@@ -139,11 +156,13 @@ fn put_ends(
     let is_on_border = |at: &LatticePoint| {
         at.u == bounds.min.u || at.u == bounds.max.u || at.v == bounds.min.v || at.v == bounds.max.v
     };
-    for line in lines {
-        for [u, v] in line.ends() {
+    for (&(way_id, ..), line) in
+        lines.iter().flat_map(|(key, own)| own.iter().map(move |of| (key, of)))
+    {
+        for [u, v] in ends_of(line) {
             let at = LatticePoint::new(u.round() as i64, v.round() as i64);
             if is_on_border(&at) {
-                own.entry((id.z(), line.way_id, at)).or_default();
+                own.entry((id.z(), way_id, at)).or_default();
             }
         }
     }
@@ -165,13 +184,14 @@ struct Tile<'a> {
     id: TileId,
     place: TilePlace,
     ground: &'a TriangleSoup,
-    tin: &'a Tin,
+    surface: &'a Surface,
     quantum_m: f64,
+    work: &'a Work,
 }
 
 impl Tile<'_> {
     /// A run ends on the ground of its way, in the triangle that it names, or where the line of its way ends.
-    fn look_at_ends(&self, run: &SpanRun, lines: &[&Line], findings: &mut Findings) {
+    fn look_at_ends(&self, run: &SpanRun, lines: &[Line], findings: &mut Findings) {
         for end in [run.points.first(), run.points.last()].into_iter().flatten() {
             let [u, v] = end.at.in_steps();
             let is_near =
@@ -179,13 +199,14 @@ impl Tile<'_> {
             let holds = match end.height {
                 SpanHeight::Ground { triangle } => {
                     let is_on_line = lines.iter().any(|line| {
-                        let mut pairs = line.vertices.array_windows();
+                        self.work.add(line.len());
+                        let mut pairs = line.array_windows();
                         pairs.any(|&[from, to]| share_of([from, to], [u, v]).is_some())
                     });
                     is_on_line && self.holds(triangle, end.at)
                 }
                 SpanHeight::Steps(_) => {
-                    lines.iter().any(|line| line.ends().into_iter().any(is_near))
+                    lines.iter().any(|line| ends_of(line).into_iter().any(is_near))
                 }
             };
             findings.look(CheckId::SpanEnds, holds, || {
@@ -194,25 +215,16 @@ impl Tile<'_> {
         }
     }
 
-    /// Whether a triangle of the tile holds a point.
+    /// Whether a triangle of the tile holds a point. Where two triangles meet, a point that was rounded may lie a step beside its own.
     fn holds(&self, triangle: u32, at: LatticePoint) -> bool {
-        let Some(corners) = self.tin.triangles().get(triangle as usize) else { return false };
-        let [column, row] = self.place.cells(self.place.local(at));
-        let corners = corners.map(|index| {
-            let vertex = self.tin.vertices()[index as usize];
-            [f64::from(vertex.column), f64::from(vertex.row)]
-        });
-        let twice = |a: [f64; 2], b: [f64; 2]| {
-            (b[0] - a[0]) * (row - a[1]) - (b[1] - a[1]) * (column - a[0])
-        };
-        let sides = [0, 1, 2].map(|k| twice(corners[k], corners[(k + 1) % 3]));
-        // A step of the lattice is far less than a thousandth of a cell, and sides are at most 256 cells long.
-        let limit = 256.0 / 1000.0;
-        sides.iter().all(|&side| side <= limit) || sides.iter().all(|&side| side >= -limit)
+        let is_there = (triangle as usize) < self.surface.triangles().len();
+        let around =
+            [-1, 0, 1].map(|du| [-1, 0, 1].map(|dv| LatticePoint::new(at.u + du, at.v + dv)));
+        is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
     }
 
     /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
-    fn look_at_side(&self, run: &SpanRun, lines: &[&Line], findings: &mut Findings) {
+    fn look_at_side(&self, run: &SpanRun, lines: &[Line], findings: &mut Findings) {
         let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
         let height_m = |point: &SpanPoint| match point.height {
             SpanHeight::Steps(steps) => Some(steps as f64 * self.quantum_m),
@@ -223,9 +235,13 @@ impl Tile<'_> {
             let (Some(from_m), Some(to_m)) = (height_m(from), height_m(to)) else { continue };
             let [a, b] = [from.at.in_steps(), to.at.in_steps()];
             let ends = [[a[0], a[1], from_m], [b[0], b[1], to_m]];
-            let inner = lines.iter().flat_map(|line| &line.vertices);
-            let inner = inner.filter_map(|&[u, v, ground_m]| {
-                let share = share_of(ends, [u, v])?;
+            self.work.add(lines.iter().map(Vec::len).sum());
+            let is_beside =
+                |of: [f64; 2], [u, v]: [f64; 2]| (of[0] - u).hypot(of[1] - v) <= NEAR_STEPS;
+            let inner = lines.iter().flatten().filter_map(|&[u, v, ground_m]| {
+                // The ends are looked at themselves: beside a wall the ground is another one within a step.
+                let share = share_of(ends, [u, v])
+                    .filter(|_| !is_beside(a, [u, v]) && !is_beside(b, [u, v]))?;
                 Some(away * (from_m + share * (to_m - from_m) - ground_m))
             });
             lowest_m = inner.fold(lowest_m, f64::min);

@@ -8,7 +8,7 @@ use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex
 use corniche_roads::FrcTable;
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest};
+use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest, SpansRecord};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
@@ -108,6 +108,7 @@ impl Manifest {
         self.check_photos()?;
         self.check_areas()?;
         ClassedLayer::ALL.into_iter().try_for_each(|layer| self.check_lines(layer))?;
+        self.check_spans()?;
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
         all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
@@ -144,6 +145,13 @@ impl Manifest {
         let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
         let is_class = |class| layer.class(class).is_some();
         self.check_layer(layer.name(), levels, kept, is_class, &counts.lost)
+    }
+
+    fn check_spans(&self) -> Result<(), String> {
+        let Some(SpansRecord { counts, levels }) = &self.spans else { return Ok(()) };
+        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+        let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
+        self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
     }
 
     fn check_areas(&self) -> Result<(), String> {
