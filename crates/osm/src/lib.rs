@@ -89,7 +89,7 @@ pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
 pub use layer_sink::LayerSink;
-pub use layers::{Layers, LinesSink};
+pub use layers::{Layers, LinesSink, NamesSink};
 pub use line_loss::LineLoss;
 pub use lines::{ClassedLine, LineSummary};
 pub use read_areas::read_areas;

@@ -132,6 +132,7 @@ fn read(
     let layers = Layers {
         areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
         lines: lines.iter_mut().map(|(layer, sink)| (*layer, sink as &mut _)).collect(),
+        line_names: None,
         // Shares keep roads alone.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
