@@ -27,6 +27,7 @@ use crate::{
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
+        plan_splitting::PlanSplitting,
     },
     levels::Levels,
     lines::{
@@ -166,13 +167,17 @@ fn read(
     Ok(Found { roads, has_others })
 }
 
+fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
+    let ExtractInput { data, clip, polygon, .. } = *input;
+    PlanSplitting { frame: input.levels.frame(), data, clip, polygon }
+}
+
 fn area_layer<'a>(
     input: &ExtractInput<'a>,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
-    let splitting =
-        AreaSplitting { frame, data: input.data, clip: input.clip, polygon: input.polygon };
+    let splitting = AreaSplitting(plan_splitting(input));
     let sea =
         SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)
@@ -198,12 +203,7 @@ fn lines_layer<'a>(
     layer: ClassedLayer,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> LinesLayer<'a> {
-    let splitting = LineSplitting {
-        levels: input.levels,
-        data: input.data,
-        clip: input.clip,
-        polygon: input.polygon,
-    };
+    let splitting = LineSplitting { plan: plan_splitting(input), levels: input.levels };
     let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
     LinesLayer::new(layer, splitting, places, input.memory_bytes)
 }
