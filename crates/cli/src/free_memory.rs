@@ -25,11 +25,11 @@ pub(crate) fn give_back_early() {
     }
 }
 
-/// Gives back all that is free, whatever its size. To be called where a stage ends: what it leaves are small blocks all over the allocator's
-/// areas, which the next stage, with blocks of other sizes and in other threads, does not fill.
+/// Gives back all that is free, whatever its size. To be called where a stage ends, and once in a while within one: what it leaves are small blocks
+/// all over the allocator's areas, which the next stage, with blocks of other sizes and in other threads, does not fill.
 ///
-/// After 30 million nodes of roads, areas and boundaries were read, 85 MiB stayed so, and a build with 256 MiB took 284 MiB. (glibc manual,
-/// "Malloc Tunable Parameters": other areas than the first are trimmed at their end alone, but for this call.)
+/// After 30 million nodes of roads, areas and boundaries were read, 85 MiB stayed so, and a build with 256 MiB took 284 MiB. (`malloc_trim(3)`:
+/// this call alone gives back whole pages in the middle of an area.)
 pub(crate) fn give_back_all() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {

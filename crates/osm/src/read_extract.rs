@@ -118,7 +118,7 @@ fn read_all<R: Read + Seek>(
     }
     let mut on_name = layers.line_names;
     for ((layer, sink), found) in layers.lines.into_iter().zip(outlines) {
-        hand_out_lines(&reading, layer, found, (sink, on_defect, on_name.as_deref_mut()))?;
+        hand_out_lines(&reading, layer, found, (sink, on_defect), on_name.as_deref_mut())?;
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
         let header = file.take_header();

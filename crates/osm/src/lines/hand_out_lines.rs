@@ -22,11 +22,8 @@ pub(crate) fn hand_out_lines<'a>(
     reading: &Reading<'a>,
     layer: ClassedLayer,
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
-    (sink, on_defect, on_name): (
-        &mut dyn LayerSink<ClassedLine, LineSummary>,
-        &mut dyn FnMut(Defect),
-        Option<&mut NamesSink<'_>>,
-    ),
+    (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
+    on_name: Option<&mut NamesSink<'_>>,
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     // Of objects with one id the first stays, which is told as for areas.
@@ -44,7 +41,7 @@ pub(crate) fn hand_out_lines<'a>(
     }
     let mut summary = LineSummary { objects: count, ..LineSummary::default() };
     let all = (members, classes.as_slice());
-    make_lines(reading, layer, all, located, &mut summary, (sink, on_defect, names))?;
+    make_lines(reading, layer, all, located, &mut summary, (sink, on_defect), names)?;
     sink.end(summary);
     Ok(())
 }

@@ -34,11 +34,8 @@ pub(crate) fn make_lines(
     (mut members, classes): (SpoolReader<'_>, &[u8]),
     mut located: LocatedWays<'_>,
     summary: &mut LineSummary,
-    (sink, on_defect, mut names): (
-        &mut dyn LayerSink<ClassedLine, LineSummary>,
-        &mut dyn FnMut(Defect),
-        Option<LineNames<'_, '_>>,
-    ),
+    (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
+    mut names: Option<LineNames<'_, '_>>,
 ) -> Result<(), ReadOsmError> {
     let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
     let mut members = Members { records, objects: Vec::new() };
