@@ -2,16 +2,16 @@
 
 use std::fmt;
 
-use corniche_areas::{Area, AreaTable, ClassedLayer, LineClass};
+use corniche_areas::{Area, AreaTable, ClassedLayer};
 use corniche_roads::Road;
 
-use crate::{AreaSummary, ClassedLine, ExtractSummary, LineSummary, layer_sink::LayerSink};
+use crate::{
+    AreaSummary, ClassedLine, ExtractSummary, LineSummary,
+    layer_sink::{LayerSink, NamesSink},
+};
 
 /// A layer of lines, and who is handed it.
 pub type LinesSink<'a> = (ClassedLayer, &'a mut dyn LayerSink<ClassedLine, LineSummary>);
-
-/// Who is told the names of what ways bound: the id of a way, the class of what it bounds, and its name.
-pub type NamesSink<'a> = dyn FnMut(i64, LineClass, &str) + 'a;
 
 /// Which layers are wanted. They are handed out in this order, one after the other.
 #[derive(Default)]

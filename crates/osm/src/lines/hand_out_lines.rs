@@ -10,8 +10,7 @@ use super::{
 };
 use crate::{
     Defect, ReadOsmError,
-    layer_sink::LayerSink,
-    layers::NamesSink,
+    layer_sink::{LayerSink, NamesSink},
     looked::check_held,
     outlines::{found::OutlineObjects, located_ways::LocatedWays, records::Known},
     reading::Reading,

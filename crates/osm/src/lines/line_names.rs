@@ -3,13 +3,13 @@
 use corniche_areas::{AreaObject, ClassedLayer};
 
 use crate::{
-    layers::NamesSink,
+    layer_sink::NamesSink,
     outlines::{located_ways::LocatedWay, records::Known},
 };
 
 /// Objects with their names, and who is told these.
 pub(crate) struct LineNames<'a, 'b> {
-    /// By their numbers.
+    /// All objects, by their numbers.
     pub(crate) objects: Vec<Known>,
     pub(crate) on_name: &'a mut NamesSink<'b>,
 }
