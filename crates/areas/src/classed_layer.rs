@@ -1,6 +1,9 @@
 //! Layers of lines of which each has a class: the list of them, and what their tables of classes say.
 
-use std::fmt;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -103,6 +106,9 @@ impl LineClass {
         self.layer.table().coarsest_cells_m[self.number as usize]
     }
 }
+
+/// The names of what each way of a layer bounds, by the id of the way and the class of what it bounds.
+pub type LineNames = BTreeMap<i64, BTreeMap<LineClass, BTreeSet<String>>>;
 
 impl fmt::Display for LineClass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

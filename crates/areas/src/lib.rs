@@ -45,7 +45,7 @@ pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
 pub use assemble::{Assembled, assemble};
 pub use boundary_class::BoundaryClass;
-pub use classed_layer::{ClassTable, ClassedLayer, LineClass};
+pub use classed_layer::{ClassTable, ClassedLayer, LineClass, LineNames};
 pub use coarsen::{coarsen, surrounded};
 pub use coastlines::Coastline;
 pub use cut_out::{cut_out, divide_all};

@@ -31,9 +31,9 @@ use clap::{
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Compress, Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportEdgesArgs, ExportGeoTiffArgs,
-    ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, Format,
-    InPlanArgs, OnOrNone, TerrainCompress, VectorArgs,
+    Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
+    ExportEdgesArgs, ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs,
+    ExportTiles3dArgs, Format, InPlanArgs, OnOrNone, TerrainCompress, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, Roads};

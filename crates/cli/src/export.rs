@@ -12,14 +12,16 @@ mod vector_files;
 
 use std::path::Path;
 
-use corniche_areas::{AreaClass, ClassedLayer, LineClass};
+use corniche_areas::{AreaClass, ClassedLayer};
 use corniche_export::{Coordinates, ExportError, FeatureRequest, export_areas, export_lines};
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
 use self::vector_files::{fill, format};
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, FileArgs, InPlanArgs},
+    args::{
+        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, FileArgs, InPlanArgs,
+    },
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -28,6 +30,7 @@ use crate::{
     output::existing_of,
     packages,
     progress::Progress,
+    recorded,
     table::{Digits, bytes, length},
 };
 
@@ -36,7 +39,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         Export::Roads(args) => roads::run(args),
         Export::Edges(args) => edges::run(args),
         Export::Areas(args) => areas(args),
-        Export::Boundaries(args) => lines(&args.plan, ClassedLayer::Boundaries, &args.classes),
+        Export::Boundaries(args) => boundaries(args),
         Export::Mesh(args) => mesh::run(args),
         Export::GeoTiff(args) => geotiff::run(args),
         Export::Tiles3d(args) => tiles3d::run(args),
@@ -70,15 +73,14 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-fn lines(
-    plan: &InPlanArgs,
-    layer: ClassedLayer,
-    classes: &[LineClass],
-) -> Result<ExitCode, Failure> {
-    let (package, request) = plan_request(plan, classes, &layer.classes())?;
+fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
+    let (plan, layer) = (&args.plan, ClassedLayer::Boundaries);
+    let (package, request) = plan_request(plan, &args.classes, &layer.classes())?;
+    let names = recorded::line_names(&args.extract, layer, (&args.cpu, &package))?;
     let name = format!("{}.{}", layer.name(), request.format.ending());
-    let export =
-        |path: &Path, progress: &Progress| export_lines(&package, layer, &request, path, progress);
+    let export = |path: &Path, progress: &Progress| {
+        export_lines(&package, (layer, names.as_ref()), &request, path, progress)
+    };
     let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
     let count = |number| Digits::of_notes().count(number);
     let what = format!(

@@ -32,7 +32,7 @@ use crate::{
     defects::DefectList,
     documents::to_line,
     failure::Failure,
-    interrupt, messages,
+    free_memory, interrupt, messages,
     messages::write_line,
     output::existing_of,
     table::Digits,
@@ -107,6 +107,7 @@ struct Running {
     used_before: Usage,
     told: Instant,
     told_done: u64,
+    given_back: Instant,
     bar: Option<ProgressBar>,
 }
 
@@ -116,6 +117,8 @@ const TICK: Duration = Duration::from_millis(500);
 const LINE_INTERVAL: Duration = Duration::from_secs(9);
 /// Time between two JSON lines if nothing was done in between; else there is one at each tick.
 const IDLE_INTERVAL: Duration = Duration::from_secs(5);
+/// How often free memory is given back within a stage.
+const GIVE_BACK_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
     pub(crate) fn new() -> Self {
@@ -229,6 +232,7 @@ impl Shared {
         if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
             act(running);
             running.tell_if_due(self.manner);
+            running.give_back_if_due();
         }
     }
 }
@@ -294,6 +298,7 @@ impl Running {
             used_before: Usage::now(),
             told: now,
             told_done: 0,
+            given_back: now,
             bar: (manner == Manner::Bars).then(|| bar(stage.title(), total)),
         }
     }
@@ -323,6 +328,13 @@ impl Running {
             per_second: self.pace.per_second(elapsed),
             left: remaining.and_then(|remaining| self.pace.left(elapsed, remaining)),
             used: Usage::now().since(&self.used_before),
+        }
+    }
+
+    fn give_back_if_due(&mut self) {
+        if self.given_back.elapsed() >= GIVE_BACK_INTERVAL {
+            free_memory::give_back_all();
+            self.given_back = Instant::now();
         }
     }
 
@@ -377,6 +389,7 @@ impl Observer for Progress {
 
     fn end(&self, _: Stage) {
         self.finish();
+        free_memory::give_back_all();
     }
 
     fn temporary(&self, folder: &Path) {

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use corniche_areas::{ClassedLayer, LineNames};
 use corniche_export::Elevation;
 use corniche_network::Network;
-use corniche_pipeline::{RecordedElevation, VerifyOsm};
+use corniche_pipeline::{Observer, RecordedElevation, VerifyError, VerifyOsm};
 use corniche_presets::frc_preset;
 use corniche_roads::FrcTable;
 use corniche_tileset::FilePackage;
@@ -43,8 +44,28 @@ pub(crate) fn for_export(recorded: &RecordedElevation) -> Elevation<'_> {
 pub(crate) fn network(
     args: &ExtractArgs,
     osm: &[PathBuf],
-    (cpu, package): (&ThreadsArg, &FilePackage),
+    of: (&ThreadsArg, &FilePackage),
 ) -> Result<Option<Network>, Failure> {
+    from_extracts(args, osm, of, corniche_pipeline::network)
+}
+
+/// The names of what the lines of a layer bound, if extracts are named; those of another package are refused.
+pub(crate) fn line_names(
+    args: &ExtractArgs,
+    layer: ClassedLayer,
+    of: (&ThreadsArg, &FilePackage),
+) -> Result<Option<LineNames>, Failure> {
+    from_extracts(args, &args.osm, of, |package, extract, threads, observer| {
+        corniche_pipeline::line_names(package, layer, extract, threads, observer)
+    })
+}
+
+fn from_extracts<T>(
+    args: &ExtractArgs,
+    osm: &[PathBuf],
+    (cpu, package): (&ThreadsArg, &FilePackage),
+    read: impl FnOnce(&FilePackage, &VerifyOsm, usize, &dyn Observer) -> Result<T, VerifyError>,
+) -> Result<Option<T>, Failure> {
     if osm.is_empty() {
         return Ok(None);
     }
@@ -55,9 +76,9 @@ pub(crate) fn network(
         memory_bytes: MEMORY_BYTES,
     };
     let progress = Progress::new();
-    let network = corniche_pipeline::network(package, &extract, threads(cpu.threads), &progress);
+    let found = read(package, &extract, threads(cpu.threads), &progress);
     progress.finish();
-    Ok(Some(network?))
+    Ok(Some(found?))
 }
 
 /// The FRC table that is named, or the preset whose name the package has.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_areas::{AreaObject, BoundaryClass, ClassedLayer, LineClass};
+use corniche_areas::{AreaObject, BoundaryClass, ClassedLayer, LineClass, LineNames};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_tileset::{FilePackage, decode_lines, pmtiles_order};
 use corniche_work::Observer;
@@ -74,6 +74,23 @@ const BOUNDARY_FIELDS: &[Field] = &[
     },
 ];
 
+const NAMES: Field = Field {
+    name: "names",
+    kind: FieldKind::Text,
+    unit: "",
+    meaning: "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
+};
+
+/// What this field says of a way.
+fn names_value(names: &LineNames, way_id: i64) -> Value {
+    let Some(by_class) = names.get(&way_id) else { return Value::Null };
+    let by_class: serde_json::Map<String, serde_json::Value> = by_class
+        .iter()
+        .map(|(class, names)| (class.name().to_owned(), names.iter().cloned().collect()))
+        .collect();
+    Value::Text(serde_json::Value::from(by_class).to_string())
+}
+
 const MEASURES: &[Field] = &[
     Field {
         name: "length_m",
@@ -96,14 +113,15 @@ const MEASURES: &[Field] = &[
 ];
 
 /// Writes a layer of lines of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
-/// Beside the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
+/// Beside the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use. With `names` each way has
+/// those of what it bounds.
 ///
 /// # Errors
 /// When the package has no such layer or level, the request cannot be met, the package is damaged, or something cannot be
 /// written.
 pub fn export_lines(
     package: &FilePackage,
-    layer: ClassedLayer,
+    (layer, names): (ClassedLayer, Option<&LineNames>),
     request: &FeatureRequest<LineClass>,
     path: &Path,
     observer: &dyn Observer,
@@ -115,18 +133,19 @@ pub fn export_lines(
     let source = FeatureSource::new(package, request, Lines::SHAPES)?;
     let level = source.level;
     let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };
-    let mut lines = Lines { layer, summary };
+    let mut lines = Lines { layer, names, summary };
     write_features(&mut lines, &source, path, observer)?;
     Ok(lines.summary)
 }
 
 /// Lines of a layer on their way into a file.
-struct Lines {
+struct Lines<'a> {
     layer: ClassedLayer,
+    names: Option<&'a LineNames>,
     summary: LinesSummary,
 }
 
-impl Features for Lines {
+impl Features for Lines<'_> {
     type Class = LineClass;
     type Piece = PlanPiece;
     const SHAPES: ShapeKind = ShapeKind::PlanLines;
@@ -136,8 +155,9 @@ impl Features for Lines {
     }
 
     fn about(&self, source: &FeatureSource<'_, LineClass>) -> About {
+        let names: &[Field] = if self.names.is_some() { &[NAMES] } else { &[] };
         About {
-            fields: [&[WAY_ID], class_fields(self.layer), MEASURES].concat(),
+            fields: [&[WAY_ID], class_fields(self.layer), names, MEASURES].concat(),
             description: format!(
                 "{}, as they are stored for {}.",
                 self.layer.table().title,
@@ -209,6 +229,7 @@ impl Features for Lines {
         }
         let mut values = vec![Value::Integer(object.parts().1)];
         values.extend(class_values(self.layer, class));
+        values.extend(self.names.map(|names| names_value(names, object.parts().1)));
         values.extend([
             Value::Real((length_m * 1e6).round() / 1e6),
             Value::Integer(lines.len() as i64),

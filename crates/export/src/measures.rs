@@ -115,9 +115,14 @@ pub(crate) fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
 fn at(profile: &[[f64; 2]], index: usize, along_m: f64) -> [f64; 2] {
     let from = profile[index];
     let to = profile.get(index + 1).copied().unwrap_or(from);
+    [along_m, between(from, to, along_m)]
+}
+
+/// The height at a distance between two places of a profile.
+pub(crate) fn between(from: [f64; 2], to: [f64; 2], along_m: f64) -> f64 {
     let run_m = to[0] - from[0];
-    let share = if run_m > 0.0 { (along_m - from[0]) / run_m } else { 0.0 };
-    [along_m, from[1] + share * (to[1] - from[1])]
+    let share = if run_m > 0.0 { ((along_m - from[0]) / run_m).clamp(0.0, 1.0) } else { 1.0 };
+    from[1] + share * (to[1] - from[1])
 }
 
 /// How many points the line had before it was laid on the ground. Where a border cut a straight segment no point was: a

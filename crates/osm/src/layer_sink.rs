@@ -1,5 +1,10 @@
 //! Who is handed what is in a layer of an extract.
 
+use corniche_areas::LineClass;
+
+/// Who is told the names of what ways bound: the id of a way, the class of what it bounds, and its name.
+pub type NamesSink<'a> = dyn FnMut(i64, LineClass, &str) + 'a;
+
 /// Who is handed the objects of a layer. What is wrong with a layer is told between its beginning and its end.
 pub trait LayerSink<T, S> {
     /// The extract was read; all objects of this layer follow.

@@ -88,7 +88,7 @@ pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
-pub use layer_sink::LayerSink;
+pub use layer_sink::{LayerSink, NamesSink};
 pub use layers::{Layers, LinesSink};
 pub use line_loss::LineLoss;
 pub use lines::{ClassedLine, LineSummary};

@@ -8,6 +8,7 @@
 
 mod classed_line;
 mod hand_out_lines;
+mod line_names;
 mod make_lines;
 mod summary;
 

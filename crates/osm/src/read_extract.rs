@@ -116,8 +116,9 @@ fn read_all<R: Read + Seek>(
     if let (Some((_, sink)), Some(found)) = (layers.areas, of_areas.and_then(|_| outlines.next())) {
         hand_out_areas(&reading, found, sink, on_defect)?;
     }
+    let mut on_name = layers.line_names;
     for ((layer, sink), found) in layers.lines.into_iter().zip(outlines) {
-        hand_out_lines(&reading, layer, found, sink, on_defect)?;
+        hand_out_lines(&reading, layer, found, (sink, on_defect), on_name.as_deref_mut())?;
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
         let header = file.take_header();

@@ -13,6 +13,7 @@ pub(crate) mod fixed_points;
 pub(crate) mod layer_totals;
 pub(crate) mod layer_writer;
 pub(crate) mod parts_by_tile;
+pub(crate) mod plan_splitting;
 pub(crate) mod tile_section;
 
 use std::{

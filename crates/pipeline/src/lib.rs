@@ -70,5 +70,5 @@ pub use terrain::recorded::TerrainRecord;
 pub use terrain::recorded_grid::grid_of;
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, RecordedElevation, VerifyError, VerifyOsm,
-    VerifyReport, VerifySettings, network, verify,
+    VerifyReport, VerifySettings, line_names, network, verify,
 };

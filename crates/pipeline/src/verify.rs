@@ -17,6 +17,7 @@ mod georeference;
 mod grid;
 mod header;
 mod layer_sums;
+mod line_names;
 mod lines;
 mod manifest_sums;
 mod network;
@@ -29,6 +30,7 @@ mod photo_files;
 mod photos;
 mod polygon;
 mod polygon_cut;
+mod read_again;
 mod relief;
 mod report;
 mod roads_of_parent;
@@ -54,6 +56,7 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     elevation::RecordedElevation,
     error::VerifyError,
+    line_names::line_names,
     network::network,
     report::{ErrorFigures, GapFigures, VerifyReport},
     verify_settings::{VerifyOsm, VerifySettings},

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
     process::Command,
 };
@@ -16,11 +16,12 @@ use gdal::{
 
 type Line = Vec<[f64; 2]>;
 
-/// A feature: class, level, length, lines.
+/// A feature: class, level, names, length, lines.
 #[derive(Debug, PartialEq)]
 struct Exported {
     class: String,
     admin_level: Option<i64>,
+    names: Option<String>,
     length_m: f64,
     lines: Vec<Line>,
 }
@@ -71,7 +72,10 @@ fn read(file: &Path) -> BTreeMap<i64, Exported> {
         assert_eq!(number("points"), Some(points as i64));
         assert_eq!(number("parts"), Some(lines.len() as i64));
         let admin_level = number("admin_level");
-        (number("way_id").unwrap(), Exported { class, admin_level, length_m, lines })
+        // Without an extract there is no such field.
+        let index = feature.field_index("names").ok();
+        let names = index.and_then(|index| feature.field_as_string(index).unwrap());
+        (number("way_id").unwrap(), Exported { class, admin_level, names, length_m, lines })
     });
     features.collect()
 }
@@ -173,13 +177,17 @@ fn tiles_have_the_parts(package: &Path, line: &[[f64; 2]]) {
     assert_eq!(found, [true; 2]);
 }
 
-/// By way: its places, of an OPL file with places in ways.
-fn ways_of_osmium(extract: &Path, folder: &Path) -> Option<BTreeMap<i64, Line>> {
+/// The lines of an OPL file with places in ways.
+fn opl_of_osmium(extract: &Path, folder: &Path) -> Option<String> {
     let opl = folder.join("ways.opl");
     let mut command = Command::new("osmium");
     command.args(["add-locations-to-ways", "-O", "-f", "opl", "-o"]).arg(&opl).arg(extract);
     assert!(command.output().ok()?.status.success());
-    let text = std::fs::read_to_string(&opl).unwrap();
+    Some(std::fs::read_to_string(&opl).unwrap())
+}
+
+/// By way: its places.
+fn ways_of(opl: &str) -> BTreeMap<i64, Line> {
     let way = |line: &str| {
         let id = line.strip_prefix('w')?.split(' ').next()?.parse().ok()?;
         let nodes = line.split(' ').find_map(|field| field.strip_prefix('N'))?;
@@ -190,27 +198,75 @@ fn ways_of_osmium(extract: &Path, folder: &Path) -> Option<BTreeMap<i64, Line>> 
         let places: Option<Line> = nodes.split(',').map(place).collect();
         Some((id, places?))
     };
-    Some(text.lines().filter_map(way).collect())
+    opl.lines().filter_map(way).collect()
 }
 
-/// A country: every way that is exported is the one that osmium lists, to the lattice's rounding.
+/// By way and class: the names of the relations that name it, and its own where it is closed.
+fn names_of(opl: &str) -> BTreeMap<i64, BTreeMap<String, BTreeSet<String>>> {
+    // Characters that mean something in OPL, and those beyond ASCII, are numbers between percent signs.
+    let plain = |text: &str| -> String {
+        let part = |(place, part): (usize, &str)| match place % 2 {
+            0 => part.to_owned(),
+            _ => u32::from_str_radix(part, 16).ok().and_then(char::from_u32).unwrap().to_string(),
+        };
+        text.split('%').enumerate().map(part).collect()
+    };
+    let mut names: BTreeMap<i64, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
+    for line in opl.lines() {
+        let field = |letter| line.split(' ').find_map(|field| field.strip_prefix(letter));
+        let tags = field('T').unwrap_or_default().split(',');
+        let tags: BTreeMap<&str, &str> = tags.filter_map(|tag| tag.split_once('=')).collect();
+        let class = match (tags.get("boundary"), tags.get("admin_level")) {
+            (Some(&"administrative"), Some(&level @ ("2" | "3" | "4" | "5" | "6" | "7" | "8"))) => {
+                format!("admin-{level}")
+            }
+            (Some(&"protected_area" | &"national_park"), _) => "protected".to_owned(),
+            _ => continue,
+        };
+        let Some(name) = tags.get("name") else { continue };
+        let mut tell = |way_id: &str| {
+            let by_class = names.entry(way_id.parse().unwrap()).or_default();
+            by_class.entry(class.clone()).or_default().insert(plain(name));
+        };
+        if let Some(way) = line.strip_prefix('w') {
+            let nodes: Vec<&str> = field('N').unwrap().split(',').collect();
+            if nodes.first() == nodes.last() {
+                tell(way.split(' ').next().unwrap());
+            }
+        } else if matches!(tags.get("type"), Some(&"boundary" | &"multipolygon")) {
+            for member in field('M').unwrap().split(',') {
+                let (way, role) = member.split_once('@').unwrap();
+                if let (Some(way), "" | "outer" | "inner") = (way.strip_prefix('w'), role) {
+                    tell(way);
+                }
+            }
+        }
+    }
+    names
+}
+
+/// A country: every way that is exported is the one that osmium lists, to the lattice's rounding, with the names of what it bounds.
 #[test]
 fn boundaries_of_a_country_are_the_ways_of_osmium() {
     let folder = tempfile::tempdir().unwrap();
     let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
-    let Some(ways) = ways_of_osmium(&osm, folder.path()) else {
+    let Some(opl) = opl_of_osmium(&osm, folder.path()) else {
         return skip("there is no program osmium (Debian: osmium-tool)");
     };
+    let (ways, names) = (ways_of(&opl), names_of(&opl));
     let more = ["--max-error", "30", "--boundaries", "on", "--classes", "0"];
     let dem = sample("liechtenstein/liechtenstein-dem.tif");
     let package = built(folder.path(), &dem, &osm, &more);
     let file = folder.path().join("boundaries.fgb");
-    let ran = export(&package, "boundaries", &file, &["--crs", "EPSG:4326"]);
+    let options = ["--crs", "EPSG:4326", "--osm", text(&osm)];
+    let ran = export(&package, "boundaries", &file, &options);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let found = read(&file);
     assert!(found.len() > 60, "{} ways", found.len());
     let mut whole = 0;
-    for (way_id, Exported { length_m: told_m, lines, .. }) in &found {
+    for (way_id, Exported { length_m: told_m, lines, names: told, .. }) in &found {
+        let told = told.as_ref().map(|told| serde_json::from_str(told).unwrap());
+        assert_eq!(told.as_ref(), names.get(way_id), "way {way_id}");
         let mut expected = ways[way_id].clone();
         expected.dedup();
         // What leaves the ground has lines of its own.
@@ -224,4 +280,9 @@ fn boundaries_of_a_country_are_the_ways_of_osmium() {
         }
     }
     assert!(whole * 10 > found.len() * 9, "{whole} of {} ways", found.len());
+    let named = found.values().filter(|way| way.names.is_some()).count();
+    assert!(named > 60, "{named} ways with names");
+    let other = sample("pass/pass.osm.pbf");
+    let ran = export(&package, "boundaries", &file, &["--osm", text(&other)]);
+    assert!(ran.code == 2 && ran.err.contains("pass.osm.pbf"), "{}", ran.err);
 }

@@ -48,6 +48,7 @@ pub(crate) enum Export {
     override_usage = "corniche export roads [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")),
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, not those of the package's triangles")),
+    mut_arg("osm", |arg| arg.requires("dem")),
 )]
 pub(crate) struct ExportRoadsArgs {
     #[command(flatten)]
@@ -126,8 +127,6 @@ pub(crate) struct InPlanArgs {
     /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
     #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
     pub(crate) crs: ExportCrs,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -141,12 +140,15 @@ pub(crate) struct ExportAreasArgs {
     /// Classes that are taken, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
     pub(crate) classes: Vec<AreaClass>,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
 #[command(
     mut_arg("level", |arg| arg.help("The level whose boundaries are taken [default: the finest]")),
     mut_arg("bounds", |arg| arg.help("Cut boundaries at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
+    mut_arg("osm", |arg| arg.help("The extracts the package was made from: boundaries then have the names of what they bound")),
 )]
 pub(crate) struct ExportBoundariesArgs {
     #[command(flatten)]
@@ -154,6 +156,12 @@ pub(crate) struct ExportBoundariesArgs {
     /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_boundary_class)]
     pub(crate) classes: Vec<LineClass>,
+    #[command(flatten)]
+    pub(crate) extract: ExtractArgs,
+    #[command(flatten)]
+    pub(crate) cpu: ThreadsArg,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -348,8 +356,8 @@ impl Export {
         match self {
             Self::Roads(args) => args.report,
             Self::Edges(args) => args.report,
-            Self::Areas(args) => args.plan.report,
-            Self::Boundaries(args) => args.plan.report,
+            Self::Areas(args) => args.report,
+            Self::Boundaries(args) => args.report,
             Self::Mesh(args) => args.report,
             Self::GeoTiff(args) => args.report,
             Self::Tiles3d(args) => args.report,

@@ -12,6 +12,7 @@ use super::shared::{ExtractArgs, LevelArg, RecordedArgs, ThreadsArg};
     group = ArgGroup::new("what").args(["way", "line"]).required(true),
     override_usage = "corniche profile [OPTIONS] <--way <ID>|--line <FILE>> <PACKAGE>",
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, and grades those of a smooth line")),
+    mut_arg("osm", |arg| arg.requires("dem")),
     mut_arg("level", |arg| arg.help("The level on whose ground they lie [default: the finest]")),
 )]
 pub(crate) struct ProfileArgs {

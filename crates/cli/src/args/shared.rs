@@ -52,7 +52,7 @@ impl RecordedArgs {
 #[derive(Debug, Args)]
 pub(crate) struct ExtractArgs {
     /// With --dem: the extracts the package was made from: grades are those of lines from junction to junction, bridges and tunnels get their own heights
-    #[arg(long, value_name = "FILE", num_args = 1.., requires = "dem")]
+    #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) osm: Vec<PathBuf>,
     /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]

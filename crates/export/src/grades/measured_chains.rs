@@ -14,10 +14,10 @@ use corniche_work::{Observer, Stage};
 
 use super::{
     junctions::{Leg, Legs, node_heights},
-    smooth_line::{SmoothLine, Station, between, stations},
+    smooth_line::{SmoothLine, Station, stations},
     smoothing::Smoothing,
 };
-use crate::{dem_ground::DemNodes, error::ExportError, places::Places};
+use crate::{dem_ground::DemNodes, error::ExportError, measures::between, places::Places};
 
 /// Chains are told of after so many.
 const TOLD_CHAINS: usize = 1024;

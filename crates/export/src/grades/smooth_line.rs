@@ -1,7 +1,7 @@
 //! A smooth line, and what is measured of a part of it.
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
-use crate::measures::steepest;
+use crate::measures::{between, steepest};
 
 /// The steepest grade of a smooth line is taken over this length, metres.
 pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
@@ -171,13 +171,6 @@ impl Station {
 /// How many stations a line of a length has: two at least.
 pub(crate) fn stations(length_m: f64) -> usize {
     (length_m / MOST_SPACING_M).ceil().max(1.0) as usize + 1
-}
-
-/// The height at a distance between two places of a profile.
-pub(crate) fn between(from: [f64; 2], to: [f64; 2], along_m: f64) -> f64 {
-    let run_m = to[0] - from[0];
-    let share = if run_m > 0.0 { ((along_m - from[0]) / run_m).clamp(0.0, 1.0) } else { 1.0 };
-    from[1] + share * (to[1] - from[1])
 }
 
 #[cfg(test)]

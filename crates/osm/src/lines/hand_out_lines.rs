@@ -4,24 +4,25 @@ use corniche_areas::ClassedLayer;
 
 use super::{
     classed_line::ClassedLine,
+    line_names::LineNames,
     make_lines::{NO_CLASS, make_lines},
     summary::LineSummary,
 };
 use crate::{
     Defect, ReadOsmError,
-    layer_sink::LayerSink,
+    layer_sink::{LayerSink, NamesSink},
     looked::check_held,
     outlines::{found::OutlineObjects, located_ways::LocatedWays, records::Known},
     reading::Reading,
 };
 
-/// Hands out the lines of a layer, and what is wrong with them.
+/// Hands out the lines of a layer, what is wrong with them, and, where they are wanted, the names of what they bound.
 pub(crate) fn hand_out_lines<'a>(
     reading: &Reading<'a>,
     layer: ClassedLayer,
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
-    sink: &mut dyn LayerSink<ClassedLine, LineSummary>,
-    on_defect: &mut dyn FnMut(Defect),
+    (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
+    on_name: Option<&mut NamesSink<'_>>,
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
     // Of objects with one id the first stays, which is told as for areas.
@@ -30,11 +31,16 @@ pub(crate) fn hand_out_lines<'a>(
     defects.tell(on_defect).map_err(failed)?;
     check_held(reading, held_bytes + count)?;
     let mut classes = Vec::with_capacity(count as usize);
+    let mut names = on_name.map(|on_name| LineNames { objects: Vec::new(), on_name });
     while let Some(object) = known.next(Known::decode).map_err(failed)? {
         classes.push(object.class.unwrap_or(NO_CLASS));
+        if let Some(names) = &mut names {
+            names.objects.push(object);
+        }
     }
     let mut summary = LineSummary { objects: count, ..LineSummary::default() };
-    make_lines(reading, layer, (members, &classes), located, &mut summary, (sink, on_defect))?;
+    let all = (members, classes.as_slice());
+    make_lines(reading, layer, all, located, &mut summary, (sink, on_defect), names)?;
     sink.end(summary);
     Ok(())
 }

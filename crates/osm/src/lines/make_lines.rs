@@ -6,7 +6,7 @@ use corniche_areas::{ClassedLayer, LineClass};
 use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::SortRecord as _;
 
-use super::{classed_line::ClassedLine, summary::LineSummary};
+use super::{classed_line::ClassedLine, line_names::LineNames, summary::LineSummary};
 use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
@@ -35,9 +35,10 @@ pub(crate) fn make_lines(
     mut located: LocatedWays<'_>,
     summary: &mut LineSummary,
     (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
+    mut names: Option<LineNames<'_, '_>>,
 ) -> Result<(), ReadOsmError> {
-    let mut members =
-        Members(Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose())));
+    let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
+    let mut members = Members { records, objects: Vec::new() };
     let mut way: Option<LocatedWay> = None;
     let (mut count, all) = (0, located.count);
     while let Some((way_id, class)) = members.next_way(reading, classes)? {
@@ -56,9 +57,12 @@ pub(crate) fn make_lines(
             }
         }
         let made = match &way {
-            Some(way) if way.way_id == way_id => {
-                parts_of(reading, way, class).inspect(|_| tell_gaps(way, on_defect))
-            }
+            Some(way) if way.way_id == way_id => parts_of(reading, way, class).inspect(|_| {
+                tell_gaps(way, on_defect);
+                if let Some(names) = &mut names {
+                    names.tell(layer, way, &members.objects);
+                }
+            }),
             _ => Err(LineLoss::MissingWay),
         };
         match made {
@@ -79,7 +83,11 @@ pub(crate) fn make_lines(
 }
 
 /// The members of all objects by way.
-struct Members<I: Iterator>(Ahead<I>);
+struct Members<I: Iterator> {
+    records: Ahead<I>,
+    /// The objects of the way that was taken last.
+    objects: Vec<u64>,
+}
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
     /// The next way and the number of the most important of the classes that objects give it.
@@ -88,8 +96,10 @@ impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
         reading: &Reading<'_>,
         classes: &[u8],
     ) -> Result<Option<(i64, u8)>, ReadOsmError> {
+        let Self { records, objects } = self;
         let mut way: Option<(i64, u8)> = None;
-        while let Some(record) = self.0.peek().map_err(|error| reading.scratch_failed(error))? {
+        objects.clear();
+        while let Some(record) = records.peek().map_err(|error| reading.scratch_failed(error))? {
             let own = classes.get(record.object_number as usize).copied().unwrap_or(NO_CLASS);
             let way_id = record.member.way_id;
             let (id, class) = way.get_or_insert((way_id, NO_CLASS));
@@ -97,7 +107,8 @@ impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
                 break;
             }
             *class = own.min(*class);
-            self.0.take();
+            objects.push(record.object_number);
+            records.take();
         }
         Ok(way)
     }

@@ -6,14 +6,29 @@ use std::fs;
 
 use crate::common::to_lattice;
 use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
-use corniche_osm::{ClassedLine, Defect, LineLoss, LineSummary, ReadRequest, read_lines};
+use corniche_osm::{
+    ClassedLine, Defect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
+};
 use corniche_store::MemoryScratch;
 use corniche_testing::pbf::{Block, file};
 
+#[derive(Default)]
 struct Found {
     boundaries: Vec<ClassedLine>,
     defects: Vec<Defect>,
     summary: LineSummary,
+    names: Vec<(i64, String, String)>,
+}
+
+impl LayerSink<ClassedLine, LineSummary> for Found {
+    fn take(&mut self, line: ClassedLine) {
+        self.boundaries.push(line);
+    }
+
+    fn end(&mut self, summary: LineSummary) {
+        summary.check_invariants();
+        self.summary = summary;
+    }
 }
 
 /// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
@@ -36,17 +51,17 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         scratch: &scratch,
         on_progress: None,
     };
-    let (mut boundaries, mut defects) = (Vec::new(), Vec::new());
-    let summary = read_lines(
-        &request,
-        ClassedLayer::Boundaries,
-        &mut |boundary| boundaries.push(boundary),
-        &mut |defect| defects.push(defect),
-        &|| false,
-    )
-    .unwrap();
-    summary.check_invariants();
-    Found { boundaries, defects, summary }
+    let (mut found, mut defects, mut names) = (Found::default(), Vec::new(), Vec::new());
+    let mut on_name = |way_id, class: LineClass, name: &str| {
+        names.push((way_id, class.to_string(), name.to_owned()));
+    };
+    let layers = Layers {
+        lines: vec![(ClassedLayer::Boundaries, &mut found)],
+        line_names: Some(&mut on_name),
+        ..Layers::default()
+    };
+    read_extract(&request, layers, &mut |defect| defects.push(defect), &|| false).unwrap();
+    Found { defects, names, ..found }
 }
 
 type Tags<'a> = &'a [(&'a str, &'a str)];
@@ -110,6 +125,37 @@ fn ways_with_tags_count_by_themselves_and_other_roles_do_not() {
     ];
     let found = read(&made(&ways, &relations), 1 << 24);
     assert_eq!(classes(&found), [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin8)]);
+}
+
+/// An open way bounds nothing by itself, and a relation that gives it no class is none of what it bounds.
+#[test]
+fn names_are_those_of_what_a_way_bounds() {
+    let named = |tags: Tags<'static>, name| [tags, &[("name", name)]].concat();
+    let own = |name| named(&[("boundary", "administrative"), ("admin_level", "8")], name);
+    let (open, closed) = (own("a line"), own("an enclave"));
+    let ways: [(i64, Tags<'_>, &[i64]); 3] =
+        [(1, &open, &[1, 2]), (2, &closed, &[2, 3, 13, 2]), (3, &[], &[5, 6])];
+    let (country, district) = (named(COUNTRY, "A"), named(DISTRICT, "B"));
+    let other = named(&[("type", "boundary"), ("boundary", "postal_code")], "12345");
+    let relations: [(i64, Tags<'_>, Members<'_>); 4] = [
+        (10, &country, &[(1, "outer"), (2, "inner"), (9, "outer")]),
+        (11, &district, &[(3, ""), (1, "outer"), (2, "label")]),
+        (12, PARK, &[(1, "outer")]),
+        (13, &other, &[(1, "outer"), (3, "outer")]),
+    ];
+    let found = read(&made(&ways, &relations), 1 << 24);
+    let names: Vec<(i64, &str, &str)> =
+        found.names.iter().map(|(way_id, class, name)| (*way_id, &**class, &**name)).collect();
+    assert_eq!(
+        names,
+        [
+            (1, "admin-2", "A"),
+            (1, "admin-6", "B"),
+            (2, "admin-8", "an enclave"),
+            (2, "admin-2", "A"),
+            (3, "admin-6", "B"),
+        ]
+    );
 }
 
 /// The ends, and where two boundaries meet.

@@ -55,6 +55,7 @@ fn with_layers(
     let layers = Layers {
         areas: which.areas.then_some((&table, &mut areas as &mut dyn LayerSink<_, _>)),
         lines: Vec::from_iter(of_boundaries),
+        line_names: None,
         roads: which.roads.then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
     read(layers, &mut |defect| defects.push(defect)).map_err(|error| error.to_string())?;

@@ -4,19 +4,20 @@ use corniche_areas::{Area, AreaClass, AreaObject, OutlineError, Polygon};
 use corniche_geom::{LatticePoint, TileId};
 use corniche_osm::{AreaLoss, AreaSummary};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
+use corniche_tileset::{AreaRecord, AreaRings, AreasSection, encode_areas};
 use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
 use super::{sea::SeaPlace, split::AreaSplitting};
 use crate::{
     BuildError, Defect,
-    artifacts::{damaged, tile_of},
+    artifacts::damaged,
     layers::{
         SectionLayer,
         layer_totals::AreaTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
-        parts_by_tile::PartsByTile,
+        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+        plan_splitting::PlanSplitting,
         tile_section::TileSection,
     },
 };
@@ -63,7 +64,7 @@ impl TileSplitting for AreaSplitting<'_> {
     fn split_object(&self, number: u64, area: Area) -> SplitArea {
         let Area { object, class, area_m2, .. } = area;
         let parts = self.split(&area).map(|parts| {
-            parts.into_iter().map(|(id, part)| (id, StoredArea::from(part).to_bytes())).collect()
+            parts.into_iter().map(|(id, part)| (id, part_bytes(StoredArea::from(part)))).collect()
         });
         SplitArea { number, object, class, area_m2, parts }
     }
@@ -113,14 +114,15 @@ impl<'a> TileLayer for AreaLayer<'a> {
             let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
             on_defect(corniche_osm::Defect::LostArea { is_relation, id, loss });
         }
-        let (splitting, store) = (&self.splitting, self.store);
+        let (splitting, store) = (&self.splitting.0, self.store);
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
-                let part = StoredArea::of_bytes(&bytes).ok_or_else(|| {
-                    let key = SectionLayer::Areas.section().item(tile);
-                    damaged(key, &"what was read back is no area")
-                })?;
+                let part =
+                    part_of_bytes(&bytes).and_then(StoredArea::into_record).ok_or_else(|| {
+                        let key = SectionLayer::Areas.section().item(tile);
+                        damaged(key, &"what was read back is no area")
+                    })?;
                 parts.push(part);
                 Ok(())
             },
@@ -165,16 +167,8 @@ impl From<AreaRecord> for StoredArea {
 }
 
 impl StoredArea {
-    fn to_bytes(&self) -> Vec<u8> {
-        // Writing to a list cannot fail, and all of it can be written.
-        let written = bincode::serde::encode_to_vec(self, bincode::config::standard());
-        debug_assert!(written.is_ok(), "{}", self.id);
-        written.unwrap_or_default()
-    }
-
-    fn of_bytes(bytes: &[u8]) -> Option<AreaRecord> {
-        let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-        let (Self { is_relation, id, class, name, polygons }, _) = read.ok()?;
+    fn into_record(self) -> Option<AreaRecord> {
+        let Self { is_relation, id, class, name, polygons } = self;
         let polygons = polygons.into_iter().map(|rings| AreaRings { rings }).collect();
         let object = if is_relation { AreaObject::Relation(id) } else { AreaObject::Way(id) };
         Some(AreaRecord { object, class: AreaClass::from_number(class)?, name, polygons })
@@ -184,17 +178,12 @@ impl StoredArea {
 fn put_section(
     tile: u64,
     areas: &[AreaRecord],
-    splitting: &AreaSplitting<'_>,
+    splitting: &PlanSplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), BuildError> {
-    let id: TileId = tile_of(SectionLayer::Areas.section().item(tile))?;
-    let step = splitting.step(id.z());
-    let Some(section) = encode_areas(id, splitting.frame, step, areas)? else { return Ok(()) };
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
-    let kept = TileSection {
-        section: section.into_bytes(),
-        parts: areas.len() as u64,
-        points: rings.map(|ring| ring.len() as u64).sum(),
-    };
-    kept.put(SectionLayer::Areas, store, id)
+    let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
+    TileSection::put((SectionLayer::Areas, tile), splitting, store, counts, |id, step| {
+        Ok(encode_areas(id, splitting.frame, step, areas)?.map(AreasSection::into_bytes))
+    })
 }

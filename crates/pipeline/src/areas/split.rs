@@ -6,47 +6,36 @@ use corniche_areas::{
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
-use crate::{heights::data_tiles::DataTiles, points_step::points_step};
+use crate::{heights::data_tiles::DataTiles, layers::plan_splitting::PlanSplitting};
 
 /// How areas are split.
-pub(crate) struct AreaSplitting<'a> {
-    pub(crate) frame: &'a GridFrame,
-    pub(crate) data: DataTiles,
-    /// The bounds that were asked for.
-    pub(crate) clip: Option<LatticeBounds>,
-    /// The polygon that was asked for: areas end at its outline.
-    pub(crate) polygon: Option<&'a LatticeRegion>,
-}
+pub(crate) struct AreaSplitting<'a>(pub(crate) PlanSplitting<'a>);
 
 impl AreaSplitting<'_> {
-    /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
-    pub(crate) fn step(&self, level: u8) -> i64 {
-        points_step(self.frame, level)
-    }
-
     /// The parts of an area by tile. On coarse levels, polygons smaller than a cell are left out.
     pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
+        let PlanSplitting { frame, data, clip, polygon } = self.0;
         let mut parts = Vec::new();
-        for level in 0..=self.frame.max_level() {
-            let step = self.step(level);
+        for level in 0..=frame.max_level() {
+            let step = self.0.step(level);
             let mut coarse = Vec::new();
             for polygon in &area.polygons {
                 coarse.extend(coarsen(polygon, step)?);
             }
-            if level < self.frame.max_level() {
-                let [east, north] = self.frame.node_steps(level).map(i128::from);
+            if level < frame.max_level() {
+                let [east, north] = frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
             // Before other cuts: lines of bounds are not on the lattice of coarse levels.
-            if let Some(region) = self.polygon {
+            if let Some(region) = polygon {
                 coarse = inside(coarse, region, step)?;
             }
-            let mut coarse = cut_out(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
-            if let Some(clip) = &self.clip {
+            let mut coarse = cut_out(&coarse, &frame.tile_lattice_bounds(TileId::ROOT))?;
+            if let Some(clip) = &clip {
                 coarse = cut_out(&coarse, clip)?;
             }
             let mut tiles = Vec::new();
-            let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
+            let wanted = Wanted { frame, data: data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
             parts.extend(tiles.into_iter().map(|(id, polygons)| (id, record(area, &polygons))));
         }

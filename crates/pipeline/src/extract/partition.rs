@@ -27,6 +27,7 @@ use crate::{
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
+        plan_splitting::PlanSplitting,
     },
     levels::Levels,
     lines::{
@@ -132,6 +133,7 @@ fn read(
     let layers = Layers {
         areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
         lines: lines.iter_mut().map(|(layer, sink)| (*layer, sink as &mut _)).collect(),
+        line_names: None,
         // Shares keep roads alone.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
@@ -165,13 +167,17 @@ fn read(
     Ok(Found { roads, has_others })
 }
 
+fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
+    let ExtractInput { data, clip, polygon, .. } = *input;
+    PlanSplitting { frame: input.levels.frame(), data, clip, polygon }
+}
+
 fn area_layer<'a>(
     input: &ExtractInput<'a>,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
-    let splitting =
-        AreaSplitting { frame, data: input.data, clip: input.clip, polygon: input.polygon };
+    let splitting = AreaSplitting(plan_splitting(input));
     let sea =
         SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)
@@ -198,12 +204,7 @@ fn lines_layer<'a>(
     layer: ClassedLayer,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> LinesLayer<'a> {
-    let splitting = LineSplitting {
-        levels: input.levels,
-        data: input.data,
-        clip: input.clip,
-        polygon: input.polygon,
-    };
+    let splitting = LineSplitting { plan: plan_splitting(input), levels: input.levels };
     let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
     LinesLayer::new(layer, splitting, places, input.memory_bytes)
 }

@@ -50,6 +50,19 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 }
 
+/// A part as bytes.
+pub(crate) fn part_bytes<T: Serialize>(part: T) -> Vec<u8> {
+    // Writing to a list cannot fail, and all of a part can be written.
+    let written = bincode::serde::encode_to_vec(part, bincode::config::standard());
+    debug_assert!(written.is_ok());
+    written.unwrap_or_default()
+}
+
+/// A part of such bytes; `None` where they are none.
+pub(crate) fn part_of_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    bincode::serde::decode_from_slice(bytes, bincode::config::standard()).ok().map(|read| read.0)
+}
+
 /// A part, encoded.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ObjectPart<K> {

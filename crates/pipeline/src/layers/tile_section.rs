@@ -2,9 +2,10 @@
 
 use corniche_geom::TileId;
 use corniche_store::Artifacts;
+use corniche_tileset::EncodeError;
 use serde::{Deserialize, Serialize};
 
-use super::SectionLayer;
+use super::{SectionLayer, plan_splitting::PlanSplitting};
 use crate::{BuildError, artifacts};
 
 /// The encoded section of a tile, and how much is in it.
@@ -18,13 +19,19 @@ pub(crate) struct TileSection {
 }
 
 impl TileSection {
+    /// Keeps what `encode` makes of the parts of a tile, if they make a section, with the numbers of parts and points. It is told the tile and the spacing of its
+    /// lattice.
     pub(crate) fn put(
-        &self,
-        layer: SectionLayer,
+        (layer, tile): (SectionLayer, u64),
+        splitting: &PlanSplitting<'_>,
         store: &dyn Artifacts,
-        id: TileId,
+        [parts, points]: [u64; 2],
+        encode: impl FnOnce(TileId, i64) -> Result<Option<Vec<u8>>, EncodeError>,
     ) -> Result<(), BuildError> {
-        artifacts::put(store, layer.section().of_tile(id), self)
+        let key = layer.section().item(tile);
+        let id = artifacts::tile_of(key)?;
+        let Some(section) = encode(id, splitting.step(id.z()))? else { return Ok(()) };
+        artifacts::put(store, key, &Self { section, parts, points })
     }
 
     /// The section of a tile; `None` if it has none of the layer.

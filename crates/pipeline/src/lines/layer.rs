@@ -6,18 +6,18 @@ use corniche_areas::{ClassedLayer, LineClass, line_text};
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::{ClassedLine, LineSummary};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{LineRecord, encode_lines};
+use corniche_tileset::{LineRecord, LinesSection, encode_lines};
 use corniche_work::Stage;
 
 use super::split::LineSplitting;
 use crate::{
     BuildError,
-    artifacts::{damaged, tile_of},
+    artifacts::damaged,
     layers::{
         SectionLayer,
         layer_totals::LineTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
-        parts_by_tile::PartsByTile,
+        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
         tile_section::TileSection,
     },
     true_lengths::TrueLengths,
@@ -76,7 +76,7 @@ impl TileSplitting for MeasuredSplitting<'_> {
         };
         let part = |(number, (id, record)): (u64, (TileId, LineRecord))| {
             let order = (class.number(), record.way_id, record.points[0], number);
-            (id, order, points_to_bytes(&record.points))
+            (id, order, part_bytes(&record.points))
         };
         SplitLine {
             class,
@@ -111,13 +111,13 @@ impl<'a> TileLayer for LinesLayer<'a> {
         summary: LineSummary,
         told: &LayerContext<'_>,
     ) -> Result<LineTotals, BuildError> {
-        let (splitting, store) = (&self.splitting.splitting, self.store);
+        let (splitting, store) = (&self.splitting.splitting.plan, self.store);
         let (own, layer) = (self.layer, SectionLayer::Lines(self.layer));
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<LineRecord>, tile, (class, way_id, ..), bytes| {
                 let class = own.class(class);
-                let part = class.zip(points_of_bytes(&bytes)).ok_or_else(|| {
+                let part = class.zip(part_of_bytes(&bytes)).ok_or_else(|| {
                     let key = layer.section().item(tile);
                     damaged(key, &line_text!(own, "what was read back is no " one))
                 });
@@ -125,7 +125,13 @@ impl<'a> TileLayer for LinesLayer<'a> {
                 parts.push(LineRecord { way_id, class, points });
                 Ok(())
             },
-            |tile, parts| put_section(own, tile, &parts, splitting, store),
+            |tile, parts| {
+                let points = parts.iter().map(|line| line.points.len() as u64).sum();
+                let counts = [parts.len() as u64, points];
+                TileSection::put((layer, tile), splitting, store, counts, |id, step| {
+                    Ok(encode_lines(id, own, step, &parts)?.map(LinesSection::into_bytes))
+                })
+            },
         )?;
         let kept = summary.kept.iter().map(|(class, &ways)| {
             let length_um = self.lengths_um.get(class).copied().unwrap_or_default();
@@ -139,36 +145,4 @@ impl<'a> TileLayer for LinesLayer<'a> {
         totals.put(layer, store)?;
         Ok(totals)
     }
-}
-
-fn points_to_bytes(points: &[LatticePoint]) -> Vec<u8> {
-    // Writing to a list cannot fail, and all of it can be written.
-    let written = bincode::serde::encode_to_vec(points, bincode::config::standard());
-    debug_assert!(written.is_ok());
-    written.unwrap_or_default()
-}
-
-fn points_of_bytes(bytes: &[u8]) -> Option<Vec<LatticePoint>> {
-    let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-    read.ok().map(|(points, _)| points)
-}
-
-fn put_section(
-    own: ClassedLayer,
-    tile: u64,
-    lines: &[LineRecord],
-    splitting: &LineSplitting<'_>,
-    store: &dyn Artifacts,
-) -> Result<(), BuildError> {
-    let layer = SectionLayer::Lines(own);
-    let id: TileId = tile_of(layer.section().item(tile))?;
-    let Some(section) = encode_lines(id, own, splitting.step(id.z()), lines)? else {
-        return Ok(());
-    };
-    let kept = TileSection {
-        section: section.into_bytes(),
-        parts: lines.len() as u64,
-        points: lines.iter().map(|line| line.points.len() as u64).sum(),
-    };
-    kept.put(layer, store, id)
 }

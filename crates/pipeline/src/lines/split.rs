@@ -4,14 +4,15 @@ use std::borrow::Cow;
 
 use corniche_areas::LineClass;
 use corniche_drape::{ClippedPart, clip_region};
-use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
+use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::ClassedLine;
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
 use corniche_tileset::LineRecord;
 
 use crate::{
-    heights::data_tiles::DataTiles, layers::fixed_points::fixed_of_part, levels::Levels,
-    points_step::points_step, tiles_near::for_each_tile_near,
+    layers::{fixed_points::fixed_of_part, plan_splitting::PlanSplitting},
+    levels::Levels,
+    tiles_near::for_each_tile_near,
 };
 
 /// On levels above the finest, lines are simplified by so many of the level's cells.
@@ -19,23 +20,14 @@ const TOLERANCE_CELLS: f64 = 0.25;
 
 /// How the lines of a layer are split.
 pub(crate) struct LineSplitting<'a> {
+    pub(crate) plan: PlanSplitting<'a>,
     pub(crate) levels: &'a Levels,
-    pub(crate) data: DataTiles,
-    /// The bounds that were asked for: tiles that do not touch them get none.
-    pub(crate) clip: Option<LatticeBounds>,
-    /// The polygon that was asked for: lines end at its outline.
-    pub(crate) polygon: Option<&'a LatticeRegion>,
 }
 
 impl LineSplitting<'_> {
-    /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
-    pub(crate) fn step(&self, level: u8) -> i64 {
-        points_step(self.levels.frame(), level)
-    }
-
     /// Whether a class is stored on a level.
     fn shows(&self, level: u8, class: LineClass) -> bool {
-        let frame = self.levels.frame();
+        let frame = self.plan.frame;
         let cell_m = frame.level_cell(level).shorter_m();
         level == frame.max_level() || class.coarsest_cell_m().is_none_or(|most_m| cell_m <= most_m)
     }
@@ -51,7 +43,7 @@ impl LineSplitting<'_> {
 
     /// The parts of a line in the polygon; without one, the line.
     fn parts<'b>(&self, object: &'b ClassedLine) -> Vec<Cow<'b, ClassedLine>> {
-        let Some(region) = self.polygon else { return vec![Cow::Borrowed(object)] };
+        let Some(region) = self.plan.polygon else { return vec![Cow::Borrowed(object)] };
         let Ok(line) = Polyline::new(object.points.clone()) else { return Vec::new() };
         let cut = |part: ClippedPart| {
             let fixed = fixed_of_part(&object.points, &object.fixed, &part);
@@ -63,7 +55,7 @@ impl LineSplitting<'_> {
 
     fn split_level(&self, object: &ClassedLine, level: u8) -> Vec<(TileId, LineRecord)> {
         let points = self.line(object, level);
-        let data = self.data.above(level);
+        let data = self.plan.data.above(level);
         let mut near: Vec<(TileId, usize)> = Vec::new();
         for (segment, pair) in points.array_windows::<2>().enumerate() {
             for_each_tile_near(*pair, level, self.levels, |id| {
@@ -83,13 +75,13 @@ impl LineSplitting<'_> {
     }
 
     fn is_wanted(&self, id: TileId) -> bool {
-        let tile = self.levels.frame().tile_lattice_bounds(id);
-        self.clip.is_none_or(|clip| clip.intersects(&tile))
+        let tile = self.plan.frame.tile_lattice_bounds(id);
+        self.plan.clip.is_none_or(|clip| clip.intersects(&tile))
     }
 
     /// A line as a level shows it: simplified, on the level's lattice.
     fn line(&self, object: &ClassedLine, level: u8) -> Vec<LatticePoint> {
-        let frame = self.levels.frame();
+        let frame = self.plan.frame;
         let tolerance_m = if level == frame.max_level() {
             0.0
         } else {
@@ -110,7 +102,7 @@ impl LineSplitting<'_> {
             node_ids: Vec::new(),
             same_places: Vec::new(),
         };
-        let step = self.step(level);
+        let step = self.plan.step(level);
         let on_lattice = |part: i64| (part + step / 2).div_euclid(step) * step;
         let simplified = simplify(&road, tolerance_m / frame.lattice_step_m());
         let points = simplified.points().iter();

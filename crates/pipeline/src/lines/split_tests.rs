@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_areas::{BoundaryClass, ClassedLayer};
-use corniche_geom::{GridFrame, NodeIndex};
+use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, NodeIndex};
 use corniche_roads::{ClassFilter, FrcTable};
 
 use super::*;
-use crate::RoadSettings;
+use crate::{RoadSettings, heights::data_tiles::DataTiles};
 
 /// Three levels of tiles with cells of 10, 20 and 40 m.
 fn levels() -> Levels {
@@ -21,7 +21,8 @@ fn levels() -> Levels {
 fn splitting(levels: &Levels) -> LineSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    LineSplitting { levels, data, clip: None, polygon: None }
+    let plan = PlanSplitting { frame: levels.frame(), data, clip: None, polygon: None };
+    LineSplitting { plan, levels }
 }
 
 fn line_class(class: BoundaryClass) -> LineClass {
@@ -48,7 +49,7 @@ fn every_tile_has_the_segments_that_come_near_it() {
     }
     for level in levels.numbers() {
         let line = splitting.line(&boundary, level);
-        let step = splitting.step(level);
+        let step = splitting.plan.step(level);
         assert!(line.iter().all(|point| point.u % step == 0 && point.v % step == 0));
         let margin = levels.margin_steps(level);
         let side = 1_u32 << level;
@@ -78,7 +79,7 @@ fn junctions_stay_and_coarse_levels_have_fewer_points() {
     let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
     assert!(counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
     for (level, line) in (0..).zip(&lines) {
-        let half = splitting.step(level) / 2 + 1;
+        let half = splitting.plan.step(level) / 2 + 1;
         for &index in &boundary.fixed {
             let junction = boundary.points[index as usize];
             let is_near = |point: &LatticePoint| {
@@ -116,12 +117,13 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
     let bounds = region.bounds();
     let boundary = wave(&levels, BoundaryClass::Admin2);
-    let splitting = LineSplitting { polygon: Some(&region), ..splitting(&levels) };
+    let mut splitting = splitting(&levels);
+    splitting.plan.polygon = Some(&region);
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
         let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);
         let own = LatticeBounds::of(&points.copied().collect::<Vec<_>>()).unwrap();
-        let step = splitting.step(level);
+        let step = splitting.plan.step(level);
         assert!(
             (own.min.u - bounds.min.u).abs() <= step && (own.max.u - bounds.max.u).abs() <= step
         );

@@ -3,20 +3,12 @@
 use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_network::{Network, NetworkBuilder};
-use corniche_osm::{ExtractSummary, LayerSink, Layers, read_extract};
+use corniche_osm::{ExtractSummary, LayerSink, Layers};
 use corniche_roads::Road;
 use corniche_tileset::FilePackage;
 
-use super::{
-    checks::Findings, error::VerifyError, georeference, osm, temporary_store::TemporaryStore,
-    verify_settings::VerifyOsm,
-};
-use crate::{
-    BuildError, Observer, Stage,
-    extract::placed_reading::PlacedReading,
-    inputs::{Inputs, OtherInputs},
-    layers::fixed_points::road_of_part,
-};
+use super::{error::VerifyError, read_again::read_again, verify_settings::VerifyOsm};
+use crate::{Observer, layers::fixed_points::road_of_part};
 
 /// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice. Roads are cut
 /// at the rectangle of the package's data.
@@ -29,49 +21,11 @@ pub fn network(
     threads: usize,
     observer: &dyn Observer,
 ) -> Result<Network, VerifyError> {
-    let others = OtherInputs { osm: &extract.paths, polygon: None, photo: &[] };
-    let inputs = Inputs::find(&[], others)?;
-    let read = read(package, extract, (&inputs, threads), observer);
-    VerifyError::unless_changed(&inputs, read)
-}
-
-fn read(
-    package: &FilePackage,
-    extract: &VerifyOsm,
-    (inputs, threads): (&Inputs, usize),
-    observer: &dyn Observer,
-) -> Result<Network, VerifyError> {
-    let manifest = package.manifest();
-    let mut findings = Findings::default();
-    let paths = osm::check_inputs(manifest, extract, inputs, &mut findings, observer)?;
-    let crs = georeference::recorded(manifest)?;
-    let projection = crs.projection(manifest.area_deg())?;
-    let work = TemporaryStore::new(observer)?;
-    let scratch = work.scratch()?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let reading = PlacedReading {
-        osm: &paths,
-        table: &osm::chosen(&extract.table, manifest),
-        frame: &manifest.frame,
-        projection: &projection,
-        node_ids: true,
-        pool: &pool,
-        memory_bytes: extract.memory_bytes,
-    };
-    let data = manifest.frame.lattice_bounds(manifest.data_nodes());
+    let frame = &package.manifest().frame;
+    let data = frame.lattice_bounds(package.manifest().data_nodes());
     let mut found = Found { data, roads: NetworkBuilder::default() };
-    observer.begin(Stage::Extract, None);
-    let on_progress = |done, total| observer.reached(Stage::Extract, done, total);
-    let should_stop = || observer.is_cancelled();
-    reading.read(&scratch, (observer, &on_progress), |request| {
-        let layers = Layers { roads: Some(&mut found), ..Layers::default() };
-        // What is wrong with the extract was told when the package was built.
-        read_extract(request, layers, &mut |_| {}, &should_stop)
-    })?;
-    observer.end(Stage::Extract);
+    let layers = Layers { roads: Some(&mut found), ..Layers::default() };
+    read_again(package, (extract, layers), threads, observer)?;
     Ok(found.roads.finish())
 }
 

@@ -1,0 +1,33 @@
+//! The names of what the ways of a layer bound.
+
+use corniche_areas::{AreaObject, ClassedLayer};
+
+use crate::{
+    layer_sink::NamesSink,
+    outlines::{located_ways::LocatedWay, records::Known},
+};
+
+/// Objects with their names, and who is told these.
+pub(crate) struct LineNames<'a, 'b> {
+    /// All objects, by their numbers.
+    pub(crate) objects: Vec<Known>,
+    pub(crate) on_name: &'a mut NamesSink<'b>,
+}
+
+impl LineNames<'_, '_> {
+    /// Tells the names of the objects with these numbers, which give a way its class.
+    pub(crate) fn tell(&mut self, layer: ClassedLayer, way: &LocatedWay, numbers: &[u64]) {
+        let is_closed = way.places.first() == way.places.last();
+        for &number in numbers {
+            let Some(Known { object, class, name, .. }) = self.objects.get(number as usize) else {
+                continue;
+            };
+            // An open way bounds nothing by itself: its name is that of a line.
+            let is_bounded = is_closed || matches!(object, AreaObject::Relation(_));
+            let class = class.and_then(|class| layer.class(class));
+            if let Some(class) = class.filter(|_| is_bounded && !name.is_empty()) {
+                (self.on_name)(way.way_id, class, name);
+            }
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What the splitting of areas and that of lines by tile have in common: the tiles that are wanted, and the lattice of each level.
+
+use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion};
+
+use crate::{heights::data_tiles::DataTiles, points_step::points_step};
+
+/// Where objects of layers without heights are wanted.
+#[derive(Clone, Copy)]
+pub(crate) struct PlanSplitting<'a> {
+    pub(crate) frame: &'a GridFrame,
+    pub(crate) data: DataTiles,
+    /// The bounds that were asked for: areas end there, and tiles that do not touch them get no lines.
+    pub(crate) clip: Option<LatticeBounds>,
+    /// The polygon that was asked for: areas and lines end at its outline.
+    pub(crate) polygon: Option<&'a LatticeRegion>,
+}
+
+impl PlanSplitting<'_> {
+    /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
+    pub(crate) fn step(&self, level: u8) -> i64 {
+        points_step(self.frame, level)
+    }
+}
