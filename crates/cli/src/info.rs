@@ -6,7 +6,7 @@ use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_geom::Cell;
 use corniche_tileset::{
     AreasRecord, Counts, DatumOperationRecord, LinesRecord, Manifest, SampleErrorRecord,
-    ScaleRecord,
+    ScaleRecord, SpansRecord,
 };
 
 use crate::{
@@ -114,6 +114,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
             say(line_texts(layer, lines, digits));
         }
     }
+    if let Some(spans) = &manifest.spans {
+        say(span_texts(spans, digits));
+    }
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
@@ -167,6 +170,24 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
         classes.to_text(),
         lost_text("ways", &counts.lost, digits),
         level_text("parts", levels, digits)
+    )
+}
+
+/// How many bridges and tunnels there are, and what they take on each level.
+fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
+    let SpansRecord { counts, levels } = spans;
+    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+    let reasons = counts.reasons.iter();
+    let reasons = reasons.map(|(reason, number)| {
+        format!("  {} × {}\n", digits.count(*number), in_line(reason))
+    });
+    format!(
+        "Bridges and tunnels, heights estimated: {} bridges and {} tunnels, each with all ways that it connects; they cross {} times:\n{}{}",
+        digits.count(counts.bridges),
+        digits.count(counts.tunnels),
+        digits.count(counts.crossings),
+        reasons.collect::<String>(),
+        level_text("runs", levels, digits)
     )
 }
 

@@ -9,7 +9,7 @@ use super::*;
 
 fn runs() -> impl Strategy<Value = Vec<Run>> {
     let point = (any::<i64>(), any::<i64>()).prop_map(|(u, v)| LatticePoint::new(u >> 3, v >> 3));
-    let run = (vec(point, 2..9), any::<bool>(), any::<u64>()).prop_filter_map(
+    let run = (vec(point, 2..9), any::<bool>(), 0..1_u64 << 60).prop_filter_map(
         "a line has two different points",
         |(points, has_lengths, length_um)| {
             let line = Polyline::new(points).ok()?;
