@@ -178,9 +178,8 @@ fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let SpansRecord { counts, levels } = spans;
     let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
     let reasons = counts.reasons.iter();
-    let reasons = reasons.map(|(reason, number)| {
-        format!("  {} × {}\n", digits.count(*number), in_line(reason))
-    });
+    let reasons = reasons
+        .map(|(reason, number)| format!("  {} × {}\n", digits.count(*number), in_line(reason)));
     format!(
         "Bridges and tunnels, heights estimated: {} bridges and {} tunnels, each with all ways that it connects; they cross {} times:\n{}{}",
         digits.count(counts.bridges),

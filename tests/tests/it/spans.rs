@@ -12,8 +12,8 @@ use e2e::{
 const SPANS: [&str; 4] = ["--structures", "spans", "--classes", "0-8"];
 
 /// `verify` with the extract holds, and looks at spans.
-fn holds(package: &Path, osm: &Path) {
-    let report = json(&["verify", "--json", text(package), "--osm", text(osm)]);
+fn holds(package: &Path, osm: &Path, more: &[&str]) {
+    let report = json(&[&["verify", "--json", text(package), "--osm", text(osm)], more].concat());
     for check in report["checks"].as_array().unwrap() {
         let id = check["id"].as_str().unwrap();
         assert_ne!(check["holds"], false, "{check:#}");
@@ -32,7 +32,7 @@ fn the_sample_has_its_bridges_and_tunnels() {
     copy_pass(&spans, &SPANS);
     copy_pass(&ground, &SPANS[2..]);
     let osm = sample("pass/pass.osm.pbf");
-    holds(&spans, &osm);
+    holds(&spans, &osm, &[]);
     let [with, without] = [&spans, &ground].map(|package| manifest(package));
     let found = &with["spans"];
     assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(7), Some(2)]);
@@ -43,7 +43,7 @@ fn the_sample_has_its_bridges_and_tunnels() {
     }
 }
 
-/// Parts, a build on the terrain of a package, and one that goes on after a kill make the same bytes as one build.
+/// Parts, and a build on the terrain of a package, make the same bytes as one build.
 #[test]
 fn spans_do_not_depend_on_how_a_package_is_built() {
     let folder = tempfile::tempdir().unwrap();
@@ -75,12 +75,23 @@ fn spans_end_at_the_bounds() {
         ["min_x", "min_y", "max_x", "max_y"].map(|side| bounds[side].as_f64().unwrap());
     let half = format!("--bounds={west},{south},{},{north}", (west + east) / 2.0);
     build_pass(&package, &[&SPANS[..], &[&half]].concat());
-    holds(&package, &sample("pass/pass.osm.pbf"));
+    holds(&package, &sample("pass/pass.osm.pbf"), &[]);
     // Two tunnels are cut, whose other ends are not known.
     let reasons = &manifest(&package)["spans"]["reasons"];
     assert_eq!(reasons.as_array().unwrap().len(), 1, "{reasons}");
     assert_eq!(reasons[0]["reason"], "span_one_support");
     assert_eq!(reasons[0]["count"], 2);
+}
+
+/// A polygon through the sample: roads begin where it cuts them, and bridges and tunnels are where they are along the whole road.
+#[test]
+fn spans_end_at_a_polygon() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("part.pmtiles");
+    let polygon = sample("pass/part.geojson");
+    let cut = ["--polygon", text(&polygon)];
+    build_pass(&package, &[&SPANS[..], &cut].concat());
+    holds(&package, &sample("pass/pass.osm.pbf"), &cut);
 }
 
 #[test]
@@ -93,7 +104,7 @@ fn spans_of_liechtenstein_hold() {
     let words = ["build", "-q", "--dem", text(&west), text(&east), "--osm", text(&osm)];
     let ran = corniche(words.iter().chain(&["-o", text(&package)]).chain(&SPANS));
     assert_eq!(ran.code, 0, "{}", ran.err);
-    holds(&package, &osm);
+    holds(&package, &osm, &[]);
     let found = &manifest(&package)["spans"];
     assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(268), Some(22)]);
 }
