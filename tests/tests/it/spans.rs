@@ -35,7 +35,10 @@ fn the_sample_has_its_bridges_and_tunnels() {
     holds(&spans, &osm, &[]);
     let [with, without] = [&spans, &ground].map(|package| manifest(package));
     let found = &with["spans"];
-    assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(7), Some(2)]);
+    assert_eq!(
+        [&found["bridges"], &found["tunnels"]].map(serde_json::Value::as_u64),
+        [Some(7), Some(2)]
+    );
     assert_eq!(found["crossings"], 6);
     assert_eq!(without.get("spans"), None);
     for what in ["levels", "growth", "counts"] {
@@ -73,7 +76,7 @@ fn spans_end_at_the_bounds() {
     let bounds = &manifest(&info)["wgs84_bounds"];
     let [west, south, east, north] =
         ["min_x", "min_y", "max_x", "max_y"].map(|side| bounds[side].as_f64().unwrap());
-    let half = format!("--bounds={west},{south},{},{north}", (west + east) / 2.0);
+    let half = format!("--bounds={west},{south},{},{north}", f64::midpoint(west, east));
     build_pass(&package, &[&SPANS[..], &[&half]].concat());
     holds(&package, &sample("pass/pass.osm.pbf"), &[]);
     // Two tunnels are cut, whose other ends are not known.
@@ -106,5 +109,8 @@ fn spans_of_liechtenstein_hold() {
     assert_eq!(ran.code, 0, "{}", ran.err);
     holds(&package, &osm, &[]);
     let found = &manifest(&package)["spans"];
-    assert_eq!([&found["bridges"], &found["tunnels"]].map(|of| of.as_u64()), [Some(268), Some(22)]);
+    assert_eq!(
+        [&found["bridges"], &found["tunnels"]].map(serde_json::Value::as_u64),
+        [Some(268), Some(22)]
+    );
 }

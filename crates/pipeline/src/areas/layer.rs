@@ -183,7 +183,8 @@ fn put_section(
 ) -> Result<(), BuildError> {
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
-    TileSection::put((SectionLayer::Areas, tile), splitting, store, counts, |id, step| {
+    TileSection::put((SectionLayer::Areas, tile), store, counts, |id| {
+        let step = splitting.step(id.z());
         Ok(encode_areas(id, splitting.frame, step, areas)?.map(AreasSection::into_bytes))
     })
 }

@@ -5,7 +5,7 @@ use corniche_store::Artifacts;
 use corniche_tileset::EncodeError;
 use serde::{Deserialize, Serialize};
 
-use super::{SectionLayer, plan_splitting::PlanSplitting};
+use super::SectionLayer;
 use crate::{BuildError, artifacts};
 
 /// The encoded section of a tile, and how much is in it.
@@ -19,18 +19,16 @@ pub(crate) struct TileSection {
 }
 
 impl TileSection {
-    /// Keeps what `encode` makes of the parts of a tile, if they make a section, with the numbers of parts and points. It is told the tile and the spacing of its
-    /// lattice.
+    /// Keeps what `encode` makes of the parts of a tile, if they make a section, with the numbers of parts and points.
     pub(crate) fn put(
         (layer, tile): (SectionLayer, u64),
-        splitting: &PlanSplitting<'_>,
         store: &dyn Artifacts,
         [parts, points]: [u64; 2],
-        encode: impl FnOnce(TileId, i64) -> Result<Option<Vec<u8>>, EncodeError>,
+        encode: impl FnOnce(TileId) -> Result<Option<Vec<u8>>, EncodeError>,
     ) -> Result<(), BuildError> {
         let key = layer.section().item(tile);
         let id = artifacts::tile_of(key)?;
-        let Some(section) = encode(id, splitting.step(id.z()))? else { return Ok(()) };
+        let Some(section) = encode(id)? else { return Ok(()) };
         artifacts::put(store, key, &Self { section, parts, points })
     }
 

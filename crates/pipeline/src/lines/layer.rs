@@ -128,7 +128,8 @@ impl<'a> TileLayer for LinesLayer<'a> {
             |tile, parts| {
                 let points = parts.iter().map(|line| line.points.len() as u64).sum();
                 let counts = [parts.len() as u64, points];
-                TileSection::put((layer, tile), splitting, store, counts, |id, step| {
+                TileSection::put((layer, tile), store, counts, |id| {
+                    let step = splitting.step(id.z());
                     Ok(encode_lines(id, own, step, &parts)?.map(LinesSection::into_bytes))
                 })
             },

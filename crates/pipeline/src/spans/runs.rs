@@ -136,7 +136,7 @@ fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<
                 last_at = at;
                 let height_m = from.height_m + share * (vertex.height_m - from.height_m);
                 let triangle = from.next_triangle;
-                let bend = GroundVertex { at, along_um, triangle, height_m, ..*from };
+                let bend = GroundVertex { at, triangle, height_m, along_um, ..*from };
                 push(station(bend, true), triangle);
             }
         }

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_spans::Decks;
-use corniche_tileset::{SpanRun, encode_spans};
+use corniche_tileset::{SpanRun, SpansSection, encode_spans, pmtiles_order};
 use corniche_tin::{Placement, Surface, Tin};
 
 use super::{
@@ -173,12 +173,11 @@ impl SpanSolving<'_> {
         });
         let runs: Vec<SpanRun> =
             lines.iter().flat_map(|line| runs_of(line, (network, decks), self.quantum_m)).collect();
-        let Some(section) = encode_spans(id, self.of.frame, &runs)? else { return Ok(()) };
-        let section = TileSection {
-            section: section.into_bytes(),
-            parts: runs.len() as u64,
-            points: runs.iter().map(|run| run.points.len() as u64).sum(),
-        };
-        section.put(SectionLayer::Spans, self.of.store, id)
+        let points = runs.iter().map(|run| run.points.len() as u64).sum();
+        let counts = [runs.len() as u64, points];
+        let tile = (SectionLayer::Spans, pmtiles_order(id));
+        TileSection::put(tile, self.of.store, counts, |id| {
+            Ok(encode_spans(id, self.of.frame, &runs)?.map(SpansSection::into_bytes))
+        })
     }
 }

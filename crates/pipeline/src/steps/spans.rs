@@ -11,7 +11,7 @@ use crate::{
         SectionLayer,
         tile_section::{SectionOfTile, TileSection},
     },
-    spans::{solving::SpanSolving, span_network::SpanInputs},
+    spans::{solving::SpanSolving, span_network::SpanInputs, totals::SpanTotals},
     terrain::ground::GroundSource,
     tile::mesh::Meshed,
 };
@@ -28,33 +28,35 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
         return Ok(());
     }
     let key = Kind::SpanTotals.item(0);
-    let totals = match artifacts::get(context.store, key)? {
-        Some(totals) => totals,
-        None => {
-            let data = context.node_bounds();
-            let inputs = SpanInputs {
-                osm: &context.settings.osm,
-                store: context.store,
-                frame: context.frame(),
-                coordinates: context.coordinates,
-                within: context.clip().map_or(data, |clip| clip.intersection(&data)),
-            };
-            let solving = SpanSolving {
-                of: inputs,
-                quantum_m: context.levels.quantum_m(),
-                tin: &|id| tin_of(context, id),
-                threads: context.threads(),
-                observer: context.observer,
-            };
-            let totals = solving.solve()?;
-            artifacts::put(context.store, key, &totals)?;
-            totals
-        }
-    };
+    let kept: Option<SpanTotals> = artifacts::get(context.store, key)?;
+    let is_kept = kept.is_some();
+    let totals = kept.map_or_else(|| solve(context), Ok)?;
+    if !is_kept {
+        artifacts::put(context.store, key, &totals)?;
+    }
     for (reason, way_id) in totals.problems {
         context.observer.defect(&Defect::Span { way_id, reason });
     }
     Ok(())
+}
+
+fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
+    let data = context.node_bounds();
+    let inputs = SpanInputs {
+        osm: &context.settings.osm,
+        store: context.store,
+        frame: context.frame(),
+        coordinates: context.coordinates,
+        within: context.clip().map_or(data, |clip| clip.intersection(&data)),
+    };
+    let solving = SpanSolving {
+        of: inputs,
+        quantum_m: context.levels.quantum_m(),
+        tin: &|id| tin_of(context, id),
+        threads: context.threads(),
+        observer: context.observer,
+    };
+    solving.solve()
 }
 
 /// The TIN of a coarse tile; `None` where it has no ground.

@@ -173,11 +173,11 @@ fn each_field_of_a_run_is_seen() {
 #[test]
 fn what_a_neighbour_lacks_is_seen() {
     let mut apart = Apart::sound();
+    let frame = &apart.manifest.frame;
+    let side = 256 * frame.node_steps(frame.max_level())[0];
     let is_open = |run: &SpanRun| {
         run.points.iter().any(|point| {
-            let tile = 256
-                * i64::from(apart.manifest.frame.node_steps(apart.manifest.frame.max_level())[0]);
-            matches!(point.height, SpanHeight::Steps(_)) && point.at.u.rem_euclid(tile) == 0
+            matches!(point.height, SpanHeight::Steps(_)) && point.at.u.rem_euclid(side) == 0
         })
     };
     let [tile, run] = apart.find(is_open);
