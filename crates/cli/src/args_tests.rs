@@ -158,6 +158,10 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Export(args) => match &args.what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.from, &args.extract.osm),
+            Export::Boundaries(args) => {
+                let (package, osm) = args.files().unwrap();
+                (path_of(package), osm)
+            }
             Export::Edges(args) => measured(&args.from, &args.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
@@ -173,6 +177,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     // What follows the option, what is meant by the positional argument, and what else the command needs.
     let known = [
+        ("export boundaries --osm", "p.pmtiles", "-o b.csv"),
         ("export edges --dem", "p.pmtiles", "-o e.csv --osm rest"),
         ("export edges --osm", "p.pmtiles", "-o e.csv --dem rest"),
         ("export geotiff --dem", "p.pmtiles", "-o h.tif"),

@@ -14,6 +14,7 @@ use std::path::Path;
 
 use corniche_areas::{AreaClass, ClassedLayer};
 use corniche_export::{Coordinates, ExportError, FeatureRequest, export_areas, export_lines};
+use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
@@ -49,11 +50,12 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     let plan = &args.plan;
-    let (package, request) = plan_request(plan, &args.classes, &AreaClass::ALL)?;
+    let (package, request) =
+        plan_request((&args.from.package, plan), &args.classes, &AreaClass::ALL)?;
     let name = format!("areas.{}", request.format.ending());
     let export =
         |path: &Path, progress: &Progress| export_areas(&package, &request, path, progress);
-    let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
+    let (summary, size) = write(&plan.file, name, args.from.package.name(), export)?;
     if summary.unjoined > 0 {
         messages::warning(&format!(
             "{} areas could not be joined over borders of tiles; each of their parts is a polygon",
@@ -75,13 +77,14 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
 
 fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
     let (plan, layer) = (&args.plan, ClassedLayer::Boundaries);
-    let (package, request) = plan_request(plan, &args.classes, &layer.classes())?;
-    let names = recorded::line_names(&args.extract, layer, (&args.cpu, &package))?;
+    let (place, osm) = args.files()?;
+    let (package, request) = plan_request((&place, plan), &args.classes, &layer.classes())?;
+    let names = recorded::line_names((&args.extract, &osm), layer, (&args.cpu, &package))?;
     let name = format!("{}.{}", layer.name(), request.format.ending());
     let export = |path: &Path, progress: &Progress| {
         export_lines(&package, (layer, names.as_ref()), &request, path, progress)
     };
-    let (summary, size) = write(&plan.file, name, plan.from.package.name(), export)?;
+    let (summary, size) = write(&plan.file, name, place.name(), export)?;
     let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} ways of level {}, {}, {} lines, {} points",
@@ -97,12 +100,12 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
 
 /// The package, and what is asked of a layer without heights; `classes` is empty for all.
 fn plan_request<C: Copy>(
-    args: &InPlanArgs,
+    (place, args): (&PackagePlace, &InPlanArgs),
     classes: &[C],
     all: &[C],
 ) -> Result<(FilePackage, FeatureRequest<C>), Failure> {
     let format = format(args.format, &args.file.output)?;
-    let package = packages::open(&args.from.package)?;
+    let package = packages::open(place)?;
     let request = FeatureRequest {
         format,
         level: args.at.level,

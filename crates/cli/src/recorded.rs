@@ -51,11 +51,11 @@ pub(crate) fn network(
 
 /// The names of what the lines of a layer bound, if extracts are named; those of another package are refused.
 pub(crate) fn line_names(
-    args: &ExtractArgs,
+    (args, osm): (&ExtractArgs, &[PathBuf]),
     layer: ClassedLayer,
     of: (&ThreadsArg, &FilePackage),
 ) -> Result<Option<LineNames>, Failure> {
-    from_extracts(args, &args.osm, of, |package, extract, threads, observer| {
+    from_extracts(args, osm, of, |package, extract, threads, observer| {
         corniche_pipeline::line_names(package, layer, extract, threads, observer)
     })
 }

@@ -48,7 +48,7 @@ impl SectionLayer {
             .chain(iter::once(Self::Spans))
     }
 
-    /// Those that are there before their tiles are: all but spans, which need the ground of all tiles.
+    /// The layers that are there before their tiles are: all but spans, which need the ground of all tiles.
     pub(crate) fn of_extract() -> impl Iterator<Item = Self> {
         Self::all().filter(|layer| *layer != Self::Spans)
     }

@@ -5,8 +5,6 @@
 //!  tiles ─► ground beneath bridges and tunnels, by tile ──────────────┴─► decks of each level ─► runs by tile
 //! ```
 
-pub(crate) mod ground_lines;
-pub(crate) mod near_roads;
 pub(crate) mod runs;
 pub(crate) mod solving;
 pub(crate) mod span_network;

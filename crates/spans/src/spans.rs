@@ -146,7 +146,7 @@ impl Spans {
         self.count == 0
     }
 
-    /// Their joints.
+    /// The joints of all spans.
     #[must_use]
     pub fn joints(&self) -> &[Joint] {
         &self.joints

@@ -1,3 +1,5 @@
+//! Segments near a bridge, and others.
+
 use corniche_geom::LatticePoint;
 
 use super::Vicinity;

@@ -1,10 +1,13 @@
 //! Commands that give what a package holds to other programs.
 
-use clap::{Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
     Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
+use corniche_remote::PackagePlace;
 
 use super::{
     ReportArgs,
@@ -12,7 +15,9 @@ use super::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, ThreadsArg,
     },
+    values::{package_among, package_place},
 };
+use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -114,8 +119,6 @@ pub(crate) struct VectorArgs {
 #[derive(Debug, Args)]
 pub(crate) struct InPlanArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
-    #[command(flatten)]
     pub(crate) file: FileArgs,
     /// The format of a file with another ending
     #[arg(short, long, value_enum, value_name = "FORMAT")]
@@ -136,6 +139,8 @@ pub(crate) struct InPlanArgs {
 )]
 pub(crate) struct ExportAreasArgs {
     #[command(flatten)]
+    pub(crate) from: PackageArg,
+    #[command(flatten)]
     pub(crate) plan: InPlanArgs,
     /// Classes that are taken, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
@@ -151,6 +156,9 @@ pub(crate) struct ExportAreasArgs {
     mut_arg("osm", |arg| arg.help("The extracts the package was made from: boundaries then have the names of what they bound")),
 )]
 pub(crate) struct ExportBoundariesArgs {
+    /// The package: a file, or an address on a web server (https://…)
+    #[arg(required_unless_present = "osm", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
+    package: Option<PackagePlace>,
     #[command(flatten)]
     pub(crate) plan: InPlanArgs,
     /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
@@ -162,6 +170,18 @@ pub(crate) struct ExportBoundariesArgs {
     pub(crate) cpu: ThreadsArg,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
+}
+
+impl ExportBoundariesArgs {
+    /// The package, and the extracts, among which it may be named.
+    ///
+    /// # Errors
+    /// When no package is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
+        let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
+        let (package, [osm]) = package_among(self.package.as_ref(), [&self.extract.osm], usage)?;
+        Ok((package, osm))
+    }
 }
 
 #[derive(Debug, Args)]
@@ -546,11 +566,7 @@ fn parse_area_class(text: &str) -> Result<AreaClass, String> {
 }
 
 fn parse_boundary_class(text: &str) -> Result<LineClass, String> {
-    parse_line_class(ClassedLayer::Boundaries, text)
-}
-
-fn parse_line_class(layer: ClassedLayer, text: &str) -> Result<LineClass, String> {
-    let classes = layer.classes();
+    let (layer, classes) = (ClassedLayer::Boundaries, ClassedLayer::Boundaries.classes());
     let named = classes.iter().copied().find(|class| class.name() == text);
     named.ok_or_else(|| other_classes(layer.name(), &classes))
 }
@@ -561,24 +577,20 @@ fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
 }
 
 fn parse_plan_crs(text: &str) -> Result<ExportCrs, String> {
-    if text == "package" {
-        Ok(ExportCrs::Package)
-    } else if text.eq_ignore_ascii_case("EPSG:4326") {
-        Ok(ExportCrs::Wgs84)
-    } else {
-        Err("give \"package\" or EPSG:4326; for other systems use ogr2ogr -t_srs on the result"
-            .to_owned())
-    }
+    parse_crs_or("EPSG:4326", text)
 }
 
 fn parse_crs(text: &str) -> Result<ExportCrs, String> {
-    if text == "package" {
-        Ok(ExportCrs::Package)
-    } else if text.eq_ignore_ascii_case("EPSG:4979") {
-        Ok(ExportCrs::Wgs84)
-    } else {
-        Err("give \"package\" or EPSG:4979; for other systems use ogr2ogr -t_srs on the result"
-            .to_owned())
+    parse_crs_or("EPSG:4979", text)
+}
+
+fn parse_crs_or(wgs84: &str, text: &str) -> Result<ExportCrs, String> {
+    match text {
+        "package" => Ok(ExportCrs::Package),
+        text if text.eq_ignore_ascii_case(wgs84) => Ok(ExportCrs::Wgs84),
+        _ => Err(format!(
+            "give \"package\" or {wgs84}; for other systems use ogr2ogr -t_srs on the result"
+        )),
     }
 }
 

@@ -9,9 +9,11 @@ use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
-use super::pieces::{RoadPiece, Run, TilePieces};
+use super::{
+    ground_lines::{GroundLine, PartOfRun, line_of},
+    pieces::{RoadPiece, Run, TilePieces},
+};
 use crate::levels::Levels;
-use crate::spans::ground_lines::{GroundLine, PartOfRun, line_of};
 use crate::true_lengths::{gaps_um, pieces_um, starts_um};
 
 /// Sums over the roads of a class on a level.

@@ -9,6 +9,7 @@ use corniche_store::{Artifacts, Scratch};
 use corniche_work::Stage;
 
 use super::{
+    near_spans,
     pieces::{RoadPiece, TilePiecesWriter},
     split::{RoadSplitting, SplitRoad},
     totals::{LengthsWriter, RoadTotals},
@@ -20,7 +21,6 @@ use crate::{
         layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
     },
-    spans::near_roads,
 };
 
 /// Roads are near a node of a bridge or a tunnel within this, in true metres: their directions there count.
@@ -125,7 +125,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
         if self.splitting.spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);
             let spans = (&self.span_tiles, &self.same_places[..]);
-            near_roads::keep(spans, self.store, reach, told.pool)?;
+            near_spans::keep(spans, self.store, reach, told.pool)?;
         }
         Ok((self.totals, summary))
     }

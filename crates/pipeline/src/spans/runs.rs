@@ -11,10 +11,8 @@ use corniche_geom::LatticePoint;
 use corniche_spans::{Decks, SpanKind};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
 
-use super::{
-    ground_lines::{GroundLine, GroundVertex, between},
-    span_network::{OnRoad, SpanNetwork},
-};
+use super::span_network::{OnRoad, SpanNetwork};
+use crate::roads::ground_lines::{GroundLine, GroundVertex, between};
 
 /// What is nearer to the ground is on it, metres.
 const ON_GROUND_M: f64 = 1e-6;

@@ -1,3 +1,5 @@
+//! Runs of a bridge of 400 m over ground of any shape.
+
 use std::{collections::BTreeSet, sync::Arc};
 
 use corniche_geom::{
@@ -10,8 +12,11 @@ use corniche_testing::FlatProjection;
 use super::*;
 use crate::{
     artifacts::Kind,
-    roads::pieces::{RoadPiece, Run, TilePiecesWriter},
-    spans::{near_roads, span_network::SpanInputs},
+    roads::{
+        near_spans,
+        pieces::{RoadPiece, Run, TilePiecesWriter},
+    },
+    spans::span_network::SpanInputs,
 };
 
 const QUANTUM_M: f64 = 0.125;
@@ -55,7 +60,7 @@ impl World {
         let key = Kind::RoadPieces.of_tile(TileId::ROOT);
         store.put(key, &writer.into_bytes()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        near_roads::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
+        near_spans::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
         let projection = FlatProjection::new([1e5; 2]);
         let bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 2048.0, max_y: 2048.0 };
         let coordinates = CoordinateTable::sample(&projection, bounds, 0.01).unwrap();

@@ -11,7 +11,6 @@ use corniche_tileset::{SpanRun, SpansSection, encode_spans, pmtiles_order};
 use corniche_tin::{Placement, Surface, Tin};
 
 use super::{
-    ground_lines,
     runs::runs_of,
     span_network::{OnRoad, SpanInputs, SpanNetwork},
     totals::SpanTotals,
@@ -20,6 +19,7 @@ use crate::{
     BuildError, Observer, Stage,
     artifacts::{self, Kind},
     layers::{SectionLayer, tile_section::TileSection},
+    roads::ground_lines,
     workers,
 };
 

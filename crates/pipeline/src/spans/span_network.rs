@@ -8,8 +8,12 @@ use corniche_network::{Breaks, ChainNumber, Chains, Network, NetworkBuilder};
 use corniche_spans::{Crossing, Decks, Distance, SpanKind, Spans, crossings};
 use corniche_store::Artifacts;
 
-use super::near_roads::{self, NearRoad};
-use crate::{BuildError, layers::fixed_points::road_of_part, true_lengths::pieces_um};
+use crate::{
+    BuildError,
+    layers::fixed_points::road_of_part,
+    roads::near_spans::{self, NearRoad},
+    true_lengths::pieces_um,
+};
 
 /// Where bridges and tunnels are found.
 #[derive(Clone, Copy)]
@@ -52,9 +56,9 @@ struct Stretch {
 }
 
 impl SpanNetwork {
-    /// Of the roads that were kept.
+    /// Finds the spans of the roads that were kept.
     pub(crate) fn load(inputs: &SpanInputs<'_>) -> Result<Self, BuildError> {
-        let roads = near_roads::load(inputs.store)?;
+        let roads = near_spans::load(inputs.store)?;
         let (network, places) = network(&roads, inputs.within);
         let chains = Chains::of(&network, Breaks::JunctionsAndStructures);
         let (frame, table) = (inputs.frame, inputs.coordinates);
@@ -181,14 +185,14 @@ impl Stretch {
 }
 
 /// A road of the network: a piece of a road of the extract.
-struct Place {
+struct PlacedRoad {
     ordinal: u32,
     from_um: u64,
     segments_um: Vec<u64>,
 }
 
 /// The roads as a network, and what each of its roads is. They end where the data end, or the bounds that were asked for.
-fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<Place>) {
+fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<PlacedRoad>) {
     let mut builder = NetworkBuilder::default();
     let mut places = Vec::new();
     for near in roads {
@@ -197,7 +201,7 @@ fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<Place>) {
         let (ordinal, from_um) = (*ordinal, *from_um);
         if road.line.points().iter().all(|point| within.contains(*point)) {
             builder.push(&road);
-            places.push(Place { ordinal, from_um, segments_um: segments_um.clone() });
+            places.push(PlacedRoad { ordinal, from_um, segments_um: segments_um.clone() });
             continue;
         }
         for part in corniche_drape::clip_parts(&road.line, &within, OwnedBorders::ALL) {
@@ -207,7 +211,7 @@ fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<Place>) {
                 continue;
             };
             let before_um: u64 = segments_um[..first].iter().sum();
-            places.push(Place {
+            places.push(PlacedRoad {
                 ordinal,
                 from_um: from_um + before_um + begin_um,
                 segments_um: pieces.iter().map(|[from, to]| to - from).collect(),

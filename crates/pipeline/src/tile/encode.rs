@@ -23,11 +23,11 @@ use crate::{
     },
     photos::textures,
     roads::{
+        ground_lines,
         lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
         pieces::TilePieces,
         shares::share,
     },
-    spans::ground_lines,
 };
 
 /// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.

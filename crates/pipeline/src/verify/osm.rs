@@ -25,13 +25,14 @@ use crate::{
     levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
+        ground_lines,
         lay::ClassSums,
         losses::{LossFold, Sums},
         pieces::TilePieces,
         totals::RoadTotals,
     },
     settings_record,
-    spans::{ground_lines, span_network::SpanInputs},
+    spans::span_network::SpanInputs,
     true_lengths::TrueLengths,
     workers,
 };

@@ -16,10 +16,10 @@ use super::{
 use crate::{
     levels::Levels,
     roads::{
+        ground_lines::GroundLine,
         lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
         pieces::TilePieces,
     },
-    spans::ground_lines::GroundLine,
 };
 
 /// What is needed to lay roads again.

@@ -8,10 +8,10 @@ use corniche_store::Artifacts;
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
+use super::pieces::{RoadPiece, Run};
 use crate::{
     BuildError,
     artifacts::{self, Kind},
-    roads::pieces::{RoadPiece, Run},
     true_lengths::{cut_um, share},
 };
 

@@ -1,3 +1,5 @@
+//! What lies near a bridge is kept: a road that goes on at its end, and one that crosses it.
+
 use std::sync::Arc;
 
 use corniche_geom::TileId;

@@ -9,10 +9,10 @@ use corniche_store::Artifacts;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::pieces::{RoadPiece, TilePieces};
 use crate::{
     BuildError,
     artifacts::{self, Kind},
-    roads::pieces::{RoadPiece, TilePieces},
 };
 
 /// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
@@ -74,7 +74,7 @@ struct Segment {
 /// What was found of a road.
 struct Found {
     road: RoadPiece,
-    /// By where along the road they begin and end.
+    /// Segments are kept by where along the road they begin and end.
     segments: BTreeMap<[u64; 2], Segment>,
 }
 
@@ -214,5 +214,5 @@ fn joined(ordinal: u32, Found { road, segments }: &Found) -> Vec<NearRoad> {
 }
 
 #[cfg(test)]
-#[path = "near_roads_tests.rs"]
+#[path = "near_spans_tests.rs"]
 mod tests;
