@@ -67,15 +67,21 @@ impl NearRoad {
 
 /// A segment of a road.
 struct Segment {
+    /// Where along the road it begins and ends, micrometres.
+    along_um: [u64; 2],
     ends: [LatticePoint; 2],
     nodes: [Option<i64>; 2],
 }
 
-/// What was found of a road.
+/// What was found of a road: as little as is needed, since all of a country are in memory.
 struct Found {
-    road: RoadPiece,
-    /// Segments are kept by where along the road they begin and end.
-    segments: BTreeMap<[u64; 2], Segment>,
+    way_id: i64,
+    class: FunctionalRoadClass,
+    structure: Structure,
+    layer: i8,
+    highway: String,
+    /// What lies on several tiles is there more than once.
+    segments: Vec<Segment>,
 }
 
 /// Gathers the roads near all bridges and tunnels from the finest tiles with such, and keeps them. What lies within `reach` lattice steps of a
@@ -99,7 +105,7 @@ pub(crate) fn keep(
         }
     }
     let mut roads: Vec<NearRoad> =
-        all.into_iter().flat_map(|(ordinal, found)| joined(ordinal, &found)).collect();
+        all.into_iter().flat_map(|(ordinal, found)| joined(ordinal, found)).collect();
     if let Some(first) = roads.first_mut() {
         first.same_places = same_places.to_vec();
     }
@@ -114,20 +120,22 @@ pub(crate) fn keep(
     Ok(())
 }
 
-/// All roads near spans, in their order.
-pub(crate) fn load(store: &dyn Artifacts) -> Result<Vec<NearRoad>, BuildError> {
-    let mut all = Vec::new();
+/// Hands all roads near spans to `take`, in their order; one block of them is in memory.
+pub(crate) fn for_each(
+    store: &dyn Artifacts,
+    mut take: impl FnMut(NearRoad),
+) -> Result<(), BuildError> {
     for block in 0.. {
         let key = Kind::SpanRoads.item(block);
         let own: Option<Vec<NearRoad>> = artifacts::get(store, key)?;
         let own = own.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;
         let is_last = own.len() < BLOCK_ROADS;
-        all.extend(own);
+        own.into_iter().for_each(&mut take);
         if is_last {
             break;
         }
     }
-    Ok(all)
+    Ok(())
 }
 
 /// What a finest tile has of bridges, tunnels and roads near them.
@@ -140,7 +148,7 @@ fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Fou
         .partition(|(_, road)| road.attributes.structure != Structure::Ground);
     let of_spans: Vec<(u32, Found)> =
         of_spans.into_iter().map(|(ordinal, road)| (ordinal, Found::of(road, |_| true))).collect();
-    let segments = || of_spans.iter().flat_map(|(_, found)| found.segments.values());
+    let segments = || of_spans.iter().flat_map(|(_, found)| &found.segments);
     let nodes = segments().flat_map(|segment| {
         let both = segment.ends.into_iter().zip(segment.nodes);
         both.filter_map(|(at, node)| node.map(|_| at))
@@ -158,7 +166,7 @@ fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Fou
 impl Found {
     /// The segments of a road that are wanted.
     fn of(mut road: RoadPiece, is_wanted: impl Fn([LatticePoint; 2]) -> bool) -> Self {
-        let mut segments = BTreeMap::new();
+        let mut segments = Vec::new();
         for run in std::mem::take(&mut road.runs) {
             let mut from_um = run.from_um;
             let mut nodes = run.nodes.iter().peekable();
@@ -172,29 +180,38 @@ impl Found {
                 let to_um = from_um + length_um;
                 let nodes = [node_at(index), node_at(index + 1)];
                 if is_wanted(ends) {
-                    segments.insert([from_um, to_um], Segment { ends, nodes });
+                    segments.push(Segment { along_um: [from_um, to_um], ends, nodes });
                 }
                 from_um = to_um;
             }
         }
-        Self { road, segments }
+        Self {
+            way_id: road.way_id,
+            class: road.class,
+            structure: road.attributes.structure,
+            layer: road.attributes.layer,
+            highway: road.attributes.highway.clone(),
+            segments,
+        }
     }
 }
 
 /// The pieces of a road that its segments make, those that follow each other together.
-fn joined(ordinal: u32, Found { road, segments }: &Found) -> Vec<NearRoad> {
+fn joined(ordinal: u32, mut found: Found) -> Vec<NearRoad> {
+    found.segments.sort_unstable_by_key(|segment| segment.along_um);
+    found.segments.dedup_by_key(|segment| segment.along_um);
     let mut pieces: Vec<NearRoad> = Vec::new();
     let mut before = None;
-    for (&[from_um, to_um], segment) in segments {
-        let [from, to] = segment.ends;
+    for segment in &found.segments {
+        let ([from_um, to_um], [from, to]) = (segment.along_um, segment.ends);
         if before != Some((from_um, from)) {
             pieces.push(NearRoad {
                 ordinal,
-                way_id: road.way_id,
-                class: road.class,
-                structure: road.attributes.structure as u8,
-                layer: road.attributes.layer,
-                highway: road.attributes.highway.clone(),
+                way_id: found.way_id,
+                class: found.class,
+                structure: found.structure as u8,
+                layer: found.layer,
+                highway: found.highway.clone(),
                 from_um,
                 points: vec![from],
                 segments_um: Vec::new(),

@@ -45,7 +45,8 @@ fn what_lies_near_a_bridge_is_kept() {
     store.put(key, &writer.into_bytes()).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
-    let kept = load(&store).unwrap();
+    let mut kept = Vec::new();
+    for_each(&store, |road| kept.push(road)).unwrap();
     let found: Vec<(u32, usize, u64)> =
         kept.iter().map(|road| (road.ordinal, road.points.len(), road.from_um)).collect();
     // Of the first road the segment at the bridge's end, of the third the one that crosses.

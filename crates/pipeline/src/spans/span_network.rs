@@ -58,8 +58,7 @@ struct Stretch {
 impl SpanNetwork {
     /// Finds the spans of the roads that were kept.
     pub(crate) fn load(inputs: &SpanInputs<'_>) -> Result<Self, BuildError> {
-        let roads = near_spans::load(inputs.store)?;
-        let (network, places) = network(&roads, inputs.within);
+        let (network, places) = network(inputs)?;
         let chains = Chains::of(&network, Breaks::JunctionsAndStructures);
         let (frame, table) = (inputs.frame, inputs.coordinates);
         let degrees = |at| table.wgs84_from_working(frame.position_of_fraction_m(at));
@@ -192,20 +191,19 @@ struct PlacedRoad {
 }
 
 /// The roads as a network, and what each of its roads is. They end where the data end, or the bounds that were asked for.
-fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<PlacedRoad>) {
+fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), BuildError> {
     let mut builder = NetworkBuilder::default();
     let mut places = Vec::new();
-    for near in roads {
-        let Some(road) = near.road() else { continue };
+    near_spans::for_each(inputs.store, |near| {
+        let Some(road) = near.road() else { return };
         let NearRoad { ordinal, from_um, segments_um, .. } = near;
-        let (ordinal, from_um) = (*ordinal, *from_um);
-        if road.line.points().iter().all(|point| within.contains(*point)) {
+        if road.line.points().iter().all(|point| inputs.within.contains(*point)) {
             builder.push(&road);
-            places.push(PlacedRoad { ordinal, from_um, segments_um: segments_um.clone() });
-            continue;
+            places.push(PlacedRoad { ordinal, from_um, segments_um });
+            return;
         }
-        for part in corniche_drape::clip_parts(&road.line, &within, OwnedBorders::ALL) {
-            let pieces: Vec<[u64; 2]> = pieces_um(&road.line, &part, segments_um).collect();
+        for part in corniche_drape::clip_parts(&road.line, &inputs.within, OwnedBorders::ALL) {
+            let pieces: Vec<[u64; 2]> = pieces_um(&road.line, &part, &segments_um).collect();
             let (Some(&first), Some(&[begin_um, _])) = (part.segments.first(), pieces.first())
             else {
                 continue;
@@ -218,8 +216,8 @@ fn network(roads: &[NearRoad], within: LatticeBounds) -> (Network, Vec<PlacedRoa
             });
             builder.push(&road_of_part(&road, part));
         }
-    }
-    (builder.finish(), places)
+    })?;
+    Ok((builder.finish(), places))
 }
 
 /// Where each link begins and ends along its chain, metres, by [`Chains::place_of`].
