@@ -110,7 +110,7 @@ impl Stage {
             Self::Samples => ("samples", "measuring at samples", Unit::Things("blocks")),
             Self::Tiles => ("tiles", "making tiles", TILES),
             Self::CoarseTiles => ("coarse-tiles", "making coarse tiles", TILES),
-            Self::Spans => ("spans", "solving bridges and tunnels", Unit::Things("tiles")),
+            Self::Spans => ("spans", "solving bridges", Unit::Things("tiles")),
             Self::Package => ("package", "writing package", TILES),
             Self::Verify => ("verify", "verifying", TILES),
             Self::ExportTiles => ("export-tiles", "reading tiles", TILES),
