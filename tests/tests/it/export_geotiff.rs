@@ -376,7 +376,7 @@ fn heights_are_metres_above_the_packages_datum() {
     let (raster, told) = export(&package, "a.tif", &[]);
     let reference = raster.dataset.spatial_ref().unwrap();
     assert!(!reference.is_compound() && reference.is_projected());
-    assert!(told.contains("datum: unknown"), "{told}");
+    assert!(told.contains("datum of the package: unknown"), "{told}");
     assert!((raster.at(0, 3, 5) - height_ft(3, 5)).abs() < 0.21);
     // NAVD88 in US survey feet.
     build(&package, &dem, &[&options[..], &["--dem-vertical-crs", "EPSG:6360"]].concat());
