@@ -1,6 +1,6 @@
 //! The classes of boundaries, from countries to protected areas, and the tags that make them.
 
-use crate::{classed_layer::ClassTable, named_classes::named_classes};
+use crate::{class_table::ClassTable, named_classes::named_classes};
 
 named_classes! {
     /// What a boundary divides. A class with a lower number is more important.
