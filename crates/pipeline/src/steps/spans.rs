@@ -16,15 +16,10 @@ use crate::{
     tile::mesh::Meshed,
 };
 
-/// Whether the package of a build has spans.
-pub(crate) fn are_wanted(context: &Context<'_>) -> bool {
-    context.settings.roads.spans && !context.settings.osm.is_empty()
-}
-
 /// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
 /// to be known of them.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
-    if !are_wanted(context) {
+    if !context.settings.roads.spans || context.settings.osm.is_empty() {
         return Ok(());
     }
     let key = Kind::SpanTotals.item(0);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::FilePackage;
+use corniche_tileset::{FilePackage, LineLevelRecord};
 
 use super::{
     checks::{CheckId, Findings},
@@ -31,6 +31,12 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
+    /// What is recorded of a layer of lines, or of spans, on a level.
+    pub(crate) fn recorded(of: &LineLevelRecord) -> (u8, Self) {
+        let &LineLevelRecord { level, tiles, parts, points, bytes } = of;
+        (level, Self { tiles, parts, points, bytes })
+    }
+
     fn add(&mut self, of_tile: Self) {
         self.tiles += of_tile.tiles;
         self.parts += of_tile.parts;

@@ -2,9 +2,7 @@
 
 use corniche_areas::ClassedLayer;
 use corniche_geom::{LatticeBounds, TileId};
-use corniche_tileset::{
-    FilePackage, LineCounts, LineLevelRecord, LineRecord, decode_lines, payload_sizes,
-};
+use corniche_tileset::{FilePackage, LineCounts, LineRecord, decode_lines, payload_sizes};
 
 use super::{
     checks::{CheckId, Findings},
@@ -55,10 +53,7 @@ pub(crate) fn verify(
         format!("{} are counted and were not asked for, or the other way round", layer.name())
     });
     let levels = record.iter().flat_map(|lines| &lines.levels);
-    let level = |&LineLevelRecord { level, tiles, parts, points, bytes }: &LineLevelRecord| {
-        (level, Counts { tiles, parts, points, bytes })
-    };
-    let recorded = (sums, levels.map(level).collect());
+    let recorded = (sums, levels.map(Counts::recorded).collect());
     let look_at = |id| look_at(package, layer, id);
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
     if let Some(lines) = record {

@@ -8,8 +8,8 @@ use std::{
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{
-    FilePackage, LineLevelRecord, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload,
-    decode, decode_spans, payload_sizes,
+    FilePackage, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode,
+    decode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -48,11 +48,8 @@ pub(crate) fn verify(
     findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
         "spans are counted and were not asked for, or the other way round".to_owned()
     });
-    let level = |&LineLevelRecord { level, tiles, parts, points, bytes }: &LineLevelRecord| {
-        (level, Counts { tiles, parts, points, bytes })
-    };
     let levels = record.iter().flat_map(|record| &record.levels);
-    let recorded = (CheckId::SpanSums, levels.map(level).collect());
+    let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let look_at = |id| look_at(package, id, &ends);
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
