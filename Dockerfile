@@ -1,31 +1,34 @@
-# docker build -t corniche .                          converts, measures, verifies and draws (by the processor)
-# docker build -t corniche --target convert .         without the graphics driver: smaller, for servers and clusters
-# docker run --rm -u "$(id -u):$(id -g)" -v "$PWD:/data" corniche build --dem dem.tif --osm roads.osm.pbf -o map.pmtiles
+# The image of a released archive, which scripts/release makes in target/release-archive:
+# docker build -t corniche .
+# docker run --rm --read-only -u "$(id -u):$(id -g)" -v "$PWD:/data" corniche build --dem dem.tif --osm roads.osm.pbf -o map.pmtiles
+#
+# It converts, measures, verifies, exports and serves. `--target draw` has a graphics driver, too, which draws by the processor.
 
-FROM docker.io/library/rust:1.95-slim-bookworm AS compile
+FROM docker.io/library/debian:bookworm-slim AS root
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends gcc libc6-dev libgdal-dev pkg-config \
+    && apt-get install -y --no-install-recommends ca-certificates libstdc++6 zstd \
     && rm -rf /var/lib/apt/lists/*
-WORKDIR /source
-COPY . .
-RUN cargo build --release --locked -p corniche-cli && strip target/release/corniche
+COPY target/release-archive/*-x86_64-linux.tar.zst /archive/
+COPY scripts/lib/image-root.sh /
+RUN sh /image-root.sh /archive/*.tar.zst /image
 
-FROM docker.io/library/debian:bookworm-slim AS convert
-# Of geoid grids it has EGM96's alone. For others mount a folder: -v GRIDS:/grids -e PROJ_DATA=/usr/share/proj:/grids
+FROM docker.io/library/debian:bookworm-slim AS draw
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends ca-certificates libgdal32 \
+    && apt-get install -y --no-install-recommends ca-certificates libstdc++6 libvulkan1 mesa-vulkan-drivers \
     && rm -rf /var/lib/apt/lists/*
-COPY --from=compile /source/target/release/corniche /usr/local/bin/
-RUN useradd --uid 1000 --create-home corniche && mkdir /data && chown corniche /data
-USER corniche
+COPY --from=root /image/opt /opt
+COPY --from=root --chown=1000:1000 /image/data /data
+ENV PATH=/opt/corniche/bin:$PATH TMPDIR=/data XDG_RUNTIME_DIR=/tmp
+USER 1000:1000
 WORKDIR /data
-ENTRYPOINT ["corniche"]
+ENTRYPOINT ["/opt/corniche/bin/corniche"]
 CMD ["--help"]
 
-FROM convert AS draw
-USER root
-RUN apt-get update \
-    && apt-get install -y --no-install-recommends libvulkan1 mesa-vulkan-drivers \
-    && rm -rf /var/lib/apt/lists/*
-ENV XDG_RUNTIME_DIR=/tmp
-USER corniche
+FROM scratch AS convert
+COPY --from=root /image /
+# Where it keeps what does not fit into memory: the root need not be writable.
+ENV PATH=/bin TMPDIR=/data
+USER 1000:1000
+WORKDIR /data
+ENTRYPOINT ["/bin/corniche"]
+CMD ["--help"]

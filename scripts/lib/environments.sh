@@ -63,9 +63,11 @@ python_folder() {
 # python_package FOLDER PACKAGE DEPENDENCY…: a virtual environment with a Python package of ours in python/ and what its tests need. Says that its tests are
 # skipped, and fails, where there are no packages to be had; in CI that ends the script if only ours cannot be installed.
 python_package() {
-    local folder=$1 name=$2 package=python/$2
+    local folder=$1 name=$2 package=python/$2 ours=()
     shift 2
-    if python_folder "$folder" "$package/lock.txt" -e "$package[test]"; then return 0; fi
+    # Those of ours that it needs are in no registry.
+    if grep -q '"corniche==' "$package/pyproject.toml"; then ours=(-e python/corniche); fi
+    if python_folder "$folder" "$package/lock.txt" ${ours[@]+"${ours[@]}"} -e "$package[test]"; then return 0; fi
     if [ "${CI:-}" = true ] && [ ! -x "$folder/bin/python" ]; then fail 1 "no virtual environment can be made; see above"; fi
     if [ "${CI:-}" = true ] && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; then
         fail 1 "$name cannot be installed, though its dependencies can; see above"

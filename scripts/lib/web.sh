@@ -1,4 +1,4 @@
-# Sourced by scripts/web and scripts/test-web: a compiler for WebAssembly, and what the tests of the page need.
+# Sourced by scripts/web, scripts/test-web, scripts/test-npm and scripts/test-wheel: a compiler for WebAssembly, and what the tests of the page need.
 # shellcheck shell=bash
 
 WASM=wasm32-unknown-unknown
@@ -30,4 +30,10 @@ missing_for_page_tests() {
     command -v chromium >/dev/null || echo chromium
     # Both draw: the page in Chromium, and the program to compare with.
     has_library libvulkan.so.1 || echo libvulkan1
+}
+
+# make_page_tests FOLDER: a folder with the modules of tests/web and what they need, and Chromium. Fails, and says why, where they cannot be had.
+make_page_tests() {
+    npm_folder "$1" tests/web/package.json && (install_missing missing_for_page_tests) || return 1
+    cp tests/web/*.mjs "$1"
 }

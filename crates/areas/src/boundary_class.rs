@@ -46,6 +46,21 @@ impl BoundaryClass {
         }
     }
 
+    /// What people call such boundaries, for legends.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Admin2 => "country border",
+            Self::Admin3 => "boundary, level 3",
+            Self::Admin4 => "boundary, level 4",
+            Self::Admin5 => "boundary, level 5",
+            Self::Admin6 => "boundary, level 6",
+            Self::Admin7 => "boundary, level 7",
+            Self::Admin8 => "boundary, level 8",
+            Self::Protected => "protected area",
+        }
+    }
+
     /// What a way or relation with these `(key, value)` tags bounds; `None` if it is no such boundary. Of a key that occurs twice the
     /// first counts.
     #[must_use]

@@ -29,6 +29,7 @@ use clap::{
 };
 
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
+pub(crate) use camera::PrintScale;
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
     Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
@@ -60,6 +61,10 @@ pub(crate) struct Arguments {
     pub(crate) command: Command,
     #[command(flatten)]
     pub(crate) voice: VoiceArgs,
+    /// End, with exit code 1, when standard input ends: for programs that start this one and keep a pipe to it open. It ends when they
+    /// do, however they end. The same part or merge goes on from what was done
+    #[arg(long, global = true, help_heading = "For programs")]
+    pub(crate) die_with_parent: bool,
 }
 
 impl Arguments {

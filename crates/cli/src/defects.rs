@@ -8,7 +8,7 @@ use std::{
 };
 
 use corniche_export::cell_text;
-use corniche_pipeline::Defect;
+use corniche_pipeline::{Defect, span_reason_words};
 
 use crate::{
     failure::Failure,
@@ -67,8 +67,9 @@ fn line(defect: &Defect) -> String {
             let detail = if *is_whole { "the whole road" } else { "a part of it" };
             let _ = writeln!(line, ",way,{way_id},,{length_m:.3},{detail}");
         }
-        Defect::Span { way_id, .. } => {
-            let _ = writeln!(line, ",way,{way_id},,,a bridge or a tunnel");
+        Defect::Span { way_id, reason } => {
+            let detail = quoted(span_reason_words(reason));
+            let _ = writeln!(line, ",way,{way_id},,,{detail}");
         }
     }
     line

@@ -65,8 +65,12 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
-        "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m",
-        vertical.quantum_m
+        "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m{}",
+        vertical.quantum_m,
+        match vertical.height_step_m {
+            step_m if step_m > 0.0 => format!("; the DEM's are multiples of {step_m} m"),
+            _ => String::new(),
+        }
     ));
     say(format!(
         "datum        {}; heights {}",
@@ -177,13 +181,16 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
 fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let SpansRecord { counts, levels } = spans;
     let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+    let kilometres = |length_um: u64| format!("{:.1} km", length_um as f64 / 1e9);
     let reasons = counts.reasons.iter();
     let reasons = reasons
         .map(|(reason, number)| format!("  {} × {}\n", digits.count(*number), in_line(reason)));
     format!(
-        "Bridges and tunnels, heights estimated: {} bridges and {} tunnels, each with all ways that it connects; they cross {} times:\n{}{}",
+        "Bridges and tunnels, heights estimated: {} bridges ({}) and {} tunnels ({}), each with all ways that it connects; they cross {} times:\n{}{}",
         digits.count(counts.bridges),
+        kilometres(counts.bridges_um),
         digits.count(counts.tunnels),
+        kilometres(counts.tunnels_um),
         digits.count(counts.crossings),
         reasons.collect::<String>(),
         level_text("runs", levels, digits)

@@ -61,6 +61,9 @@ use exit::ExitCode;
 use failure::Failure;
 
 fn main() -> process::ExitCode {
+    if let Ok(program) = env::current_exe() {
+        corniche_pipeline::use_files_beside(&program);
+    }
     let arguments = match Arguments::checked_from(env::args_os()) {
         Ok(arguments) => arguments,
         Err(error) => return answer(&error).into(),
@@ -122,6 +125,9 @@ fn refusal(error: &clap::Error) -> String {
 
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
+    if arguments.die_with_parent {
+        parent::watch()?;
+    }
     open_files::allow_many();
     // Those that promise to stay within --memory.
     if matches!(arguments.command, Command::Build(_) | Command::Part(_) | Command::Merge(_)) {

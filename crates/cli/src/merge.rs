@@ -9,7 +9,7 @@ use crate::{
     build,
     exit::ExitCode,
     failure::Failure,
-    messages, names, output, parent,
+    messages, names, output,
     part::{make_tmp, read_plan, told},
     progress::Progress,
     settings,
@@ -17,9 +17,6 @@ use crate::{
 
 pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
-    if planned.die_with_parent {
-        parent::watch()?;
-    }
     if !is_in_object_storage(&args.output) {
         output::writable(&args.output)?;
     }

@@ -44,23 +44,41 @@ pub(crate) fn is_package_name(path: &Path) -> bool {
 pub(crate) enum Format {
     /// A picture (PNG).
     Picture,
+    /// A picture that knows its place (`GeoTIFF`).
+    Map,
     /// A chart (SVG).
     Chart,
 }
 
 impl Format {
+    /// Whether a name has an ending of this format.
+    pub(crate) fn is_of(self, path: &Path) -> bool {
+        let (_, endings) = self.words();
+        let has = |ending: &&str| {
+            path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
+        };
+        endings.iter().any(has)
+    }
+
     /// Refuses a name that ends as that of another format.
     pub(crate) fn refuse_others(self, path: &Path) -> Result<(), Failure> {
-        let (what, ending) = match self {
-            Self::Picture => ("pictures are PNG", "png"),
-            Self::Chart => ("charts are SVG", "svg"),
-        };
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending)) {
+        if self.is_of(path) {
             return Ok(());
         }
+        let (what, endings) = self.words();
         Err(Failure::unusable(format!(
-            "cannot write {}: {what}; give a name that ends in .{ending}",
-            path.display()
+            "cannot write {}: {what}; give a name that ends in .{}",
+            path.display(),
+            endings[0]
         )))
+    }
+
+    /// What it is in a message, and the endings of its names, the usual one first.
+    const fn words(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Self::Picture => ("pictures are PNG", &["png"]),
+            Self::Map => ("maps are GeoTIFF", &["tif", "tiff"]),
+            Self::Chart => ("charts are SVG", &["svg"]),
+        }
     }
 }

@@ -5,15 +5,12 @@ use std::{fs, path::Path};
 use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, messages, parent, presets::refuse_stream,
+    args::PartArgs, exit::ExitCode, failure::Failure, messages, presets::refuse_stream,
     progress::Progress, settings, table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
-    if planned.die_with_parent {
-        parent::watch()?;
-    }
     let (plan, stores) = planned.files()?;
     make_tmp(planned.tmp.as_deref())?;
     let part = PartSettings {

@@ -1,18 +1,25 @@
 //! `corniche render`: a picture of a package, without a window.
 
+mod picture_files;
+
 use std::path::Path;
 
-use corniche_styles::OwnWidths;
-use corniche_viewer::{RenderError, RenderRequest, Wireframe, render, tiles::MapPackage as _};
+use corniche_export::{PictureFacts, PlaceOfPicture};
+use corniche_pipeline::AreaLoss;
+use corniche_styles::{OwnWidths, Style};
+use corniche_tileset::Manifest;
+use corniche_viewer::{
+    LegendRequest, RenderError, RenderReport, RenderRequest, TitleFlaws, Wireframe, render,
+    tiles::MapPackage as _,
+};
 
+use self::picture_files::PictureFiles;
 use crate::{
     args::{OverlayArg, RenderArgs},
     exit::ExitCode,
     failure::Failure,
-    interrupt, messages,
-    names::Format,
-    output::{Output, existing_of, png},
-    overlays, packages, presets, styles,
+    interrupt, messages, overlays, packages, presets, styles,
+    table::Digits,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
@@ -35,20 +42,47 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: args.supersampling,
         style,
         legend: None,
+        title: args.title.clone(),
         wireframe: if args.wireframe { Wireframe::Shown } else { Wireframe::Hidden },
     };
-    let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
-    Format::Picture.refuse_others(&args.output)?;
+    let files = PictureFiles::create(args, &used)?;
     request.check()?;
     let package =
         packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
     let overlays = overlays::load(&args.look, package.manifest())?;
     let package = package.with_overlays(overlays);
-    let legend = args.legend.then(|| presets::class_labels(package.manifest()));
+    let scale = args.from_above.print_scale();
+    let legend = args.legend.then(|| LegendRequest {
+        road_labels: presets::class_labels(package.manifest()),
+        scale: scale.map(|scale| scale.denominator),
+    });
     let request = RenderRequest { legend, ..request };
     let rendered = render(&request, &package, &interrupt::is_noted)?;
-    output.write_whole(&png(&rendered.picture)?)?;
-    let report = &rendered.report;
+    let manifest = package.manifest();
+    let place = rendered.report.working_from_pixel;
+    let place = place.map(|map| PlaceOfPicture::new(manifest, map)).transpose()?;
+    let facts = PictureFacts {
+        description: args.title.clone().unwrap_or_default(),
+        software: format!("corniche {}", env!("CARGO_PKG_VERSION")),
+        attribution: manifest.attribution.join("; "),
+        dots_per_inch: None,
+    };
+    let is_same_crs = files.write(&rendered.picture, place.as_ref(), scale, facts)?;
+    tell(args, &rendered.report);
+    if !is_same_crs {
+        messages::warning(&format!(
+            "GeoTIFF has no words for all of the package's coordinate system ({}); what programs read of it may differ",
+            manifest.crs
+        ));
+    }
+    if let Some(text) = incomplete_areas(manifest, &request.style) {
+        messages::note(&text);
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Tells what went into a picture, and what of it is not as it was asked for.
+fn tell(args: &RenderArgs, report: &RenderReport) {
     let areas = match report.area_polygons {
         0 => String::new(),
         polygons => format!(" {polygons} polygons of areas with {} points,", report.area_points),
@@ -75,7 +109,34 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
             report.capped_ways
         ));
     }
-    Ok(ExitCode::Done)
+    let TitleFlaws { lacking, is_cut } = &report.title_flaws;
+    if !lacking.is_empty() {
+        messages::warning(&format!(
+            "--title: the font of pictures has no {lacking}; boxes stand in their places"
+        ));
+    }
+    if *is_cut {
+        messages::warning("--title: it does not fit into the picture; a part of it is cut off");
+    }
+    if report.is_legend_cut {
+        messages::warning("--legend: it does not fit into the picture; a part of it is cut off");
+    }
+}
+
+/// What to know of areas that the extract has in part only; `None` where there are none, or the style draws no areas.
+fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
+    let reasons = [AreaLoss::MissingWays, AreaLoss::MissingNodes].map(AreaLoss::reason);
+    let lost = manifest.areas.as_ref().filter(|_| style.has_areas())?.counts.lost.iter();
+    let objects =
+        lost.filter(|(reason, _)| reasons.contains(&reason.as_str())).map(|(_, objects)| objects);
+    let objects: u64 = objects.sum();
+    (objects > 0).then(|| {
+        format!(
+            "note: areas that are not drawn because the extract lacks parts of their outlines: {}; they may lie anywhere, and corniche build --defects lists \
+             them",
+            Digits::of_notes().count(objects)
+        )
+    })
 }
 
 impl From<RenderError> for Failure {
@@ -89,3 +150,7 @@ impl From<RenderError> for Failure {
         Self::new(code, error)
     }
 }
+
+#[cfg(test)]
+#[path = "render_tests.rs"]
+mod tests;

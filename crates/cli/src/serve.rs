@@ -1,5 +1,6 @@
 //! `corniche serve`: packages in web browsers, by a small web server, or by the files for another one.
 
+mod browser;
 mod package_file;
 mod page;
 mod page_files;
@@ -25,6 +26,9 @@ use crate::{
     args::ServeArgs, exit::ExitCode, failure::Failure, interrupt, messages, output::existing_of,
     table::bytes,
 };
+
+/// Whether `serve` shows a page without `--page`.
+pub(crate) const HAS_PAGE: bool = page::IS_BUILT_IN;
 
 pub(crate) fn run(args: &ServeArgs) -> Result<ExitCode, Failure> {
     let page = page::load(args.page.as_deref())?;
@@ -87,12 +91,17 @@ fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<Ex
     }
     let server = Server::bind(&args.address, args.port)?;
     let address = server.address();
-    messages::answer(&format!("{}\n", url(&args.address, address)))?;
+    let url = url(&args.address, address);
+    messages::answer(&format!("{url}\n"))?;
     messages::note(&format!("serves {}; Ctrl-C ends it", counted(packages.len(), "package")));
     if !address.ip().is_loopback() {
         messages::note(&format!(
             "it listens at {address}, so other computers can read these packages"
         ));
+    }
+    // The address answers already: until the server is ready, connections wait in its queue.
+    if args.open && !browser::open(&url) {
+        messages::note("no browser could be opened here; open the address above in one");
     }
     let observer = |Answered { method, path, range, status }: &Answered| {
         let range = range.as_deref().unwrap_or_default();

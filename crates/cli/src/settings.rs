@@ -295,8 +295,8 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
         None => table,
     };
     let spans = match options.structures.as_deref() {
-        None | Some("ground") => false,
-        Some("spans") => true,
+        None | Some("spans") => true,
+        Some("ground") => false,
         Some(other) => {
             return Err(Failure::unusable(format!(
                 "structures must be \"ground\" or \"spans\", not {other:?}"

@@ -17,10 +17,20 @@ pub(crate) fn is_long_asked_for() -> bool {
 /// Prints the program's version, then what else a report of an error should name.
 pub(crate) fn print_long() -> io::Result<()> {
     let backends = corniche_viewer::gpu::backends();
+    let missing = corniche_pipeline::missing_formats();
     let text = format!(
-        "corniche {}\n{}\nwgpu backends: {}\n",
+        "corniche {}\n{}\nformats: package {}, plan {}, store {}\ninputs: {}\npage: {}\nwgpu backends: {}\n",
         env!("CARGO_PKG_VERSION"),
         libraries(),
+        corniche_tileset::FORMAT_VERSION,
+        corniche_pipeline::PLAN_VERSION,
+        corniche_store::FORMAT_VERSION,
+        if missing.is_empty() {
+            "all of the manual".to_owned()
+        } else {
+            format!("all of the manual but {}", missing.join(", "))
+        },
+        if crate::serve::HAS_PAGE { "in the program" } else { "none (serve needs --page)" },
         if backends.is_empty() { "none".to_owned() } else { backends.join(", ") },
     );
     messages::answer(&text)

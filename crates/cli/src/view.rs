@@ -3,7 +3,7 @@
 use std::{fs, io, path::Path, sync::Arc};
 
 use corniche_styles::style_preset_names;
-use corniche_viewer::{RoadMethod, tiles::MapPackage as _};
+use corniche_viewer::{RoadMethod, gpu::GpuError, tiles::MapPackage as _};
 use corniche_window::{
     BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
     run as open_window,
@@ -17,6 +17,7 @@ use crate::{
     interrupt, messages,
     output::{Existing, Output},
     overlays, packages, presets,
+    serve::HAS_PAGE,
     styles::{StyleFile, file_of, style},
     view_command::command_of,
 };
@@ -90,10 +91,29 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             }
         }
     }
-    match end? {
+    match end.map_err(with_way_out)? {
         End::Closed => Ok(code),
         End::Stopped => Err(Failure::interrupted()),
     }
+}
+
+/// Where this computer gives no window, or nothing to draw with, a browser may show the package all the same, also that of another computer.
+fn with_way_out(error: WindowError) -> Failure {
+    let gives_none = matches!(
+        error,
+        WindowError::NoDisplay { .. }
+            | WindowError::System { .. }
+            | WindowError::Surface { .. }
+            | WindowError::NoFormat { .. }
+            | WindowError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })
+    );
+    let failure = Failure::from(error);
+    // Without the page, `serve` would only say that it is missing.
+    if !gives_none || !HAS_PAGE {
+        return failure;
+    }
+    let said = format!("{failure}; `corniche serve` shows the package in a browser");
+    Failure::new(failure.code(), anyhow::anyhow!(said))
 }
 
 /// How roads are drawn where the processor draws, unless the command line says how: shadow volumes take it several times as

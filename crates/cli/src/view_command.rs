@@ -61,7 +61,7 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
             option("--heading", format!("{heading_deg:.4}"));
             words.push("--ortho".to_owned());
         }
-        CameraRequest::Overview | CameraRequest::OverviewFromAbove => {}
+        CameraRequest::Overview | CameraRequest::OverviewFromAbove { .. } => {}
     }
     let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     option("--exaggeration", shown.exaggeration.to_string());

@@ -102,6 +102,8 @@ pub struct Audit {
 struct FileAudit {
     /// Samples that have a height.
     samples: u64,
+    /// Some are stored as numbers that are not whole.
+    has_fractions: bool,
     lowest: End,
     highest: End,
     outside: u64,
@@ -263,6 +265,7 @@ impl FileAudit {
             return;
         }
         self.samples += 1;
+        self.has_fractions |= stored.fract() != 0.0;
         self.outside += u64::from(!(range_m[0]..=range_m[1]).contains(&height_m));
         let entry = Entry { height_m, stored, count: 1 };
         self.lowest.add(entry, 1.0);
@@ -271,6 +274,7 @@ impl FileAudit {
 
     fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
+        self.has_fractions |= other.has_fractions;
         self.outside += other.outside;
         self.spikes.merge(&other.spikes);
         other.lowest.entries.iter().for_each(|&entry| self.lowest.add(entry, 1.0));
@@ -404,6 +408,17 @@ impl Audit {
             low_m,
             high_m,
         })
+    }
+
+    /// The step between heights that the files can tell apart, metres: that of whole numbers where all samples are stored so, which is
+    /// a metre for most files from satellites. The smallest of all files that have heights; 0 if a file has fractions.
+    #[must_use]
+    pub fn height_step_m(&self, dem: &Dem) -> f64 {
+        let files = dem.sources.iter().zip(&self.files).filter(|(_, file)| file.samples > 0);
+        let step_m = |(source, file): (&Source, &FileAudit)| {
+            if file.has_fractions { 0.0 } else { source.m_per_whole() }
+        };
+        files.map(step_m).reduce(f64::min).unwrap_or_default()
     }
 
     /// What a user should know of single samples that stand far above or below all of their neighbours: one text for each file that

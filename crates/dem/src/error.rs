@@ -53,6 +53,8 @@ pub enum DemError {
         "{path:?} is not a raster that GDAL can read; it is damaged, cut off, or of an unknown format"
     )]
     Open { path: PathBuf, source: Box<LibraryError> },
+    #[error("cannot read {path:?}: {advice}")]
+    NoDriver { path: PathBuf, advice: String },
     #[error("{path:?} is {found}; {advice}")]
     StandIn { path: PathBuf, found: &'static str, advice: &'static str },
     #[error("{path:?} has no raster band; give a raster of heights")]
@@ -109,6 +111,11 @@ pub enum DemError {
         "{path:?} has coordinate system {name:?}, which is neither projected nor geographic; give it with --dem-crs EPSG:n"
     )]
     UnusableCrs { path: PathBuf, name: String },
+    #[error(
+        "PROJ does not even know EPSG:4326: its tables (proj.db) are not found, or those of another PROJ are; correct the installation, or the \
+         variables of the environment that are read (PROJ_DATA, PROJ_LIB)"
+    )]
+    NoProjTables { source: Box<LibraryError> },
     #[error("{option} {text:?} is not a coordinate system that PROJ knows; write EPSG:n or WKT")]
     CrsText { option: &'static str, text: String, source: Box<LibraryError> },
     #[error(

@@ -23,13 +23,17 @@ mod plan;
 mod polygons;
 mod reading;
 
+mod beside_program;
 mod error;
 mod file_names;
+mod formats;
 mod library_error;
 mod polygon_error;
+mod proj_folders;
 mod vector_file;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
+pub use beside_program::use_files_beside;
 pub use crs::datum_operation::{BetterOperation, DatumOperation};
 pub use crs::projection::DemProjection;
 pub use crs::recorded::RecordedCrs;
@@ -42,6 +46,7 @@ pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::stand_in::stand_in;
 pub use files::vsi::{VirtualFile, stored_text};
+pub use formats::missing_formats;
 pub use library_error::{LibraryError, failure, forget, quiet};
 pub use placed_raster::{PlacedRaster, RasterOnGrid};
 pub use plan::datum_operations::{FileDatums, ToWgs84};

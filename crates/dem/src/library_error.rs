@@ -1,9 +1,12 @@
 //! What GDAL and PROJ say when something fails, as a text for users.
 
 use std::cell::{Cell, RefCell};
+use std::env;
 use std::sync::Once;
 
 use gdal::errors::{CplErrType, GdalError};
+
+use crate::proj_folders::NAMED_BY;
 
 thread_local! {
     static LAST_WORDS: RefCell<String> = const { RefCell::new(String::new()) };
@@ -47,8 +50,37 @@ impl LibraryError {
             Some((end, _)) => format!("{} …", &words[..end]),
             None => words.to_owned(),
         };
-        Self { words }
+        Self { words: with_advice(words, |name| env::var(name).ok()) }
     }
+}
+
+/// What the libraries say, and after it what to do, where they leave that out.
+fn with_advice(words: String, variable: impl Fn(&str) -> Option<String>) -> String {
+    // The second is said of a database that has other tables, or none.
+    if words.contains("proj.db") || words.contains("proj_create_from_database: SQLite error") {
+        let set = NAMED_BY.into_iter().find_map(|name| Some((name, variable(name)?)));
+        return match set {
+            Some((name, value)) => format!(
+                "{words}; {name} is set to {value:?}: unset it, or let it name the tables of this program's PROJ"
+            ),
+            None => words,
+        };
+    }
+    if is_no_answer(&words) || words.starts_with(CURL_REASON) {
+        return format!(
+            "{words}; there was no answer: the server was not reached, or its certificate is not trusted (SSL_CERT_FILE names a file of \
+             certificates that are; CURL_CA_BUNDLE has precedence)"
+        );
+    }
+    words
+}
+
+/// How GDAL begins when it tells curl's reason.
+const CURL_REASON: &str = "CURL error";
+
+/// Whether this is what GDAL says where a server gave no answer: 0 in the place of the answer's status.
+fn is_no_answer(words: &str) -> bool {
+    words.contains("HTTP response code") && words.ends_with(": 0")
 }
 
 impl From<GdalError> for Box<LibraryError> {
@@ -65,7 +97,12 @@ pub fn quiet() {
 
 /// Remembers what was said on this thread, in the place of GDAL's printing it.
 fn hear(kind: CplErrType, words: &str) {
-    LAST_WORDS.with_borrow_mut(|last| words.clone_into(last));
+    LAST_WORDS.with_borrow_mut(|last| {
+        // Curl's reason comes first, and says more than that there was no answer.
+        if !(is_no_answer(words) && last.starts_with(CURL_REASON)) {
+            words.clone_into(last);
+        }
+    });
     if matches!(kind, CplErrType::Failure | CplErrType::Fatal) {
         HAS_FAILED.set(true);
     }
@@ -89,3 +126,7 @@ pub fn failure() -> Option<Box<LibraryError>> {
     let said = || LAST_WORDS.with_borrow(|words| LibraryError::shortened(words));
     HAS_FAILED.get().then(|| Box::new(said()))
 }
+
+#[cfg(test)]
+#[path = "library_error_tests.rs"]
+mod tests;

@@ -14,9 +14,11 @@ pub enum PolygonError {
     #[error("the polygon {path:?} is a pipe or a device; save it to a file first")]
     Stream { path: PathBuf },
     #[error(
-        "{path:?} is not a vector file that GDAL can read; it is damaged, cut off, or of an unknown format; GeoJSON, GeoPackage and Shapefile can be read (ogrinfo {path:?} tells more)"
+        "{path:?} is not a vector file that GDAL can read; it is damaged, cut off, or of an unknown format; GeoJSON, GeoPackage and Shapefile can be read (ogr2ogr converts others)"
     )]
     Open { path: PathBuf, source: Box<LibraryError> },
+    #[error("cannot read {path:?}: {advice}")]
+    NoDriver { path: PathBuf, advice: String },
     #[error("not all features of the polygon {path:?} can be read; fetch or export it again")]
     Damaged { path: PathBuf, source: Box<LibraryError> },
     #[error(

@@ -4,7 +4,7 @@ use std::{fs, io, path::Path};
 
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 
-use crate::{LibraryError, files::stand_in::stand_in, library_error};
+use crate::{LibraryError, files::stand_in::stand_in, formats::lacks_format_of, library_error};
 
 /// Why a vector file cannot be opened.
 #[derive(Debug)]
@@ -13,6 +13,8 @@ pub enum NotOpened {
     Missing(io::Error),
     /// It is a pipe or a device: opening it would block until something is written to it.
     Stream,
+    /// GDAL was built without its format; with what to do.
+    NoDriver(String),
     /// GDAL cannot read it.
     Unreadable(Box<LibraryError>),
 }
@@ -34,8 +36,13 @@ pub fn open_vectors(path: &Path) -> Result<Dataset, NotOpened> {
     let open_flags = GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_READONLY;
     let options = DatasetOptions { open_flags, ..DatasetOptions::default() };
     Dataset::open_ex(path, options).map_err(|source| {
-        let words = stand_in(path).map(|(found, advice)| format!("it is {found}; {advice}"));
-        let source = words.map_or_else(|| source.into(), |words| Box::new(LibraryError::of(words)));
-        NotOpened::Unreadable(source)
+        if let Some((found, advice)) = stand_in(path) {
+            let words = format!("it is {found}; {advice}");
+            NotOpened::Unreadable(Box::new(LibraryError::of(words)))
+        } else if let Some(advice) = lacks_format_of(path) {
+            NotOpened::NoDriver(advice)
+        } else {
+            NotOpened::Unreadable(source.into())
+        }
     })
 }

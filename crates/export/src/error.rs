@@ -53,6 +53,10 @@ pub enum ExportError {
         "bridges and tunnels of the extract cross more lines than in any real network; leave out --osm"
     )]
     Spans(#[source] corniche_geom::TooMuchWork),
+    #[error(
+        "the bridges of tile {tile} lie over more ground than any writer makes; corniche verify says more"
+    )]
+    TooManyBridges { tile: TileId, source: corniche_geom::TooMuchWork },
     #[error("no line lies on ground of {package:?}")]
     NoLineOnGround { package: PathBuf },
     #[error("{package:?} has no ground there; corniche info tells its extent")]

@@ -1,4 +1,6 @@
-//! The heights of a level's TINs as a raster: a `GeoTIFF`, on request with the difference from the elevation files as a second band.
+//! Rasters that know their place: the heights of a level's TINs, and pictures from above.
+//!
+//! Heights are a `GeoTIFF`, on request with the difference from the elevation files as a second band.
 //!
 //! ```text
 //!                          TINs of the tiles around ──► heights at nodes ──┬──► band 1
@@ -15,9 +17,13 @@ mod block;
 mod file;
 mod geotiff_request;
 mod grid;
+mod place_of_picture;
+mod write_picture;
 mod write_raster;
 
 pub use self::{
     geotiff_request::GeoTiffRequest,
+    place_of_picture::PlaceOfPicture,
+    write_picture::{PictureFacts, export_picture},
     write_raster::{GeoTiffSummary, export_geotiff},
 };

@@ -21,7 +21,8 @@
 //!
 //! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
 //!
-//! [`export_geotiff`] makes a raster of the heights of a level, and of their difference from the elevation files.
+//! [`export_geotiff`] makes a raster of the heights of a level, and of their difference from the elevation files. [`export_picture`]
+//! writes a picture from above, which others have drawn, with its place.
 //!
 //! [`export_tiles3d`] writes all levels as 3D Tiles, [`export_quantized_mesh`] the ground as terrain tiles of a globe; only there heights are sampled
 //! on another grid.
@@ -82,7 +83,9 @@ pub use error::{CutError, ExportError};
 pub use feature::{HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use features::check_lines_request;
-pub use geotiff::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
+pub use geotiff::{
+    GeoTiffRequest, GeoTiffSummary, PictureFacts, PlaceOfPicture, export_geotiff, export_picture,
+};
 pub use growth::{WayGrowth, growth_by_way};
 pub use lines::{LinesSummary, export_lines};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};

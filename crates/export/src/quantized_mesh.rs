@@ -12,14 +12,18 @@
 //! Source: Cesium, *quantized-mesh-1.0 terrain format*, <https://github.com/CesiumGS/quantized-mesh>.
 
 mod available;
+mod comparison;
 mod encode;
+mod facets;
 mod ground;
 mod horizon;
 mod layer;
 mod mesh;
+mod mesh_vertex;
 mod quantized_mesh_request;
 mod raster;
 mod summary;
+mod surfaces;
 mod tiling;
 mod write_tiles;
 

@@ -1,9 +1,13 @@
 //! Pieces of roads out of tiles.
 
+use std::collections::HashMap;
+
 use corniche_drape::DrapedVertex;
 use corniche_geom::{Bounds, GridFrame, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, TilePayload, pmtiles_order};
+use corniche_tileset::{
+    FilePackage, GeoRoad, Manifest, Sections, SpanRun, TilePayload, decode_spans, pmtiles_order,
+};
 use corniche_tin::{Placement, Surface};
 
 use crate::{
@@ -107,7 +111,27 @@ pub(crate) fn pieces(
     }
 }
 
-/// The same of a payload that was read with [`road_sections`].
+/// The runs of bridges and tunnels of one tile by their ways; none in a package that was built without.
+pub(crate) fn span_runs(
+    package: &FilePackage,
+    id: TileId,
+) -> Result<HashMap<i64, Vec<SpanRun>>, ExportError> {
+    let mut runs: HashMap<i64, Vec<SpanRun>> = HashMap::new();
+    let manifest = package.manifest();
+    if manifest.spans.is_none() {
+        return Ok(runs);
+    }
+    let Some(bytes) = package.tile(id)? else { return Ok(runs) };
+    let found = decode_spans(&bytes, id, &manifest.frame, manifest.vertical.quantum_m);
+    let damaged =
+        |source| ExportError::Damaged { layer: "bridges and tunnels", source: Box::new(source) };
+    for run in found.map_err(damaged)? {
+        runs.entry(run.way_id).or_default().push(run);
+    }
+    Ok(runs)
+}
+
+/// The same pieces of a payload that was read with [`road_sections`].
 pub(crate) fn pieces_of(
     payload: &TilePayload,
     manifest: &Manifest,

@@ -54,7 +54,8 @@ impl ReliefMap {
         let mut png = Vec::new();
         let encoder = png::PngEncoder::new_with_quality(
             &mut png,
-            png::CompressionType::Best,
+            // At the slowest level files are as large, and a model took 1.5 times as long (docs/lab/exports.md).
+            png::CompressionType::Fast,
             png::FilterType::Adaptive,
         );
         encoder
@@ -102,7 +103,8 @@ fn mixed_normals(bounds: &LatticeBounds, mesh: &GroundMesh) -> Vec<[f32; 3]> {
         [(u - bounds.min.u as f64) / steps[0], (bounds.max.v as f64 - v) / steps[1]]
     };
     let mut normals = vec![[0.0, 0.0, 1.0]; SIDE * SIDE];
-    for triangle in &mesh.triangles {
+    let on_ground = |corners: &&[u32; 3]| !mesh.vertices[corners[0] as usize].on_slab;
+    for triangle in mesh.triangles.iter().filter(on_ground) {
         let [a, b, c] = triangle.map(among_nodes);
         let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         if doubled.abs() < f64::MIN_POSITIVE {

@@ -72,7 +72,12 @@ fn normals_are_mixed_across_triangles() {
     mesh.vertices = corners
         .into_iter()
         .zip(normals)
-        .map(|(at, normal)| GroundVertex { at: at.map(|axis| axis as f64), height_m: 0.0, normal })
+        .map(|(at, normal)| GroundVertex {
+            at: at.map(|axis| axis as f64),
+            height_m: 0.0,
+            normal,
+            on_slab: false,
+        })
         .collect();
     mesh.add([0, 1, 2], 0);
     mesh.add([0, 2, 3], 7);

@@ -140,6 +140,16 @@ impl HeightGrid {
         }
         Self { columns, rows, heights_m }
     }
+
+    /// The grid without so many nodes on every side.
+    ///
+    /// # Panics
+    /// When it has no more than these.
+    #[must_use]
+    pub fn inner(&self, margin: usize) -> Self {
+        let [columns, rows] = [self.columns, self.rows].map(|nodes| nodes - 2 * margin);
+        self.window(margin, margin, columns, rows)
+    }
 }
 
 #[cfg(test)]

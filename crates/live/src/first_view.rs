@@ -23,7 +23,7 @@ pub fn first_view(
 ) -> Result<View, OffGround> {
     let part_px = match camera {
         // All of it must be visible, so it is framed in the part that is not covered.
-        CameraRequest::Overview | CameraRequest::OverviewFromAbove => {
+        CameraRequest::Overview | CameraRequest::OverviewFromAbove { .. } => {
             [size_px[0].saturating_sub(covered_px).max(1), size_px[1]]
         }
         CameraRequest::LookAt { .. } | CameraRequest::FromAbove { .. } => size_px,

@@ -6,8 +6,8 @@ use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, split_at_seam, wg
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location, read_request::Placing, records::Stop,
-    self_crossings::self_crossings, way_bytes::WayKind,
+    Defect, LeftOutReason, ReadOsmError, location, location::Location, read_request::Placing,
+    records::Stop, self_crossings::self_crossings, way_bytes::WayKind,
 };
 
 /// A way without its nodes.
@@ -32,7 +32,7 @@ pub(crate) struct Assembled {
 
 /// Makes roads of some ways, in their order. All their points are placed in one call.
 pub(crate) fn assemble(
-    some: &[PlainWay],
+    some: Vec<PlainWay>,
     all_stops: &[Stop],
     placing: Placing<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
@@ -45,34 +45,42 @@ pub(crate) fn assemble(
         return Err(ReadOsmError::Place { expected: positions_deg.len(), got: points.len() });
     }
     let mut points = points.into_iter();
-    let assemble = |way: &PlainWay| match &way.kind {
-        WayKind::Road(class, attributes) => {
-            let node_ids = &way.node_ids;
-            let what = What { way_id: way.way_id, class: *class, attributes, node_ids };
-            assemble_way(&what, stops_of(way), &mut points, placing.seam)
-        }
-        WayKind::LeftOut(reason, highway) => {
-            let left_out = Some((*reason, highway.clone(), length_um(stops_of(way))));
-            Assembled { left_out, ..Assembled::default() }
+    let assemble = |way: PlainWay| {
+        let PlainWay { way_id, kind, node_ids, stops } = way;
+        let stops = &all_stops[stops];
+        match kind {
+            WayKind::Road(class, attributes) => {
+                let what = What { way_id, class, attributes, node_ids: &node_ids };
+                assemble_way(what, stops, &mut points, placing.seam)
+            }
+            WayKind::LeftOut(reason, highway) => {
+                let left_out =
+                    Some((reason, highway, length_um(stops.iter().map(|stop| stop.location))));
+                Assembled { left_out, ..Assembled::default() }
+            }
         }
     };
-    Ok(some.iter().map(assemble).collect())
+    Ok(some.into_iter().map(assemble).collect())
 }
 
 /// The true length of a way, micrometres, segment by segment as those of roads; without those at a node that has no place.
-fn length_um(stops: &[Stop]) -> u64 {
+pub(crate) fn length_um(locations: impl Iterator<Item = Location>) -> u64 {
     const UM: f64 = 1e6;
-    let places = stops.windows(2).filter_map(|pair| {
-        Some([location::degrees(pair[0].location)?, location::degrees(pair[1].location)?])
-    });
-    places.map(|[from, to]| (wgs84::short_distance_m(from, to) * UM).round() as u64).sum()
+    let (mut sum, mut last) = (0, None);
+    for place in locations.map(location::degrees) {
+        if let (Some(from), Some(to)) = (last, place) {
+            sum += (wgs84::short_distance_m(from, to) * UM).round() as u64;
+        }
+        last = place;
+    }
+    sum
 }
 
 /// What the roads of a way are.
 struct What<'a> {
     way_id: i64,
     class: FunctionalRoadClass,
-    attributes: &'a RoadAttributes,
+    attributes: RoadAttributes,
     /// One for each stop, or none.
     node_ids: &'a [i64],
 }
@@ -114,7 +122,7 @@ impl OnSeamedMap for PlacedNode {
 ///
 /// Where the way goes over the seam of the map, it goes on at the other end as another road. That is no defect.
 fn assemble_way(
-    way: &What<'_>,
+    way: What<'_>,
     stops: &[Stop],
     points: &mut impl Iterator<Item = Option<LatticePoint>>,
     seam: Option<Seam>,
@@ -122,7 +130,7 @@ fn assemble_way(
     let way_id = way.way_id;
     let mut assembled = Assembled::default();
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
-    let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::new()];
+    let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::with_capacity(stops.len())];
     let mut same_places = Vec::new();
     for (index, stop) in stops.iter().enumerate() {
         // The node has a position: the next one of the placed points.
@@ -161,11 +169,19 @@ fn assemble_way(
     for piece in pieces {
         let count = piece.len() as u32;
         let parts = split_at_seam(piece, seam);
-        let own: Vec<Road> = parts.into_iter().filter_map(|part| road(way, part)).collect();
+        let before = assembled.roads.len();
+        assembled.roads.extend(parts.into_iter().filter_map(|part| road(&way, part)));
+        let own = &assembled.roads[before..];
         crossings += own.iter().map(|road| self_crossings(road.line.points())).sum::<u32>();
         strays += if own.is_empty() { count } else { 0 };
         roads += u32::from(!own.is_empty());
-        assembled.roads.extend(own);
+    }
+    // Nearly every way is one road, which needs no copy of the texts.
+    if let Some((last, others)) = assembled.roads.split_last_mut() {
+        for road in others {
+            road.attributes.clone_from(&way.attributes);
+        }
+        last.attributes = way.attributes;
     }
     if let Some(first) = assembled.roads.first_mut() {
         first.same_places = same_places;
@@ -187,23 +203,22 @@ fn assemble_way(
     assembled
 }
 
-/// One road of a piece of a way; `None` when the piece has less than two points.
+/// One road of a piece of a way, still without attributes; `None` when the piece has less than two points.
 fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
     let last = piece.len().checked_sub(1)?;
     let is_kept = |&index: &usize| piece[index].is_fixed || index == 0 || index == last;
-    let fixed: Vec<usize> = (0..piece.len()).filter(is_kept).collect();
-    let node_id = |&index: &usize| piece[index].id;
+    let fixed: Vec<u32> = (0..piece.len()).filter(is_kept).map(|index| index as u32).collect();
+    let node_id = |&index: &u32| piece[index as usize].id;
     let node_ids = match way.node_ids {
         [] => Vec::new(),
         _ => fixed.iter().map(node_id).collect(),
     };
-    let fixed = fixed.into_iter().map(|index| index as u32).collect();
     // Equal neighbours are merged already, so the indices stay true.
     let line = Polyline::new(piece.into_iter().map(|node| node.point).collect()).ok()?;
     Some(Road {
         way_id: way.way_id,
         class: way.class,
-        attributes: way.attributes.clone(),
+        attributes: RoadAttributes::default(),
         line,
         fixed,
         node_ids,

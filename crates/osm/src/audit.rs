@@ -6,7 +6,10 @@
 //! memory would be filled. So each block is read once before it is decoded, without keeping anything, and refused
 //! when a part of it does not follow the format (OSM wiki, *PBF Format*; `osmformat.proto`).
 
-use crate::wire::{self, Value, WireError, zigzag};
+use crate::{
+    packed::{SHORT_LIMIT, count_short},
+    wire::{self, Numbers, Value, WireError, varint, zigzag},
+};
 
 /// The largest record of the decoder, of a relation, has some 200 bytes; lists of records grow by doubling.
 const OBJECT_BYTES: u64 = 512;
@@ -289,7 +292,7 @@ impl Audit {
     /// A message of single values that are not used.
     fn message(&mut self, message: &[u8]) -> Result<(), String> {
         self.spend(OBJECT_BYTES)?;
-        for field in wire::fields(message) {
+        for field in wire::fields(after_plain_numbers(message)) {
             let field = field?;
             if field.number > 6 || field.value.varint().is_err() {
                 self.spend(UNKNOWN_BYTES)?;
@@ -299,23 +302,37 @@ impl Audit {
     }
 
     /// Adds up differences.
-    fn add_up(&mut self, value: Value<'_>, sum: &mut Sum, what: &str) -> Result<(), String> {
-        for step in value.numbers()? {
-            sum.add(zigzag(step?)).ok_or_else(|| format!("{what} overflow"))?;
+    fn add_up<'a>(
+        &mut self,
+        value: Value<'a>,
+        sum: &mut Sum<'a>,
+        what: &str,
+    ) -> Result<(), String> {
+        if !sum.put_off(value, |_| true) {
+            sum.catch_up();
+            for step in value.numbers()? {
+                sum.add(zigzag(step?)).ok_or_else(|| format!("{what} overflow"))?;
+            }
         }
         Ok(self.spend_on_numbers(value)?)
     }
 
     /// Adds up differences of places along an axis.
-    fn add_up_places(
+    fn add_up_places<'a>(
         &mut self,
-        value: Value<'_>,
+        value: Value<'a>,
         axis: usize,
-        sum: &mut Sum,
+        sum: &mut Sum<'a>,
     ) -> Result<(), String> {
-        for step in value.numbers()? {
-            let nano_deg = sum.add(zigzag(step?)).and_then(|at| self.nano_deg(axis, at));
-            nano_deg.ok_or("places of its nodes overflow")?;
+        // What lies between two places that do not overflow does not, either.
+        let is_placed =
+            |most: i64| [most, -most].iter().all(|&at| self.nano_deg(axis, at).is_some());
+        if !sum.put_off(value, is_placed) {
+            sum.catch_up();
+            for step in value.numbers()? {
+                let nano_deg = sum.add(zigzag(step?)).and_then(|at| self.nano_deg(axis, at));
+                nano_deg.ok_or("places of its nodes overflow")?;
+            }
         }
         Ok(self.spend_on_numbers(value)?)
     }
@@ -336,6 +353,11 @@ impl Audit {
     }
 
     fn count(&mut self, value: Value<'_>) -> Result<(), String> {
+        if let Value::Bytes(bytes) = value
+            && count_short(bytes).is_some()
+        {
+            return Ok(self.spend_on_numbers(value)?);
+        }
         if let Some(error) = value.numbers()?.find_map(Result::err) {
             return Err(error.to_owned());
         }
@@ -361,17 +383,49 @@ impl Audit {
     }
 }
 
-/// A sum of differences and how many there were.
-#[derive(Default, Clone, Copy)]
-struct Sum {
-    sum: i64,
-    count: u64,
+/// What follows the single numbers in the fields 1 to 6 with which a message begins: nearly always nothing.
+fn after_plain_numbers(mut message: &[u8]) -> &[u8] {
+    while let [0x08 | 0x10 | 0x18 | 0x20 | 0x28 | 0x30, after @ ..] = message {
+        let mut rest = after;
+        if varint(&mut rest).is_err() {
+            break;
+        }
+        message = rest;
+    }
+    message
 }
 
-impl Sum {
+/// A sum of differences and how many there were.
+#[derive(Default, Clone, Copy)]
+struct Sum<'a> {
+    total: i64,
+    count: u64,
+    /// Differences that were counted and are not added up yet: nobody asks for their sum, unless more of them follow.
+    later: &'a [u8],
+}
+
+impl<'a> Sum<'a> {
+    /// Only counts the first differences, if they are so small that no sum of them can overflow, and `is_right` with what it is at most.
+    fn put_off(&mut self, value: Value<'a>, is_right: impl Fn(i64) -> bool) -> bool {
+        let Value::Bytes(bytes) = value else { return false };
+        let Some(count) = count_short(bytes).filter(|_| self.count == 0) else { return false };
+        let most = count.checked_mul(SHORT_LIMIT / 2).and_then(|most| i64::try_from(most).ok());
+        let is_put_off = most.is_some_and(is_right);
+        if is_put_off {
+            (self.count, self.later) = (count, bytes);
+        }
+        is_put_off
+    }
+
+    /// Adds up what was put off, which cannot overflow.
+    fn catch_up(&mut self) {
+        let steps = Numbers::of(std::mem::take(&mut self.later)).map_while(Result::ok);
+        self.total += steps.map(zigzag).sum::<i64>();
+    }
+
     fn add(&mut self, step: i64) -> Option<i64> {
-        self.sum = self.sum.checked_add(step)?;
+        self.total = self.total.checked_add(step)?;
         self.count += 1;
-        Some(self.sum)
+        Some(self.total)
     }
 }

@@ -3,9 +3,13 @@
 //! Only blocks that were audited are read here. So all fields are of their kinds, arrays that belong together are equally long, sums do not
 //! overflow, and every tag is in the table.
 
-use std::{borrow::Cow, iter, ops::ControlFlow};
+use std::{cell::OnceCell, ops::ControlFlow};
 
-use crate::wire::{self, Numbers, Value, push_varint, zigzag};
+use crate::{
+    object_info::{Info, to_version},
+    packed::Packed,
+    wire::{self, Value, zigzag},
+};
 
 /// A block (message `PrimitiveBlock`) that was audited.
 pub(crate) struct Block<'a> {
@@ -15,6 +19,30 @@ pub(crate) struct Block<'a> {
     granularity: i64,
     /// Latitude and longitude of the coordinates 0, nanodegrees.
     offsets: [i64; 2],
+    /// Read when they are asked for.
+    dense: OnceCell<Vec<DenseNodes<'a>>>,
+}
+
+/// The nodes of a list: their ids as numbers, the rest as it stands in the block.
+pub(crate) struct DenseNodes<'a> {
+    pub(crate) ids: Vec<i64>,
+    /// Steps of latitudes and longitudes.
+    places: [Packed<'a>; 2],
+    /// May be fewer than the nodes, or none; so may the marks of those that are not deleted.
+    pub(crate) versions: Packed<'a>,
+    pub(crate) visible: Packed<'a>,
+}
+
+impl<'a> DenseNodes<'a> {
+    fn of(nodes: &'a [u8]) -> Self {
+        let [ids, lats, lons] = [1, 8, 9].map(|number| Packed::of(nodes, number));
+        let info = parts(nodes, 5).last().unwrap_or_default();
+        let [versions, visible] = [1, 6].map(|number| Packed::of(info, number));
+        // Of its size at once: a list that grows asks for room before each number.
+        let mut known = vec![0; ids.len()];
+        known.iter_mut().zip(ids.sums()).for_each(|(id, sum)| *id = sum);
+        Self { ids: known, places: [lats, lons], versions, visible }
+    }
 }
 
 /// A node of a block.
@@ -30,8 +58,7 @@ pub(crate) struct BlockNode {
 pub(crate) struct BlockWay<'b, 'a> {
     block: &'b Block<'a>,
     pub(crate) id: i64,
-    /// 0 if it is not known.
-    pub(crate) version: i32,
+    pub(crate) info: Info,
     keys: Packed<'a>,
     values: Packed<'a>,
     refs: Packed<'a>,
@@ -40,7 +67,13 @@ pub(crate) struct BlockWay<'b, 'a> {
 
 impl<'a> Block<'a> {
     pub(crate) fn new(message: &'a [u8]) -> Self {
-        let mut block = Self { texts: &[], groups: Vec::new(), granularity: 100, offsets: [0; 2] };
+        let mut block = Self {
+            texts: &[],
+            groups: Vec::new(),
+            granularity: 100,
+            offsets: [0; 2],
+            dense: OnceCell::new(),
+        };
         for field in wire::fields(message).flatten() {
             match (field.number, field.value) {
                 (1, Value::Bytes(texts)) => block.texts = texts,
@@ -52,6 +85,11 @@ impl<'a> Block<'a> {
             }
         }
         block
+    }
+
+    /// The groups of objects (messages `PrimitiveGroup`).
+    pub(crate) fn groups(&self) -> &[&'a [u8]] {
+        &self.groups
     }
 
     /// The texts of tags, by number.
@@ -71,56 +109,85 @@ impl<'a> Block<'a> {
         fields.any(|field| field.number == 4)
     }
 
-    /// How many nodes there are.
-    pub(crate) fn nodes_count(&self) -> u64 {
-        let of_group = |group: &&'a [u8]| {
-            let dense = parts(group, 2).map(|nodes| Packed::of(nodes, 1).len());
-            parts(group, 1).count() + dense.sum::<usize>()
-        };
-        self.groups.iter().map(|group| of_group(group) as u64).sum()
+    /// Whether there are ways in it, and nothing else.
+    pub(crate) fn has_ways_alone(&self) -> bool {
+        let mut fields = self.groups.iter().flat_map(|group| wire::fields(group)).flatten();
+        fields.next().is_some_and(|first| first.number == 3)
+            && fields.all(|field| field.number == 3)
     }
 
-    /// Hands on the nodes, of each group first those in lists, until `take` wants no more.
-    pub(crate) fn try_each_node(
+    /// How many nodes there are.
+    pub(crate) fn nodes_count(&self) -> u64 {
+        let dense = self.dense().iter().map(|nodes| nodes.ids.len() as u64).sum::<u64>();
+        dense + self.groups.iter().map(|group| parts(group, 1).count() as u64).sum::<u64>()
+    }
+
+    /// The nodes in lists, group by group. Of a block that was audited no group has two lists.
+    pub(crate) fn dense(&self) -> &[DenseNodes<'a>] {
+        self.dense.get_or_init(|| {
+            self.groups.iter().flat_map(|group| parts(group, 2)).map(DenseNodes::of).collect()
+        })
+    }
+
+    /// The nodes that are not in lists.
+    pub(crate) fn plain_nodes(&self) -> impl Iterator<Item = BlockNode> {
+        self.groups.iter().flat_map(|group| parts(group, 1)).map(|node| self.node(node))
+    }
+
+    /// Hands on the nodes for which `find` finds something by their ids, of each group first those in lists, until `take` wants no more.
+    pub(crate) fn try_each_node<T>(
         &self,
-        mut take: impl FnMut(BlockNode) -> ControlFlow<()>,
+        mut find: impl FnMut(i64) -> Option<T>,
+        mut take: impl FnMut(T, BlockNode) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        let mut dense = self.dense().iter();
         for group in &self.groups {
-            for nodes in parts(group, 2) {
-                self.try_each_dense(nodes, &mut take)?;
+            for nodes in parts(group, 2).zip(&mut dense).map(|(_, nodes)| nodes) {
+                self.try_each_dense(nodes, &mut find, &mut take)?;
             }
-            parts(group, 1).try_for_each(|node| take(self.node(node)))?;
+            for node in parts(group, 1).map(|node| self.node(node)) {
+                if let Some(found) = find(node.id) {
+                    take(found, node)?;
+                }
+            }
         }
         ControlFlow::Continue(())
     }
 
-    fn try_each_dense(
+    /// Places and versions are read up to the last node that is found, and not at all if none is.
+    fn try_each_dense<T>(
         &self,
-        nodes: &[u8],
-        take: &mut impl FnMut(BlockNode) -> ControlFlow<()>,
+        nodes: &DenseNodes<'_>,
+        mut find: impl FnMut(i64) -> Option<T>,
+        take: &mut impl FnMut(T, BlockNode) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let [ids, lats, lons] = [1, 8, 9].map(|number| Packed::of(nodes, number));
-        let versions = parts(nodes, 5).last().map(|info| Packed::of(info, 1)).unwrap_or_default();
-        let mut versions = versions.numbers().map(to_version).chain(iter::repeat(0));
-        let [ids, lats, lons] = [&ids, &lats, &lons].map(Packed::sums);
-        for ((id, lat), lon) in ids.zip(lats).zip(lons) {
-            take(self.placed(id, [lat, lon], versions.next().unwrap_or_default()))?;
+        let [mut lats, mut lons] = nodes.places.each_ref().map(Packed::sums);
+        let mut versions = nodes.versions.numbers();
+        let mut passed = 0;
+        for (index, &id) in nodes.ids.iter().enumerate() {
+            let Some(found) = find(id) else { continue };
+            let skipped = index - passed;
+            passed = index + 1;
+            let [lat, lon] =
+                [&mut lats, &mut lons].map(|sums| sums.nth(skipped).unwrap_or_default());
+            let version = versions.nth(skipped).map_or(0, to_version);
+            take(found, self.placed(id, [lat, lon], version))?;
         }
         ControlFlow::Continue(())
     }
 
     fn node(&self, node: &[u8]) -> BlockNode {
-        let (mut id, mut place, mut version) = (0, [0; 2], 0);
+        let (mut id, mut place, mut info) = (0, [0; 2], Info::default());
         for field in wire::fields(node).flatten() {
             match (field.number, field.value) {
                 (1, Value::Varint(number)) => id = zigzag(number),
-                (4, Value::Bytes(info)) => version = version_of(info),
+                (4, Value::Bytes(message)) => info.read(message),
                 (8, Value::Varint(number)) => place[0] = zigzag(number),
                 (9, Value::Varint(number)) => place[1] = zigzag(number),
                 _ => {}
             }
         }
-        self.placed(id, place, version)
+        self.placed(id, place, info.version)
     }
 
     fn placed(&self, id: i64, place: [i64; 2], version: i32) -> BlockNode {
@@ -141,7 +208,7 @@ impl<'a> Block<'a> {
 
 impl<'b, 'a> BlockWay<'b, 'a> {
     fn new(block: &'b Block<'a>, way: &'a [u8]) -> Self {
-        let (mut id, mut version) = (0, 0);
+        let (mut id, mut info) = (0, Info::default());
         let [mut keys, mut values, mut refs] = [(); 3].map(|()| Packed::default());
         let mut places = [(); 2].map(|()| Packed::default());
         for field in wire::fields(way).flatten() {
@@ -149,14 +216,14 @@ impl<'b, 'a> BlockWay<'b, 'a> {
                 (1, Value::Varint(number)) => id = number.cast_signed(),
                 (2, value) => keys.add(value),
                 (3, value) => values.add(value),
-                (4, Value::Bytes(info)) => version = version_of(info),
+                (4, Value::Bytes(message)) => info.read(message),
                 (8, value) => refs.add(value),
                 (9, value) => places[0].add(value),
                 (10, value) => places[1].add(value),
                 _ => {}
             }
         }
-        Self { block, id, version, keys, values, refs, places }
+        Self { block, id, info, keys, values, refs, places }
     }
 
     /// The numbers of its keys in the table of texts.
@@ -181,70 +248,12 @@ impl<'b, 'a> BlockWay<'b, 'a> {
     }
 }
 
-/// The numbers of a repeated field, one after the other: as they stand in the message, or joined if they stand there in parts.
-#[derive(Default)]
-pub(crate) struct Packed<'a>(Cow<'a, [u8]>);
-
-impl<'a> Packed<'a> {
-    /// The numbers in a field of a message.
-    pub(crate) fn of(message: &'a [u8], number: u32) -> Self {
-        let mut packed = Self::default();
-        let fields = wire::fields(message).flatten().filter(|field| field.number == number);
-        fields.for_each(|field| packed.add(field.value));
-        packed
-    }
-
-    fn add(&mut self, value: Value<'a>) {
-        match value {
-            Value::Bytes(bytes) if self.0.is_empty() => self.0 = Cow::Borrowed(bytes),
-            Value::Bytes(bytes) => self.0.to_mut().extend(bytes),
-            Value::Varint(number) => push_varint(self.0.to_mut(), number),
-            Value::Fixed => {}
-        }
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// How many there are: each ends in a byte without the top bit.
-    fn len(&self) -> usize {
-        self.0.iter().filter(|&&byte| byte < 0x80).count()
-    }
-
-    pub(crate) fn numbers(&self) -> impl Iterator<Item = u64> {
-        Numbers::of(&self.0).map_while(Result::ok)
-    }
-
-    /// What they add up to, one after the other, as differences.
-    pub(crate) fn sums(&self) -> impl Iterator<Item = i64> {
-        self.numbers().scan(0_i64, |sum, step| {
-            *sum = sum.wrapping_add(zigzag(step));
-            Some(*sum)
-        })
-    }
-}
-
 /// The parts of a message in fields of this number.
 pub(crate) fn parts(message: &[u8], number: u32) -> impl Iterator<Item = &[u8]> {
     wire::fields(message).flatten().filter_map(move |field| match field.value {
         Value::Bytes(bytes) if field.number == number => Some(bytes),
         _ => None,
     })
-}
-
-/// The version that a message `Info` tells; 0 if it tells none.
-fn version_of(info: &[u8]) -> i32 {
-    let of_field = |field: wire::Field<'_>| match (field.number, field.value) {
-        (1, Value::Varint(version)) => Some(to_version(version)),
-        _ => None,
-    };
-    wire::fields(info).flatten().filter_map(of_field).last().unwrap_or_default()
-}
-
-/// An `int32`: of a negative one, ten bytes are written, and what does not fit is no version.
-pub(crate) fn to_version(number: u64) -> i32 {
-    i32::try_from(number.cast_signed()).unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::{audit::audit, blobs::decode};
 /// Id, longitude and latitude in nanodegrees, version.
 fn nodes_of(block: &Block<'_>) -> Vec<(i64, i64, i64, i32)> {
     let mut nodes = Vec::new();
-    let _ = block.try_each_node(|node| {
+    let _ = block.try_each_node(Some, |_, node| {
         nodes.push((node.id, node.lon_nano_deg, node.lat_nano_deg, node.version));
         ControlFlow::Continue(())
     });

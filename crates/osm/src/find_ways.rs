@@ -31,6 +31,8 @@ pub(crate) struct FoundWays<'a> {
     pub(crate) looked_at: LookedAt,
     /// What the ways of roads take, by an estimate that is not too low.
     pub(crate) held_bytes: u64,
+    /// How many nodes the ways of roads and those that are left out name, each counted as often as it is named.
+    pub(crate) nodes_named: u64,
     roads_count: u64,
     located_count: u64,
 }
@@ -66,7 +68,9 @@ impl OfBlock {
     ) -> Option<Self> {
         let block = Block::new(message);
         let texts = block.texts();
-        let looked = wanted.is_first.then(|| Looked::scan(message, &block));
+        // Of a block with ways alone each is looked at once, for all that is asked of it.
+        let mut of_ways = (wanted.is_first && block.has_ways_alone()).then(Looked::of_ways);
+        let looked = (wanted.is_first && of_ways.is_none()).then(|| Looked::scan(&block));
         let mut found = Self { looked, roads: Ways::default(), outlines: Vec::new() };
         let roads = wanted.roads.map(|table| Judge::new(&texts, table));
         let judges: Vec<judge::Judge<'_>> =
@@ -78,6 +82,9 @@ impl OfBlock {
             .collect();
         found.outlines.resize_with(judges.len(), judge::OfBlock::default);
         for way in block.ways() {
+            if let Some(looked) = &mut of_ways {
+                looked.take_way(&way);
+            }
             if let Some(judge) = &roads {
                 found.roads.look_at(&way, judge, counted);
             }
@@ -91,6 +98,7 @@ impl OfBlock {
                 return None;
             }
         }
+        found.looked = of_ways.or(found.looked);
         Some(found)
     }
 }
@@ -104,6 +112,7 @@ impl<'a> FoundWays<'a> {
             summary: ExtractSummary::default(),
             looked_at: LookedAt::default(),
             held_bytes: 0,
+            nodes_named: 0,
             roads_count: 0,
             located_count: 0,
         }
@@ -158,6 +167,7 @@ impl<'a> FoundWays<'a> {
     ) -> Result<(), ReadOsmError> {
         self.held_bytes += of_block.held_bytes;
         check_held(reading, self.held_bytes)?;
+        self.nodes_named += of_block.nodes_named;
         of_block.defects.into_iter().for_each(&mut *on_defect);
         add_summary(&mut self.summary, of_block.summary);
         for mut way in of_block.roads {

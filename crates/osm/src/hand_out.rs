@@ -43,7 +43,8 @@ impl<'a> RoadWays<'a> {
         mut summary: ExtractSummary,
         defects: Deferred<'a>,
     ) -> Result<Self, ReadOsmError> {
-        let LocatedNodes { stops, needed, missing } = nodes;
+        let LocatedNodes { stops, needed, missing, lengths } = nodes;
+        summary.left_out_ways = lengths;
         summary.left_out.duplicate = duplicates;
         (summary.nodes_needed, summary.nodes_missing) = (needed, missing);
         let stops = stops.finish().map_err(|error| reading.scratch_failed(error))?;
@@ -201,7 +202,7 @@ impl Batch {
             Some(PlainWay { way_id: way.way_id, kind, node_ids, stops: way.stops.clone() })
         };
         let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
-        assemble(&ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)
+        assemble(ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)
             .map_err(HandOutError::Osm)
     }
 }

@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    block::{Packed, parts},
-    wire::{self, Field, Value, zigzag},
-};
+use crate::block::Block;
 
 /// The smallest and the largest id of a block's nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,21 +12,11 @@ pub(crate) struct IdRange {
 }
 
 impl IdRange {
-    /// Looks through a block (message `PrimitiveBlock`) that was audited: all of it can be read. `None` without nodes.
-    pub(crate) fn scan(block: &[u8]) -> Option<Self> {
-        let mut range: Option<Self> = None;
-        let mut include = |id: i64| {
-            let own = range.get_or_insert(Self { least: id, most: id });
-            own.least = own.least.min(id);
-            own.most = own.most.max(id);
-        };
-        for group in parts(block, 2) {
-            parts(group, 1).map(plain_id).for_each(&mut include);
-            for nodes in parts(group, 2) {
-                Packed::of(nodes, 1).sums().for_each(&mut include);
-            }
-        }
-        range
+    /// `None` without nodes.
+    pub(crate) fn scan(block: &Block<'_>) -> Option<Self> {
+        let dense = block.dense().iter().flat_map(|nodes| &nodes.ids).copied();
+        let all = dense.chain(block.plain_nodes().map(|node| node.id));
+        all.map(|id| Self { least: id, most: id }).reduce(Self::union)
     }
 
     /// The smallest range with both in it.
@@ -45,15 +32,6 @@ impl IdRange {
     pub(crate) fn meets(self, other: Self) -> bool {
         self.least <= other.most && other.least <= self.most
     }
-}
-
-/// The id of a plain node; if the field comes twice, the last one counts.
-fn plain_id(node: &[u8]) -> i64 {
-    let id_of = |field: Field<'_>| match (field.number, field.value) {
-        (1, Value::Varint(id)) => Some(zigzag(id)),
-        _ => None,
-    };
-    wire::fields(node).flatten().filter_map(id_of).last().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ proptest! {
         block.track(1000, &[-1000, 1000]);
         let all = || dense.iter().chain(&plain).copied();
         let expected = all().min().zip(all().max()).map(|(least, most)| IdRange { least, most });
-        prop_assert_eq!(IdRange::scan(&block.bytes()), expected);
+        prop_assert_eq!(IdRange::scan(&crate::block::Block::new(&block.bytes())), expected);
     }
 
     #[test]

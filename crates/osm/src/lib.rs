@@ -15,7 +15,7 @@
 //! (`read_extract`, `nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
 //! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
-//! code for extracts of every size and order.
+//! code for extracts of every size and order, but for the lengths of ways that are left out (`left_out_lengths`).
 //!
 //! Several extracts are read as one list of blobs. Of an object that is in two of them the newer version counts.
 //!
@@ -42,10 +42,12 @@ mod shares;
 mod deferred;
 mod find_ways;
 mod hand_out;
+mod left_out_lengths;
 mod locate_nodes;
 mod looked;
 mod nodes_last;
 mod number_nodes;
+mod object_info;
 
 mod audit;
 mod blob;
@@ -54,9 +56,11 @@ mod block;
 mod extracts;
 mod formats;
 mod open_file;
+mod packed;
 mod wire;
 
 mod assemble;
+mod id_index;
 mod id_range;
 mod location;
 mod nodes;

@@ -15,10 +15,11 @@ use crate::{
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
     id_range::IdRange,
+    left_out_lengths::{LeftOutNodes, Lengths, left_out_lengths},
     looked::NodeBlob,
     nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
     reading::{Reading, Step},
-    records::{Located, Mention, Stop},
+    records::{Located, Mention, SoughtId, Stop},
     spool::{Spool, damaged},
     wire::{push_varint, varint},
 };
@@ -38,12 +39,40 @@ pub(crate) struct LocatedNodes<'a> {
     pub(crate) needed: u64,
     /// How many of them have no place.
     pub(crate) missing: u64,
+    /// Lengths of ways that are left out and were treated apart.
+    pub(crate) lengths: Lengths,
 }
 
 /// The nodes that a layer asks for.
 pub(crate) struct NodeQuestions<'a> {
     pub(crate) mentions: Sorted<'a, Mention>,
     pub(crate) mentions_count: u64,
+    /// Ways that are asked for their lengths alone; only where all nodes fit in a chunk.
+    pub(crate) left_out: Option<LeftOutNodes<'a>>,
+}
+
+/// How many nodes a chunk has at most.
+pub(crate) fn most_ids(reading: &Reading<'_>, layers: u64) -> u64 {
+    (reading.shares().ids / bytes_per_node(reading.precedence(), layers)).max(1)
+}
+
+/// What a layer asks, node by node.
+struct Asking<'a> {
+    mentions: Ahead<Sorted<'a, Mention>>,
+    /// Nodes that only have to be there.
+    also: Option<Ahead<Sorted<'a, SoughtId>>>,
+}
+
+impl Asking<'_> {
+    /// The node with the least id.
+    fn next(&mut self) -> io::Result<Option<i64>> {
+        let mention = self.mentions.peek()?.map(|mention| mention.node_id);
+        let also = match &mut self.also {
+            Some(also) => also.peek()?.map(|&SoughtId(id)| id),
+            None => None,
+        };
+        Ok(mention.into_iter().chain(also).min())
+    }
 }
 
 /// Where the places of nodes come from.
@@ -68,19 +97,39 @@ pub(crate) fn locate_nodes<'a>(
     on_defect: &mut dyn FnMut(usize, Defect),
 ) -> Result<Vec<LocatedNodes<'a>>, ReadOsmError> {
     let stops_bytes = reading.shares().stops;
-    let none = || LocatedNodes { stops: reading.sorter(stops_bytes), needed: 0, missing: 0 };
+    let none = || LocatedNodes {
+        stops: reading.sorter(stops_bytes),
+        needed: 0,
+        missing: 0,
+        lengths: Lengths::new(),
+    };
     let mut nodes: Vec<LocatedNodes<'_>> = questions.iter().map(|_| none()).collect();
-    let all: u64 = questions.iter().map(|own| own.mentions_count).sum();
-    let mut mentions: Vec<_> = questions.into_iter().map(|own| Ahead::new(own.mentions)).collect();
+    let mut all: u64 = 0;
+    let (mut asking, mut left_out) = (Vec::new(), Vec::new());
+    for NodeQuestions { mentions, mentions_count, left_out: apart } in questions {
+        let (mut ways, mut also) = (None, None);
+        if let Some(apart) = apart {
+            let (own, ids, count) = apart.into_parts();
+            ways = Some(own);
+            also = Some(Ahead::new(ids.finish().map_err(|error| reading.scratch_failed(error))?));
+            all += count;
+        }
+        all += mentions_count;
+        left_out.push(ways);
+        asking.push(Asking { mentions: Ahead::new(mentions), also });
+    }
+    let mut is_read = false;
     let mut located = Ahead::new(located);
     let mut done = 0;
-    while let Some(chunk) = Chunk::gather(reading, &mut mentions, all - done)? {
+    while let Some(chunk) = Chunk::gather(reading, &mut asking, all - done)? {
         let mut places = NodePlaces::new(chunk.ids.ids().len(), reading.precedence());
-        let own = chunk.mentions_count();
+        let own = chunk.named_count;
+        is_read = true;
         source.read(reading, &chunk.ids, &ShareOfNodes { before: done, own, all }, &mut places)?;
         let mut by_ways = chunk.take_located(reading, &mut located, &places)?.into_iter();
         done += own;
-        for (layer, (asked, nodes)) in chunk.layers.into_iter().zip(&mut nodes).enumerate() {
+        let layers = chunk.layers.into_iter().zip(&mut nodes).zip(&mut left_out);
+        for (layer, ((asked, nodes), left_out)) in layers.enumerate() {
             let by_ways = by_ways.next().flatten();
             let places = by_ways.as_ref().unwrap_or(&places);
             // What only ways name that are left out is needed for their lengths alone.
@@ -93,19 +142,29 @@ pub(crate) fn locate_nodes<'a>(
                 on_defect(layer, Defect::ConflictingNode { node_id });
             }
             asked.answer(reading, places, &mut nodes.stops)?;
+            // All nodes are in this chunk.
+            if let Some(ways) = left_out.take() {
+                nodes.lengths = left_out_lengths(reading, ways, &chunk.ids, places)?;
+            }
         }
     }
-    if done == 0 {
+    if !is_read {
         // Blobs that hold nodes are checked and counted, also if no way needs one.
         let share = ShareOfNodes { before: 0, own: 0, all: 0 };
-        let mut none = NodePlaces::new(0, reading.precedence());
-        source.read(reading, &NodeIds::new(Vec::new()), &share, &mut none)?;
+        let (ids, mut none) = (NodeIds::new(Vec::new()), NodePlaces::new(0, reading.precedence()));
+        source.read(reading, &ids, &share, &mut none)?;
+        // Ways without nodes count, too.
+        for (nodes, left_out) in nodes.iter_mut().zip(&mut left_out) {
+            if let Some(ways) = left_out.take() {
+                nodes.lengths = left_out_lengths(reading, ways, &ids, &none)?;
+            }
+        }
     }
     reading.tell(Step::Nodes, 1, 1);
     Ok(nodes)
 }
 
-/// Which part of all mentions a chunk is; for the progress.
+/// Which part of all that names nodes a chunk is; for the progress.
 pub(crate) struct ShareOfNodes {
     pub(crate) before: u64,
     pub(crate) own: u64,
@@ -170,6 +229,8 @@ enum Named {
 struct Chunk<'a> {
     ids: NodeIds,
     layers: Vec<Asked<'a>>,
+    /// How often its nodes are named.
+    named_count: u64,
 }
 
 /// The nodes of a chunk that a layer asks for.
@@ -191,34 +252,36 @@ impl<'a> Chunk<'a> {
     /// Takes the mentions of as many nodes as fit; `None` if there are no more. `most` mentions are to come.
     fn gather(
         reading: &Reading<'a>,
-        mentions: &mut [Ahead<Sorted<'a, Mention>>],
+        asking: &mut [Asking<'a>],
         most: u64,
     ) -> Result<Option<Self>, ReadOsmError> {
-        let shares = reading.shares();
-        let per_node = bytes_per_node(reading.precedence(), mentions.len() as u64);
-        let most_ids = (shares.ids / per_node).max(1).min(most) as usize;
+        let failed = |error| reading.scratch_failed(error);
+        let most_ids = most_ids(reading, asking.len() as u64).min(most) as usize;
         // Of this size at once: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
         let mut layers: Vec<Asked<'_>> =
-            mentions.iter().map(|_| Asked::new(reading, most_ids)).collect();
+            asking.iter().map(|_| Asked::new(reading, most_ids)).collect();
         let mut count = 0;
         while ids.len() < most_ids {
             let mut next: Option<i64> = None;
-            for own in &mut *mentions {
-                let own = own.peek().map_err(|error| reading.scratch_failed(error))?;
-                next = [next, own.map(|mention| mention.node_id)].into_iter().flatten().min();
+            for own in &mut *asking {
+                next = next.into_iter().chain(own.next().map_err(failed)?).min();
             }
             let Some(id) = next else { break };
-            for (asked, own) in layers.iter_mut().zip(&mut *mentions) {
-                asked.take(reading, id, ids.len() as u64, own, &mut count)?;
+            for (asked, Asking { mentions, also }) in layers.iter_mut().zip(&mut *asking) {
+                asked.take(reading, id, ids.len() as u64, mentions, &mut count)?;
+                while let Some(also) = also
+                    && also.peek().map_err(failed)? == Some(&SoughtId(id))
+                {
+                    also.take();
+                    reading.check_stop_at(count)?;
+                    count += 1;
+                }
             }
             ids.push(id);
         }
-        Ok((!ids.is_empty()).then(|| Self { ids: NodeIds::new(ids), layers }))
-    }
-
-    fn mentions_count(&self) -> u64 {
-        self.layers.iter().map(|asked| asked.mentions_count).sum()
+        let is_any = !ids.is_empty();
+        Ok(is_any.then(|| Self { ids: NodeIds::new(ids), layers, named_count: count }))
     }
 
     /// Takes the places that ways give for nodes of the chunk, in the order of the file: the places that hold for each layer whose ways give

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     ReadOsmError,
-    block::Block,
+    block::{Block, BlockWay},
     id_range::IdRange,
     reading::Reading,
     versions::{History, Versions},
@@ -32,14 +32,25 @@ pub(crate) struct Looked {
 }
 
 impl Looked {
-    pub(crate) fn scan(message: &[u8], block: &Block<'_>) -> Self {
+    pub(crate) fn scan(block: &Block<'_>) -> Self {
         Self {
-            versions: Versions::scan(message),
-            ids: IdRange::scan(message),
+            versions: Versions::scan(block),
+            ids: IdRange::scan(block),
             has_relations: block.has_relations(),
             has_ways: block.ways().next().is_some(),
             nodes: block.nodes_count(),
         }
+    }
+
+    /// What is known of a block with ways alone, before it is told any of them.
+    pub(crate) fn of_ways() -> Self {
+        let versions = Versions::default();
+        Self { versions, ids: None, has_relations: false, has_ways: true, nodes: 0 }
+    }
+
+    /// Takes the next way.
+    pub(crate) fn take_way(&mut self, way: &BlockWay<'_, '_>) {
+        self.versions.take_way(way.id, way.info);
     }
 }
 

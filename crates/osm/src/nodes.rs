@@ -47,16 +47,15 @@ impl NodeIds {
     pub(crate) fn scan(&self, block: &Block<'_>, most_bytes: u64) -> Option<Vec<FoundNode>> {
         let mut found = Vec::new();
         let mut search = self.search();
-        let end = block.try_each_node(|node| {
-            if let Some(number) = search.find(node.id) {
+        let end = block.try_each_node(
+            |id| search.find(id),
+            |number, node| {
                 let location = location_from_nano(node.lon_nano_deg, node.lat_nano_deg);
                 found.push((number, location, node.version));
-                if size_of_val(found.as_slice()) as u64 > most_bytes {
-                    return ControlFlow::Break(());
-                }
-            }
-            ControlFlow::Continue(())
-        });
+                let is_too_much = size_of_val(found.as_slice()) as u64 > most_bytes;
+                if is_too_much { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            },
+        );
         end.is_continue().then_some(found)
     }
 

@@ -45,8 +45,8 @@ impl OfBlock {
     fn scan(message: &[u8], ids: &NodeIds, most_bytes: u64) -> Option<Self> {
         let block = Block::new(message);
         Some(Self {
-            versions: Versions::scan(message),
-            ids: IdRange::scan(message),
+            versions: Versions::scan(&block),
+            ids: IdRange::scan(&block),
             nodes: block.nodes_count(),
             has_others: block.has_others_than_nodes(),
             found: ids.scan(&block, most_bytes)?,

@@ -6,6 +6,7 @@ use corniche_store::Sorter;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
+    left_out_lengths::LeftOutNodes,
     reading::Reading,
     records::{Mention, WayRecord},
     spool::Spool,
@@ -22,6 +23,8 @@ pub(crate) struct NumberedNodes<'a> {
     /// [`crate::hand_out`].
     pub(crate) ways: Spool<'a>,
     pub(crate) mentions: Sorter<'a, Mention>,
+    /// Ways that are left out, where they are treated apart.
+    pub(crate) left_out: Option<LeftOutNodes<'a>>,
     pub(crate) ways_count: u64,
     pub(crate) mentions_count: u64,
     /// Ways with the id of another one.
@@ -31,24 +34,29 @@ pub(crate) struct NumberedNodes<'a> {
 /// The first of several roads with one id in a file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
 /// with the newest version count, or of the first; what they count for goes to `summary`.
 ///
+/// Those that are left out go to `left_out`, or where there is none are numbered as the others are.
+///
 /// Fails if a way is there in two versions.
 pub(crate) fn number_nodes<'a>(
     reading: &Reading<'a>,
     ways: impl Iterator<Item = io::Result<WayRecord>>,
     summary: &mut ExtractSummary,
     on_defect: &mut dyn FnMut(Defect),
+    left_out: Option<LeftOutNodes<'a>>,
 ) -> Result<NumberedNodes<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
     let failed = |error| reading.scratch_failed(error);
     let mut numbered = NumberedNodes {
         ways: Spool::new(request.scratch, shares.spool),
         mentions: reading.sorter(shares.mentions),
+        left_out,
         ways_count: 0,
         mentions_count: 0,
         duplicates: 0,
     };
     let mut last: Option<(i64, Option<i32>)> = None;
     let mut newest: Option<Newest> = None;
+    let mut node_ids = Vec::new();
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
         let way = way.map_err(failed)?;
@@ -65,8 +73,15 @@ pub(crate) fn number_nodes<'a>(
             add_summary(summary, facts.counts.into());
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
-        if way.is_left_out().map_err(failed)? {
-            numbered.add(&way, request.node_ids).map_err(failed)?;
+        let kind = way.take_apart(&mut node_ids).map_err(failed)?;
+        // Where ids are wanted, they stay before what the way is.
+        let kept = if request.node_ids { &*way.bytes } else { kind };
+        if is_left_out(kind) {
+            match &mut numbered.left_out {
+                Some(apart) => apart.push(&way.bytes, &node_ids),
+                None => numbered.add(way.way_id, &node_ids, true, kept),
+            }
+            .map_err(failed)?;
             continue;
         }
         let version = known_version(way.version);
@@ -84,7 +99,7 @@ pub(crate) fn number_nodes<'a>(
             }
             _ => {
                 last = Some((way.way_id, version));
-                numbered.add(&way, request.node_ids).map_err(failed)?;
+                numbered.add(way.way_id, &node_ids, false, kept).map_err(failed)?;
             }
         }
     }
@@ -119,31 +134,38 @@ impl Newest {
 }
 
 impl WayRecord {
-    fn is_left_out(&self) -> io::Result<bool> {
+    /// Puts the ids of its nodes in a list, and returns what it is as bytes.
+    fn take_apart(&self, node_ids: &mut Vec<i64>) -> io::Result<&[u8]> {
         let mut bytes = &*self.bytes;
-        take_node_ids(&mut bytes, |_| Ok(()))?;
-        Ok(is_left_out(bytes))
+        node_ids.clear();
+        take_node_ids(&mut bytes, |id| {
+            node_ids.push(id);
+            Ok(())
+        })?;
+        Ok(bytes)
     }
 }
 
 impl NumberedNodes<'_> {
-    /// `with_ids`: the ids of its nodes stay before what the way is.
-    fn add(&mut self, way: &WayRecord, with_ids: bool) -> io::Result<()> {
+    /// `kept`: what stays of the way's bytes.
+    fn add(
+        &mut self,
+        way_id: i64,
+        node_ids: &[i64],
+        is_left_out: bool,
+        kept: &[u8],
+    ) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
-        let mut road = &*way.bytes;
         let mut previous = None;
-        let is_left_out = way.is_left_out()?;
-        let nodes = take_node_ids(&mut road, |id| {
+        for &id in node_ids {
             let is_repeat = previous.replace(id) == Some(id);
             mentions.push(Mention::new(id, *mentions_count, is_left_out, is_repeat))?;
             *mentions_count += 1;
-            Ok(())
-        })?;
+        }
         *ways_count += 1;
-        let kept = if with_ids { &*way.bytes } else { road };
         ways.push(|bytes| {
-            push_varint(bytes, to_zigzag(way.way_id));
-            push_varint(bytes, nodes);
+            push_varint(bytes, to_zigzag(way_id));
+            push_varint(bytes, node_ids.len() as u64);
             push_varint(bytes, kept.len() as u64);
             bytes.extend(kept);
         })

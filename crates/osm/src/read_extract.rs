@@ -26,8 +26,9 @@ use crate::{
     find_ways::{FoundWays, WaysWanted},
     hand_out::{RoadWays, hand_out_roads},
     layers::Layers,
+    left_out_lengths::LeftOutNodes,
     lines::hand_out_lines,
-    locate_nodes::{NodeQuestions, locate_nodes},
+    locate_nodes::{NodeQuestions, locate_nodes, most_ids},
     nodes_last::NodesLast,
     number_nodes::{NumberedNodes, number_nodes},
     outlines::{
@@ -167,7 +168,7 @@ impl<'a> Found<'a> {
         let Some(found) = read_ways(reading, file, order, wanted, &mut outlines, on_defect)? else {
             return Ok(None);
         };
-        let FoundWays { ways, located, mut summary, looked_at, .. } = found;
+        let FoundWays { ways, located, mut summary, looked_at, nodes_named, .. } = found;
         let looked_nodes = looked_at.nodes_seen;
 
         let (mut numbered, mut questions) = (Vec::new(), Vec::new());
@@ -180,12 +181,19 @@ impl<'a> Found<'a> {
         if wanted.roads.is_some() {
             let ways = ways.finish().map_err(failed)?;
             let on_defect = &mut |defect| of_roads.push(&defect);
-            numbered.push(number_nodes(reading, ways, &mut summary, on_defect)?);
+            let others: u64 =
+                numbered.iter().map(|own: &NumberedNodes<'_>| own.mentions_count).sum();
+            // Lengths are looked up where the places of all nodes are there at once.
+            let fits = others + nodes_named <= most_ids(reading, numbered.len() as u64 + 1);
+            let left_out = fits.then(|| LeftOutNodes::new(reading));
+            numbered.push(number_nodes(reading, ways, &mut summary, on_defect, left_out)?);
         }
         let mut layers = Vec::new();
-        for NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } in numbered {
+        for own in numbered {
+            let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
+                own;
             let mentions = mentions.finish().map_err(failed)?;
-            questions.push(NodeQuestions { mentions, mentions_count });
+            questions.push(NodeQuestions { mentions, mentions_count, left_out });
             layers.push((ways.read(), ways_count, duplicates));
         }
         let mut nodes = NodesLast {

@@ -3,7 +3,6 @@
 use std::io;
 
 use corniche_store::{SortRecord, Sorter};
-use rayon::prelude::*;
 
 use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
 
@@ -60,6 +59,24 @@ pub(crate) struct Reading<'a> {
     pub(crate) layers: LayerCount,
 }
 
+/// Sorts in place, in up to two to the power of `halvings` parts side by side. Records that compare equal are the same.
+///
+/// The standard library's sort, in parts, takes three quarters of the time that `rayon`'s takes.
+fn sort_halves<T: Ord + Send>(records: &mut [T], halvings: u32) {
+    /// Fewer are not worth a task.
+    const LEAST: usize = 1 << 12;
+    // Ways of a sorted extract are in order already.
+    if records.is_sorted() {
+        return;
+    }
+    if halvings == 0 || records.len() < LEAST {
+        records.sort_unstable();
+        return;
+    }
+    let (low, _, high) = records.select_nth_unstable(records.len() / 2);
+    rayon::join(|| sort_halves(low, halvings - 1), || sort_halves(high, halvings - 1));
+}
+
 /// How many layers are read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LayerCount {
@@ -76,7 +93,8 @@ impl<'a> Reading<'a> {
     /// Sorts within so much memory, in the pool.
     pub(crate) fn sorter<T: SortRecord + 'a>(&self, memory_bytes: u64) -> Sorter<'a, T> {
         let ReadRequest { scratch, pool, .. } = *self.request;
-        let sort = move |records: &mut [T]| pool.install(|| records.par_sort_unstable());
+        let halvings = 1 + pool.current_num_threads().ilog2();
+        let sort = move |records: &mut [T]| pool.install(|| sort_halves(records, halvings));
         Sorter::new(scratch, memory_bytes).sorted_by(sort)
     }
 

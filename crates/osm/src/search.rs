@@ -13,7 +13,19 @@ impl<'a> Search<'a> {
     }
 
     /// The index of an id.
+    #[inline]
     pub(crate) fn find(&mut self, id: i64) -> Option<usize> {
+        // Mostly it is the next one, or lies between the two.
+        if let [last, next, ..] = self.ids[self.at..]
+            && (last..=next).contains(&id)
+        {
+            self.at += usize::from(id == next);
+            return (id == last || id == next).then_some(self.at);
+        }
+        self.find_farther(id)
+    }
+
+    fn find_farther(&mut self, id: i64) -> Option<usize> {
         let rest = &self.ids[self.at..];
         let (mut low, mut step) = (0, 1);
         if rest.first().is_none_or(|&first| id < first) {

@@ -36,6 +36,11 @@ pub(crate) fn self_crossings(points: &[LatticePoint]) -> u32 {
 /// `geo` decides it by the signs of Shewchuk's orientations, which are exact for coordinates that an f64 holds exactly: lattice
 /// points stay below 2^50 ([`corniche_geom::MAX_LATTICE_STEPS`]), an f64 holds whole numbers to 2^53.
 fn cross_inside(one: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
+    // Most pairs are neighbours, which share a point and so cross nowhere inside both, or lie beside each other.
+    let [own, its] = [one, other].map(|[a, b]| [a.v.min(b.v), a.v.max(b.v)]);
+    if one.iter().any(|point| other.contains(point)) || own[0] > its[1] || its[0] > own[1] {
+        return false;
+    }
     let [one, other] = [one, other].map(|[from, to]| {
         let [from, to] = [from, to].map(|point| Coord::from(point.in_steps()));
         Line::new(from, to)

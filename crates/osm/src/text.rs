@@ -6,6 +6,7 @@ use std::borrow::Cow;
 const MAX_TEXT_CHARS: usize = 255;
 
 /// A tag's key or value.
+#[derive(Clone)]
 pub(crate) struct Text<'a> {
     pub(crate) text: Cow<'a, str>,
     pub(crate) is_cut: bool,
@@ -23,7 +24,10 @@ impl<'a> Text<'a> {
             }
             _ => String::from_utf8_lossy(start),
         };
-        let end = text.char_indices().nth(MAX_TEXT_CHARS).map(|(at, _)| at);
+        // A text has no more characters than bytes.
+        let is_long = text.len() > MAX_TEXT_CHARS;
+        let end = if is_long { text.char_indices().nth(MAX_TEXT_CHARS) } else { None };
+        let end = end.map(|(at, _)| at);
         let is_cut = end.is_some() || start.len() < bytes.len();
         let text = match (end, text) {
             (Some(end), Cow::Borrowed(text)) => Cow::Borrowed(&text[..end]),

@@ -10,12 +10,13 @@
 //! with the same version, is no sign of a history. The ids of all objects are not kept, so in an unsorted file only
 //! the versions of roads are compared.
 //!
-//! This reads the block itself: the decoder forgets versions and marks of dense nodes that come without times and users.
+//! This reads the block in place: the decoder forgets versions and marks of dense nodes that come without times and users.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    block::{Packed, parts, to_version},
+    block::{Block, DenseNodes},
+    object_info::{Info, to_version},
     wire::{self, Value, zigzag},
 };
 
@@ -52,13 +53,6 @@ struct Versioned {
     file: u32,
 }
 
-/// What is known of an object.
-#[derive(Debug, Clone, Copy, Default)]
-struct Info {
-    version: i32,
-    is_deleted: bool,
-}
-
 /// A version, if it is one.
 pub(crate) fn known_version(version: i32) -> Option<i32> {
     (version > 0).then_some(version)
@@ -70,14 +64,19 @@ pub(crate) fn two_versions(kind: &str, id: i64, [first, second]: [i32; 2]) -> St
 }
 
 impl Versions {
-    /// Looks through a block (message `PrimitiveBlock`) that was audited: all of it can be read.
-    pub(crate) fn scan(block: &[u8]) -> Self {
+    /// Looks through a block.
+    pub(crate) fn scan(block: &Block<'_>) -> Self {
         let mut versions = Self::default();
-        for group in parts(block, 2) {
+        let mut dense = block.dense().iter();
+        for group in block.groups() {
             for field in wire::fields(group).flatten() {
                 match (field.number, field.value) {
                     (1, Value::Bytes(node)) => versions.object(0, node, zigzag),
-                    (2, Value::Bytes(nodes)) => versions.dense(nodes),
+                    (2, Value::Bytes(_)) => {
+                        if let Some(nodes) = dense.next() {
+                            versions.dense(nodes);
+                        }
+                    }
                     (3, Value::Bytes(way)) => versions.object(1, way, u64::cast_signed),
                     (4, Value::Bytes(relation)) => versions.object(2, relation, u64::cast_signed),
                     _ => {}
@@ -85,6 +84,11 @@ impl Versions {
             }
         }
         versions
+    }
+
+    /// Takes the next way of a block.
+    pub(crate) fn take_way(&mut self, id: i64, info: Info) {
+        self.take(1, id, info);
     }
 
     /// The same, found in this one of several extracts.
@@ -121,15 +125,25 @@ impl Versions {
         self.take(kind, id, info);
     }
 
-    /// Arrays of ids, versions and marks; the latter two may be shorter, or not be there at all.
-    fn dense(&mut self, nodes: &[u8]) {
-        let info = parts(nodes, 5).last().unwrap_or_default();
-        let [versions, visible] = [1, 6].map(|number| Packed::of(info, number));
+    /// Versions and marks may be fewer than the ids, or not be there at all.
+    fn dense(&mut self, nodes: &DenseNodes<'_>) {
+        let DenseNodes { ids, versions, visible, .. } = nodes;
         if versions.is_empty() && visible.is_empty() {
             return;
         }
+        if visible.is_empty() && ids.array_windows().all(|[one, next]| one < next) {
+            // None is there twice: what lies between the first and the last one with a version tells nothing.
+            let versions = ids.iter().zip(versions.numbers().map(to_version));
+            let mut known = versions.filter(|&(_, version)| known_version(version).is_some());
+            let of = |(&id, version)| Versioned { id, version, file: 0 };
+            if let Some(first) = known.next().map(of) {
+                self.follow(0, first);
+                self.runs[0].last = known.last().map_or(Some(first), |last| Some(of(last)));
+            }
+            return;
+        }
         let (mut versions, mut visible) = (versions.numbers(), visible.numbers());
-        for id in Packed::of(nodes, 1).sums() {
+        for &id in ids {
             let version = versions.next().map_or(0, to_version);
             self.take(0, id, Info { version, is_deleted: visible.next() == Some(0) });
         }
@@ -156,18 +170,6 @@ impl Versions {
             let versions = [last.version, object.version];
             let reason = two_versions(KINDS[kind], object.id, versions);
             self.history = Some(History { file: object.file, reason });
-        }
-    }
-}
-
-impl Info {
-    fn read(&mut self, message: &[u8]) {
-        for field in wire::fields(message).flatten() {
-            match (field.number, field.value) {
-                (1, Value::Varint(version)) => self.version = to_version(version),
-                (6, Value::Varint(is_visible)) => self.is_deleted = is_visible == 0,
-                _ => {}
-            }
         }
     }
 }

@@ -101,10 +101,8 @@ pub(crate) fn take_node_ids(
 /// Takes what follows the nodes. `None` if the bytes are damaged.
 pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     if is_left_out(bytes) {
-        let (&[_, reason], rest) = bytes.split_first_chunk::<2>()?;
-        *bytes = rest;
-        let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
-        return Some(WayKind::LeftOut(reason, take_text(bytes)?));
+        let (reason, highway) = take_left_out(bytes)?;
+        return Some(WayKind::LeftOut(reason, highway.to_owned()));
     }
     let (&[class, ref codes @ ..], rest) = bytes.split_first_chunk::<6>()?;
     *bytes = rest;
@@ -113,11 +111,23 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }
 
+/// The same for a way that is left out.
+pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<(LeftOutReason, &'b str)> {
+    let (&[_, reason], rest) = bytes.split_first_chunk::<2>()?;
+    *bytes = rest;
+    let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
+    Some((reason, take_str(bytes)?))
+}
+
 fn take_text(bytes: &mut &[u8]) -> Option<String> {
+    take_str(bytes).map(str::to_owned)
+}
+
+fn take_str<'b>(bytes: &mut &'b [u8]) -> Option<&'b str> {
     let length = varint(bytes).ok()?.try_into().ok()?;
     let (text, rest) = bytes.split_at_checked(length)?;
     *bytes = rest;
-    str::from_utf8(text).ok().map(str::to_owned)
+    str::from_utf8(text).ok()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The ways of a block that are roads, what they are, and which nodes they need.
 
-use std::{borrow::Cow, collections::BTreeMap};
+use std::{borrow::Cow, cell::OnceCell, collections::BTreeMap};
 
 use corniche_roads::{
     Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes,
@@ -38,6 +38,8 @@ pub(crate) struct Ways {
     pub(crate) summary: ExtractSummary,
     /// How much all this takes, in memory or in scratch space, by an estimate that is not too low.
     pub(crate) held_bytes: u64,
+    /// How many nodes the ways name.
+    pub(crate) nodes_named: u64,
     /// The nodes of the way that is being looked at.
     node_ids: Vec<i64>,
 }
@@ -46,6 +48,8 @@ pub(crate) struct Ways {
 pub(crate) struct Judge<'a> {
     /// Keys and values of the block's tags.
     texts: &'a [&'a [u8]],
+    /// The same as text: many ways have the same, and most are asked for by no road.
+    read: Vec<OnceCell<Text<'a>>>,
     /// Which of them are the key `highway`; usually one.
     highway: Vec<usize>,
     table: &'a FrcTable,
@@ -55,7 +59,13 @@ impl<'a> Judge<'a> {
     /// `texts` are the keys and values of the block's tags.
     pub(crate) fn new(texts: &'a [&'a [u8]], table: &'a FrcTable) -> Self {
         let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
-        Self { texts, highway, table }
+        Self { texts, read: vec![OnceCell::new(); texts.len()], highway, table }
+    }
+
+    /// The text with this number. The block was checked: no tag is outside its table.
+    fn text(&self, index: usize) -> Option<&Text<'a>> {
+        let text = self.texts.get(index)?;
+        Some(self.read.get(index)?.get_or_init(|| Text::new(text)))
     }
 }
 
@@ -76,8 +86,9 @@ impl Ways {
     fn look_at_alone(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
         let mut own = Self { node_ids: std::mem::take(&mut self.node_ids), ..Self::default() };
         own.look_at_tags(way, judge);
-        let Self { roads, located, defects, summary, held_bytes, node_ids } = own;
+        let Self { roads, located, defects, summary, held_bytes, nodes_named, node_ids } = own;
         self.node_ids = node_ids;
+        self.nodes_named += nodes_named;
         self.located.extend(located);
         self.held_bytes += held_bytes;
         for mut road in roads {
@@ -93,22 +104,25 @@ impl Ways {
         if !way.keys().any(|key| judge.highway.contains(&key)) {
             return;
         }
-        let Judge { texts, table, .. } = judge;
-        // The block was checked: no tag is outside its table.
-        let text = |index: usize| Text::new(texts.get(index).copied().unwrap_or_default());
-        let owned: Vec<[Text<'_>; 2]> =
-            way.keys().zip(way.values()).map(|(key, value)| [text(key), text(value)]).collect();
-        let tags: Vec<(&str, &str)> =
-            owned.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
+        // Room for the tags of nearly every way.
+        let mut tags: Vec<(&str, &str)> = Vec::with_capacity(16);
+        let (mut is_damaged, mut is_cut) = (false, false);
+        for (key, value) in way.keys().zip(way.values()) {
+            let (Some(key), Some(value)) = (judge.text(key), judge.text(value)) else { continue };
+            for text in [key, value] {
+                is_damaged |= matches!(text.text, Cow::Owned(_));
+                is_cut |= text.is_cut;
+            }
+            tags.push((&*key.text, &*value.text));
+        }
         let way_id = way.id;
-        let is_any = |is: fn(&Text<'_>) -> bool| owned.iter().flatten().any(is);
-        if is_any(|text| matches!(text.text, Cow::Owned(_))) {
+        if is_damaged {
             self.push_defect(Defect::DamagedText { way_id });
         }
-        if is_any(|text| text.is_cut) {
+        if is_cut {
             self.push_defect(Defect::LongText { way_id });
         }
-        self.judge(way, &tags, table);
+        self.judge(way, &tags, judge.table);
     }
 
     fn push_defect(&mut self, defect: Defect) {
@@ -124,7 +138,8 @@ impl Ways {
             tags.iter().find(|(key, _)| *key == "highway").map_or("", |&(_, value)| value);
         self.summary.highway_ways += 1;
         let left_out = &mut self.summary.left_out;
-        match table.classify(tags) {
+        let classified = table.classify(tags);
+        match classified {
             Classified::Road(class) => {
                 self.take(way, class, &attributes(tags));
                 self.count_tags_taken_otherwise(way_id, tags);
@@ -150,7 +165,12 @@ impl Ways {
                 return;
             }
         }
-        let class = match table.classify(&[("highway", highway)]) {
+        // An outline of a surface would have a class by its value alone.
+        let by_value = match classified {
+            Classified::NotARoad(NotARoad::Area) => table.classify(&[("highway", highway)]),
+            _ => classified,
+        };
+        let class = match by_value {
             Classified::Road(class) | Classified::NotShown(class) => Some(class),
             Classified::NotARoad(_) | Classified::Unknown(_) => None,
         };
@@ -193,6 +213,7 @@ impl Ways {
     ) {
         self.node_ids.clear();
         self.node_ids.extend(way.refs());
+        self.nodes_named += self.node_ids.len() as u64;
         // The block was checked: one for each node, or none at all.
         let locations = way.places_nano_deg().map(|[lon, lat]| location_from_nano(lon, lat));
         let before = self.located.len();
@@ -208,7 +229,7 @@ impl Ways {
             file: 0,
             facts: Box::default(),
             order: self.roads.len() as u64,
-            version: known_version(way.version).unwrap_or_default(),
+            version: known_version(way.info.version).unwrap_or_default(),
             bytes: to_bytes(&self.node_ids),
         });
     }

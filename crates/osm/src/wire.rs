@@ -47,6 +47,8 @@ pub(crate) struct Fields<'a> {
 impl<'a> Iterator for Fields<'a> {
     type Item = Result<Field<'a>, WireError>;
 
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a field in memory takes longer than reading it")]
     fn next(&mut self) -> Option<Self::Item> {
         if self.rest.is_empty() {
             return None;
@@ -60,6 +62,8 @@ impl<'a> Iterator for Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a field in memory takes longer than reading it")]
     fn field(&mut self) -> Result<Field<'a>, WireError> {
         let key = next_number(&mut self.rest)?;
         let number = u32::try_from(key >> 3).map_err(|_| "a field's number is too large")?;
@@ -79,6 +83,7 @@ impl<'a> Fields<'a> {
         Ok(Field { number, value })
     }
 
+    #[inline]
     fn take(&mut self, len: u64) -> Result<&'a [u8], WireError> {
         let (taken, rest) = usize::try_from(len)
             .ok()

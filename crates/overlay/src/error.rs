@@ -15,9 +15,11 @@ pub enum OverlayError {
     #[error("the lines {path:?} are a pipe or a device; save them to a file first")]
     Stream { path: PathBuf },
     #[error(
-        "{path:?} is not a vector file that GDAL can read; it is damaged, cut off, or of an unknown format; GeoJSON, GPX, GeoPackage and Shapefile can be read (ogrinfo {path:?} tells more)"
+        "{path:?} is not a vector file that GDAL can read; it is damaged, cut off, or of an unknown format; GeoJSON, GPX, GeoPackage and Shapefile can be read (ogr2ogr converts others)"
     )]
     Open { path: PathBuf, source: Box<LibraryError> },
+    #[error("cannot read {path:?}: {advice}")]
+    NoDriver { path: PathBuf, advice: String },
     #[error("not all features of {path:?} can be read; fetch or export it again")]
     Damaged { path: PathBuf, source: Box<LibraryError> },
     #[error(

@@ -104,6 +104,7 @@ pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayErr
     let dataset = open_vectors(path).map_err(|error| match error {
         NotOpened::Missing(source) => OverlayError::Missing { path: own(), source },
         NotOpened::Stream => OverlayError::Stream { path: own() },
+        NotOpened::NoDriver(advice) => OverlayError::NoDriver { path: own(), advice },
         NotOpened::Unreadable(source) => OverlayError::Open { path: own(), source },
     })?;
     let is_gpx = dataset.driver().short_name() == "GPX";

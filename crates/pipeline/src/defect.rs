@@ -1,5 +1,6 @@
 //! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
 
+use corniche_spans::SpanReason;
 use corniche_work::Silent;
 use serde::{Deserialize, Serialize};
 
@@ -64,6 +65,13 @@ impl Defect {
             Self::Span { reason, .. } => reason.clone(),
         }
     }
+}
+
+/// What a reason to look at a bridge or a tunnel means, by its name.
+#[must_use]
+pub fn span_reason_words(name: &str) -> &'static str {
+    let reason = SpanReason::ALL.into_iter().find(|reason| reason.id() == name);
+    reason.map_or("a bridge or a tunnel", SpanReason::words)
 }
 
 /// What a build or a check reports to its caller: its stages, as all work does, and the defects of its inputs.

@@ -41,12 +41,14 @@ mod verify;
 use corniche_work::workers;
 
 pub use build::{BuildSummary, build, build_on};
-pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
+pub use corniche_dem::{
+    OpenOptions, PlanOptions, Polygon, PolygonError, libraries, missing_formats, use_files_beside,
+};
 pub use corniche_objects::Requests;
-pub use corniche_osm::{Defect as OsmDefect, Share};
+pub use corniche_osm::{AreaLoss, Defect as OsmDefect, Share};
 pub use corniche_store::Existing;
 pub use corniche_work::{Silent, Stage};
-pub use defect::{Defect, Loss, Observer};
+pub use defect::{Defect, Loss, Observer, span_reason_words};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
 pub use inputs::{PlannedInput, elevation_names, extract_names, input_name, photo_names};
@@ -60,7 +62,7 @@ pub use parts::{
 pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,
 };
-pub use plan_error::PlanError;
+pub use plan_error::{PLAN_VERSION, PlanError};
 pub use roads::totals::reasons_left_out;
 pub use settings::{
     BuildSettings, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings,

@@ -3,7 +3,7 @@
 use corniche_roads::FrcTableError;
 
 /// Version of a plan's JSON; other versions are refused.
-pub(crate) const PLAN_VERSION: u32 = 7;
+pub const PLAN_VERSION: u32 = 8;
 
 /// Why a text is no plan, or a plan cannot be used here.
 #[derive(Debug, thiserror::Error)]
@@ -13,7 +13,7 @@ pub enum PlanError {
     #[error("this is no plan of a build: make one with corniche plan -o FILE")]
     Json(#[from] serde_json::Error),
     #[error(
-        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program"
+        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program: corniche plan -o FILE"
     )]
     Version { found: u32 },
     #[error("the plan's FRC table makes no sense; make the plan again")]

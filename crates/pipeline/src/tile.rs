@@ -2,6 +2,7 @@
 
 pub(crate) mod encode;
 pub(crate) mod grounds;
+pub(crate) mod low_pass;
 pub(crate) mod measure;
 pub(crate) mod mesh;
 pub(crate) mod record;

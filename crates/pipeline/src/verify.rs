@@ -4,6 +4,7 @@ pub(crate) mod area_seams;
 mod areas;
 mod attributes;
 mod checks;
+mod decoded_tiles;
 mod dem;
 mod dem_inputs;
 mod derived_records;
@@ -37,6 +38,7 @@ mod roads_of_parent;
 mod roads_on_tin;
 mod samples;
 mod seams;
+mod span_order;
 mod spans;
 mod temporary_store;
 mod tile_place;
@@ -51,6 +53,7 @@ use corniche_areas::ClassedLayer;
 use corniche_tileset::FilePackage;
 
 use crate::Observer;
+use decoded_tiles::DecodedTiles;
 
 pub use self::{
     checks::{Check, CheckId, Needs},
@@ -89,7 +92,8 @@ fn look_at_all(
         polygon::check(package.manifest(), settings.polygon.as_ref())?;
     }
     let mut given = vec![Needs::Package];
-    let (mut report, mut findings) = tiles::verify(package, settings.threads, observer)?;
+    let tiles = DecodedTiles::new(package);
+    let (mut report, mut findings) = tiles::verify(&tiles, settings.threads, observer)?;
     photos::verify(package, settings.threads, &mut findings, observer)?;
     areas::verify(package, settings.threads, &mut findings, observer)?;
     for layer in ClassedLayer::ALL {
@@ -103,7 +107,7 @@ fn look_at_all(
     georeference::verify(package.manifest(), &mut findings);
     if !settings.dem.is_empty() {
         given.push(Needs::Dem);
-        dem::verify(package, settings, &mut report, observer)?;
+        dem::verify(&tiles, settings, &mut report, observer)?;
     }
     if !settings.photo.is_empty() {
         given.push(Needs::Photo);
@@ -111,7 +115,7 @@ fn look_at_all(
     }
     if let Some(osm) = &settings.osm {
         given.push(Needs::Osm);
-        osm::verify(package, osm, settings, &mut findings, observer)?;
+        osm::verify(&tiles, osm, settings, &mut findings, observer)?;
     }
     findings.merge(std::mem::take(&mut report.checks));
     report.checks = findings.into_checks(&given);

@@ -14,7 +14,7 @@ fn classes_are_called_by_the_values_of_their_table() {
             "unclassified",
             "residential, living street",
             "service, track",
-            "pedestrian, cycleway"
+            "footway, path"
         ]
     );
 }

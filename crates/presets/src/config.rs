@@ -132,8 +132,8 @@ pub struct RoadOptions {
     /// [default: 0.25]
     #[arg(long, value_name = "CELLS")]
     pub simplify: Option<f64>,
-    /// Where bridges and tunnels are: on the ground; or spans, above and below it as well as there, for programs that know them. Heights of spans are
-    /// estimates [default: ground]
+    /// Where bridges and tunnels are: spans, above and below the ground as well as on it; or on the ground alone. Heights of spans are estimates
+    /// [default: spans]
     #[arg(long, value_name = "ground|spans", value_parser = ["ground", "spans"])]
     pub structures: Option<String>,
     /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.

@@ -15,9 +15,9 @@ const KNOWN: [&str; 14] = [
     "service",
     "track",
     "pedestrian",
-    "cycleway",
     "footway",
     "path",
+    "cycleway",
 ];
 
 /// More values than these make a label too long.

@@ -25,7 +25,7 @@ fn classes_are_called_by_what_their_table_puts_there() {
         labels,
         [
             "via ferrata",
-            "cycleway, footway",
+            "footway, path",
             "class 2",
             "alm, goat track",
             "class 4",

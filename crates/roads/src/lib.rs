@@ -17,6 +17,7 @@ mod grade_limit;
 mod quantities;
 mod road;
 mod simplify;
+mod slab_thickness;
 
 pub use attribute_parts::AttributeParts;
 pub use attributes::{attributes, tags_taken_otherwise};
@@ -25,3 +26,4 @@ pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
 pub use grade_limit::grade_limit;
 pub use road::{Form, FunctionalRoadClass, Oneway, OwnWidth, Road, RoadAttributes, Structure};
 pub use simplify::{kept_points, simplify};
+pub use slab_thickness::slab_thickness_m;

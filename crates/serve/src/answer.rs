@@ -8,8 +8,8 @@ use hyper::{
     header::{
         ACCEPT_RANGES, ACCESS_CONTROL_ALLOW_HEADERS, ACCESS_CONTROL_ALLOW_METHODS,
         ACCESS_CONTROL_ALLOW_ORIGIN, ACCESS_CONTROL_EXPOSE_HEADERS, ACCESS_CONTROL_MAX_AGE, ALLOW,
-        CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG,
-        HOST, HeaderName, HeaderValue, X_CONTENT_TYPE_OPTIONS,
+        CACHE_CONTROL, CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_SECURITY_POLICY,
+        CONTENT_TYPE, ETAG, HOST, HeaderName, HeaderValue, VARY, X_CONTENT_TYPE_OPTIONS,
     },
 };
 use tokio::fs::File;
@@ -20,6 +20,7 @@ use crate::{
     host::Hosts,
     media_type::media_type,
     on_disk::{self, OpenedFile},
+    packed,
     refusal::{METHODS, Refusal},
     routes::{Content, Readers, Route, Routes},
 };
@@ -99,6 +100,7 @@ fn methods(readers: Readers) -> Response<Body> {
 struct Opened {
     length_bytes: u64,
     tag: String,
+    is_packed: bool,
     source: Source,
 }
 
@@ -116,7 +118,8 @@ async fn send<B>(
         io::ErrorKind::NotFound => Refusal::Gone { path: path.to_owned() },
         _ => Refusal::Unreadable { path: path.to_owned(), reason: error.to_string() },
     };
-    let Opened { length_bytes, tag, source } = open(route).await.map_err(unreadable)?;
+    let opened = open(request.headers(), route).await.map_err(unreadable)?;
+    let Opened { length_bytes, tag, is_packed, source } = opened;
     let wanted = Wanted::of(request.method(), request.headers(), length_bytes, &tag);
     let mut headers = HeaderMap::new();
     let mut set = |name: HeaderName, value: &str| {
@@ -127,6 +130,9 @@ async fn send<B>(
     };
     set(ETAG, &tag);
     set(ACCEPT_RANGES, "bytes");
+    if is_packed {
+        set(CONTENT_ENCODING, "br");
+    }
     let (status, range) = match wanted {
         Wanted::Changed => return Err(Refusal::Changed),
         Wanted::NoSuchBytes => return Err(Refusal::NoSuchBytes { length_bytes }),
@@ -154,25 +160,41 @@ async fn send<B>(
         },
         _ => of_bytes(Bytes::new()),
     };
+    if route.packed.is_some() {
+        headers.insert(VARY, packed::VARIES_BY);
+    }
     let mut answer = Response::new(body);
     *answer.status_mut() = status;
     *answer.headers_mut() = headers;
     Ok(answer)
 }
 
-async fn open(route: &Route) -> io::Result<Opened> {
+async fn open(headers: &HeaderMap, route: &Route) -> io::Result<Opened> {
     match &route.content {
-        Content::Memory(bytes) => Ok(Opened {
-            length_bytes: bytes.len() as u64,
-            tag: route.tag_in_memory.clone(),
-            source: Source::Memory(bytes.clone()),
-        }),
+        Content::Memory(bytes) => {
+            let way = route.packed.clone().filter(|_| packed::is_wanted(headers));
+            let packed = match way {
+                Some(way) => {
+                    let bytes = bytes.clone();
+                    let packed = tokio::task::spawn_blocking(move || way.of(&bytes));
+                    packed.await.map_err(io::Error::other)??
+                }
+                None => None,
+            };
+            let tag = &route.tag_in_memory;
+            let tag = if packed.is_some() { packed::tag_of(tag) } else { tag.clone() };
+            let is_packed = packed.is_some();
+            let bytes = packed.unwrap_or_else(|| bytes.clone());
+            let length_bytes = bytes.len() as u64;
+            Ok(Opened { length_bytes, tag, is_packed, source: Source::Memory(bytes) })
+        }
         Content::Disk(on_disk) => {
             let (on_disk, known) = (Arc::clone(on_disk), Arc::clone(&route.known));
             let opened = tokio::task::spawn_blocking(move || on_disk::open(&*on_disk, &known));
             let OpenedFile { file, length_bytes, tag } =
                 opened.await.map_err(io::Error::other)??;
-            Ok(Opened { length_bytes, tag, source: Source::Disk(File::from_std(file)) })
+            let source = Source::Disk(File::from_std(file));
+            Ok(Opened { length_bytes, tag, is_packed: false, source })
         }
     }
 }

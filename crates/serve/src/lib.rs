@@ -19,6 +19,7 @@ mod error;
 mod host;
 mod media_type;
 mod on_disk;
+mod packed;
 mod patience;
 mod policy;
 mod refusal;

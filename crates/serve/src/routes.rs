@@ -13,6 +13,7 @@ use sha2::{Digest as _, Sha256};
 use crate::{
     media_type::media_type,
     on_disk::{Known, OnDisk},
+    packed::{Packed, is_worth_it},
     policy::policy,
 };
 
@@ -41,6 +42,8 @@ pub(crate) struct Route {
     pub(crate) readers: Readers,
     /// The `ETag` of what is in memory.
     pub(crate) tag_in_memory: String,
+    /// What is in memory, packed; `None` for what is sent as it is.
+    pub(crate) packed: Option<Packed>,
     /// What a page may load and do; `None` for what is no page.
     pub(crate) policy: Option<String>,
     /// The version on disk that was hashed last.
@@ -57,15 +60,17 @@ impl Routes {
     /// Adds a file. One that was added at the same path before is replaced.
     pub fn add(&mut self, path: impl Into<String>, content: Content, readers: Readers) {
         let path = path.into();
-        let (tag_in_memory, policy) = match &content {
+        let (tag_in_memory, packed, policy) = match &content {
             Content::Memory(bytes) => {
-                let is_page = media_type(&path).starts_with("text/html");
-                (tag_of(bytes), is_page.then(|| policy(bytes)))
+                let media_type = media_type(&path);
+                let is_page = media_type.starts_with("text/html");
+                let packed = is_worth_it(media_type, bytes.len()).then(Packed::default);
+                (tag_of(bytes), packed, is_page.then(|| policy(bytes)))
             }
-            Content::Disk(_) => (String::new(), None),
+            Content::Disk(_) => (String::new(), None, None),
         };
         let known = Arc::default();
-        self.by_path.insert(path, Route { content, readers, tag_in_memory, policy, known });
+        self.by_path.insert(path, Route { content, readers, tag_in_memory, packed, policy, known });
     }
 
     /// What is served at the path of an address, with the path as it is in the table. A folder's own path means its `index.html`.

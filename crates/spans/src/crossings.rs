@@ -1,7 +1,7 @@
 //! Where bridges and tunnels cross other roads without a node in common.
 
 use corniche_geom::{LatticePoint, Side, TooMuchWork, Work, cross, side};
-use corniche_network::{ChainNumber, Chains, Network};
+use corniche_network::{ChainNumber, Chains, Network, NetworkWay};
 use corniche_roads::grade_limit;
 use rstar::{
     AABB, RTree,
@@ -118,6 +118,11 @@ pub fn crossings(
     Ok(found)
 }
 
+/// The steepest grade with which roads of a way's kind are built, rise over run.
+pub(crate) fn steepest_of(network: &Network, way: &NetworkWay) -> f64 {
+    grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT) / 100.0
+}
+
 fn segments(
     network: &Network,
     chains: &Chains,
@@ -129,13 +134,8 @@ fn segments(
     for &link in chains.get(chain).links {
         let way = network.way_of(link);
         let kind = SpanKind::of(way.structure);
-        let layer = match kind {
-            Some(SpanKind::Bridge) => way.layer.max(1),
-            None => 0,
-            Some(SpanKind::Tunnel) => way.layer.min(-1),
-        };
-        let limit_pct = grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT);
-        let steepest = limit_pct / 100.0;
+        let layer = kind.map_or(0, |kind| kind.layer(way.layer));
+        let steepest = steepest_of(network, way);
         let mut points = network.points_of_link(link);
         let Some(mut before) = points.next() else { continue };
         for point in points {

@@ -1,6 +1,6 @@
 //! The heights of decks and tunnels.
 
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use corniche_network::{ChainNumber, NodeNumber};
 
@@ -23,6 +23,8 @@ const MOST_PASSES: usize = 8;
 const STATION_M: f64 = 10.0;
 /// What is nearer to an end of an edge is at it, metres.
 const END_M: f64 = 1e-6;
+/// What is shorter has no grade, metres.
+const SHORTEST_M: f64 = 1.0;
 /// Less is no reason to lift, metres.
 const ENOUGH_M: f64 = 1e-6;
 
@@ -86,6 +88,7 @@ impl Decks {
         };
         decks.lift(crossings, of_crossings_m, &held_m);
         decks.judge(crossings, of_crossings_m);
+        decks.judge_grades();
         decks
     }
 
@@ -265,23 +268,44 @@ impl Decks {
             let own = [crossing.upper, crossing.lower];
             let way_id =
                 own.iter().filter(|place| place.kind.is_some()).map(|place| place.way_id).min();
-            let mut free_m = None;
-            let mut reason = None;
-            if crossing.order == Order::Tie {
-                reason = Some(SpanReason::LayerTie);
-            } else {
-                // Where there is no ground, two bridges have their heights yet.
-                let ground_m = ground_m.unwrap_or(f64::NAN);
-                let [upper_m, lower_m] = own.map(|place| self.crossing_m(&place, ground_m));
-                free_m = Some(upper_m - lower_m).filter(|free_m| free_m.is_finite());
-                if free_m.is_some_and(|free_m| free_m < FREE_HEIGHT_M - ENOUGH_M) {
-                    reason = Some(SpanReason::OrderUnreachable);
+            // Where there is no ground, two bridges have their heights yet.
+            let ground_m = ground_m.unwrap_or(f64::NAN);
+            let [upper_m, lower_m] = own.map(|place| self.crossing_m(&place, ground_m));
+            let free_m = Some(upper_m - lower_m)
+                .filter(|free_m| free_m.is_finite() && crossing.order == Order::Known);
+            let reason = match free_m {
+                _ if crossing.order == Order::Tie => Some(SpanReason::LayerTie),
+                Some(free_m) if free_m < 0.0 => Some(SpanReason::OrderReversed),
+                Some(free_m) if free_m < FREE_HEIGHT_M - ENOUGH_M => {
+                    Some(SpanReason::OrderUnreachable)
                 }
-            }
+                _ => None,
+            };
             let problem = reason.zip(way_id).map(|(reason, way_id)| SpanProblem { reason, way_id });
             self.problems.extend(problem);
             self.free_heights.push(FreeHeight { crossing: *crossing, free_m });
         }
+    }
+
+    /// Tells which ways of spans are steeper than roads of their kind are built, each once.
+    fn judge_grades(&mut self) {
+        let mut steep = BTreeSet::new();
+        for (number, edge) in self.spans.edges.iter().enumerate() {
+            let mut places_m = vec![0.0];
+            places_m.extend(self.bends_m(edge.chain, [0.0, edge.length_m]));
+            places_m.push(edge.length_m);
+            let height_m = |along_m| self.raised_m(OnEdge { edge: number, along_m });
+            let is_steep = places_m.array_windows().any(|&[from_m, to_m]| {
+                let length_m = to_m - from_m;
+                let rise_m = (height_m(to_m) - height_m(from_m)).abs();
+                length_m > SHORTEST_M && rise_m > edge.steepest * length_m
+            });
+            if is_steep {
+                steep.insert(edge.way_id);
+            }
+        }
+        let problem = |way_id| SpanProblem { reason: SpanReason::GradeOverLimit, way_id };
+        self.problems.extend(steep.into_iter().map(problem));
         self.problems.sort_unstable();
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    SpanReason::{LayerTie, NoGround, OrderUnreachable},
+    SpanReason::{GradeOverLimit, LayerTie, NoGround, OrderUnreachable},
     crossings,
     test_network::{Way, distance_m, network, way},
 };
@@ -160,6 +160,28 @@ fn tunnels_are_lowered_beneath_roads() {
             assert!((at(decks, network, chains, 2, 50.0) - 49.5).abs() < 1e-9);
         },
     );
+}
+
+/// A secondary road has 12 % at most, a service road 20 %.
+#[test]
+fn decks_steeper_than_their_class_are_told() {
+    let mut ways = over_gorge(100);
+    let ground = |[east, _]: [f64; 2]| {
+        Some(if east <= 0.0 {
+            0.0
+        } else if east >= 200.0 {
+            30.0
+        } else {
+            -50.0
+        })
+    };
+    for (highway, expected) in [("secondary", &[GradeOverLimit][..]), ("service", &[])] {
+        ways[1].highway = highway;
+        solved(&ways, ground, |decks, _, _| {
+            let reasons: Vec<_> = decks.problems().iter().map(|problem| problem.reason).collect();
+            assert_eq!(reasons, expected);
+        });
+    }
 }
 
 #[test]

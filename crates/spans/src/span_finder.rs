@@ -7,6 +7,7 @@ use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
 
 use crate::{
     Distance,
+    crossings::steepest_of,
     spans::{Edge, Joint, SpanKind, Spans, Support},
 };
 
@@ -42,9 +43,10 @@ impl Spans {
             let [from, to] = found.ends;
             let own = [(from, first), (to, last)]
                 .map(|(node, at)| finder.joint(kind, node, at, &mut joints));
-            let ways = found.links.iter().map(|&link| network.way_of(link).way_id);
-            let way_id = ways.min().unwrap_or_default();
-            edges.push(Edge { chain, kind, span: 0, joints: own, length_m, way_id });
+            let ways = || found.links.iter().map(|&link| network.way_of(link));
+            let way_id = ways().map(|way| way.way_id).min().unwrap_or_default();
+            let steepest = ways().map(|way| steepest_of(network, way)).fold(0.0, f64::max);
+            edges.push(Edge { chain, kind, span: 0, joints: own, length_m, way_id, steepest });
         }
         let edges_at = IndexLists::new(joints.len(), 2 * edges.len(), |end| {
             std::iter::once(edges[end / 2].joints[end % 2] as usize)

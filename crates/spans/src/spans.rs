@@ -24,6 +24,15 @@ impl SpanKind {
         }
     }
 
+    /// How spans of this kind are ordered where they cross: by their `layer`, but a bridge is above layer 0, and a tunnel below.
+    #[must_use]
+    pub fn layer(self, tagged: i8) -> i8 {
+        match self {
+            Self::Bridge => tagged.max(1),
+            Self::Tunnel => tagged.min(-1),
+        }
+    }
+
     /// Which way is away from the ground: 1 for up, −1 for down.
     #[must_use]
     pub fn away(self) -> f64 {
@@ -69,6 +78,8 @@ pub(crate) struct Edge {
     pub(crate) length_m: f64,
     /// The smallest id of its ways.
     pub(crate) way_id: i64,
+    /// The steepest grade with which roads of the kinds of its ways are built, rise over run.
+    pub(crate) steepest: f64,
 }
 
 /// What is wrong with a span, or worth to be known of it.
@@ -88,10 +99,18 @@ pub enum SpanReason {
     LayerTie,
     /// It is less than a metre above or below what it crosses.
     OrderUnreachable,
+    /// It is on the wrong side of what it crosses.
+    OrderReversed,
     /// Some of its supports lie where there is no ground.
     NoGround,
     /// It joins so many ways that it is not solved.
     TooIntricate,
+    /// It is steeper than roads of its kind are built.
+    GradeOverLimit,
+    /// The ground between the ends of a bridge is more than a metre above where the deck would be.
+    DeckInGround,
+    /// The ground between the portals of a tunnel is more than a metre below where the tunnel would be.
+    TunnelAboveGround,
 }
 
 impl SpanReason {
@@ -106,10 +125,61 @@ impl SpanReason {
             Self::KindChange => "kind_change",
             Self::LayerTie => "layer_tie",
             Self::OrderUnreachable => "order_unreachable",
+            Self::OrderReversed => "order_reversed",
             Self::NoGround => "no_ground",
             Self::TooIntricate => "span_too_intricate",
+            Self::GradeOverLimit => "grade_over_limit",
+            Self::DeckInGround => "deck_in_ground",
+            Self::TunnelAboveGround => "tunnel_above_ground",
         }
     }
+
+    /// What it means, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::NoSupport => "no road on the ground meets its ends: it stays on the ground",
+            Self::OneSupport => "one end alone meets the ground: it is level",
+            Self::OpenEnd => {
+                "a bridge that ends where nothing goes on has the ground's height there"
+            }
+            Self::GroundWayOnDeck => {
+                "a road on the ground touches it between its ends, and does not carry it"
+            }
+            Self::KindChange => "a bridge goes on as a tunnel: the joint has the ground's height",
+            Self::LayerTie => {
+                "it crosses another one of the same layer: nothing says which is above"
+            }
+            Self::OrderUnreachable => "less than a metre above or below what it crosses",
+            Self::OrderReversed => "on the wrong side of what it crosses",
+            Self::NoGround => "an end lies where there is no ground",
+            Self::TooIntricate => "it joins too many ways: it stays on the ground",
+            Self::GradeOverLimit => "steeper than roads of its kind are built",
+            Self::DeckInGround => {
+                "the ground beneath is more than a metre above the line between its ends"
+            }
+            Self::TunnelAboveGround => {
+                "the ground above is more than a metre below the line between its ends"
+            }
+        }
+    }
+
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::NoSupport,
+        Self::OneSupport,
+        Self::OpenEnd,
+        Self::GroundWayOnDeck,
+        Self::KindChange,
+        Self::LayerTie,
+        Self::OrderUnreachable,
+        Self::OrderReversed,
+        Self::NoGround,
+        Self::TooIntricate,
+        Self::GradeOverLimit,
+        Self::DeckInGround,
+        Self::TunnelAboveGround,
+    ];
 }
 
 /// A reason with the way at which it was found.
@@ -171,6 +241,13 @@ impl Spans {
         of_kind.len() as u64
     }
 
+    /// How long those of a kind are together, micrometres.
+    #[must_use]
+    pub fn length_um_of(&self, kind: SpanKind) -> u64 {
+        let own = self.edges.iter().filter(|edge| edge.kind == kind);
+        own.map(|edge| (edge.length_m * 1e6).round() as u64).sum()
+    }
+
     /// The edge of a chain; `None` on the ground.
     pub(crate) fn edge_of(&self, chain: ChainNumber) -> Option<usize> {
         self.edges.binary_search_by_key(&chain, |edge| edge.chain).ok()
@@ -219,3 +296,7 @@ impl Spans {
         problems
     }
 }
+
+#[cfg(test)]
+#[path = "spans_tests.rs"]
+mod tests;

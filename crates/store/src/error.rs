@@ -13,7 +13,7 @@ pub enum StoreError {
     Damaged { path: PathBuf, what: String },
     #[error(
         "{path:?} was written by another version of Corniche (store format {found}, this one knows {known}); \
-         use that version, or remove it and start again"
+         use that version, or remove it and start again (build: with -O)"
     )]
     OtherVersion { path: PathBuf, found: u32, known: u32 },
     #[error("{path:?} is not a store of Corniche and not empty ({what}); choose another folder")]
@@ -48,10 +48,16 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Whether what was given cannot be used (a name, an address, credentials), rather than that something failed.
+    /// Whether what was given cannot be used (a name, an address, credentials, a store of another version or plan), rather than that something
+    /// failed.
     #[must_use]
     pub fn is_unusable(&self) -> bool {
-        matches!(self, Self::Place { is_unusable: true, .. })
+        matches!(
+            self,
+            Self::Place { is_unusable: true, .. }
+                | Self::OtherVersion { .. }
+                | Self::OtherPlan { .. }
+        )
     }
 }
 

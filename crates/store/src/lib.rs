@@ -54,8 +54,8 @@ pub use files::Traffic;
 pub use groups::Groups;
 pub use ids::random_digits;
 pub use local::{
-    Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME, SYNC_INTERVAL,
-    SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
+    FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
+    SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 pub use memory::{MemoryScratch, MemoryStore};
 pub use own_files::{folder_of, make_own_folder, open_own, sync_folder};

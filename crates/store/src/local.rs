@@ -35,6 +35,7 @@ use std::{
 
 pub use binding::{plan_of_header, store_header};
 pub use folder::Folder;
+pub use header::VERSION as FORMAT_VERSION;
 pub use layout::{PARTS as PARTS_NAME, PLAN as PLAN_NAME, STORE as STORE_NAME, part_of_sealed};
 pub use scratch::LocalScratch;
 pub use sealed_part::check_sealed;

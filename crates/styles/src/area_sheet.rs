@@ -18,6 +18,8 @@ pub(crate) struct AreaSheet {
     color: Rgb8,
     /// How much of the ground it hides, 0 to 1; 0 does not draw the class.
     opacity: f64,
+    /// Ground steeper than this is not painted, 1 to 89 degrees; left out: all ground is.
+    steepest_deg: Option<f64>,
 }
 
 /// The areas by class: those that are named, and `others` for the rest.
@@ -31,8 +33,14 @@ pub(crate) fn areas(
             return Err(StyleError::AreaClass { text: name.clone() });
         };
         within(&format!("areas.{name}.opacity"), sheet.opacity, 0.0..=1.0)?;
-        styles[usize::from(class.number())] =
-            AreaStyle { color: sheet.color.into(), opacity: sheet.opacity as f32 };
+        if let Some(steepest_deg) = sheet.steepest_deg {
+            within(&format!("areas.{name}.steepest_deg"), steepest_deg, 1.0..=89.0)?;
+        }
+        styles[usize::from(class.number())] = AreaStyle {
+            color: sheet.color.into(),
+            opacity: sheet.opacity as f32,
+            steepest_deg: sheet.steepest_deg.map(|steepest_deg| steepest_deg as f32),
+        };
     }
     Ok(styles)
 }

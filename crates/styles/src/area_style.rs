@@ -12,9 +12,14 @@ pub struct AreaStyle {
     pub color: Rgb,
     /// How much of the ground it hides: 1 hides it, with 0 the class is not drawn.
     pub opacity: f32,
+    /// Ground steeper than this is not painted, degrees; from 0.7 of its tangent on less and less is. `None`: all ground is.
+    pub steepest_deg: Option<f32>,
 }
 
 impl AreaStyle {
+    /// From this share of the tangent of [`AreaStyle::steepest_deg`] on the ground shows through.
+    pub const STEEP_SHARE: f64 = 0.7;
+
     /// All classes, the topmost first. Where areas of several classes that are drawn overlap, the first of them is seen alone:
     /// colours of classes are never mixed. Within a class areas are a union.
     ///

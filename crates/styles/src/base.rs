@@ -15,7 +15,8 @@ use crate::{StyleError, style_preset};
 
 /// Entries that go together: whoever says the first one takes none of the others from the base, where they would contradict it or
 /// hide it.
-const TOGETHER: [(&str, &[&str]); 6] = [
+const TOGETHER: [(&str, &[&str]); 7] = [
+    ("width_m", &["carriageway_width_m"]),
     ("color", &["bands", "center", "thin"]),
     ("bands", &["color", "center", "thin"]),
     ("dash", &["pattern"]),

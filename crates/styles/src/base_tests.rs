@@ -32,7 +32,8 @@ fn what_is_said_goes_before_the_base_and_the_rest_is_the_bases() {
     let mut expected = preset("dark");
     expected.photo = 0.5;
     expected.light.hillshade = 0.25;
-    expected.roads[3].width_m = 77.0;
+    // Half of another width would be no carriageway of this one.
+    (expected.roads[3].width_m, expected.roads[3].carriageway_width_m) = (77.0, 77.0);
     expected.areas[usize::from(AreaClass::Water.number())].opacity = 0.125;
     assert_eq!(own, expected);
     // Each part of the base may be replaced by that of another style, and the whole is then that style.

@@ -42,7 +42,7 @@ pub(crate) struct LightSheet {
 
 impl LightSheet {
     fn sky() -> f64 {
-        0.3
+        0.4
     }
 
     fn gentle() -> f64 {

@@ -20,11 +20,14 @@ impl LineStyle {
         RoadStyle {
             // Far less than a pixel: the least width is what is drawn.
             width_m: 1e-3,
+            carriageway_width_m: 1e-3,
             min_width_px: width_px,
             bands,
             outline: self.color,
             max_pixel_m: self.max_pixel_m,
             max_width_px: None,
+            exponent: None,
+            edge_max_pixel_m: None,
             thin: None,
             opacity: self.opacity,
             dash: self.dash,
@@ -58,7 +61,7 @@ impl Style {
         let mut areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
         let opacity = Self::DRAWN_AREAS_OPACITY * self.drawn.opacity;
         areas[usize::from(Self::DRAWN_AREAS.number())] =
-            AreaStyle { color: self.drawn.color, opacity };
+            AreaStyle { color: self.drawn.color, opacity, steepest_deg: None };
         Self { areas, ..self.clone() }
     }
 }

@@ -12,3 +12,8 @@ pub fn style_preset_names() -> impl Iterator<Item = &'static str> {
 pub fn style_preset(name: &str) -> Option<&'static str> {
     STYLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
 }
+
+#[cfg(test)]
+#[expect(clippy::unreadable_literal, reason = "figures as they were published")]
+#[path = "legible_tests.rs"]
+mod tests;

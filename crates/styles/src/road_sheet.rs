@@ -13,6 +13,8 @@ use crate::{
 pub(crate) struct RoadSheet {
     /// Width on the ground, 0.1 to 500 m.
     pub(crate) width_m: f64,
+    /// Width of one of two carriageways on the ground, 0.1 m to `width_m`, which it is if it is left out.
+    pub(crate) carriageway_width_m: Option<f64>,
     /// Roads are never drawn thinner than this, 0.1 to 50 pixels.
     pub(crate) min_width_px: f64,
     /// Colour of the surface, for roads of one or two colours.
@@ -27,7 +29,11 @@ pub(crate) struct RoadSheet {
     pub(crate) max_pixel_m: Option<f64>,
     /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
     pub(crate) max_width_px: Option<f64>,
-    /// The colour of a road too thin for an edge; left out: that of which most is seen.
+    /// How widths grow with distance, 0 to 1; left out: as in `width_scaling`.
+    pub(crate) exponent: Option<f64>,
+    /// With its edge in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    pub(crate) edge_max_pixel_m: Option<f64>,
+    /// The colour of a road without an edge; left out: that of which most is seen.
     pub(crate) thin: Option<Rgb8>,
     /// How much of the ground a road hides, 0.01 to 1; left out: 1.
     pub(crate) opacity: Option<f64>,
@@ -58,12 +64,21 @@ impl RoadSheet {
     pub(crate) fn checked(&self, class: usize) -> Result<RoadStyle, StyleError> {
         let entry = |name| format!("roads.{class}.{name}");
         within(&entry("width_m"), self.width_m, 0.1..=500.0)?;
+        if let Some(carriageway_m) = self.carriageway_width_m {
+            within(&entry("carriageway_width_m"), carriageway_m, 0.1..=self.width_m)?;
+        }
         within(&entry("min_width_px"), self.min_width_px, 0.1..=50.0)?;
         if let Some(max_pixel_m) = self.max_pixel_m {
             within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
         }
         if let Some(max_width_px) = self.max_width_px {
             within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
+        }
+        if let Some(exponent) = self.exponent {
+            within(&entry("exponent"), exponent, 0.0..=1.0)?;
+        }
+        if let Some(edge_max_pixel_m) = self.edge_max_pixel_m {
+            within(&entry("edge_max_pixel_m"), edge_max_pixel_m, 0.01..=1e6)?;
         }
         if let Some(opacity) = self.opacity {
             within(&entry("opacity"), opacity, 0.01..=1.0)?;
@@ -73,11 +88,14 @@ impl RoadSheet {
         }
         Ok(RoadStyle {
             width_m: self.width_m as f32,
+            carriageway_width_m: self.carriageway_width_m.unwrap_or(self.width_m) as f32,
             min_width_px: self.min_width_px as f32,
             bands: self.bands(class)?,
             outline: self.outline.into(),
             max_pixel_m: self.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
             max_width_px: self.max_width_px.map(|max_width_px| max_width_px as f32),
+            exponent: self.exponent.map(|exponent| exponent as f32),
+            edge_max_pixel_m: self.edge_max_pixel_m.map(|pixel_m| pixel_m as f32),
             thin: self.thin.map(Rgb::from),
             opacity: self.opacity.unwrap_or(1.0) as f32,
             dash: Dash::SOLID,

@@ -1,7 +1,7 @@
 //! How the map looks: plain values, no GPU.
 
 use corniche_areas::AreaClass;
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_roads::{Form, FunctionalRoadClass, OwnWidth, RoadAttributes};
 use serde::{Deserialize, Serialize};
 
 use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBand, RoadBands, Tint, TintHeights};
@@ -11,6 +11,8 @@ use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBand, RoadBands, Tint, T
 pub struct RoadStyle {
     /// Width on the ground near the eye.
     pub width_m: f32,
+    /// Width of one of two carriageways, there.
+    pub carriageway_width_m: f32,
     /// Roads are never drawn thinner than this.
     pub min_width_px: f32,
     /// Colours of the surface, from the edges to the middle.
@@ -22,7 +24,12 @@ pub struct RoadStyle {
     pub max_pixel_m: Option<f32>,
     /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.
     pub max_width_px: Option<f32>,
-    /// Colour where a road is too thin for an edge; [`RoadBands::main_color`] where it is `None`.
+    /// How widths grow with distance, instead of [`WidthScaling::exponent`].
+    pub exponent: Option<f32>,
+    /// The most true metres of ground in a pixel at which roads have their edge in full; at twice as many they have none. `None`: they
+    /// always have it.
+    pub edge_max_pixel_m: Option<f32>,
+    /// Colour where a road has no edge; [`RoadBands::main_color`] where it is `None`.
     pub thin: Option<Rgb>,
     /// How much of the ground a road hides, edge included: 1 hides it.
     pub opacity: f32,
@@ -31,8 +38,16 @@ pub struct RoadStyle {
 }
 
 impl RoadStyle {
-    /// Width of slip roads and service roads as a share of that of their class.
+    /// Width of service roads as a share of that of their class, and of slip roads as a share of a carriageway of theirs.
     pub const NARROW_WIDTH_SHARE: f32 = 0.6;
+
+    /// The same with other widths on the ground.
+    #[must_use]
+    pub fn widened(mut self, factor: f32) -> Self {
+        self.width_m *= factor;
+        self.carriageway_width_m *= factor;
+        self
+    }
 
     /// Width on a flat map: the most that roads grow to with distance. Thinner than a pixel is not seen.
     #[must_use]
@@ -174,6 +189,22 @@ impl Style {
         }
     }
 
+    /// Width on the ground near the eye of a road of this class with these attributes: service roads are narrower than others,
+    /// and so is one of two carriageways, where its tags do not say how wide it is, and slip roads than that.
+    #[must_use]
+    pub fn width_of_m(&self, class: FunctionalRoadClass, attributes: &RoadAttributes) -> f32 {
+        let own = attributes.own_width();
+        let is_tagged = self.own_widths.and_then(|widths| widths.asked_m(own)).is_some();
+        let is_carriageway = matches!(attributes.form, Form::DualCarriageway | Form::Link);
+        let width_m = if is_carriageway && !is_tagged {
+            self.road(class).carriageway_width_m
+        } else {
+            self.width_m(class, own)
+        };
+        let is_narrow = attributes.form == Form::Link || attributes.highway == "service";
+        if is_narrow { width_m * RoadStyle::NARROW_WIDTH_SHARE } else { width_m }
+    }
+
     /// Whether a road's tags ask for more than [`OwnWidths::WIDEST_M`].
     #[must_use]
     pub fn is_capped(&self, own: OwnWidth) -> bool {
@@ -185,39 +216,11 @@ impl Style {
     /// `road-atlas`.
     #[must_use]
     pub fn road_atlas() -> Self {
-        let road =
-            |width_m, [min_width_px, max_width_px]: [f32; 2], color, outline, max_pixel_m| {
-                RoadStyle {
-                    width_m,
-                    min_width_px,
-                    bands: RoadBands::one(rgb(color)),
-                    outline: rgb(outline),
-                    max_pixel_m,
-                    max_width_px: Some(max_width_px),
-                    thin: None,
-                    opacity: 1.0,
-                    dash: Dash::SOLID,
-                }
-            };
-        let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
-        let yellow = RoadBand { width_share: 0.3, color: rgb(0xFF_E8_8A) };
-        let two_colours =
-            |road: RoadStyle| RoadStyle { bands: road.bands.with_center(yellow), ..road };
         Self {
-            roads: [
-                two_colours(road(24.0, [3.0, 5.5], 0xD9_3A_2B, 0x5E_14_10, None)),
-                two_colours(road(20.0, [2.6, 5.0], 0xE8_6A_33, 0x6B_2A_0F, Some(600.0))),
-                road(17.0, [2.2, 4.5], 0xF4_9B_36, 0x77_42_0C, Some(300.0)),
-                road(14.0, [1.9, 4.0], 0xFB_D3_4C, 0x7A_5C_12, Some(140.0)),
-                thin(0xE3_C6_5A, road(11.0, [1.5, 3.4], 0xFF_F0_9C, 0x7D_6C_33, Some(60.0))),
-                thin(0xA3_9B_8E, road(8.5, [1.2, 3.2], 0xFF_FF_FF, 0x74_6F_66, Some(22.0))),
-                thin(0xB9_B1_A4, road(7.0, [1.0, 2.8], 0xFF_FF_FF, 0x80_7B_72, Some(11.0))),
-                thin(0x95_82_5F, road(5.0, [1.0, 2.0], 0xCB_B6_8C, 0x8C_85_79, Some(6.0))),
-                thin(0x86_5F_3E, road(3.5, [1.0, 1.5], 0xC9_AE_8C, 0x97_8D_7F, Some(4.0))),
-            ],
+            roads: atlas_roads(),
             areas: [
-                area(0xA9_C9_DD, 1.0),
-                area(0xA9_C9_DD, 1.0),
+                water(0xA9_C9_DD),
+                water(0xA9_C9_DD),
                 area(0xE6_F1_F8, 0.7),
                 area(0x7F_AE_78, 0.42),
                 area(0xD6_E4_A8, 0.3),
@@ -252,8 +255,8 @@ impl Style {
             light: Light {
                 azimuth_deg: 315.0,
                 altitude_deg: 45.0,
-                hillshade: 0.75,
-                sky: 0.3,
+                hillshade: 0.85,
+                sky: 0.4,
                 gentle: 2.5,
                 valley_haze: 0.2,
                 shadow: rgb(0x5A_62_86),
@@ -270,9 +273,114 @@ impl Style {
     }
 }
 
+/// Roads of an atlas, by class. Far away minor ones are narrower, and have no edge.
+fn atlas_roads() -> [RoadStyle; FunctionalRoadClass::COUNT] {
+    let road =
+        |width_m, [min_width_px, max_width_px]: [f32; 2], color, outline, max_pixel_m| RoadStyle {
+            width_m,
+            carriageway_width_m: width_m,
+            min_width_px,
+            bands: RoadBands::one(rgb(color)),
+            outline: rgb(outline),
+            max_pixel_m,
+            max_width_px: Some(max_width_px),
+            exponent: None,
+            edge_max_pixel_m: None,
+            thin: None,
+            opacity: 1.0,
+            dash: Dash::SOLID,
+        };
+    // How a road is drawn where it has no room for its edge.
+    let far = |exponent, edge_max_pixel_m, thin, road| RoadStyle {
+        exponent,
+        edge_max_pixel_m,
+        thin: Some(rgb(thin)),
+        ..road
+    };
+    let dual = |carriageway_width_m, road| RoadStyle { carriageway_width_m, ..road };
+    let yellow = RoadBand { width_share: 0.3, color: rgb(0xFF_E8_8A) };
+    let two_colours = |road: RoadStyle| RoadStyle { bands: road.bands.with_center(yellow), ..road };
+    [
+        dual(
+            12.0,
+            two_colours(far(
+                None,
+                None,
+                0xD0_1C_2B,
+                road(24.0, [3.0, 5.5], 0xC5_0D_2B, 0x6B_14_13, None),
+            )),
+        ),
+        dual(
+            11.0,
+            two_colours(far(
+                None,
+                None,
+                0xC7_49_01,
+                road(20.0, [2.6, 5.0], 0xD7_64_2F, 0x6E_2A_0C, Some(600.0)),
+            )),
+        ),
+        dual(
+            10.0,
+            far(
+                None,
+                Some(80.0),
+                0xB7_67_00,
+                road(17.0, [2.2, 4.2], 0xF2_97_00, 0x74_35_00, Some(300.0)),
+            ),
+        ),
+        dual(
+            9.0,
+            far(
+                Some(0.72),
+                Some(60.0),
+                0xAA_7B_00,
+                road(14.0, [1.9, 3.8], 0xFF_E0_53, 0x8A_43_00, Some(140.0)),
+            ),
+        ),
+        dual(
+            8.0,
+            far(
+                Some(0.7),
+                Some(45.0),
+                0xA0_84_12,
+                road(11.0, [1.5, 3.3], 0xFF_FA_BF, 0x73_66_2D, Some(60.0)),
+            ),
+        ),
+        far(
+            Some(0.67),
+            Some(22.0),
+            0x8C_88_81,
+            road(8.5, [1.2, 2.9], 0xFF_FF_FF, 0x67_69_6F, Some(22.0)),
+        ),
+        far(
+            Some(0.6),
+            Some(11.0),
+            0x94_8E_84,
+            road(7.0, [1.1, 2.5], 0xFF_FF_FF, 0xA0_9A_93, Some(11.0)),
+        ),
+        far(
+            Some(0.5),
+            Some(5.0),
+            0xAA_8C_54,
+            road(4.0, [1.1, 1.8], 0xBF_9F_61, 0xA7_9B_7E, Some(6.0)),
+        ),
+        far(
+            Some(0.45),
+            Some(3.0),
+            0xB8_85_60,
+            road(2.0, [1.1, 1.4], 0xDD_D5_C9, 0xB9_B0_A0, Some(4.0)),
+        ),
+    ]
+}
+
 /// Areas of this colour that hide so much of the ground.
 fn area(color: u32, opacity: f32) -> AreaStyle {
-    AreaStyle { color: rgb(color), opacity }
+    AreaStyle { color: rgb(color), opacity, steepest_deg: None }
+}
+
+/// Water, which is not painted on cliffs: banks and coasts overlap the ground beside them.
+fn water(color: u32) -> AreaStyle {
+    AreaStyle { steepest_deg: Some(35.0), ..area(color, 1.0) }
 }
 
 /// Boundaries of countries are widest and seen from farthest.
@@ -283,15 +391,15 @@ fn boundaries() -> [LineStyle; LineStyle::MOST] {
         max_pixel_m,
         ..LineStyle::solid(rgb(0x8A_3F_86), width_px)
     };
-    let protected = LineStyle { color: rgb(0x3F_8A_4A), ..line(2.0, &[3.0, 5.0], Some(40.0)) };
+    let protected = LineStyle { color: rgb(0x3F_8A_4A), ..line(2.0, &[2.0, 5.0], Some(40.0)) };
     [
-        line(3.4, &[18.0, 5.0, 4.0, 5.0], None),
-        line(2.8, &[14.0, 5.0], Some(1000.0)),
-        line(2.6, &[12.0, 5.0], Some(600.0)),
-        line(2.2, &[9.0, 5.0], Some(250.0)),
-        line(2.0, &[8.0, 5.0], Some(150.0)),
-        line(1.7, &[6.0, 5.0], Some(60.0)),
-        line(1.5, &[4.0, 4.0], Some(40.0)),
+        line(2.6, &[16.0, 4.0, 3.0, 4.0], None),
+        line(2.4, &[13.0, 4.0, 3.0, 4.0], Some(1000.0)),
+        line(2.2, &[11.0, 4.0, 2.5, 4.0], Some(600.0)),
+        line(2.0, &[9.0, 4.0, 2.5, 4.0], Some(250.0)),
+        line(1.8, &[7.0, 4.0, 2.0, 4.0], Some(150.0)),
+        line(1.7, &[5.0, 4.0, 2.0, 4.0], Some(60.0)),
+        line(1.5, &[2.0, 4.0], Some(40.0)),
         protected,
         protected,
     ]

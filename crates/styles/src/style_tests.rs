@@ -93,3 +93,39 @@ fn heights_of_a_tint_are_what_its_unit_says() {
     assert_eq!(stops(TintHeights::MetresByClimate, [-10.0, 2900.0], 47.0), [-10.0, 2900.0]);
     assert_eq!(stops(TintHeights::MetresByClimate, [-10.0, 2900.0], -67.0), [-10.0, 1200.0]);
 }
+
+/// As roads are drawn: a carriageway has its own width, a slip road 0.6 of that, a service road 0.6 of its class; tags go before the style.
+#[test]
+fn widths_follow_what_a_road_is() {
+    let mut style = Style::road_atlas();
+    let class = FunctionalRoadClass::new(0).unwrap();
+    let of = |form, highway: &str| RoadAttributes {
+        form,
+        highway: highway.to_owned(),
+        width_mm: std::num::NonZeroU32::new(9000),
+        ..RoadAttributes::default()
+    };
+    let all = [
+        (Form::Ordinary, "motorway"),
+        (Form::DualCarriageway, "motorway"),
+        (Form::Link, "motorway_link"),
+        (Form::Ordinary, "service"),
+    ];
+    let widths =
+        |style: &Style| all.map(|(form, highway)| style.width_of_m(class, &of(form, highway)));
+    let near = |found: [f32; 4], expected: [f32; 4]| {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?}");
+    };
+    near(widths(&style), [24.0, 12.0, 7.2, 14.4]);
+    style.own_widths = Some(OwnWidths { lane_m: None });
+    near(widths(&style), [9.0, 9.0, 5.4, 5.4]);
+    near(
+        [
+            style.roads[0].widened(2.0).width_m,
+            style.roads[0].widened(2.0).carriageway_width_m,
+            0.0,
+            0.0,
+        ],
+        [48.0, 24.0, 0.0, 0.0],
+    );
+}

@@ -73,6 +73,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
             unit: "metre".to_owned(),
             datum: "unknown".to_owned(),
             treatment: "as in the files".to_owned(),
+            height_step_m: 0.0,
             range_m: [0.0, 400.0],
         },
         coordinates: CoordinateTable::sample(&projection, data_bounds, 1.0).unwrap(),

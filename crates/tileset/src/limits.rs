@@ -50,7 +50,7 @@ pub const MAX_WAYS: usize = 1 << 20;
 /// Bytes of all names of a tile's areas, and of all texts of its ways after each way got its own: as much as the section that they come from.
 pub const MAX_TEXT_BYTES: usize = MAX_SECTION_BYTES;
 
-/// Steps that the walk over the triangles may take: looking at a vertex, a row of vertices or an edge is one.
+/// Steps that the walk over the triangles may take: looking at a vertex, a row of vertices, 16 nodes near a gate or an edge is one.
 ///
 /// The walk takes some tens of steps for each vertex and triangle of real tiles of every size; 1024 are allowed. The
 /// constant part is for sparse tiles, where a few thousand vertices on borders and boundaries may all see each other:

@@ -28,6 +28,7 @@ mod coded_lines;
 mod connectivity;
 mod corner_guess;
 mod magnitudes;
+mod near_corners;
 mod number_codes;
 mod points;
 mod range_coder;

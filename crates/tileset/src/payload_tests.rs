@@ -129,7 +129,7 @@ fn relief() -> Relief {
         (1, 1) => f32::NAN,
         (east, _) => east as f32 * 30.0,
     });
-    Relief::of_heights(&heights, frame().level_cell(1), QUANTUM_M).unwrap()
+    Relief::of_heights(&heights, &heights, frame().level_cell(1), QUANTUM_M).unwrap()
 }
 
 /// One tile with all sections, small enough to try every damage.

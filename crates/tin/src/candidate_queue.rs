@@ -2,46 +2,34 @@
 
 use std::collections::BinaryHeap;
 
-/// The node of a face that lies farthest from it. Candidates compare by error, then by node (of equals the
-/// first is the greater), then by face: insertion takes the same way on every run.
+/// A face that has a node too far from it. Candidates compare by that distance, then by face (of equals the first is
+/// the greater): insertion takes the same way on every run.
 ///
 /// ```text
-///   bits  127 … 96        95 … 64          63 … 32    31 … 0
-///         error as f32    node, flipped    face       apex
+///   bits  63 … 32            31 … 0
+///         distance as f32    face, flipped
 /// ```
-/// An error is not negative, and such floats order like their bits.
+/// A distance is not negative, and such floats order like their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Candidate(u128);
+pub(crate) struct Candidate(u64);
 
 impl Candidate {
-    pub(crate) fn new(error_m: f64, node: u32, face: u32, apex: u32) -> Self {
-        let error = (error_m as f32).to_bits();
-        Self(
-            u128::from(error) << 96
-                | u128::from(!node) << 64
-                | u128::from(face) << 32
-                | u128::from(apex),
-        )
+    pub(crate) fn new(far_m: f32, face: u32) -> Self {
+        Self(u64::from(far_m.to_bits()) << 32 | u64::from(!face))
     }
 
-    /// Index of the node, row by row.
-    pub(crate) fn node(self) -> u32 {
-        !((self.0 >> 64) as u32)
-    }
-
-    /// Index of the face it was found in.
     pub(crate) fn face(self) -> u32 {
-        (self.0 >> 32) as u32
+        !(self.0 as u32)
     }
 
-    /// The face's apex when the candidate was made: if the face has another one now, the candidate is outdated.
-    pub(crate) fn apex(self) -> u32 {
-        self.0 as u32
+    /// The distance when the candidate was made: if the face has another one now, the candidate is outdated.
+    pub(crate) fn far_m(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
     }
 
     /// Exponent and upper bits of the mantissa: errors of one band differ by at most an eighth.
     fn band(self) -> usize {
-        (self.0 >> (96 + 20)) as usize
+        (self.0 >> (32 + 20)) as usize
     }
 }
 

@@ -6,9 +6,9 @@ use proptest::prelude::*;
 proptest! {
     /// The order is that of one heap, also when candidates arrive in between.
     #[test]
-    fn pops_like_one_heap(errors in prop::collection::vec((0.0_f64..1e4, any::<bool>()), 0..300)) {
+    fn pops_like_one_heap(errors in prop::collection::vec((0.0_f32..1e4, any::<bool>()), 0..300)) {
         let (mut queue, mut heap) = (CandidateQueue::new(), BinaryHeap::new());
-        let fresh = |candidate: Candidate| !candidate.node().is_multiple_of(5);
+        let fresh = |candidate: Candidate| !candidate.face().is_multiple_of(5);
         let pop_fresh = |heap: &mut BinaryHeap<Candidate>| loop {
             match heap.pop() {
                 Some(candidate) if !fresh(candidate) => {}
@@ -16,7 +16,7 @@ proptest! {
             }
         };
         for (index, &(error_m, pop)) in errors.iter().enumerate() {
-            let candidate = Candidate::new(error_m, index as u32, 7 * index as u32, 3);
+            let candidate = Candidate::new(error_m, 7 * index as u32);
             queue.push(candidate);
             heap.push(candidate);
             if pop {
@@ -32,7 +32,8 @@ proptest! {
 
 #[test]
 fn holds_what_it_was_made_of() {
-    let candidate = Candidate::new(2.5, 1_000_000, u32::MAX, 17);
-    assert_eq!((candidate.node(), candidate.face(), candidate.apex()), (1_000_000, u32::MAX, 17));
-    assert!(Candidate::new(2.5, 3, 0, 0) > Candidate::new(2.5, 4, 9, 9));
+    let candidate = Candidate::new(2.5, u32::MAX);
+    assert_eq!((candidate.far_m(), candidate.face()), (2.5, u32::MAX));
+    assert!(Candidate::new(2.5, 3) > Candidate::new(2.5, 4));
+    assert!(Candidate::new(2.5, 3) < Candidate::new(2.75, 4));
 }

@@ -1,45 +1,10 @@
 //! The node of a face that lies farthest from it.
 
-use crate::node::Node;
+use crate::TinVertex;
+use crate::half_edges::Farthest;
+use crate::lanes::{AFTER_ROW, LANES, Lanes, STEPS, lanes, less};
 use crate::tile_raster::TileRaster;
 use crate::triangle_rows::for_each_row;
-
-/// Nodes looked at together. Rows of a face are short: most have no more.
-const LANES: usize = 4;
-
-/// Added to distances: nothing to those of a row, NaN to those of lanes after it. Starts as many lanes in as are not used.
-const AFTER_ROW: [f64; 2 * LANES] = {
-    let mut after = [0.0; 2 * LANES];
-    let mut lane = LANES;
-    while lane < 2 * LANES {
-        after[lane] = f64::NAN;
-        lane += 1;
-    }
-    after
-};
-
-/// Below so many columns and rows from corner to corner, a face is small: its edges are looked up.
-const SMALL: usize = 16;
-
-/// `FLOORS[columns + SMALL][rows][row]`: how many columns an edge of `columns` over `rows` has gone east after `row` rows, rounded down.
-static FLOORS: [[[i8; SMALL]; SMALL]; 2 * SMALL] = {
-    let mut floors = [[[0; SMALL]; SMALL]; 2 * SMALL];
-    let mut columns = 1;
-    while columns < 2 * SMALL {
-        let mut rows = 1;
-        while rows < SMALL {
-            let mut row = 0;
-            while row <= rows {
-                let across = (columns as i32 - SMALL as i32) * row as i32;
-                floors[columns][rows][row] = across.div_euclid(rows as i32) as i8;
-                row += 1;
-            }
-            rows += 1;
-        }
-        columns += 1;
-    }
-    floors
-};
 
 /// What faces are scanned against.
 pub(crate) struct FaceScan {
@@ -48,155 +13,337 @@ pub(crate) struct FaceScan {
     heights_m: Vec<f32>,
     columns: usize,
     max_error_m: f64,
+    /// The first 32-bit float that is farther than allowed.
+    beyond_m: f32,
     quantum_m: f64,
 }
+
+/// A face that is scanned, with the plane through it. Heights of the plane are counted from `base_m`, so that they are small.
+struct Scanned {
+    /// Counter-clockwise in columns and rows.
+    corners: [[i32; 2]; 3],
+    double_area: i64,
+    base_m: f32,
+    /// The plane at the first corner.
+    first_m: f64,
+    per_column_m: f64,
+    per_row_m: f64,
+}
+
+/// Rows and columns that may hold nodes of a face, both ends included.
+struct Window {
+    columns: [i32; 2],
+    rows: [i32; 2],
+}
+
+/// Faces of at most so many rows and columns are scanned in blocks of all their rows.
+const SMALL: i32 = 16;
+
+/// The lowest bits of a distance in a block, which tell its place there: from all bits set down, row by row.
+const PLACE_BITS: u32 = (SMALL as usize * LANES) as u32 - 1;
+
+/// How far a distance in 32-bit floats may be off, in parts of the greatest height that occurs on the way to it.
+///
+/// A float rounds to 2^-24 of itself. Of a plane's height, its start, slopes, products and sums round: twice a row and twice
+/// four columns in a block, and six times besides, 46 times at most. The distance rounds three times, counted from the same
+/// height, and the bits of its place are 2^-17 of it, as much as 128 roundings. All together are less than 2^8 · 2^-24.
+const DOUBT: f64 = 1.0 / (1 << 16) as f64;
+
+/// Heights beyond this could overflow 32-bit floats.
+const FLOATS_REACH_M: f64 = 1e30;
 
 impl FaceScan {
     pub(crate) fn new(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Self {
         let mut heights_m = tile.inner_heights_m();
         heights_m.resize(heights_m.len() + LANES, f32::NAN);
-        Self { heights_m, columns: tile.columns(), max_error_m, quantum_m }
+        let nearest_m = max_error_m as f32;
+        let beyond_m =
+            if f64::from(nearest_m) > max_error_m { nearest_m } else { nearest_m.next_up() };
+        Self { heights_m, columns: tile.columns(), max_error_m, beyond_m, quantum_m }
     }
 
-    /// The node farthest from the plane through `corners` and its error in metres, if that is more than allowed. Of equals the
-    /// first. Corners are counter-clockwise in columns and rows.
+    /// The least distance that is farther than allowed.
+    pub(crate) fn beyond_m(&self) -> f32 {
+        self.beyond_m
+    }
+
+    /// The node of all that the face holds, edges included, that lies farthest from the plane through `corners`, as far as 32-bit
+    /// floats can tell. Corners are counter-clockwise in columns and rows.
     ///
-    /// Nodes on edges count for the faces on both sides. If one face left them to the other, the same nodes would be inserted, but not
-    /// always in the same order: the queue compares errors as `f32`, and of two in one face that are equal so, only one is a candidate.
-    pub(crate) fn worst_node(&self, corners: [Node; 3]) -> Option<(f64, u32)> {
-        let at = corners.map(|node| [i32::from(node.column), i32::from(node.row)]);
-        let [a, b, c] = at.map(|corner| corner.map(i64::from));
+    /// Whether it lies farther than allowed is decided exactly: where rounding could matter, the face is scanned again by
+    /// [`farthest_exactly`](Self::farthest_exactly).
+    #[inline]
+    pub(crate) fn farthest_node(&self, corners: [TinVertex; 3]) -> Farthest {
+        let [a, b, c] = [place(corners[0]), place(corners[1]), place(corners[2])];
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
-        let double_area = ab[0] * ac[1] - ab[1] * ac[0];
+        let double_area = cross(ab, ac);
         // Pick's theorem: 2 · area = 2 · nodes inside + nodes on the boundary − 2. At 1 there are but three.
         if double_area <= 1 {
-            return None;
+            return Farthest::default();
         }
-        let [a_m, b_m, c_m] = corners.map(|node| f64::from(node.height_q) * self.quantum_m);
-        // Everything is multiplied by twice the area: heights have few binary digits and areas are integers, so every
-        // product and sum below is exact, and a node exactly at the tolerance is left out on every machine.
-        let scale = double_area as f64;
-        let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
-        let per_column = ab_m * ac[1] as f64 - ac_m * ab[1] as f64;
-        let per_row = ac_m * ab[0] as f64 - ab_m * ac[0] as f64;
-        let plane = Plane { scale, per_column };
-        let from_m = a_m * scale;
+        let height_m = |k: usize| f64::from(corners[k].height_q) * self.quantum_m;
+        let a_m = height_m(0);
+        let (ab_m, ac_m) = (height_m(1) - a_m, height_m(2) - a_m);
+        let inverse = 1.0 / double_area as f64;
+        let base_m = a_m as f32;
+        let face = Scanned {
+            corners: [a, b, c],
+            double_area,
+            base_m,
+            first_m: a_m - f64::from(base_m),
+            per_column_m: (ab_m * f64::from(ac[1]) - ac_m * f64::from(ab[1])) * inverse,
+            per_row_m: (ac_m * f64::from(ab[0]) - ab_m * f64::from(ac[0])) * inverse,
+        };
+        let window = Window { columns: ends([a[0], b[0], c[0]]), rows: ends([a[1], b[1], c[1]]) };
+        let [columns, rows] = [window.columns, window.rows].map(|[first, last]| last - first + 1);
+        let (far_m, node) = if columns <= SMALL && rows <= SMALL {
+            self.farthest_of_small(&face, &window)
+        } else {
+            self.farthest_by_rows(&face)
+        };
+        let reach_m = face.per_column_m.abs() * f64::from(columns + 2)
+            + face.per_row_m.abs() * f64::from(rows + 2)
+            + self.max_error_m;
+        // Floats below the least positive normal one have fewer bits.
+        let doubt_m = (reach_m + f64::from(f32::MIN_POSITIVE)) * DOUBT;
+        let certain = ((f64::from(far_m) - self.max_error_m).abs() > doubt_m)
+            & (reach_m + a_m.abs() < FLOATS_REACH_M);
+        if certain { Farthest { far_m, node } } else { self.farthest_exactly(corners) }
+    }
 
-        let (mut worst_scaled, mut worst_row) = (self.max_error_m * scale, None);
-        let mut look = |row: i32, first: i32, last: i32| {
+    /// The farthest node of a small face. Every edge and the plane are functions of the node that grow by a fixed amount from
+    /// row to row; a node is in the face where those of all three edges are at least 0.
+    #[inline]
+    fn farthest_of_small(&self, face: &Scanned, window: &Window) -> (f32, u32) {
+        let ([west, east], [north, south]) = (window.columns, window.rows);
+        let [a, b, c] = face.corners;
+        let start_m = face.first_m
+            + face.per_column_m * f64::from(west - a[0])
+            + face.per_row_m * f64::from(north - a[1]);
+        let mut block = Block {
+            ab: Growing::of_edge(a, b, [west, north]),
+            bc: Growing::of_edge(b, c, [west, north]),
+            plane_m: Growing::new(start_m as f32, face.per_column_m as f32, face.per_row_m as f32),
+            double_area: [face.double_area as f32; LANES],
+            base_m: [face.base_m; LANES],
+            rows: (south - north + 1) as u32,
+        };
+        let (mut farthest, mut farthest_in) = (0.0, 0);
+        let mut first = north as usize * self.columns + west as usize;
+        let mut left = east - west + 1;
+        while left > 0 {
+            let [p, q, r, s] = self.farthest_in_block(first, &block);
+            let (p, q) = (if q > p { q } else { p }, if s > r { s } else { r });
+            let most = if q > p { q } else { p };
+            farthest_in = if most > farthest { first } else { farthest_in };
+            farthest = if most > farthest { most } else { farthest };
+            for growing in [&mut block.ab, &mut block.bc, &mut block.plane_m] {
+                let column = growing.column;
+                growing.column = lanes(|lane| column[lane] + growing.next_columns[lane]);
+            }
+            first += LANES;
+            left -= LANES as i32;
+        }
+        let code = (PLACE_BITS - (farthest.to_bits() & PLACE_BITS)) as usize;
+        (farthest, (farthest_in + code / LANES * self.columns + code % LANES) as u32)
+    }
+
+    /// The greatest distances of the nodes of a block that lie in the face, in each lane. `first` is the block's first node.
+    ///
+    /// A function of its own: together with what uses its result, the compiler takes the lanes apart.
+    #[inline(never)]
+    fn farthest_in_block(&self, first: usize, block: &Block) -> Lanes {
+        let Block { ab, bc, plane_m, .. } = block;
+        let mut left_of_ab = ab.column;
+        let mut left_of_bc = bc.column;
+        let mut in_plane_m = plane_m.column;
+        let mut most: Lanes = [0.0; LANES];
+        let mut from = first;
+        let mut codes = [PLACE_BITS, PLACE_BITS - 1, PLACE_BITS - 2, PLACE_BITS - 3];
+        for _ in 0..block.rows {
+            let Some(heights_m) = self.heights_m[from..].first_chunk::<LANES>() else { break };
+            let far = lanes(|lane| heights_m[lane] - block.base_m[lane] - in_plane_m[lane]);
+            let far = lanes(|lane| {
+                f32::from_bits(far[lane].to_bits() & !(PLACE_BITS | 1 << 31) | codes[lane])
+            });
+            let left_of_ca =
+                lanes(|lane| block.double_area[lane] - left_of_ab[lane] - left_of_bc[lane]);
+            let inside = less(less(left_of_ab, left_of_bc), left_of_ca);
+            let far = lanes(|lane| if inside[lane] >= 0.0 { far[lane] } else { 0.0 });
+            most = lanes(|lane| if far[lane] > most[lane] { far[lane] } else { most[lane] });
+            left_of_ab = lanes(|lane| left_of_ab[lane] + ab.per_row[lane]);
+            left_of_bc = lanes(|lane| left_of_bc[lane] + bc.per_row[lane]);
+            in_plane_m = lanes(|lane| in_plane_m[lane] + plane_m.per_row[lane]);
+            for code in &mut codes {
+                *code = code.wrapping_sub(LANES as u32);
+            }
+            from += self.columns;
+        }
+        most
+    }
+
+    /// The farthest node of any face, row by row.
+    fn farthest_by_rows(&self, face: &Scanned) -> (f32, u32) {
+        let [a, ..] = face.corners;
+        let per_column_m = face.per_column_m as f32;
+        let corners = face.corners.map(|corner| corner.map(i64::from));
+        let mut farthest = InLanes { most: [0.0; LANES], places: [0.0; LANES] };
+        for_each_row(corners, i64::MIN..=i64::MAX, |row, first, last| {
             if last < first {
                 return;
             }
-            let in_row = from_m
-                + per_row * f64::from(row - at[0][1])
-                + per_column * f64::from(first - at[0][0]);
+            let start_m = face.first_m
+                + face.per_row_m * (row - i64::from(a[1])) as f64
+                + face.per_column_m * (first - i64::from(a[0])) as f64;
             let from = row as usize * self.columns + first as usize;
-            let nodes = (last - first) as usize + 1;
-            let scaled = self.most_in_row(from, nodes, in_row, &plane);
-            if scaled > worst_scaled {
-                worst_scaled = scaled;
-                worst_row = Some((from, nodes, in_row));
+            let nodes = (last - first + 1) as usize;
+            let in_row = InRow { start_m: start_m as f32, per_column_m, base_m: face.base_m };
+            self.look_at_row(from, nodes, &in_row, &mut farthest);
+        });
+        let InLanes { most, places } = farthest;
+        let mut farthest = (0.0, 0);
+        for lane in 0..LANES {
+            let node = places[lane].to_bits() + lane as u32;
+            if most[lane] > farthest.0 || (most[lane] >= farthest.0 && node < farthest.1) {
+                farthest = (most[lane], node);
             }
-        };
-        let sorted = from_north(corners);
-        let [west, east] =
-            [at[0][0].min(at[1][0]).min(at[2][0]), at[0][0].max(at[1][0]).max(at[2][0])];
-        if east - west < SMALL as i32 && sorted[2][1] - sorted[0][1] < SMALL as i32 {
-            for_each_row_of_small(sorted, look);
-        } else {
-            for_each_row([a, b, c], i64::MIN..=i64::MAX, |row, first, last| {
-                look(row as i32, first as i32, last as i32);
-            });
         }
-
-        let (from, nodes, in_row) = worst_row?;
-        // The same numbers as when the row was looked at, so one of them is equal.
-        let is_worst = |&(step, &height_m): &(u32, &f32)| {
-            plane.distance(height_m, in_row, f64::from(step)) >= worst_scaled
-        };
-        let (step, _) = (0..).zip(&self.heights_m[from..from + nodes]).find(is_worst)?;
-        Some((worst_scaled / scale, from as u32 + step))
+        farthest
     }
 
-    /// The largest distance of `nodes` nodes of a row, times the plane's scale. `in_row` is the plane at the first, `from`.
-    #[inline]
-    fn most_in_row(&self, mut from: usize, nodes: usize, in_row: f64, plane: &Plane) -> f64 {
+    /// Compares the nodes of a row, from node `from` on, with the farthest so far. A function of its own for the same reason.
+    #[inline(never)]
+    fn look_at_row(&self, mut from: usize, nodes: usize, in_row: &InRow, farthest: &mut InLanes) {
+        let &InRow { start_m, per_column_m, base_m } = in_row;
+        let InLanes { mut most, mut places } = *farthest;
         let mut left = nodes;
-        let mut steps = [0.0, 1.0, 2.0, 3.0];
-        let mut most = [0.0_f64; LANES];
+        let mut steps = STEPS;
         while let Some(heights_m) = self.heights_m[from..].first_chunk::<LANES>() {
             let after_row = &AFTER_ROW[LANES.saturating_sub(left)..][..LANES];
-            for lane in 0..LANES {
-                let scaled = plane.distance(heights_m[lane], in_row, steps[lane]) + after_row[lane];
-                // Written so, and not with `max`, it is one instruction for all lanes; NaN is never larger.
-                most[lane] = if scaled > most[lane] { scaled } else { most[lane] };
-            }
+            let far = lanes(|lane| {
+                let plane_m = start_m + per_column_m * steps[lane];
+                (heights_m[lane] - base_m - plane_m).abs() + after_row[lane]
+            });
+            let here = f32::from_bits(from as u32);
+            places = lanes(|lane| if far[lane] > most[lane] { here } else { places[lane] });
+            most = lanes(|lane| if far[lane] > most[lane] { far[lane] } else { most[lane] });
             if left <= LANES {
                 break;
             }
-            left -= LANES;
+            steps = lanes(|lane| steps[lane] + LANES as f32);
             from += LANES;
-            steps = steps.map(|step| step + LANES as f64);
+            left -= LANES;
         }
-        most.into_iter().fold(0.0, |most, scaled| if scaled > most { scaled } else { most })
+        *farthest = InLanes { most, places };
+    }
+
+    /// The farthest node, of equals the first, if it lies farther than allowed: without any rounding, and slower.
+    #[cold]
+    #[inline(never)]
+    fn farthest_exactly(&self, corners: [TinVertex; 3]) -> Farthest {
+        let [a, b, c] = corners.map(place);
+        let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let [a_m, b_m, c_m] = corners.map(|corner| f64::from(corner.height_q) * self.quantum_m);
+        // Everything is multiplied by twice the area: heights have few binary digits and areas are integers, so every
+        // product and sum below is exact, and a node exactly at the tolerance is left out on every machine.
+        let scale = cross(ab, ac) as f64;
+        let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
+        let per_column = ab_m * f64::from(ac[1]) - ac_m * f64::from(ab[1]);
+        let per_row = ac_m * f64::from(ab[0]) - ab_m * f64::from(ac[0]);
+        let mut worst = (self.max_error_m * scale, None);
+        for_each_row(
+            [a, b, c].map(|at| at.map(i64::from)),
+            i64::MIN..=i64::MAX,
+            |row, first, last| {
+                let in_row = a_m * scale + per_row * (row - i64::from(a[1])) as f64;
+                for column in first..=last {
+                    let node = row as usize * self.columns + column as usize;
+                    let plane = in_row + per_column * (column - i64::from(a[0])) as f64;
+                    let scaled = (f64::from(self.heights_m[node]) * scale - plane).abs();
+                    if scaled > worst.0 {
+                        worst = (scaled, Some(node as u32));
+                    }
+                }
+            },
+        );
+        worst.1.map_or(Farthest::default(), |node| {
+            let far_m = (worst.0 / scale) as f32;
+            Farthest { far_m: if far_m > self.beyond_m { far_m } else { self.beyond_m }, node }
+        })
     }
 }
 
-/// The plane through a face, times `scale`.
-struct Plane {
-    scale: f64,
-    per_column: f64,
+/// A number that grows evenly from node to node: in the first row of a block's columns, and what is added for the next row and
+/// for the next block.
+struct Growing {
+    column: Lanes,
+    per_row: Lanes,
+    next_columns: Lanes,
 }
 
-impl Plane {
-    /// How far a height is from the plane, times `scale`, `steps` columns east of a node where the plane is at `in_row`.
+impl Growing {
     #[inline]
-    fn distance(&self, height_m: f32, in_row: f64, steps: f64) -> f64 {
-        (f64::from(height_m) * self.scale - (in_row + self.per_column * steps)).abs()
+    fn new(start: f32, per_column: f32, per_row: f32) -> Self {
+        Self {
+            column: lanes(|lane| start + per_column * STEPS[lane]),
+            per_row: [per_row; LANES],
+            next_columns: [per_column * LANES as f32; LANES],
+        }
+    }
+
+    /// On which side of the edge from `p` to `q` nodes are, from the node `start` on: more than 0 to its left, 0 on it. Whole
+    /// numbers below 2^24, as edges are short.
+    #[inline]
+    fn of_edge(p: [i32; 2], q: [i32; 2], start: [i32; 2]) -> Self {
+        let (per_column, per_row) = (p[1] - q[1], q[0] - p[0]);
+        let start = per_column * (start[0] - p[0]) + per_row * (start[1] - p[1]);
+        Self::new(start as f32, per_column as f32, per_row as f32)
     }
 }
 
-/// Corners from north to south, of the same row from west to east; without a branch, as no order is more likely.
-#[inline]
-fn from_north(corners: [Node; 3]) -> [[i32; 2]; 3] {
-    let [p, q, r] = corners.map(|node| u32::from(node.row) << 16 | u32::from(node.column));
-    let (first, last) = (p.min(q).min(r), p.max(q).max(r));
-    [first, p ^ q ^ r ^ first ^ last, last]
-        .map(|key| [key as u16, (key >> 16) as u16].map(i32::from))
+/// The farthest nodes so far, in each lane: distance, and the index of the first lane's node as the bits of a float, because
+/// numbers of one type stay in the same registers.
+struct InLanes {
+    most: Lanes,
+    places: Lanes,
 }
 
-/// Calls `each(row, first_column, last_column)` for the rows of a small face, from north to south: with all nodes that it holds, those on
-/// its edges too, but without its northernmost and southernmost corner where one is alone in its row. Corners come as from [`from_north`].
-///
-/// ```text
-///        a            In every row the face lies between the long edge a–c and one of the two
-///        │ ╲          short ones, in that of b either.
-///        │   b
-///        │ ╱
-///        c
-/// ```
-#[inline]
-fn for_each_row_of_small([a, b, c]: [[i32; 2]; 3], mut each: impl FnMut(i32, i32, i32)) {
-    let b_is_east = (b[0] - a[0]) * (c[1] - a[1]) > (c[0] - a[0]) * (b[1] - a[1]);
-    // Columns are rounded into the face: up in the west, which is the negative of rounding the negative down.
-    let long_sign = if b_is_east { -1 } else { 1 };
-    let long = floors(a, c, long_sign);
-    let (upper, lower) = (floors(a, b, -long_sign), floors(b, c, -long_sign));
-    let first_row = a[1] + i32::from(a[1] != b[1]);
-    let last_row = c[1] - i32::from(b[1] != c[1]);
-    for row in first_row..=last_row {
-        let (from, edge) = if row < b[1] { (a, upper) } else { (b, lower) };
-        let long = a[0] + long_sign * i32::from(long[(row - a[1]) as usize % SMALL]);
-        let short = from[0] - long_sign * i32::from(edge[(row - from[1]) as usize % SMALL]);
-        if b_is_east { each(row, long, short) } else { each(row, short, long) }
-    }
+/// The plane along a row.
+#[expect(clippy::struct_field_names, reason = "all are metres")]
+struct InRow {
+    start_m: f32,
+    per_column_m: f32,
+    base_m: f32,
 }
 
-/// How far an edge of a small face has gone east, by row; west if `sign` is −1.
+/// Columns of a small face, as many as there are lanes.
+struct Block {
+    ab: Growing,
+    bc: Growing,
+    plane_m: Growing,
+    /// What the three functions of edges add up to, everywhere.
+    double_area: Lanes,
+    base_m: Lanes,
+    rows: u32,
+}
+
 #[inline]
-fn floors(from: [i32; 2], to: [i32; 2], sign: i32) -> &'static [i8; SMALL] {
-    let (columns, rows) = (sign * (to[0] - from[0]) + SMALL as i32, to[1] - from[1]);
-    &FLOORS[columns as usize % (2 * SMALL)][rows as usize % SMALL]
+fn place(corner: TinVertex) -> [i32; 2] {
+    [i32::from(corner.column), i32::from(corner.row)]
+}
+
+#[inline]
+fn cross(p: [i32; 2], q: [i32; 2]) -> i64 {
+    i64::from(p[0]) * i64::from(q[1]) - i64::from(p[1]) * i64::from(q[0])
+}
+
+/// First and last of three columns or rows, without those that hold nothing of a face but one corner.
+#[inline]
+fn ends([a, b, c]: [i32; 3]) -> [i32; 2] {
+    let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+    let is_one =
+        |end: i32| i32::from(i32::from(a == end) + i32::from(b == end) + i32::from(c == end) == 1);
+    [first + is_one(first), last - is_one(last)]
 }
 
 #[cfg(test)]

@@ -12,9 +12,13 @@ mod triangulate;
 mod boundary;
 mod candidate_queue;
 mod face_scan;
+mod fixed_mesh;
+mod half_edges;
+mod lanes;
 mod node;
 mod refine;
 mod tile_raster;
+mod to_tin;
 mod triangle_rows;
 
 mod deviation;

@@ -93,8 +93,17 @@ impl Surface {
             triangle_buckets: Buckets::default(),
             boundary_buckets: Buckets::default(),
         };
-        surface.twins =
-            (0..3 * surface.triangles.len() as u32).map(|h| surface.find_twin(h)).collect();
+        surface.twins = vec![NO_TWIN; 3 * surface.triangles.len()];
+        for half_edge in 0..surface.twins.len() {
+            // Twins are mutual, so each pair is looked for once.
+            if surface.twins[half_edge] == NO_TWIN {
+                let twin = surface.find_twin(half_edge as u32);
+                surface.twins[half_edge] = twin;
+                if let Some(of_twin) = surface.twins.get_mut(twin as usize) {
+                    *of_twin = half_edge as u32;
+                }
+            }
+        }
         surface.boundary = (0..surface.twins.len() as u32)
             .filter(|&h| surface.twins[h as usize] == NO_TWIN)
             .collect();

@@ -2,6 +2,8 @@
 
 use corniche_geom::HeightGrid;
 
+use crate::TinVertex;
+
 /// The nodes of one tile, read from a grid that has one more node on each side.
 ///
 /// ```text
@@ -59,7 +61,16 @@ impl<'a> TileRaster<'a> {
 
     /// Height of a node in whole steps of the quantum. The caller has checked that heights fit.
     pub(crate) fn height_q(&self, node: [usize; 2]) -> i32 {
-        (self.height_m(node) / self.quantum_m).round() as i32
+        let steps = self.height_m(node) / self.quantum_m;
+        // As `f64::round`, halves away from zero, but without a call: what is cut off is exact.
+        let whole = steps as i32;
+        let rest = steps - f64::from(whole);
+        whole + i32::from(rest >= 0.5) - i32::from(rest <= -0.5)
+    }
+
+    /// A node as a vertex.
+    pub(crate) fn vertex(&self, [column, row]: [u16; 2]) -> TinVertex {
+        TinVertex { row, column, height_q: self.height_q([usize::from(column), usize::from(row)]) }
     }
 
     /// Whether the cell south-east of node (`column` − 1, `row` − 1) has ground: `[0, 0]` is the halo cell

@@ -56,8 +56,12 @@ impl Tin {
     ///
     /// # Errors
     /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
-    pub fn new(mut vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
-        // Rows, and triangles around a vertex, are many and short: so both are sorted in two steps.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "whoever made them has no other use for them"
+    )]
+    pub fn new(vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
+        // Rows are many and short, so vertices are sorted in two steps.
         let rows = vertices.iter().map(|vertex| usize::from(vertex.row) + 1).max().unwrap_or(0);
         let by_row = IndexLists::new(rows, vertices.len(), |vertex| {
             std::iter::once(usize::from(vertices[vertex].row))
@@ -82,24 +86,44 @@ impl Tin {
                     vertices: vertices.len(),
                 })?;
             }
-            let [a, b, c] = named;
-            renamed.push(match a.min(b).min(c) {
+            renamed.push(named);
+        }
+        let in_order = order.iter().map(|&vertex| vertices[vertex as usize]).collect();
+        Self::with_vertices_in_order(in_order, renamed)
+    }
+
+    /// Puts triangles, in any order and any rotation, into canonical order. That of the vertices is kept.
+    ///
+    /// # Errors
+    /// As [`from_canonical`](Self::from_canonical).
+    pub(crate) fn with_vertices_in_order(
+        vertices: Vec<TinVertex>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, TinError> {
+        for triangle in &mut triangles {
+            let [a, b, c] = *triangle;
+            *triangle = match a.min(b).min(c) {
                 smallest if smallest == a => [a, b, c],
                 smallest if smallest == b => [b, c, a],
                 _ => [c, a, b],
-            });
+            };
         }
-        let by_first = IndexLists::new(vertices.len(), renamed.len(), |triangle| {
-            std::iter::once(renamed[triangle][0] as usize)
+        if let Some(triangle) =
+            triangles.iter().position(|corners| corners[0] as usize >= vertices.len())
+        {
+            let (vertex, vertices) = (triangles[triangle][0], vertices.len());
+            return Err(TinError::NoSuchVertex { triangle, vertex, vertices });
+        }
+        // Triangles around a vertex are few, so they are sorted in two steps.
+        let by_first = IndexLists::new(vertices.len(), triangles.len(), |triangle| {
+            std::iter::once(triangles[triangle][0] as usize)
         });
-        let mut sorted: Vec<[u32; 3]> = Vec::with_capacity(renamed.len());
+        let mut sorted: Vec<[u32; 3]> = Vec::with_capacity(triangles.len());
         for vertex in 0..vertices.len() {
             let from = sorted.len();
-            sorted.extend(by_first.of(vertex).iter().map(|&triangle| renamed[triangle as usize]));
+            sorted.extend(by_first.of(vertex).iter().map(|&triangle| triangles[triangle as usize]));
             sorted[from..].sort_unstable();
         }
-        let in_order: Vec<_> = order.iter().map(|&vertex| vertices[vertex as usize]).collect();
-        vertices.copy_from_slice(&in_order);
         Self::from_canonical(vertices, sorted)
     }
 

@@ -48,46 +48,62 @@ struct Edge {
     from: [i64; 2],
     columns: i64,
     rows: i64,
-    rows_inverse: f64,
-    in_floats: bool,
+    /// Whether the numbers below find columns: see [`Edge::floor`].
+    is_short: bool,
+    /// In parts of 2^-32: the column of the first corner, columns a row, and half a step.
+    start: i64,
+    slope: i64,
+    half_step: i64,
 }
 
-/// Below this number, floating point finds columns exactly: see [`Edge::floor`].
-const FLOATS_REACH: i64 = 1 << 24;
+/// An edge over fewer rows than this, and fewer columns than `SHORT_COLUMNS`, is followed in fixed point.
+const SHORT_ROWS: i64 = 1 << 14;
+const SHORT_COLUMNS: i64 = 1 << 20;
+
+/// The bits behind the point.
+const FRACTION_BITS: u32 = 32;
+const ONE: i64 = 1 << FRACTION_BITS;
 
 impl Edge {
     #[inline]
     fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let (columns, rows) = (to[0] - from[0], to[1] - from[1]);
-        // Of coordinates from 0 up, none has a bit that the reach has not.
-        let in_floats =
-            (from[0] | to[0] | from[1] | to[1]) as u64 >> FLOATS_REACH.trailing_zeros() == 0;
-        Self { from, columns, rows, rows_inverse: 1.0 / rows as f64, in_floats }
+        // Without a division of integers, which is slow.
+        let inverse = ONE as f64 / rows as f64;
+        Self {
+            from,
+            columns,
+            rows,
+            is_short: rows < SHORT_ROWS && columns.abs() < SHORT_COLUMNS,
+            start: from[0] << FRACTION_BITS,
+            slope: (columns as f64 * inverse) as i64,
+            half_step: (inverse / 2.0) as i64,
+        }
     }
 
     /// The last column at or west of the edge.
+    ///
+    /// Columns of an edge are whole steps of 1 / `rows`. Half a step more keeps a column away from whole numbers by as much:
+    /// by 2^-15 or more, as a short edge has fewer than 2^14 rows. Its slope is below 2^52 parts, so two roundings of floats
+    /// and the cut make it wrong by 2 parts at most, and the column by less than 2^15 parts of 2^-32 and those of half a step.
     #[inline]
     fn floor(&self, row: i64) -> i64 {
-        self.column((row - self.from[1]) * self.columns)
+        let down = row - self.from[1];
+        if self.is_short {
+            (self.start + down * self.slope + self.half_step) >> FRACTION_BITS
+        } else {
+            self.from[0] + (down * self.columns).div_euclid(self.rows)
+        }
     }
 
-    /// The first column at or east of the edge.
+    /// The first column at or east of the edge: the last at or west of what lies a column less a step farther east.
     #[inline]
     fn ceil(&self, row: i64) -> i64 {
-        self.column((row - self.from[1]) * self.columns + self.rows - 1)
-    }
-
-    /// The first corner's column + `across` / rows, rounded down.
-    ///
-    /// In floats without a branch: half a step more keeps the fraction 0.5 / rows or more away from whole
-    /// numbers, 2^-25 at least, while below 2^24 all rounding together stays under 2^-27; and no column is
-    /// negative, so cutting off the fraction rounds down.
-    #[inline]
-    fn column(&self, across: i64) -> i64 {
-        if self.in_floats {
-            (self.from[0] as f64 + (across as f64 + 0.5) * self.rows_inverse) as i64
+        let down = row - self.from[1];
+        if self.is_short {
+            (self.start + down * self.slope + (ONE - self.half_step)) >> FRACTION_BITS
         } else {
-            self.from[0] + across.div_euclid(self.rows)
+            self.from[0] + (down * self.columns + self.rows - 1).div_euclid(self.rows)
         }
     }
 }

@@ -11,7 +11,7 @@ proptest! {
     /// The rows hold exactly the nodes whose three edge functions do not differ in sign.
     #[test]
     fn holds_the_nodes_inside(
-        shift in prop_oneof![Just(0_i64), Just(25), Just(60_000), Just(FLOATS_REACH - 26), Just(FLOATS_REACH), Just(1 << 29)],
+        shift in prop_oneof![Just(0_i64), Just(25), Just(60_000), Just(-60_000), Just(1 << 24), Just(1 << 29), Just(-(1 << 29))],
         a in corner(), b in corner(), c in corner(), low in -25_i64..25, high in -25_i64..25) {
         let turn = |p: [i64; 2], q: [i64; 2], r: [i64; 2]| {
             (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
@@ -37,16 +37,20 @@ proptest! {
         prop_assert_eq!(found, wanted);
     }
 
-    /// Floats and integers find the same columns, also of edges as long as floats may take.
+    /// Fixed point and division find the same columns, also of edges as long as fixed point may take.
     #[test]
-    fn floats_are_exact(
-        from in (0..FLOATS_REACH, 0..FLOATS_REACH), to in (0..FLOATS_REACH, 0..FLOATS_REACH), at in 0.0_f64..=1.0,
+    fn fixed_point_is_exact(
+        from in (-(1_i64 << 29)..1 << 29, -(1_i64 << 29)..1 << 29),
+        columns in prop_oneof![1 - SHORT_COLUMNS..SHORT_COLUMNS, -40_i64..40],
+        rows in prop_oneof![1..SHORT_ROWS, SHORT_ROWS - 40..SHORT_ROWS, 1_i64..40],
+        at in 0.0_f64..=1.0,
     ) {
-        prop_assume!(from.1 < to.1);
-        let edge = Edge::new([from.0, from.1], [to.0, to.1]);
-        let row = from.1 + ((to.1 - from.1) as f64 * at) as i64;
-        let exact = Edge { in_floats: false, ..Edge::new([from.0, from.1], [to.0, to.1]) };
-        prop_assert!(edge.in_floats);
-        prop_assert_eq!([edge.floor(row), edge.ceil(row)], [exact.floor(row), exact.ceil(row)]);
+        let (from, to) = ([from.0, from.1], [from.0 + columns, from.1 + rows]);
+        let edge = Edge::new(from, to);
+        let divided = Edge { is_short: false, ..Edge::new(from, to) };
+        prop_assert!(edge.is_short);
+        for row in [from[1] + (rows as f64 * at) as i64, to[1], to[1] - 1] {
+            prop_assert_eq!([edge.floor(row), edge.ceil(row)], [divided.floor(row), divided.ceil(row)]);
+        }
     }
 }

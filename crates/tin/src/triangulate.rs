@@ -1,22 +1,21 @@
 //! Triangulation of a tile: greedy insertion until every node lies within the error bound.
 
 use corniche_geom::HeightGrid;
-use spade::{
-    ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation,
-};
+use spade::InsertionError;
 
-use crate::boundary::{Stretch, stretches};
-use crate::node::Node;
+use crate::boundary::stretches;
+use crate::fixed_mesh::fixed_mesh;
 use crate::refine::refine;
 use crate::tile_raster::TileRaster;
-use crate::{Tin, TinError, TinVertex};
+use crate::to_tin::to_tin;
+use crate::{Tin, TinError};
 
 /// How closely a TIN follows its heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TinSpec {
     /// No node the TIN covers lies farther from it, vertically; metres, above 0.
     pub max_error_m: f64,
-    /// Height of one step of [`TinVertex::height_q`], metres; above 0 and at most `max_error_m`.
+    /// Height of one step of [`TinVertex::height_q`](crate::TinVertex::height_q), metres; above 0 and at most `max_error_m`.
     pub quantum_m: f64,
 }
 
@@ -102,22 +101,13 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     }
 
     let tile = TileRaster::new(heights, quantum_m);
-    let ground_cells = tile.count_ground_cells();
-    if ground_cells == 0 {
+    if tile.count_ground_cells() == 0 {
         return Ok(Tin::default());
     }
     let fixed = stretches(&tile, max_error_m, quantum_m);
-    let (nodes, edges) = fixed_graph(&tile, &fixed);
-    if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
-        // The convex hull is the border of the tile: no constraint is needed.
-        let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
-        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &tile)
-    } else {
-        let mut mesh = ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?;
-        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
-        to_tin(&mesh, &tile)
-    }
+    let mut mesh = fixed_mesh(&tile, &fixed)?;
+    refine(&mut mesh, &tile, max_error_m, quantum_m);
+    Ok(to_tin(&mesh, &tile)?)
 }
 
 /// A height farther from 0 than `most_m`, if there is one.
@@ -132,44 +122,6 @@ fn beyond(heights_m: &[f32], most_m: f64) -> Option<f32> {
 
 /// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
 const MAX_SIDE: usize = 65_536 + 2;
-
-/// The vertices of all stretches, each once, sorted by row and column, and the edges between them.
-fn fixed_graph(tile: &TileRaster<'_>, fixed: &[Stretch]) -> (Vec<Node>, Vec<[usize; 2]>) {
-    let mut keys: Vec<[usize; 2]> =
-        fixed.iter().flatten().map(|&[column, row]| [row, column]).collect();
-    keys.sort_unstable();
-    keys.dedup();
-    let index = |[column, row]: [usize; 2]| keys.partition_point(|&key| key < [row, column]);
-    let edges = fixed
-        .iter()
-        .flat_map(|stretch| stretch.windows(2).map(|pair| [index(pair[0]), index(pair[1])]));
-    let edges = edges.collect();
-    (keys.iter().map(|&[row, column]| Node::new(tile, [column, row])).collect(), edges)
-}
-
-/// The faces on the ground, as a TIN.
-fn to_tin<T>(mesh: &T, tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
-where
-    T: Triangulation<Vertex = Node>,
-{
-    let vertices: Vec<TinVertex> =
-        mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
-    let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
-    for face in mesh.inner_faces() {
-        let corners = face.vertices();
-        // Boundaries are edges, so a face is all ground or all void, and so is every cell that its inside
-        // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
-        let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
-            (column + usize::from(corner.data().column), row + usize::from(corner.data().row))
-        });
-        if tile.cell([column / 3, row / 3]) {
-            // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
-            triangles
-                .push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
-        }
-    }
-    Ok(Tin::new(vertices, &triangles)?)
-}
 
 #[cfg(test)]
 #[path = "triangulate_tests.rs"]

@@ -6,7 +6,7 @@ use corniche_testing::srtm_heights;
 use proptest::prelude::*;
 
 use super::*;
-use crate::check_covers_ground;
+use crate::{TinVertex, check_covers_ground};
 
 const SPEC: TinSpec = TinSpec { max_error_m: 2.0, quantum_m: 1.0 / 16.0 };
 const GAP: f32 = f32::NAN;
@@ -208,7 +208,7 @@ fn real_tile_has_known_counts() {
 }
 
 /// Vertices and triangles of a tile of the Alps with gaps, at 5, 20 and 80 m.
-const GOLDEN: [(usize, usize); 3] = [(22181, 43616), (5568, 10728), (1028, 1824)];
+const GOLDEN: [(usize, usize); 3] = [(22201, 43656), (5569, 10730), (1026, 1820)];
 
 /// Terrain from nothing to cliffs, with gaps from none to most.
 fn terrain(columns: usize, rows: usize) -> impl Strategy<Value = HeightGrid> {

@@ -35,7 +35,22 @@ pub fn varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
     }
 }
 
+/// A number of three bytes or more.
 fn long_varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
+    const TOP_BITS: u64 = 0x8080_8080_8080_8080;
+    // Up to eight bytes are read at once: how many there are differs from number to number, and a loop over them is guessed wrongly.
+    if let Some(&eight) = rest.first_chunk::<8>() {
+        let word = u64::from_le_bytes(eight);
+        let ends = !word & TOP_BITS;
+        if ends != 0 {
+            let own = word & (ends ^ (ends - 1)) & !TOP_BITS;
+            let own = (own & 0x007f_007f_007f_007f) | (own & 0x7f00_7f00_7f00_7f00) >> 1;
+            let own = (own & 0x0000_3fff_0000_3fff) | (own & 0x3fff_0000_3fff_0000) >> 2;
+            let own = (own & 0x0000_0000_0fff_ffff) | (own & 0x0fff_ffff_0000_0000) >> 4;
+            *rest = &rest[ends.trailing_zeros() as usize / 8 + 1..];
+            return Ok(own);
+        }
+    }
     let mut number = 0;
     for (place, &byte) in rest.iter().take(10).enumerate() {
         // The tenth byte has room for one bit.

@@ -1,10 +1,14 @@
-//! What is written on a finished picture: credits, and a legend with scale and north arrow.
+//! What is written on a finished picture: a title, credits, and a legend with scale and north arrow.
 
 mod credits;
 mod legend;
+mod legend_row;
 mod letters;
+mod title;
 
 pub use self::{
     credits::draw_attribution,
-    legend::{Legend, LegendArea, LegendLine, LegendRoad, bar_length, bar_length_m, draw_legend},
+    legend::{Legend, LegendHeights, Taken, bar_length, bar_length_m, draw_legend, grouped},
+    legend_row::{LegendEdge, LegendRoad, LegendRow, LegendSample},
+    title::{TitleFlaws, WrittenTitle, draw_title},
 };

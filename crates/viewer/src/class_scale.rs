@@ -19,9 +19,9 @@ use crate::{
 /// Distances and widths are passed to shaders as f32. This one stands for a limit that is never reached.
 const EVERYWHERE_M: f64 = 1e30;
 
-/// The distance from the eye, world metres, up to which roads are shown in full.
-pub(crate) fn full_distance_m(road: &RoadStyle, camera: &Camera, point_scale: f64) -> f64 {
-    road.max_pixel_m.map_or(EVERYWHERE_M, |max_pixel_m| {
+/// The distance from the eye, world metres, up to which a pixel covers at most so many true metres of ground.
+pub(crate) fn distance_m(max_pixel_m: Option<f32>, camera: &Camera, point_scale: f64) -> f64 {
+    max_pixel_m.map_or(EVERYWHERE_M, |max_pixel_m| {
         f64::from(max_pixel_m) * point_scale / camera.pixel_at_unit_depth_m()
     })
 }

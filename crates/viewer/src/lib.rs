@@ -20,6 +20,7 @@
 
 #[cfg(feature = "annotations")]
 mod annotations;
+mod boundary_lines;
 pub mod camera;
 mod class_scale;
 pub mod eye_height;
@@ -31,6 +32,8 @@ pub mod lod;
 mod lon_lat;
 mod options;
 pub mod pick;
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+mod picture_legend;
 pub mod range;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod render;
@@ -59,13 +62,16 @@ pub mod for_tests {
 
 #[cfg(feature = "annotations")]
 pub use annotations::{
-    Legend, LegendArea, LegendLine, LegendRoad, bar_length, bar_length_m, draw_attribution,
-    draw_legend,
+    Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample, Taken, TitleFlaws,
+    WrittenTitle, bar_length, bar_length_m, draw_attribution, draw_legend, draw_title, grouped,
 };
+pub use boundary_lines::BoundaryLines;
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth};
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+pub use picture_legend::LegendRequest;
 pub use range::OutOfRange;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};

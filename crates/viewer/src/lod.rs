@@ -14,8 +14,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TILE_CELLS, TileId};
+use corniche_roads::Structure;
 use corniche_styles::Style;
-use corniche_tileset::Manifest;
+use corniche_tileset::{Manifest, SpanHeight, SpanRun};
 
 use crate::{
     camera::{Camera, WorldBox},
@@ -28,8 +29,22 @@ use crate::{
 pub struct GroundSummary {
     /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
     pub geometric_error_m: f64,
-    /// Lowest and highest ground beneath, children included.
+    /// Lowest and highest ground beneath, children included; the highest bridge of the tile counts, too.
     pub height_range_m: [f64; 2],
+}
+
+impl GroundSummary {
+    /// The same with the heights of the tile's bridges.
+    pub(crate) fn with_bridges(self, spans: &[SpanRun], quantum_m: f64) -> Self {
+        let bridges = spans.iter().filter(|run| run.structure == Structure::Bridge);
+        let steps = bridges.flat_map(|run| &run.points).filter_map(|point| match point.height {
+            SpanHeight::Steps(steps) => Some(steps),
+            SpanHeight::Ground { .. } => None,
+        });
+        let [low_m, high_m] = self.height_range_m;
+        let highest_m = steps.max().map_or(high_m, |steps| high_m.max(steps as f64 * quantum_m));
+        Self { height_range_m: [low_m, highest_m], ..self }
+    }
 }
 
 /// What is known of a tile in the tile tree.

@@ -2,7 +2,7 @@
 
 use corniche_roads::FunctionalRoadClass;
 
-use corniche_styles::{Style, WidthScaling};
+use corniche_styles::{RoadStyle, Style, WidthScaling};
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,10 +155,11 @@ impl RoadOptions {
         }
     }
 
-    /// How the widths of a style grow with distance, with these options.
+    /// How the widths of a style's roads of a class grow with distance, with these options.
     #[must_use]
-    pub fn width_scaling(&self, style: &Style) -> WidthScaling {
-        let scaling = style.width_scaling;
+    pub fn width_scaling(&self, style: &Style, road: &RoadStyle) -> WidthScaling {
+        let exponent = road.exponent.unwrap_or(style.width_scaling.exponent);
+        let scaling = WidthScaling { exponent, ..style.width_scaling };
         match self.width_growth {
             WidthGrowth::None => WidthScaling { exponent: 0.0, constant: 1.0, ..scaling },
             WidthGrowth::Constant => WidthScaling { exponent: 0.0, ..scaling },

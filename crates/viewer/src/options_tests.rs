@@ -11,7 +11,7 @@ fn widths_grow_as_the_option_says() {
     };
     let check = |width_growth, at_500_m: f64, at_4_km: f64| {
         let options = RoadOptions { width_growth, ..RoadOptions::of(RoadMethod::ShadowVolumes) };
-        let scaling = options.width_scaling(&style);
+        let scaling = options.width_scaling(&style, &style.roads[2]);
         assert!((scaling.factor(500.0) - at_500_m).abs() < 1e-9, "{width_growth:?}");
         assert!((scaling.factor(4000.0) - at_4_km).abs() < 1e-9, "{width_growth:?}");
     };

@@ -1,4 +1,4 @@
-//! Which ground lies under a pixel: rays against the triangles that are drawn, f64, no GPU.
+//! Which ground, or which bridge, lies under a pixel: rays against the triangles that are drawn and the decks, f64, no GPU.
 //!
 //! The depth buffer has the same answer, but only some frames later; a drag with the mouse must not wait for it.
 
@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::{camera::WorldBox, tiles::TileGeometry};
 use corniche_geom::Bounds;
 
-/// Where a ray meets the ground.
+/// Where a ray meets the ground, or a bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundHit {
     /// The place, world metres.
@@ -20,7 +20,10 @@ pub struct GroundHit {
 /// that is to 2^-24 of a tile.
 const SLACK: f64 = 1e-6;
 
-/// The first ground that the ray from `eye_in_world` along `ray_in_world` meets, seen from above or below. Heights are
+/// Half the width of a bridge, true metres: how wide it is drawn depends on the style, which a drag need not know.
+const HALF_DECK_M: f64 = 5.0;
+
+/// The first ground, or road of a bridge, that the ray from `eye_in_world` along `ray_in_world` meets, seen from above or below. Heights are
 /// `vertical_scale` times the true ones. Skirts do not count as ground.
 ///
 /// Source of the intersection: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle Intersection*.
@@ -65,7 +68,7 @@ impl Ray {
     /// grid of triangles, and stops when a hit is nearer than all columns that follow.
     fn first_in_tile(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
         let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
-        let mut nearest = f64::INFINITY;
+        let mut nearest = self.first_deck(tile, vertical_scale);
         for (share, triangles) in
             tile.ground.triangle_grid().along(plan(self.enters), plan(self.leaves))
         {
@@ -82,6 +85,25 @@ impl Ray {
             nearest = hits.fold(nearest, f64::min);
         }
         nearest
+    }
+
+    /// Depth of the first road of a bridge; infinite without one.
+    fn first_deck(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
+        let hits = tile.decks.all().iter().filter_map(|piece| {
+            let place = |at: [f32; 3]| {
+                let [x, y, height_m] = at.map(f64::from);
+                DVec3::new(x, y, height_m * vertical_scale)
+            };
+            let [start, end] = [piece.start_in_tile, piece.end_in_tile].map(place);
+            let along = (end - start).truncate().normalize_or_zero();
+            let aside = (along.perp() * HALF_DECK_M * f64::from(piece.width_factor)).extend(0.0);
+            let halves = [
+                [start - aside, end - aside, end + aside],
+                [start - aside, end + aside, start + aside],
+            ];
+            halves.into_iter().find_map(|half| self.hit(half))
+        });
+        hits.fold(f64::INFINITY, f64::min)
     }
 
     /// Depth at which it meets a triangle.
@@ -102,7 +124,7 @@ impl Ray {
     }
 }
 
-/// A box around all ground of a tile; `None` without ground.
+/// A box around all ground of a tile and its bridges; `None` without ground.
 fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
     let [low_m, high_m] = tile.summary?.height_range_m.map(|height_m| height_m * vertical_scale);
     // Some slack, because positions were rounded to f32 and triangles are enlarged.

@@ -6,7 +6,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     lod::GroundSummary,
-    tiles::{GroundMesh, GroundVertex, RoadSegments, RoadVolumes, TileGeometry},
+    tiles::{
+        DeckLine, DeckPieces, GroundMesh, GroundVertex, RoadSegments, RoadVolumes, TileGeometry,
+    },
 };
 
 /// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes, whose heights `height_m` gives.
@@ -40,6 +42,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         photo: None,
         roads: RoadSegments::default(),
         volumes: RoadVolumes::default(),
+        decks: DeckPieces::default(),
         width_margin_m: 0.0,
         size_m: [100.0; 2],
         most_width_factor: 1.0,
@@ -84,6 +87,36 @@ fn the_nearer_of_two_tiles_is_met_whatever_their_order() {
     // A flatter ray passes over the edge of the near tile and meets the far one: 30 m down at 0.25 m for each metre.
     let hit = ground_at([&near, &far].into_iter(), 1.0, eye, DVec3::new(10.0, 0.0, -2.5)).unwrap();
     assert!((hit.at_in_world.x - 110.0).abs() < 1e-6 && (hit.at_in_world.z - 500.0).abs() < 1e-6);
+}
+
+/// A deck 20 m above the ground, from (−40, 0) to (40, 0), drawn with its heights doubled.
+#[test]
+fn a_bridge_is_met_before_the_ground_beneath() {
+    let ground = tile(0.0, 0.0, |_, _| 500.0);
+    let deck = DeckLine {
+        way_id: 1,
+        class: corniche_roads::FunctionalRoadClass::new(3).unwrap(),
+        own_width: corniche_roads::OwnWidth::Unknown,
+        look: crate::tiles::RoadLook::Plain,
+        points_m: vec![[-40.0, 0.0, 520.0], [40.0, 0.0, 520.0]],
+        on_ground: [false; 2],
+    };
+    let decks = DeckPieces::of_decks(
+        &[deck],
+        &crate::tiles::GroundNet::default(),
+        (ground.plan_bounds(), ground.reference_m),
+        &crate::tiles::PlanScale::default(),
+        &corniche_geom::Work::unlimited(),
+    );
+    let summary = ground.summary.map(|of| GroundSummary { height_range_m: [500.0, 520.0], ..of });
+    let tiles = [TileGeometry { summary, decks, ..ground }];
+    let met_m = |x: f64, y: f64, ray: DVec3| {
+        ground_at(tiles.iter(), 2.0, DVec3::new(x, y, 1200.0), ray).map(|hit| hit.at_in_world.z)
+    };
+    assert_eq!(met_m(0.0, 4.9, DVec3::NEG_Z), Some(1040.0));
+    assert_eq!(met_m(0.0, 5.1, DVec3::NEG_Z), Some(1000.0), "beside it");
+    assert_eq!(met_m(41.0, 0.0, DVec3::NEG_Z), Some(1000.0), "beyond it");
+    assert_eq!(met_m(-60.0, 0.0, DVec3::new(0.5, 0.0, -1.0)), Some(1040.0), "obliquely");
 }
 
 proptest! {

@@ -59,8 +59,12 @@ pub fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
 /// # Errors
 /// When one of the numbers is out of range.
 pub fn check_camera(camera: CameraRequest) -> Result<(), OutOfRange> {
+    let pixel = |pixel_m| within("a pixel", pixel_m, 1e-3..=1e6, "1 mm to 1000 km");
+    if let CameraRequest::OverviewFromAbove { pixel_m: Some(pixel_m) } = camera {
+        return pixel(pixel_m);
+    }
     if let CameraRequest::FromAbove { pixel_m, heading_deg, .. } = camera {
-        within("a pixel", pixel_m, 1e-3..=1e6, "1 mm to 1000 km")?;
+        pixel(pixel_m)?;
         return within("a heading", heading_deg, f64::MIN..=f64::MAX, "an angle in degrees");
     }
     let CameraRequest::LookAt { height_m, distance_m, orientation, .. } = camera else {

@@ -2,29 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use corniche_areas::BoundaryClass;
 use corniche_geom::TileId;
+use corniche_styles::Style;
+use glam::DVec2;
 use image::RgbaImage;
 
-use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{AreaStyle, LineStyle, Rgb, Style};
-
 use crate::{
-    annotations::{Legend, LegendArea, LegendLine, LegendRoad, draw_attribution, draw_legend},
-    camera::Camera,
-    class_scale,
+    annotations::{Taken, TitleFlaws, draw_attribution, draw_legend, draw_title},
+    camera::{Camera, Projection},
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, SlopeChain, Targets, TileBuffers},
-    layer_view::view_of_lines,
     lod::{Drawn, Fineness, Quality},
-    options::{ClassSet, RoadMethod, RoadOptions},
+    options::RoadOptions,
+    picture_legend::{LegendRequest, legend},
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{
-        BlockingPackage, ClassVolumes, LineLayer, LoadTileError, MapExtent, RoadSegments,
-        RoadVolumes, TileGeometry, TileStore,
-    },
+    tiles::{BlockingPackage, ClassVolumes, LoadTileError, MapExtent, TileGeometry, TileStore},
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
@@ -49,8 +43,10 @@ pub struct RenderRequest {
     pub supersampling: u32,
     /// Colours and widths.
     pub style: Style,
-    /// What the classes of roads are called, 0 first, if the picture has a legend.
-    pub legend: Option<[String; FunctionalRoadClass::COUNT]>,
+    /// What a legend is to tell, if the picture has one.
+    pub legend: Option<LegendRequest>,
+    /// What is written over the picture, if anything is.
+    pub title: Option<String>,
     /// Whether the edges of the ground's triangles are drawn.
     pub wireframe: Wireframe,
 }
@@ -103,6 +99,13 @@ pub struct RenderReport {
     pub tiles_loaded: u64,
     /// The eye in the working CRS and its true height.
     pub eye_m: [f64; 3],
+    /// Where pixels of a picture from above are: the map from columns and rows, counted from the upper left corner, to working metres. x is
+    /// `[0] + [1] · column + [2] · row`, and y is likewise that of the last three.
+    pub working_from_pixel: Option<[f64; 6]>,
+    /// What of the title is not seen as it was written.
+    pub title_flaws: TitleFlaws,
+    /// Whether the picture is too small for its legend, so that a part is cut off.
+    pub is_legend_cut: bool,
 }
 
 /// Why there is no picture.
@@ -193,17 +196,25 @@ pub fn render(
         .iter()
         .map(|(buffers, skirt_depth_m)| DrawTile { buffers, skirt_depth_m: *skirt_depth_m })
         .collect();
-    Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
+    let renderer = Renderer::new(&gpu);
+    renderer.draw(&gpu, &view, &tiles, &targets);
 
     let mut picture = targets.picture().read_image(&gpu)?;
     if is_stopped() {
         return Err(RenderError::Stopped);
     }
-    if let Some(labels) = &request.legend {
-        let tiles: Vec<_> = scene::draw_list(&store, &drawn).map(|(tile, _)| tile).collect();
-        draw_legend(&mut picture, &legend(&view, labels, &tiles));
+    let title = request.title.as_deref().map(|title| draw_title(&mut picture, title));
+    let title = title.unwrap_or_default();
+    let credits_px = draw_attribution(&mut picture, &package.manifest().attribution);
+    let mut is_legend_cut = false;
+    if let Some(asked) = &request.legend {
+        let seen = renderer.seen(&gpu, &view, &tiles, &targets)?;
+        let grounds = scene::draw_list(&store, &drawn).map(|(tile, _)| tile);
+        let has_tint = has_tint(style, grounds);
+        let taken = Taken { title_px: title.height_px, credits_px };
+        let legend = legend(&view, asked, &seen, has_tint);
+        is_legend_cut = draw_legend(&mut picture, &legend, taken);
     }
-    draw_attribution(&mut picture, &package.manifest().attribution);
 
     let eye = camera.eye_in_world();
     let report = RenderReport {
@@ -223,8 +234,16 @@ pub fn render(
         levels: tiles_by_level(&drawn),
         tiles_loaded: store.len() as u64,
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
+        working_from_pixel: working_from_pixel(&camera),
+        title_flaws: title.flaws,
+        is_legend_cut,
     };
     Ok(Rendered { picture, report })
+}
+
+/// Whether the ground of some tiles has colours by its height, and not a photo alone.
+fn has_tint<'a>(style: &Style, mut tiles: impl Iterator<Item = &'a TileGeometry>) -> bool {
+    style.photo < 1.0 || tiles.any(|tile| tile.photo.is_none())
 }
 
 /// The sum of something over the volumes of all classes of areas that are drawn.
@@ -288,89 +307,17 @@ fn camera(
     Ok(camera)
 }
 
-/// The classes of which some tile of the view has a piece that is shown in the middle of the picture or nearer; `of` are a tile's roads, or
-/// the lines that are drawn as roads.
-fn drawn_classes<'a>(
-    tiles: &[&'a TileGeometry],
-    view: &FrameView<'_>,
-    of: impl Fn(&'a TileGeometry) -> (&'a RoadSegments, &'a RoadVolumes),
-) -> ClassSet {
-    let has = |tile: &'a TileGeometry, class: FunctionalRoadClass| match view.roads.method {
-        RoadMethod::Geometry => !of(tile).0.of_class(class).is_empty(),
-        RoadMethod::ShadowVolumes => !of(tile).1.of_class(class).is_empty(),
-        RoadMethod::None => false,
-    };
-    let shown = class_scale::shown_classes(view, view.camera.focus_m());
-    shown.iter().filter(|class| tiles.iter().any(|tile| has(tile, *class))).collect()
-}
-
-/// What the legend of a picture tells.
-fn legend(
-    view: &FrameView<'_>,
-    labels: &[String; FunctionalRoadClass::COUNT],
-    tiles: &[&TileGeometry],
-) -> Legend {
-    let axes = view.camera.world_from_view();
-    let road = |class: FunctionalRoadClass| {
-        let style = view.style.road(class);
-        let label = labels[usize::from(class.number())].clone();
-        LegendRoad { label, bands: style.bands, outline: style.outline }
-    };
-    Legend {
-        pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
-        // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
-        north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
-        roads: drawn_classes(tiles, view, |tile| (&tile.roads, &tile.volumes))
-            .iter()
-            .map(road)
-            .collect(),
-        areas: legend_areas(view, tiles),
-        boundaries: legend_boundaries(view, tiles),
+/// The map from columns and rows of the picture, counted from its upper left corner, to working metres, if each pixel has a place whatever the height there.
+fn working_from_pixel(camera: &Camera) -> Option<[f64; 6]> {
+    if camera.projection() == Projection::Perspective {
+        return None;
     }
-}
-
-/// The colour of the ground in the middle of the picture, as far as something of this colour and opacity lets it be seen.
-fn over_ground(view: &FrameView<'_>, color: Rgb, opacity: f32) -> Rgb {
-    let ground = view.style.tint.color_at(
-        view.camera.target_in_world().z / view.vertical_scale(),
-        view.height_range_m,
-        view.latitude_deg,
-    );
-    [0, 1, 2].map(|k| ground[k] + (color[k] - ground[k]) * opacity)
-}
-
-/// The classes of boundaries of the picture, in their colours over the ground.
-fn legend_boundaries(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendLine> {
-    let layer = LineLayer::Boundaries;
-    let style = layer.style_of(view.style);
-    let view = view_of_lines(view, &style);
-    let line = |class: FunctionalRoadClass| {
-        let label = match BoundaryClass::from_number(class.number())?.admin_level() {
-            Some(2) => "country border".to_owned(),
-            Some(level) => format!("boundary, level {level}"),
-            None => "protected area".to_owned(),
-        };
-        let style = layer.lines_of(view.style)[usize::from(class.number())];
-        let color = over_ground(&view, style.color, style.opacity);
-        Some(LegendLine { label, style: LineStyle { color, ..style } })
-    };
-    let classes = drawn_classes(tiles, &view, |tile| {
-        (&tile.lines.of(layer).segments, &tile.lines.of(layer).volumes)
-    });
-    classes.iter().filter_map(line).collect()
-}
-
-/// The classes of areas of which some tile of the view has one, in their colours over the ground in the middle of the picture.
-fn legend_areas(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendArea> {
-    let is_there = |class| {
-        let has = |tile: &&TileGeometry| tile.areas.classes.iter().any(|of| of.class == class);
-        view.style.area(class).is_drawn() && tiles.iter().any(has)
-    };
-    let area = |class| {
-        let AreaStyle { color, opacity } = *view.style.area(class);
-        LegendArea { label: class.to_string(), color: over_ground(view, color, opacity) }
-    };
-    AreaStyle::TOP_FIRST.into_iter().filter(|class| is_there(*class)).map(area).collect()
+    let [width, height] = camera.size_px().map(f64::from);
+    let (half, axes) = (camera.half_extent(), camera.world_from_view());
+    let of_column = axes.x_axis * (2.0 * half.x / width);
+    let of_row = axes.y_axis * (-2.0 * half.y / height);
+    let corner = camera.ray_start_in_world(DVec2::ZERO);
+    Some([corner.x, of_column.x, of_row.x, corner.y, of_column.y, of_row.y])
 }
 
 /// How many tiles are drawn on each level, coarse levels first.

@@ -74,12 +74,12 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     );
     let far_m =
         ground.corners().map(|corner| view.camera.seeing_distance_m(corner)).fold(0.0, f64::max);
-    let scaling = view.roads.width_scaling(view.style);
     FunctionalRoadClass::all()
         .filter(|class| view.roads.classes.contains(*class))
         .filter_map(|class| Some((class, widest_m(tile, view, class)?)))
         .any(|(class, widest_m)| {
             let road = &view.style.roads[usize::from(class.number())];
+            let scaling = view.roads.width_scaling(view.style, road);
             let near_m = f64::from(widest_m) * tile.most_width_factor;
             let grown_m = near_m * scaling.factor(far_m / view.point_scale);
             let limit_m = 2.0
@@ -96,12 +96,15 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
 fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClass) -> Option<f32> {
     let width_m = |own| view.style.width_m(class, own);
     let widest = |widths: &mut dyn Iterator<Item = OwnWidth>| widths.map(width_m).reduce(f32::max);
+    let decks = tile.decks.of_class(class).iter().map(|piece| piece.own_width);
     match view.roads.method {
         RoadMethod::Geometry => {
-            widest(&mut tile.roads.of_class(class).iter().map(|piece| piece.own_width))
+            let on_ground = tile.roads.of_class(class).iter().map(|piece| piece.own_width);
+            widest(&mut on_ground.chain(decks))
         }
         RoadMethod::ShadowVolumes => {
-            widest(&mut tile.volumes.of_class(class).iter().map(|piece| piece.own_width))
+            let on_ground = tile.volumes.of_class(class).iter().map(|piece| piece.own_width);
+            widest(&mut on_ground.chain(decks))
         }
         RoadMethod::None => None,
     }

@@ -30,6 +30,8 @@ mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
+#[cfg(test)]
+pub(crate) use self::roads::GroundNet;
 pub use self::{
     areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, BadAreas, ClassVolumes},
     decoder::TileDecoder,
@@ -40,8 +42,8 @@ pub use self::{
     package::PackageTiles,
     photo::PhotoImage,
     roads::{
-        DashPlace, RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes,
-        TileLines,
+        DashPlace, DeckLine, DeckPiece, DeckPieces, RoadList, RoadLook, RoadSegment, RoadSegments,
+        RoadVolume, RoadVolumes, TileLines,
     },
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
@@ -51,7 +53,10 @@ pub(crate) use self::{
     geometry::{WideWay, plan_around},
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoads, Bed, GroundLine, NearHeights, OPEN_M, RoadEnd, dash_of_segment_m},
+    roads::{
+        BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGround, PlanLine, RoadEnd,
+        dash_of_segment_m,
+    },
 };
 pub(crate) use self::{
     shading_slopes::ShadingSlopes, shares_in::shares_in, store::MOST_SLOPES_ABOVE,

@@ -27,7 +27,10 @@ pub enum CameraRequest {
         orientation: Orientation,
     },
     /// Where the roads are, or the whole package, straight from above with parallel rays and north up.
-    OverviewFromAbove,
+    OverviewFromAbove {
+        /// Side of a pixel, true metres: the middle of the overview is in the middle of the picture. `None`: all of it is in the picture.
+        pixel_m: Option<f64>,
+    },
     /// A place straight from above with parallel rays. It needs no ground.
     FromAbove {
         /// Longitude of the place, WGS84.
@@ -75,7 +78,7 @@ impl CameraRequest {
         match self {
             Self::Overview => Orientation { heading_deg: 0.0, pitch_deg: 45.0 },
             Self::LookAt { orientation, .. } => orientation,
-            Self::OverviewFromAbove => Orientation { heading_deg: 0.0, pitch_deg: 0.0 },
+            Self::OverviewFromAbove { .. } => Orientation { heading_deg: 0.0, pitch_deg: 0.0 },
             Self::FromAbove { heading_deg, .. } => Orientation { heading_deg, pitch_deg: 0.0 },
         }
     }
@@ -83,7 +86,7 @@ impl CameraRequest {
     /// Whether it shows where the roads are, and not a place that was named.
     #[must_use]
     pub fn is_overview(self) -> bool {
-        matches!(self, Self::Overview | Self::OverviewFromAbove)
+        matches!(self, Self::Overview | Self::OverviewFromAbove { .. })
     }
 
     /// The place to look at, in the working CRS: [`CameraRequest::camera`] needs the height of the ground there. `None` for
@@ -118,7 +121,14 @@ impl CameraRequest {
         let all = in_world(ground.heights_m);
         match self {
             Self::Overview => Ok(Camera::framing(subject, self.orientation(), size_px)),
-            Self::OverviewFromAbove => Ok(Camera::framing_from_above(subject, 0.0, all, size_px)),
+            Self::OverviewFromAbove { pixel_m: None } => {
+                Ok(Camera::framing_from_above(subject, 0.0, all, size_px))
+            }
+            Self::OverviewFromAbove { pixel_m: Some(pixel_m) } => {
+                let middle = subject.center().truncate();
+                let pixel_in_world_m = pixel_m * manifest.point_scale;
+                Ok(Camera::from_above(middle, pixel_in_world_m, 0.0, all, size_px))
+            }
             Self::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => {
                 let Some([x, y]) = self.place(manifest)? else {
                     return Err(off_ground(lon_deg, lat_deg, manifest));

@@ -67,6 +67,8 @@ export interface About {
   styles: string[];
   /** Names of the classes of roads, and their colours in the style shown. */
   classes: { label: string; color: string }[];
+  /** Names of the boundaries that the map has and the style draws, and their colours. */
+  boundaries: { label: string; color: string }[];
   has: { photo: boolean; areas: boolean; boundaries: boolean };
   adapter: string;
   /** Whether the processor draws. */

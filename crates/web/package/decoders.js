@@ -1,8 +1,11 @@
 // Workers that decode tiles. All run one compiled module.
 
 /** A worker needs a script of the page's own host; where the element comes from another one, a script that imports it will do. */
-function startWorker(/** @type {string} */ script) {
-  if (new URL(script).origin === location.origin) return new Worker(script, { type: "module" });
+function startWorker() {
+  const own = import.meta.url;
+  // Bundlers know this form, written so, and bundle the worker with what it imports.
+  if (new URL(own).origin === location.origin) return new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const script = own.replace(/[^/]*$/, "worker.js");
   const address = URL.createObjectURL(new Blob([`import ${JSON.stringify(script)};`], { type: "text/javascript" }));
   const worker = new Worker(address, { type: "module" });
   setTimeout(() => URL.revokeObjectURL(address), 60_000);
@@ -19,7 +22,6 @@ export const usualCount = () => Math.max(2, Math.min(4, (navigator.hardwareConcu
  * @param {(error: unknown) => void} failed called once at most
  */
 export function startDecoders(module, count, decoded, failed) {
-  const script = new URL("./worker.js", import.meta.url).href;
   let hasFailed = false;
   const fail = (/** @type {unknown} */ error) => {
     if (!hasFailed) failed(error);
@@ -29,7 +31,7 @@ export function startDecoders(module, count, decoded, failed) {
   const workers = [];
   const end = () => workers.forEach((worker) => worker.terminate());
   const start = () => {
-    const worker = startWorker(script);
+    const worker = startWorker();
     workers.push(worker);
     worker.onmessage = (event) => {
       if (event.data?.failed) fail(new Error(event.data.failed));

@@ -1,4 +1,4 @@
-// The legend: names of the classes with the colours of the style shown. Each class can be hidden.
+// The legend: names of the classes with the colours of the style shown. Each class of roads can be hidden; boundaries are listed.
 import { make } from "./dom.js";
 
 /**
@@ -37,5 +37,23 @@ export function makeLegend(set) {
       inputs.forEach((input, k) => {
         input.checked = settings.classes[k] !== false;
       }),
+  };
+}
+
+/** The boundaries of the map, with the colours of the style shown. */
+export function makeLines() {
+  const element = make("ul", { class: "legend", "aria-label": "Boundaries" });
+  return {
+    element,
+    list(/** @type {{ label: string, color: string }[]} */ lines) {
+      element.hidden = lines.length === 0;
+      element.replaceChildren(
+        ...lines.map((one) => {
+          const swatch = make("span", { class: "line-swatch" });
+          swatch.style.color = one.color;
+          return make("li", { class: "named-line" }, swatch, make("span", {}, one.label));
+        }),
+      );
+    },
   };
 }

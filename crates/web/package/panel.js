@@ -2,7 +2,7 @@
 import { action, choice, section, select, slider, toggle } from "./controls.js";
 import { make, setText } from "./dom.js";
 import { icons } from "./icons.js";
-import { makeLegend } from "./legend.js";
+import { makeLegend, makeLines } from "./legend.js";
 
 const percent = (/** @type {number} */ value) => `${Math.round(value * 100)} %`;
 const times = (/** @type {number} */ value) => `× ${value.toFixed(2)}`;
@@ -82,6 +82,7 @@ export function makePanel(map, about, close) {
     return control.element;
   };
   const legend = makeLegend(set);
+  const lines = makeLines();
   const figures = makeFigures();
   const record = action(icons.record(), "Record flight", () => map.command("record"));
   record.classList.add("record");
@@ -164,6 +165,7 @@ export function makePanel(map, about, close) {
           : null,
         about.has.areas ? use(toggle(set, "areas", "Areas")) : null,
         about.has.boundaries ? use(toggle(set, "boundaries", "Boundaries")) : null,
+        about.has.boundaries ? lines.element : null,
       ),
       section(
         "View",
@@ -230,6 +232,7 @@ export function makePanel(map, about, close) {
     show(/** @type {any} */ settings, /** @type {import("./corniche-map.js").About} */ now) {
       last = settings;
       legend.list(now.classes);
+      lines.list(settings.boundaries ? now.boundaries : []);
       for (const control of controls) control.show(settings);
     },
     /** @param {import("./corniche-map.js").FrameReport} report */

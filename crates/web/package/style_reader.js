@@ -11,7 +11,7 @@ const MODULE = "corniche_web_styles_bg.wasm";
 let module = null;
 
 async function load() {
-  const answer = await fetch(new URL(`./${MODULE}`, import.meta.url));
+  const answer = await fetch(new URL("./corniche_web_styles_bg.wasm", import.meta.url));
   if (!answer.ok) throw new Error(`the server answers ${answer.status}`);
   await init({ module_or_path: answer });
 }

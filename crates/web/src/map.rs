@@ -11,7 +11,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{Rgb, RoadStyle, Style};
 use corniche_tileset::{FORMAT_VERSION, Manifest};
 use corniche_viewer::{
-    CameraRequest, OffGround, SightedGround,
+    BoundaryLines, CameraRequest, OffGround, SightedGround,
     flight::Pose,
     lod::Fineness,
     range,
@@ -135,6 +135,11 @@ impl Map {
             label: label.clone(),
             color: css(road.bands.main_color()),
         };
+        let boundaries = BoundaryLines::of(manifest, &self.style).into_iter();
+        let line = |lines: BoundaryLines| {
+            let color = css(lines.style.color);
+            ClassEntry { label: lines.label, color }
+        };
         About {
             src: self.address.clone(),
             attribution: manifest.attribution.clone(),
@@ -144,6 +149,7 @@ impl Map {
             levels: manifest.levels.len(),
             styles: tables::style_names(),
             classes: self.labels.iter().zip(&self.style.roads).map(entry).collect(),
+            boundaries: boundaries.map(line).collect(),
             has: Has {
                 photo: manifest.settings.photo.is_some(),
                 areas: manifest.areas.is_some(),

@@ -10,13 +10,13 @@ use corniche_viewer::tiles::MapPackage as _;
 use crate::{loader::Tileset, report::PickedRoad};
 
 /// The road that lies nearest to a place in plan, if it is no farther away than `reach_m`, working metres, beside half its width. `tile` is the tile
-/// that is drawn there, `half_width_m` that of a class, and classes that are hidden do not count.
+/// that is drawn there, `half_width_m` that of a road by its class and attributes, and classes that are hidden do not count.
 pub(crate) async fn road_at(
     tiles: &Tileset,
     tile: TileId,
     at_m: [f64; 2],
     reach_m: f64,
-    half_width_m: &dyn Fn(FunctionalRoadClass) -> Option<f64>,
+    half_width_m: &dyn Fn(FunctionalRoadClass, &RoadAttributes) -> Option<f64>,
     labels: &[String],
 ) -> Option<PickedRoad> {
     let bytes = tiles.package.payload(tile).await.ok()??;
@@ -25,21 +25,27 @@ pub(crate) async fn road_at(
     let wanted = Sections::ROADS_SV | Sections::ATTRIBUTES;
     let payload = decode(&bytes, tile, frame, vertical.quantum_m, wanted).ok()?;
     let position = |point: &LatticePoint| frame.position_m(*point);
+    let record_of = |way_id: i64| {
+        let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
+        found.ok().map(|at| &payload.attributes[at])
+    };
+    let unknown = RoadAttributes::default();
     let nearest = payload
         .roads_sv
         .iter()
         .filter_map(|road| {
-            let half_m = half_width_m(road.class)?;
             let pairs = road.line.points.windows(2);
             let distance_m = pairs
                 .map(|pair| distance_m(at_m, position(&pair[0]), position(&pair[1])))
                 .fold(f64::INFINITY, f64::min);
+            let attributes = record_of(road.way_id).map_or(&unknown, |record| &record.attributes);
+            let half_m = half_width_m(road.class, attributes)?;
             let beside_m = (distance_m - half_m).max(0.0);
             (beside_m <= reach_m).then_some((beside_m, road))
         })
         .min_by(|(a, one), (b, other)| a.total_cmp(b).then(one.class.cmp(&other.class)));
     let (_, road) = nearest?;
-    let record = payload.attributes.iter().find(|record| record.way_id == road.way_id);
+    let record = record_of(road.way_id);
     let class = road.class.number();
     Some(PickedRoad {
         way: road.way_id,

@@ -87,7 +87,7 @@ pub(crate) struct FrameReport {
     pub(crate) notices: Vec<Notice>,
 }
 
-/// A class of roads in the legend.
+/// A class of roads, or of boundaries, in the legend.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct ClassEntry {
     pub(crate) label: String,
@@ -116,6 +116,8 @@ pub(crate) struct About {
     pub(crate) levels: usize,
     pub(crate) styles: Vec<String>,
     pub(crate) classes: Vec<ClassEntry>,
+    /// Boundaries that the package has and the style draws.
+    pub(crate) boundaries: Vec<ClassEntry>,
     pub(crate) has: Has,
     pub(crate) adapter: String,
     pub(crate) is_software: bool,

@@ -207,7 +207,7 @@ impl Settings {
             style = style.without_boundaries();
         }
         for (road, factor) in style.roads.iter_mut().zip(self.widths) {
-            road.width_m *= factor;
+            *road = road.widened(factor);
         }
         Ok(style)
     }

@@ -6,7 +6,7 @@ use corniche_live::{
     controls::{Button, Input, Key, KeyState, Mode, Modifiers},
     place_in_world,
 };
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_viewer::tiles::MapPackage as _;
 use glam::DVec2;
 use js_sys::{Promise, Uint8Array};
@@ -248,8 +248,8 @@ impl MapView {
         let point_scale = tileset.package.manifest().point_scale;
         let classes = self.0.settings.road_options().classes;
         future_to_promise(async move {
-            let half_width_m = |class: FunctionalRoadClass| {
-                let width_m = f64::from(style.roads[usize::from(class.number())].width_m);
+            let half_width_m = |class: FunctionalRoadClass, attributes: &RoadAttributes| {
+                let width_m = f64::from(style.width_of_m(class, attributes));
                 classes.contains(class).then_some(width_m * point_scale / 2.0)
             };
             let road = match tile {

@@ -3,7 +3,7 @@
 use corniche_live::{GroundPoint, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
-    RoadMethod,
+    BoundaryLines, RoadMethod,
     camera::Orientation,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
@@ -29,14 +29,19 @@ struct Told {
     passes: Vec<(RoadMethod, PassTimes)>,
     has_areas: bool,
     class_labels: [String; FunctionalRoadClass::COUNT],
+    boundary_lines: Vec<BoundaryLines>,
 }
 
 impl Told {
     fn new() -> Self {
         let mut times = FrameTimes::default();
         (0..100).for_each(|k| times.push(10.0 + f64::from(k % 7)));
-        let pass =
-            PassTimes { terrain_ms: 1111.25, areas_ms: 0.0, roads_ms: 3370.5, composite_ms: 99.75 };
+        let pass = PassTimes {
+            terrain_ms: 1111.25,
+            roads_ms: 3370.5,
+            composite_ms: 99.75,
+            ..PassTimes::default()
+        };
         Self {
             times,
             attribution: vec![
@@ -50,6 +55,7 @@ impl Told {
             ],
             has_areas: false,
             passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
+            boundary_lines: Vec::new(),
             class_labels: std::array::from_fn(|class| {
                 format!("unclassified, living street {class}")
             }),
@@ -72,10 +78,14 @@ impl Told {
             mode: Mode::Map,
             style_names: &self.styles,
             photo: None,
-            has: crate::window_content::Has { areas: self.has_areas, boundaries: false },
+            has: crate::window_content::Has {
+                areas: self.has_areas,
+                boundaries: !self.boundary_lines.is_empty(),
+            },
             overlays: &[],
             drawing: crate::window_content::DrawingContent::default(),
             overlay_colors: Vec::new(),
+            boundary_lines: self.boundary_lines.clone(),
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             class_labels: &self.class_labels,
             tiles_drawn: 123,
@@ -397,6 +407,27 @@ fn classes_have_their_names_and_the_colours_of_the_style() {
         assert!(texts.iter().any(|(words, ..)| *words == name), "{name}: {texts:?}");
     }
     assert!(!texts.iter().any(|(words, ..)| words == "Wireframe"), "folded away");
+}
+
+#[test]
+fn boundaries_are_listed_while_they_are_shown() {
+    let line = |label: &str| BoundaryLines {
+        label: label.to_owned(),
+        style: corniche_styles::LineStyle::solid([0.5, 0.2, 0.5], 2.0),
+    };
+    let long = "boundary, level 6, boundary, level 7, boundary, level 8";
+    let boundary_lines = vec![line("country border"), line(long)];
+    let told = Told { boundary_lines, ..Told::new() };
+    for boundaries in [crate::Visibility::Shown, crate::Visibility::Hidden] {
+        let mut settings = Settings { boundaries, ..usual() };
+        let (texts, _) = lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&[], &[]]);
+        for label in ["country border", long] {
+            let found = texts.iter().find(|(words, ..)| words == label);
+            assert_eq!(found.is_some(), boundaries == crate::Visibility::Shown, "{label}");
+            let fits = found.is_none_or(|(_, place, clip)| clip.contains_rect(*place));
+            assert!(fits, "{found:?}");
+        }
+    }
 }
 
 /// The map keeps its place whatever there is to tell.

@@ -111,7 +111,7 @@ impl Settings {
             }
         }
         for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
-            road.width_m *= factor;
+            *road = road.widened(factor);
         }
         applied
     }

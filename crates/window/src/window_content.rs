@@ -3,7 +3,7 @@
 use corniche_live::{GroundPoint, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
-    RoadMethod,
+    BoundaryLines, RoadMethod,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
 };
@@ -77,6 +77,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) overlays: &'a [String],
     /// Colours of their lines.
     pub(crate) overlay_colors: Vec<Rgb>,
+    /// The boundaries of the package that the style draws.
+    pub(crate) boundary_lines: Vec<BoundaryLines>,
     /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
     /// What the roads of each class are called.

@@ -70,7 +70,7 @@ fn relief_seed() -> Vec<u8> {
     let context = context();
     let id = TileId::ROOT.children().nth(1).unwrap();
     let cell = context.frame.level_cell(id.z());
-    let relief = Some(Relief::of_heights(&heights, cell, context.quantum_m).unwrap());
+    let relief = Some(Relief::of_heights(&heights, &heights, cell, context.quantum_m).unwrap());
     let tile = TilePayload {
         id,
         terrain: None,

@@ -19,8 +19,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from corniche.program import find_program
 from corniche_dask.limits import parse_bytes
-from corniche_dask.program import find_program
 
 
 def timed(command: Sequence[str]) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from typing import Any
 
 from distributed import Client, Future
 
-from corniche_dask.child import peak_memory
+from corniche.child import peak_memory
 from corniche_dask.drive import Drive
 from corniche_dask.flow import Flow
 from corniche_dask.jobs import Job

@@ -17,7 +17,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from conftest import FAKE, none_left
-from corniche_dask import CornicheError, PackageExists, PartFailed, PartRefused, ProgramError, Summary, build
+from corniche.errors import CornicheError, ProgramError, TargetExists
+from corniche_dask import PartFailed, PartRefused, Summary, build
 from corniche_dask.build import RETRIES
 from corniche_dask.cli import main
 from corniche_dask.worker import make_part
@@ -172,7 +173,7 @@ def test_a_package_that_is_there_is_kept(tmp_path: Path, fake: str, two: Client)
     made = Made(tmp_path, fake)
     made.package.write_text("mine")
     client = two
-    with pytest.raises(PackageExists, match="-O replaces it"):
+    with pytest.raises(TargetExists, match="-O replaces it"):
         made.build(client)
     assert made.package.read_text() == "mine" and not (made.store.parent / "calls").exists()
     made.build(client, overwrite=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from corniche_dask.errors import CornicheError
+from corniche.errors import CornicheError
 from corniche_dask.flow import Flow
 from corniche_dask.jobs import Job, order_of_steps, parse_jobs
 

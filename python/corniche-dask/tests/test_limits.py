@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from dask.utils import key_split
 
-from corniche_dask.errors import UsageError
+from corniche.errors import UsageError
 from corniche_dask.jobs import Job
 from corniche_dask.limits import WORKER_BYTES, limits_of, parse_bytes, slots_of
 from corniche_dask.tasks import Setting, key_of, part_of_name, stores_of

@@ -108,6 +108,18 @@ fn they_are_drawn_by_both_methods_and_can_be_left_out() {
     };
     assert!(differ(&sv, &without) > 1000, "{} pixels", differ(&sv, &without));
     assert!(differ(&geo, &sv) * 20 < differ(&sv, &without), "{} pixels", differ(&geo, &sv));
+
+    // Where there is a road, no boundary is drawn.
+    let bare = render("bare.png", &["--roads", "none", "--boundaries", "off"]).unwrap();
+    let alone = render("alone.png", &["--roads", "none"]).unwrap();
+    let on_roads = |with: &image::RgbaImage, plain: &image::RgbaImage| {
+        let roads = without.pixels().zip(bare.pixels()).map(|(a, b)| a != b);
+        let lines = with.pixels().zip(plain.pixels()).map(|(a, b)| a != b);
+        roads.zip(lines).filter(|both| *both == (true, true)).count()
+    };
+    let (crossing, drawn) = (on_roads(&alone, &bare), on_roads(&sv, &without));
+    println!("boundaries on roads: {crossing} pixels without roads, {drawn} with them");
+    assert!(crossing > 20 && drawn * 10 < crossing, "{drawn} of {crossing} pixels");
 }
 
 #[test]

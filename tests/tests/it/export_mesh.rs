@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+mod bridges;
 mod photos;
 mod readers;
 mod relief;

@@ -65,7 +65,7 @@ fn check_all(terrain: &Terrain, package: &Path, region: &Region) {
         found.check(told).unwrap_or_else(|error| panic!("level {level}: {error}"));
     }
     assert!(levels.iter().map(|found| found.vertices).sum::<u64>() > 1000);
-    assert!(levels.iter().map(|found| found.places).sum::<u64>() > 20_000);
+    assert!(levels.iter().map(|found| found.places).sum::<u64>() > 10_000);
 }
 
 /// In both grids (in a quick run and in CI: in one): the ground of the package within each level's error, closed, the same on both sides of borders.
@@ -73,11 +73,11 @@ fn check_all(terrain: &Terrain, package: &Path, region: &Region) {
 fn tiles_are_the_package_s_ground() {
     let folder = TempDir::new().unwrap();
     let package = built(&folder);
-    let grids = [("geographic", "13"), ("web-mercator", "13")];
-    for (tiling, level) in some_of(grids, [2, 2, 1]) {
-        let options = ["--tiling", tiling, "--max-level", level];
+    let level = cases(12, 12, 13);
+    for tiling in some_of(["geographic", "web-mercator"], [2, 2, 1]) {
+        let options = ["--tiling", tiling, "--max-level", &level.to_string()];
         let terrain = Terrain::read(&export(&package, tiling, &options));
-        assert_eq!(terrain.levels(), 14);
+        assert_eq!(terrain.levels(), level + 1);
         check_all(&terrain, &package, &pass());
     }
 }
@@ -87,11 +87,17 @@ fn tiles_are_the_package_s_ground() {
 #[ignore = "slow: two regions, all levels"]
 fn real_regions_are_the_package_s_ground() {
     let regions = [
-        ("liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf", "10"),
-        ("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", "13"),
+        (
+            ["liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf"],
+            cases("9", "9", "10"),
+        ),
+        (
+            ["portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf"],
+            cases("12", "12", "13"),
+        ),
     ];
-    for (dem, osm, level) in some_of(regions, [2, 2, 1]) {
-        let [Some(dem), Some(osm)] = [dem, osm].map(real_data) else { return };
+    for (files, level) in some_of(regions, [2, 2, 1]) {
+        let [Some(dem), Some(osm)] = files.map(real_data) else { return };
         let folder = TempDir::new().unwrap();
         let package = folder.path().join("region.pmtiles");
         let options = ["--quiet", "--dem-vertical-crs", "EPSG:5773", "--relief", "off"];

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+mod bridges;
 mod checks;
 mod glb;
 mod photos;
@@ -30,7 +31,10 @@ fn pass() -> Region {
 /// The sample with heights above the geoid of EGM96.
 fn built(folder: &TempDir) -> PathBuf {
     let package = folder.path().join("pass.pmtiles");
-    copy_pass(&package, &["--dem-vertical-crs", "EPSG:5773", "--relief", "off"]);
+    copy_pass(
+        &package,
+        &["--dem-vertical-crs", "EPSG:5773", "--relief", "off", "--structures", "ground"],
+    );
     package
 }
 
@@ -70,7 +74,8 @@ fn real_regions_are_the_package_s_ground_with_its_roads() {
         let [Some(dem), Some(osm)] = [dem, osm].map(corniche_testing::real_data) else { return };
         let folder = TempDir::new().unwrap();
         let package = folder.path().join("region.pmtiles");
-        let options = ["--dem-vertical-crs", "EPSG:5773", "--relief", "off"];
+        let ground = ["--structures", "ground", "--relief", "off"];
+        let options = [&["--dem-vertical-crs", "EPSG:5773"][..], &ground].concat();
         e2e::build_from([&dem, &osm], &package, &options);
         let manifest = e2e::manifest(&package);
         let metres_per_unit = [0, 1].map(|k| manifest["metres_per_unit"][k].as_f64().unwrap());
@@ -268,7 +273,7 @@ fn in_crs([lon, lat]: [f64; 2]) -> [f64; 2] {
 fn what_cannot_be_exported_is_said() {
     let folder = TempDir::new().unwrap();
     let package = folder.path().join("unknown.pmtiles");
-    copy_pass(&package, &["--relief", "off"]);
+    copy_pass(&package, &["--relief", "off", "--structures", "ground"]);
     let target = folder.path().join("out");
     let refused = |more: &[&str], words: &[&str]| {
         let all = ["export", "3dtiles", text(&package), "-o", text(&target)];

@@ -279,7 +279,7 @@ fn it_is_exported_as_3d_tiles() {
             }
         }
     }
-    assert_eq!(triangles, 86_286, "ground, walls and roads");
+    assert_eq!(triangles, 86_178, "ground, walls and roads");
 }
 
 #[test]

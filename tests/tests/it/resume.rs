@@ -170,8 +170,8 @@ fn set_version(store: &Path, version: u32) {
 fn a_store_of_another_version_is_kept_and_refused() {
     let job = stopped(Job::new(&OPTIONS));
     set_version(&job.store(), 99);
-    check_refused(&job, &["--resume"], 1, &["another version", "99"]);
-    check_refused(&job, &[], 1, &[".out.pmtiles.work"]);
+    check_refused(&job, &["--resume"], 2, &["another version", "99"]);
+    check_refused(&job, &[], 2, &[".out.pmtiles.work"]);
     set_version(&job.store(), 1);
     job.succeed(&["--quiet", "--resume"]);
     assert!(job.result() == whole());

@@ -1,4 +1,4 @@
-//! What the scripts say on machines that cannot build.
+//! What the scripts say on machines that cannot build, and the layout of an archive.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -105,4 +105,32 @@ fn tests_are_counted_with_those_that_are_skipped() {
     assert!(said.ends_with("9 passed, 1 failed, 1 skipped\n"), "{said}");
     fs::write(&output, "error: could not compile").unwrap();
     assert!(count("quick").contains("they do not compile"));
+}
+
+/// The layout that the archive, the wheel and the image share, around the program at hand.
+#[test]
+fn an_archive_is_laid_out_around_a_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = Command::new(e2e::root().join("scripts/release"))
+        .args(["--folder", "--program", e2e::text(&e2e::binary())])
+        .args(["--out", e2e::text(folder.path())])
+        .env("CARGO_TARGET_DIR", folder.path().join("target"))
+        .output()
+        .unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let made = folder.path().join(concat!("corniche-", env!("CARGO_PKG_VERSION"), "-x86_64-linux"));
+    for name in [
+        "bin/corniche",
+        "README.md",
+        "share/man/man1/corniche.1",
+        "share/man/man1/corniche-build.1",
+        "share/bash-completion/completions/corniche",
+        "share/zsh/site-functions/_corniche",
+        "share/fish/vendor_completions.d/corniche.fish",
+        "share/corniche/licences/LICENSE-MIT",
+    ] {
+        assert!(made.join(name).metadata().unwrap().len() > 0, "{name} is missing");
+    }
+    let readme = fs::read_to_string(made.join("README.md")).unwrap();
+    assert!(readme.starts_with("# Corniche 0."), "{readme}");
 }

@@ -379,6 +379,48 @@ fn pipes_and_links_are_refused() {
     assert!(ran.code == 2 && ran.err.contains("link.txt is neither"), "{}", ran.err);
 }
 
+/// `--open` gives the address to a browser, the first that `BROWSER` names and that is there; where none opens, the server serves all the same.
+#[test]
+#[cfg(unix)]
+fn open_gives_the_address_to_a_browser() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let place = ServedFolder::new();
+    let (browser, told) = (place.at("browser"), place.at("told"));
+    fs::write(&browser, format!("#!/bin/sh\nprintf %s \"$*\" >'{}'\n", told.display())).unwrap();
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
+    let (package, page) = (place.package(), place.at("page"));
+    // Without what opens addresses on this computer: a test opens no browser.
+    let nothing = place.at("nothing");
+    fs::create_dir(&nothing).unwrap();
+    let serving = |browser: &str| {
+        let mut command = Command::new(e2e::binary());
+        command.args(["serve", text(&package), "--page", text(&page), "--port", "0", "--open"]);
+        Serving::start(command.env("BROWSER", browser).env("PATH", &nothing))
+    };
+    let opened = serving(&format!("/no/such/browser %s:{} %s", text(&browser)));
+    assert_eq!(opened.get("/").body, INDEX.as_bytes());
+    assert_eq!(fs::read_to_string(told).unwrap(), opened.url);
+
+    let mut without = serving(text(&place.at("no-browser")));
+    assert_eq!(without.get("/").body, INDEX.as_bytes());
+    without.child.kill().unwrap();
+    let said = ended(&mut without.child).err;
+    assert!(said.contains("no browser could be opened"), "{said}");
+}
+
+/// A notebook that shows a map may be killed: its server ends, too.
+#[test]
+fn a_server_ends_with_who_started_it() {
+    let place = ServedFolder::new();
+    let mut command = Command::new(e2e::binary());
+    command.args(["serve", text(&place.package()), "--page", text(&place.at("page"))]);
+    let mut serving =
+        Serving::start(command.args(["--port", "0", "--die-with-parent"]).stdin(Stdio::piped()));
+    assert_eq!(serving.get("/").status, 200);
+    drop(serving.child.stdin.take());
+    assert_eq!(ended(&mut serving.child).code, 0);
+}
+
 /// The program has a page of its own, or says how to get one.
 #[test]
 fn without_a_folder_the_page_of_the_program_is_taken() {
@@ -390,9 +432,7 @@ fn without_a_folder_the_page_of_the_program_is_taken() {
         return skip("what a program without a page says: this one was built with CORNICHE_PAGE");
     }
     assert_eq!(ran.code, 2, "{}", ran.err);
-    for words in
-        ["built without the page", "run scripts/web", "--page target/web/site", "CORNICHE_PAGE"]
-    {
+    for words in ["built without the page", "a released one", "run scripts/web", "CORNICHE_PAGE"] {
         assert!(ran.err.contains(words), "{}", ran.err);
     }
     assert!(!site.exists());

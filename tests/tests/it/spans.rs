@@ -1,15 +1,16 @@
-//! `corniche build --structures spans`: bridges and tunnels off the ground, by whole builds, in parts, on recorded terrain and within bounds.
+//! `corniche build --structures`: bridges and tunnels off the ground, by whole builds, in parts, on recorded terrain and within bounds.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, path::Path};
 
 use e2e::{
-    COARSE, build_pass, built_in_parts, copy_pass, corniche, json, manifest, real_data, sample,
-    text,
+    COARSE, build_pass, built_in_parts, copy_pass, corniche, draw, json, manifest, real_data,
+    sample, text,
 };
 
 const SPANS: [&str; 4] = ["--structures", "spans", "--classes", "0-8"];
+const GROUND: [&str; 4] = ["--structures", "ground", "--classes", "0-8"];
 
 /// `verify` with the extract holds, and looks at spans.
 fn holds(package: &Path, osm: &Path, more: &[&str]) {
@@ -30,7 +31,7 @@ fn the_sample_has_its_bridges_and_tunnels() {
     let folder = tempfile::tempdir().unwrap();
     let [spans, ground] = ["spans", "ground"].map(|name| folder.path().join(name));
     copy_pass(&spans, &SPANS);
-    copy_pass(&ground, &SPANS[2..]);
+    copy_pass(&ground, &GROUND);
     let osm = sample("pass/pass.osm.pbf");
     holds(&spans, &osm, &[]);
     let [with, without] = [&spans, &ground].map(|package| manifest(package));
@@ -64,6 +65,28 @@ fn spans_do_not_depend_on_how_a_package_is_built() {
     let ran = corniche(words.iter().chain(&SPANS));
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(fs::read(&again).unwrap() == whole, "on the terrain of a package");
+}
+
+/// The gorge of the sample: a bridge over it in both methods alike, and none in a package that has bridges on the ground.
+#[test]
+fn pictures_show_bridges_in_the_air() {
+    let folder = tempfile::tempdir().unwrap();
+    let [spans, ground] = ["spans", "ground"].map(|name| folder.path().join(name));
+    copy_pass(&spans, &["--classes", "0-8"]);
+    copy_pass(&ground, &GROUND);
+    let png = folder.path().join("a.png");
+    let picture = |package: &Path, more: &[&str]| {
+        let view = ["-O", "--size", "400x300", "--look-at", "9.5568,46.9202", "--distance", "500"];
+        let place = ["--height", "1190", "--pitch", "60", "--heading", "30"];
+        let ran = draw("render", package, &png, &[&view[..], &place, more].concat())?;
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        Some(fs::read(&png).unwrap())
+    };
+    let Some(sv) = picture(&spans, &["--roads", "sv"]) else { return };
+    assert!(picture(&spans, &["--roads", "geo"]).unwrap() == sv, "by the other method");
+    assert!(picture(&ground, &["--roads", "sv"]).unwrap() != sv, "on the ground");
+    let bare = [&spans, &ground].map(|package| picture(package, &["--roads", "none"]).unwrap());
+    assert!(bare[0] == bare[1], "without roads");
 }
 
 /// Bounds through bridges: what ends there is carried there.

@@ -3,10 +3,14 @@
 use clap::Args;
 use corniche_viewer::{CameraRequest, camera::Orientation};
 
-use super::values::parse_position;
+use super::values::{parse_dpi, parse_position, parse_scale};
 
 /// Side of a pixel of a view from above unless --pixel says otherwise.
 const DEFAULT_PIXEL_M: f64 = 5.0;
+/// Pixels to an inch in print unless --dpi says otherwise.
+const DEFAULT_DPI: f64 = 300.0;
+/// An inch, metres.
+const INCH_M: f64 = 0.0254;
 
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
@@ -56,18 +60,60 @@ pub(crate) struct FromAboveArgs {
     /// With --ortho and --look-at: side of a pixel on the ground, in metres [default: 5]
     #[arg(long, value_name = "METRES", requires = "ortho", requires = "look_at")]
     pixel: Option<f64>,
+    /// With --ortho: scale in print, as 1:25000 or 25000; without --look-at around the middle of the overview
+    #[arg(long, value_name = "1:N", requires = "ortho", conflicts_with = "pixel", allow_hyphen_values = true, value_parser = parse_scale)]
+    scale: Option<u32>,
+    /// With --scale: pixels to an inch in print, which the file says, too [default: 300]
+    #[arg(long, value_name = "N", requires = "scale", allow_hyphen_values = true, value_parser = parse_dpi)]
+    dpi: Option<f64>,
+    /// With --ortho: also write where the picture is, beside it: a world file (.pgw) and its coordinate system (.prj)
+    #[arg(long, requires = "ortho")]
+    pub(crate) world_file: bool,
+}
+
+/// How large a picture is in print.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PrintScale {
+    /// It is so many times smaller than the ground.
+    pub(crate) denominator: u32,
+    /// Pixels to an inch.
+    pub(crate) dots_per_inch: f64,
+}
+
+impl PrintScale {
+    /// Side of a pixel on the ground.
+    pub(crate) fn pixel_m(self) -> f64 {
+        f64::from(self.denominator) * INCH_M / self.dots_per_inch
+    }
+
+    /// Pixels to a metre of paper, rounded, as PNG has them.
+    pub(crate) fn dots_per_metre(self) -> u32 {
+        (self.dots_per_inch / INCH_M).round() as u32
+    }
 }
 
 impl FromAboveArgs {
+    /// Whether the picture is one from above.
+    pub(crate) fn is_from_above(&self) -> bool {
+        self.ortho
+    }
+
+    /// The scale in print, if one was asked for.
+    pub(crate) fn print_scale(&self) -> Option<PrintScale> {
+        let dots_per_inch = self.dpi.unwrap_or(DEFAULT_DPI);
+        self.scale.map(|denominator| PrintScale { denominator, dots_per_inch })
+    }
+
     /// What is asked of the viewer, which checks it.
     pub(crate) fn request(&self, camera: &CameraArgs) -> CameraRequest {
+        let pixel_m = self.print_scale().map(PrintScale::pixel_m).or(self.pixel);
         match (self.ortho, camera.look_at) {
             (false, _) => camera.request(),
-            (true, None) => CameraRequest::OverviewFromAbove,
+            (true, None) => CameraRequest::OverviewFromAbove { pixel_m },
             (true, Some([lon_deg, lat_deg])) => CameraRequest::FromAbove {
                 lon_deg,
                 lat_deg,
-                pixel_m: self.pixel.unwrap_or(DEFAULT_PIXEL_M),
+                pixel_m: pixel_m.unwrap_or(DEFAULT_PIXEL_M),
                 heading_deg: camera.heading,
             },
         }

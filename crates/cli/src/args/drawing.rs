@@ -9,17 +9,17 @@ use super::{
     ground::GroundArgs,
     look::{LookArgs, Roads},
     shared::{GpuArgs, PackageArg},
-    values::parse_size,
+    values::{parse_size, parse_title},
 };
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
-    /// The picture to write (.png)
-    #[arg(short, long, value_name = "PNG")]
+    /// The picture to write (.png), or with --ortho a GeoTIFF that knows its place (.tif)
+    #[arg(short, long, value_name = "PNG|TIF")]
     pub(crate) output: PathBuf,
-    /// Replace the picture if it exists, once the new one is complete
+    /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// How roads are drawn
@@ -39,9 +39,12 @@ pub(crate) struct RenderArgs {
     /// Samples per pixel along each side, averaged
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
-    /// Draw a legend: classes of roads, areas and boundaries, an arrow to the north, and a scale for the middle of the picture
+    /// Draw a legend: the roads, tunnels, boundaries, areas and heights that the picture shows, an arrow to the north, and a scale for its middle
     #[arg(long)]
     pub(crate) legend: bool,
+    /// Write a title on the picture, at its upper left
+    #[arg(long, value_name = "TEXT", value_parser = parse_title, allow_hyphen_values = true)]
+    pub(crate) title: Option<String>,
     /// Draw the edges of the ground's triangles, beneath the roads
     #[arg(long)]
     pub(crate) wireframe: bool,

@@ -201,8 +201,8 @@ pub(crate) struct ExportMeshArgs {
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or
-    /// none
+    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are
+    /// slabs of surfaces if the package has spans
     #[arg(
         long,
         value_enum,
@@ -259,8 +259,8 @@ pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
     pub(crate) folder: FolderArgs,
     /// How roads are there: cut (surfaces of true width), line (centre-lines just above the ground), vector (these as vector content
-    /// for CesiumJS) or none. Surfaces are in the ground's own triangles; vector content is in a second tileset,
-    /// roads/tileset.json, a draft, and not valid glTF 2.0 for others
+    /// for CesiumJS) or none. Surfaces are in the ground's own triangles, and bridges are slabs if the package has spans;
+    /// vector content is in a second tileset, roads/tileset.json, a draft, and not valid glTF 2.0 for others
     #[arg(
         long,
         value_enum,

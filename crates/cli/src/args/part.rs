@@ -59,10 +59,6 @@ pub(crate) struct PlannedArgs {
     /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
     #[arg(long, value_name = "BYTES")]
     pub(crate) memory: Option<String>,
-    /// End, with exit code 1, when standard input ends: for programs that start this one and keep a pipe to it open. It ends when they
-    /// do, however they end. The same command goes on from what was done
-    #[arg(long)]
-    pub(crate) die_with_parent: bool,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
 }

@@ -9,7 +9,7 @@ use super::values::package_place;
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "For example: corniche serve map.pmtiles; then open the address that it prints. Ctrl-C ends it, with exit code 0."
+    after_help = "For example: corniche serve map.pmtiles --open; or open the address that it prints. Ctrl-C ends it, with exit code 0."
 )]
 pub(crate) struct ServeArgs {
     /// The packages: files. The page shows one of them, or a list to choose from
@@ -22,6 +22,9 @@ pub(crate) struct ServeArgs {
     /// The port; 0 takes one that is free
     #[arg(long, value_name = "N", default_value_t = 8080)]
     pub(crate) port: u16,
+    /// Open the page in the browser of this computer, which BROWSER names, else the system
+    #[arg(long, conflicts_with = "site")]
+    pub(crate) open: bool,
     /// Take the files of the page from this folder [default: those that the program was built with]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) page: Option<PathBuf>,

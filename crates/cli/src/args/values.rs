@@ -2,6 +2,7 @@
 
 use std::{
     ffi::OsStr,
+    ops::RangeInclusive,
     path::{Path, PathBuf},
 };
 
@@ -87,6 +88,41 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
         Some(_) => Err("both sides must be between 1 and 16384 pixels".to_owned()),
         None => Err("write it like 1600x1200".to_owned()),
     }
+}
+
+/// A pixel of such scales and densities is 1 mm to 254 km wide on the ground, which the viewer draws.
+const SCALES: RangeInclusive<u32> = 100..=100_000_000;
+const DOTS_PER_INCH: RangeInclusive<f64> = 10.0..=2400.0;
+
+/// How many times smaller than the ground a picture is, from `1:25000` or `25000`.
+pub(crate) fn parse_scale(text: &str) -> Result<u32, String> {
+    let denominator = text.strip_prefix("1:").unwrap_or(text);
+    let number = denominator.parse().ok().filter(|number| SCALES.contains(number));
+    number.ok_or_else(|| "write it like 1:25000, from 1:100 to 1:100000000".to_owned())
+}
+
+pub(crate) fn parse_dpi(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| DOTS_PER_INCH.contains(number));
+    number.ok_or_else(|| "write a number of pixels to an inch, from 10 to 2400".to_owned())
+}
+
+/// A text that is written on a picture, on as many lines as it needs.
+pub(crate) fn parse_title(text: &str) -> Result<String, String> {
+    if text.trim().is_empty() {
+        return Err("it is empty; leave the option out for a picture without a title".to_owned());
+    }
+    if text.chars().any(|letter| letter.is_control() || is_unseen(letter)) {
+        return Err(
+            "it has characters that cannot be seen, such as line breaks; write it in one line"
+                .to_owned(),
+        );
+    }
+    Ok(text.trim().to_owned())
+}
+
+/// Whether a character only says how others are written: marks of direction, joiners, spaces without width (category Cf of Unicode 16, as far as texts have them).
+fn is_unseen(letter: char) -> bool {
+    matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 pub(crate) fn parse_position(text: &str) -> Result<[f64; 2], String> {

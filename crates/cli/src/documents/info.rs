@@ -127,6 +127,8 @@ struct VerticalDocument {
     datum: String,
     /// What was done to the inputs' heights, in words.
     treatment: String,
+    /// The step between heights that the DEM can tell apart, metres; 0 where they have fractions.
+    height_step_m: f64,
     /// Lowest and highest node, metres.
     range_m: [f64; 2],
 }
@@ -268,7 +270,8 @@ impl From<&Manifest> for ManifestDocument {
         let boundaries = lines(ClassedLayer::Boundaries);
         let manifest = manifest.clone();
         let ScaleRecord { center, least, largest } = manifest.scale;
-        let VerticalRecord { quantum_m, unit, datum, treatment, range_m } = manifest.vertical;
+        let VerticalRecord { quantum_m, unit, datum, treatment, height_step_m, range_m } =
+            manifest.vertical;
         let input =
             |InputRecord { kind, name, bytes, sha256 }| InputDocument { kind, name, bytes, sha256 };
         Self {
@@ -286,7 +289,14 @@ impl From<&Manifest> for ManifestDocument {
             clip: manifest.clip.map(Into::into),
             resampling: manifest.resampling,
             nodes_are_samples: manifest.nodes_are_samples,
-            vertical: VerticalDocument { quantum_m, unit, datum, treatment, range_m },
+            vertical: VerticalDocument {
+                quantum_m,
+                unit,
+                datum,
+                treatment,
+                height_step_m,
+                range_m,
+            },
             datum_operations: manifest.datum_operations.into_iter().map(Into::into).collect(),
             coordinates: manifest.coordinates,
             levels: manifest.levels.iter().map(Into::into).collect(),

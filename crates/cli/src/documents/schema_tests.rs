@@ -95,6 +95,7 @@ fn the_document_has_all_fields_of_the_manifest() {
     manifest.settings.bounds_deg = Some([9.0, 47.0, 10.0, 48.0]);
     manifest.settings.polygon =
         Some(PolygonRecord { name: "a.gpkg".to_owned(), sha256: "12".to_owned() });
+    manifest.vertical.height_step_m = 1.0;
     manifest.settings.relief = ReliefLevels::Full;
     manifest.levels.iter_mut().for_each(|level| level.relief_bytes = 7);
     manifest.settings.classes = Some(vec![0, 8]);

@@ -14,6 +14,10 @@ pub(crate) struct SpansDocument {
     bridges: u64,
     /// How many tunnels.
     tunnels: u64,
+    /// The true length of all bridges in plan, as far as there is data, kilometres.
+    bridges_km: f64,
+    /// The same of all tunnels.
+    tunnels_km: f64,
     /// Where they cross other roads or each other.
     crossings: u64,
     /// How often there is a reason to look at one, by its name.
@@ -38,6 +42,8 @@ impl From<SpansRecord> for SpansDocument {
         Self {
             bridges: counts.bridges,
             tunnels: counts.tunnels,
+            bridges_km: counts.bridges_um as f64 / 1e9,
+            tunnels_km: counts.tunnels_um as f64 / 1e9,
             crossings: counts.crossings,
             reasons: reasons.map(|(reason, count)| ReasonDocument { reason, count }).collect(),
             levels: levels.into_iter().map(Into::into).collect(),

@@ -61,7 +61,9 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let exported = export_mesh(&package, &request, &output.path(), &progress);
     progress.finish();
     let summary = exported.map_err(|error| named(error, &args.file.output))?;
-    let placed = materials.map(|materials| materials.place(&request)).transpose()?;
+    let placed = materials
+        .map(|materials| materials.place(&request.materials(package.manifest())))
+        .transpose()?;
     let size = output.place().inspect_err(|_| {
         // Materials without a model are of no use, but those that were there before belong to another one.
         if let Some(Placed { path, is_new: true }) = &placed {
@@ -94,10 +96,10 @@ impl Materials {
     }
 
     /// Writes it and puts it in its place: before the model, which names it.
-    fn place(self, request: &MeshRequest) -> Result<Placed, Failure> {
+    fn place(self, content: &str) -> Result<Placed, Failure> {
         let Self { path, output } = self;
         let is_new = path.symlink_metadata().is_err();
-        output.write_whole(request.materials().as_bytes())?;
+        output.write_whole(content.as_bytes())?;
         Ok(Placed { path, is_new })
     }
 }

@@ -6,7 +6,7 @@ use super::measured_run::MeasuredRun;
 
 const HEADINGS: &str = "lod,roads,frame,time_s,x_m,y_m,height_m,heading_deg,pitch_deg,tiles_drawn,tiles_loaded,\
 tiles_uploaded,tiles_evicted,tiles_missing,triangles,road_segments,gpu_bytes,select_ms,decode_ms,upload_ms,draw_ms,\
-terrain_ms,areas_ms,roads_ms,composite_ms\n";
+terrain_ms,areas_ms,roads_ms,composite_ms,bridges_ms\n";
 
 /// Times of passes stay empty where the adapter has no clock.
 pub(crate) fn to_csv(runs: &[MeasuredRun]) -> String {
@@ -40,10 +40,14 @@ pub(crate) fn to_csv(runs: &[MeasuredRun]) -> String {
             let _ = match frame.passes {
                 Some(passes) => writeln!(
                     text,
-                    ",{:.3},{:.3},{:.3},{:.3}",
-                    passes.terrain_ms, passes.areas_ms, passes.roads_ms, passes.composite_ms
+                    ",{:.3},{:.3},{:.3},{:.3},{:.3}",
+                    passes.terrain_ms,
+                    passes.areas_ms,
+                    passes.roads_ms,
+                    passes.composite_ms,
+                    passes.decks_ms
                 ),
-                None => writeln!(text, ",,,,"),
+                None => writeln!(text, ",,,,,"),
             };
         }
     }

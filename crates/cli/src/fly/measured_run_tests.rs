@@ -27,9 +27,9 @@ pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
         draw_ms,
         passes: Some(PassTimes {
             terrain_ms: 1.0,
-            areas_ms: 0.0,
             roads_ms: 2.0,
             composite_ms: 0.5,
+            ..PassTimes::default()
         }),
     }
 }

@@ -87,11 +87,13 @@ fn times(runs: &[MeasuredRun]) -> String {
         "terrain",
         "areas",
         "roads",
+        "bridges",
         "composite",
     ]);
-    // Without areas there is no such pass, and nothing to tell of it.
-    let mut passes = runs.iter().flat_map(MeasuredRun::counted).filter_map(|frame| frame.passes);
-    let has_areas = passes.any(|passes| passes.areas_ms > 0.0);
+    // Without areas, or bridges, there is no such pass, and nothing to tell of it.
+    let passes = runs.iter().flat_map(MeasuredRun::counted).filter_map(|frame| frame.passes);
+    let has_areas = passes.clone().any(|passes| passes.areas_ms > 0.0);
+    let has_decks = passes.clone().any(|passes| passes.decks_ms > 0.0);
     for run in runs {
         let draw_ms: Vec<f64> = run.counted().iter().map(|frame| frame.draw_ms).collect();
         let pass = |of: &dyn Fn(&PassTimes) -> f64| {
@@ -111,6 +113,7 @@ fn times(runs: &[MeasuredRun]) -> String {
             pass(&|passes| passes.terrain_ms),
             if has_areas { pass(&|passes| passes.areas_ms) } else { String::new() },
             pass(&|passes| passes.roads_ms),
+            if has_decks { pass(&|passes| passes.decks_ms) } else { String::new() },
             pass(&|passes| passes.composite_ms),
         ]);
     }

@@ -43,8 +43,12 @@ fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
     assert!((mean - 0.225).abs() < 1e-12 && (most - 0.25).abs() < 1e-12);
     assert!((total - 4.0 / 18.0).abs() < 1e-12);
     // On the card 3.5 ms are left of 7, then of 3.5.
-    runs[1].frames[1].passes =
-        Some(PassTimes { terrain_ms: 1.0, areas_ms: 0.0, roads_ms: 5.0, composite_ms: 1.0 });
+    runs[1].frames[1].passes = Some(PassTimes {
+        terrain_ms: 1.0,
+        roads_ms: 5.0,
+        composite_ms: 1.0,
+        ..PassTimes::default()
+    });
     let text = to_text(&runs);
     let geo = cells(&text, "loss %", "lod, roads geo");
     assert_eq!(geo, ["22.2", "22.5", "25.0", "33.3", "25.0", "50.0", "26", "30"], "{text}");
@@ -87,8 +91,13 @@ fn areas_have_a_column_where_there_are_some() {
     let mut runs = [run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])];
     assert!(!to_text(&runs).contains("areas  "));
     for frame in &mut runs[0].frames {
-        frame.passes =
-            Some(PassTimes { terrain_ms: 1.0, areas_ms: 0.25, roads_ms: 2.0, composite_ms: 0.5 });
+        frame.passes = Some(PassTimes {
+            terrain_ms: 1.0,
+            areas_ms: 0.25,
+            roads_ms: 2.0,
+            decks_ms: 0.0,
+            composite_ms: 0.5,
+        });
     }
     let text = to_text(&runs);
     let found = cells(&text, "milliseconds", "lod, roads sv");
@@ -126,8 +135,12 @@ fn what_caps_cost_is_a_share_of_the_roads_pass_of_the_same_tiles() {
     ];
     for (run, roads_ms) in runs.iter_mut().zip([8.0, 6.0, 1.0, 3.0]) {
         for frame in &mut run.frames {
-            frame.passes =
-                Some(PassTimes { terrain_ms: 1.0, areas_ms: 0.0, roads_ms, composite_ms: 0.5 });
+            frame.passes = Some(PassTimes {
+                terrain_ms: 1.0,
+                roads_ms,
+                composite_ms: 0.5,
+                ..PassTimes::default()
+            });
         }
     }
     let text = to_text(&runs);

@@ -8,6 +8,9 @@ use crate::{exit::ExitCode, failure::Failure, table::bytes};
 /// What the program was built with: paths in addresses, and bytes. The build script writes it.
 const BUILT_IN: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
+/// Whether the program has a page of its own.
+pub(crate) const IS_BUILT_IN: bool = !BUILT_IN.is_empty();
+
 /// More than any page takes in memory.
 const MOST_BYTES: u64 = 512 << 20;
 
@@ -27,8 +30,8 @@ pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, Failure> {
 fn built_in(files: &[(&str, &'static [u8])]) -> Result<Vec<PageFile>, Failure> {
     if files.is_empty() {
         return Err(Failure::unusable(
-            "this program was built without the page of the viewer; run scripts/web in the repository and give --page \
-             target/web/site, or build the program with CORNICHE_PAGE=target/web/site",
+            "this program was built without the page of the viewer, which a released one has; run scripts/web in the repository \
+             and give --page target/web/site, or build the program with CORNICHE_PAGE=target/web/site",
         ));
     }
     let file = |&(path, bytes): &(&str, &'static [u8])| PageFile {

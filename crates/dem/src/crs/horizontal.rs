@@ -6,9 +6,9 @@ use corniche_geom::wgs84;
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 
-use crate::DemError;
 use crate::crs::cylindrical;
 use crate::crs::wkt::{child, children, keyword, wkt2};
+use crate::{DemError, library_error};
 
 /// A horizontal coordinate system, kept as text: PROJ's objects belong to one thread.
 #[derive(Debug, Clone)]
@@ -49,11 +49,8 @@ impl Crs {
     }
 
     pub(crate) fn wgs84() -> Result<Self, DemError> {
-        let reference = SpatialRef::from_epsg(4326).map_err(|source| DemError::CrsText {
-            option: "the built-in",
-            text: "EPSG:4326".to_owned(),
-            source: source.into(),
-        })?;
+        let reference = SpatialRef::from_epsg(4326)
+            .map_err(|source| DemError::NoProjTables { source: source.into() })?;
         Self::from_spatial_ref(&reference)
     }
 
@@ -69,7 +66,16 @@ impl Crs {
 
     /// PROJ's object for this thread, in traditional axis order: x or longitude first.
     pub(crate) fn spatial_ref(&self) -> Result<SpatialRef, GdalError> {
-        let mut reference = SpatialRef::from_wkt(&self.wkt)?;
+        // PROJ wrote the text itself. If it does not read it, its end tells whether it is whole.
+        let mut reference = SpatialRef::from_wkt(&self.wkt).map_err(|error| {
+            let why = library_error::last_words().unwrap_or_else(|| error.to_string());
+            let last = self.wkt.char_indices().nth_back(59).map_or(0, |(at, _)| at);
+            let end = &self.wkt[last..];
+            let bytes = self.wkt.len();
+            GdalError::BadArgument(format!(
+                "{why}, in a definition of {bytes} bytes that ends with {end}"
+            ))
+        })?;
         reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
         Ok(reference)
     }

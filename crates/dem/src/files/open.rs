@@ -5,7 +5,7 @@ use std::path::Path;
 use gdal::Dataset;
 
 use super::stand_in::stand_in;
-use crate::{DemError, library_error};
+use crate::{DemError, formats::lacks_format_of, library_error};
 
 /// Opens a file, with an error that says which of the usual things went wrong.
 pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
@@ -32,10 +32,12 @@ pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
     }
     library_error::forget();
     Dataset::open(path).map_err(|source| {
-        if path.is_dir() {
-            DemError::NotAFile { path: own() }
-        } else if let Some((found, advice)) = stand_in(path) {
+        if let Some((found, advice)) = stand_in(path) {
             DemError::StandIn { path: own(), found, advice }
+        } else if let Some(advice) = lacks_format_of(path) {
+            DemError::NoDriver { path: own(), advice }
+        } else if path.is_dir() {
+            DemError::NotAFile { path: own() }
         } else {
             DemError::Open { path: own(), source: source.into() }
         }

@@ -122,6 +122,11 @@ impl Source {
         self.values.stored_text(value)
     }
 
+    /// Metres between heights whose stored values are neighbouring whole numbers.
+    pub(crate) fn m_per_whole(&self) -> f64 {
+        self.values.m_per_whole()
+    }
+
     /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says that there is none.
     pub(crate) fn read_stored(
         &self,

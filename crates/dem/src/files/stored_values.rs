@@ -82,6 +82,11 @@ impl StoredValues {
         }
     }
 
+    /// Metres between heights whose stored values are neighbouring whole numbers.
+    pub(crate) fn m_per_whole(&self) -> f64 {
+        (self.scale * self.unit_m).abs()
+    }
+
     /// Stored values to metres, in place; what is no height becomes NaN.
     #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
     pub(crate) fn convert(&self, values: &mut [f64]) {

@@ -64,7 +64,7 @@ impl VirtualFile {
     /// Opens a file for reading.
     ///
     /// # Errors
-    /// When the name holds a zero byte, or GDAL finds no such file; with what it says of the reason.
+    /// When the name holds a zero byte, or GDAL cannot open such a file; with what it says of the reason.
     pub fn open(path: &Path) -> io::Result<Self> {
         quiet();
         forget();
@@ -72,8 +72,11 @@ impl VirtualFile {
         // SAFETY: both are C strings that outlive the call; the handle is checked for null.
         let handle = unsafe { gdal_sys::VSIFOpenL(name.as_ptr(), c"rb".as_ptr()) };
         let not_found = || {
-            let reason = last_words().map(|words| format!(": {words}")).unwrap_or_default();
-            io::Error::new(io::ErrorKind::NotFound, format!("GDAL finds no such file{reason}"))
+            let words = last_words().map_or_else(
+                || "GDAL finds no such file".to_owned(),
+                |reason| format!("GDAL cannot open it: {reason}"),
+            );
+            io::Error::new(io::ErrorKind::NotFound, words)
         };
         Ok(Self { handle: NonNull::new(handle).ok_or_else(not_found)? })
     }

@@ -46,6 +46,7 @@ impl Polygon {
         let dataset = open_vectors(path).map_err(|error| match error {
             NotOpened::Missing(source) => PolygonError::Missing { path: own(), source },
             NotOpened::Stream => PolygonError::Stream { path: own() },
+            NotOpened::NoDriver(advice) => PolygonError::NoDriver { path: own(), advice },
             NotOpened::Unreadable(source) => PolygonError::Open { path: own(), source },
         })?;
         let mut reading = Reading { path, parts: Vec::new(), features: 0, corners: 0 };

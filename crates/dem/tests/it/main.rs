@@ -7,6 +7,7 @@
 )]
 
 mod all_real_data;
+mod audit;
 mod blocks;
 mod bounds;
 mod closed_form;

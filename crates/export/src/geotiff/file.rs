@@ -10,7 +10,7 @@ use gdal::{
     spatial_ref::{AxisMappingStrategy, SpatialRef},
 };
 
-use super::grid::{BLOCK, RasterGrid};
+use super::grid::{BLOCK, RasterSize};
 use crate::{error::ExportError, gdal_settings::GdalSettings};
 
 const DRIVER: &str = "GTiff";
@@ -20,15 +20,12 @@ const SETTINGS: [(&str, &str); 3] = [
     ("GTIFF_POINT_GEO_IGNORE", "NO"),
     ("GTIFF_REPORT_COMPD_CS", "YES"),
 ];
-/// DEFLATE, which every reader of TIFF has; the predictor for floating-point numbers makes it small. Bands lie one after the other, so that a program that
-/// wants heights need not read errors.
-const OPTIONS: [&str; 10] = [
+/// Creation options of every raster. DEFLATE is what every reader of TIFF has.
+const OPTIONS: [&str; 8] = [
     "TILED=YES",
     "BLOCKXSIZE=256",
     "BLOCKYSIZE=256",
     "COMPRESS=DEFLATE",
-    "PREDICTOR=3",
-    "INTERLEAVE=BAND",
     "BIGTIFF=IF_SAFER",
     // Readers of 1.0 pass over what heights are measured from.
     "GEOTIFF_VERSION=1.1",
@@ -37,19 +34,63 @@ const OPTIONS: [&str; 10] = [
     "SPARSE_OK=FALSE",
 ];
 
-/// A type of the pixels of a raster of heights.
-pub(crate) trait Number: GdalType + Copy + Send {
-    fn of(value: f64) -> Self;
+/// What the pixels of a raster are.
+#[derive(Debug)]
+pub(crate) struct PixelKind {
+    /// Creation options beside [`OPTIONS`].
+    options: &'static [&'static str],
+    /// Whether a pixel stands for its area or for the point in its middle, as GDAL says it.
+    area_or_point: &'static str,
+    /// The value that stands for no data.
+    no_data: Option<f64>,
+}
+
+/// Heights at points. The predictor for floating-point numbers makes the file small. Bands lie one after the other, so that a program that
+/// wants heights need not read errors. No height can be mistaken for NaN.
+pub(crate) const HEIGHTS: PixelKind = PixelKind {
+    options: &["PREDICTOR=3", "INTERLEAVE=BAND"],
+    area_or_point: "Point",
+    no_data: Some(f64::NAN),
+};
+
+/// Red, green and blue of areas. The predictor takes differences of neighbours.
+pub(crate) const COLORS: PixelKind = PixelKind {
+    options: &["PREDICTOR=2", "INTERLEAVE=PIXEL", "PHOTOMETRIC=RGB"],
+    area_or_point: "Area",
+    no_data: None,
+};
+
+/// A type of the pixels of a raster.
+pub(crate) trait Pixel: GdalType + Copy + Send {
     fn bytes(self) -> [u8; 8];
+}
+
+/// A type of the pixels of a raster of heights.
+pub(crate) trait Number: Pixel {
+    fn of(value: f64) -> Self;
+}
+
+impl Pixel for u8 {
+    fn bytes(self) -> [u8; 8] {
+        u64::from(self).to_le_bytes()
+    }
+}
+
+impl Pixel for f32 {
+    fn bytes(self) -> [u8; 8] {
+        u64::from(self.to_bits()).to_le_bytes()
+    }
 }
 
 impl Number for f32 {
     fn of(value: f64) -> Self {
         value as Self
     }
+}
 
+impl Pixel for f64 {
     fn bytes(self) -> [u8; 8] {
-        u64::from(self.to_bits()).to_le_bytes()
+        self.to_le_bytes()
     }
 }
 
@@ -57,14 +98,11 @@ impl Number for f64 {
     fn of(value: f64) -> Self {
         value
     }
-
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
-    }
 }
 
 /// What a raster says of itself.
 pub(crate) struct RasterFacts {
+    pub(crate) pixels: &'static PixelKind,
     /// The CRS as WKT2.
     pub(crate) crs: String,
     pub(crate) crs_from_pixel: [f64; 6],
@@ -78,30 +116,30 @@ pub(crate) struct RasterFile<T> {
     path: PathBuf,
     dataset: Dataset,
     crs: SpatialRef,
-    grid: RasterGrid,
+    size: RasterSize,
     /// The checksum of each block that was written, band by band.
     written: Vec<Vec<u32>>,
     numbers: std::marker::PhantomData<T>,
     _settings: GdalSettings,
 }
 
-impl<T: Number> RasterFile<T> {
+impl<T: Pixel> RasterFile<T> {
     /// Begins a file. Nothing may be at `path`.
     pub(crate) fn create(
         path: &Path,
-        grid: &RasterGrid,
+        size: RasterSize,
         facts: &RasterFacts,
     ) -> Result<Self, ExportError> {
         corniche_dem::quiet();
         corniche_dem::forget();
         let settings = GdalSettings::set(&SETTINGS);
-        let created = create::<T>(path, grid, facts).map_err(|error| failed(path, error))?;
+        let created = create::<T>(path, size, facts).map_err(|error| failed(path, error))?;
         let (dataset, crs) = created.ok_or(ExportError::NoDriver { driver: DRIVER })?;
         Ok(Self {
             path: path.to_path_buf(),
             dataset,
             crs,
-            grid: *grid,
+            size,
             written: vec![Vec::new(); facts.descriptions.len()],
             numbers: std::marker::PhantomData,
             _settings: settings,
@@ -110,8 +148,8 @@ impl<T: Number> RasterFile<T> {
 
     /// Writes the next block of a band, counted from 0.
     pub(crate) fn push(&mut self, band: usize, block: Vec<T>) -> Result<(), ExportError> {
-        let place = self.grid.place(self.written[band].len());
-        self.written[band].push(checksum(&block, &self.grid, place));
+        let place = self.size.place(self.written[band].len());
+        self.written[band].push(checksum(&block, self.size, place));
         let write = || {
             let mut raster = self.dataset.rasterband(band + 1)?;
             raster.write_block(place.into(), &mut Buffer::new((BLOCK, BLOCK), block))
@@ -121,14 +159,14 @@ impl<T: Number> RasterFile<T> {
 
     /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
     pub(crate) fn finish(self) -> Result<bool, ExportError> {
-        let Self { path, dataset, crs, grid, written, .. } = self;
+        let Self { path, dataset, crs, size, written, .. } = self;
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_dem::forget();
         dataset.close().map_err(|error| failed(&path, error))?;
         if let Some(source) = corniche_dem::failure() {
             return Err(ExportError::Write { path, source });
         }
-        let again = read_again::<T>(&path, &grid, &written, &crs);
+        let again = read_again::<T>(&path, size, &written, &crs);
         // A file that is cut off may not even be opened.
         match again {
             Ok(Some(is_same_crs)) => Ok(is_same_crs),
@@ -142,21 +180,23 @@ fn failed(path: &Path, error: GdalError) -> ExportError {
 }
 
 /// The file, and its CRS; `None` without the driver.
-fn create<T: Number>(
+fn create<T: Pixel>(
     path: &Path,
-    grid: &RasterGrid,
+    size: RasterSize,
     facts: &RasterFacts,
 ) -> Result<Option<(Dataset, SpatialRef)>, GdalError> {
     let Ok(driver) = DriverManager::get_driver_by_name(DRIVER) else { return Ok(None) };
+    let options: RasterCreationOptions =
+        OPTIONS.iter().chain(facts.pixels.options).copied().collect();
     let mut dataset = driver.create_with_band_type_with_options::<T, _>(
         path,
-        grid.columns,
-        grid.rows,
+        size.columns,
+        size.rows,
         facts.descriptions.len(),
-        &RasterCreationOptions::from_iter(OPTIONS),
+        &options,
     )?;
     // Before the georeference, whose keys depend on it.
-    dataset.set_metadata_item("AREA_OR_POINT", "Point", "")?;
+    dataset.set_metadata_item("AREA_OR_POINT", facts.pixels.area_or_point, "")?;
     let mut crs = SpatialRef::from_definition(&facts.crs)?;
     crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
     dataset.set_spatial_ref(&crs)?;
@@ -166,17 +206,18 @@ fn create<T: Number>(
     }
     for (number, description) in (1..).zip(&facts.descriptions) {
         let mut band = dataset.rasterband(number)?;
-        // No height can be mistaken for it.
-        band.set_no_data_value(Some(f64::NAN))?;
+        if facts.pixels.no_data.is_some() {
+            band.set_no_data_value(facts.pixels.no_data)?;
+        }
         band.set_description(description)?;
     }
     Ok(Some((dataset, crs)))
 }
 
 /// Whether all blocks are there as they were written (`None` if not), and then whether the file names the same CRS.
-fn read_again<T: Number>(
+fn read_again<T: Pixel>(
     path: &Path,
-    grid: &RasterGrid,
+    size: RasterSize,
     written: &[Vec<u32>],
     crs: &SpatialRef,
 ) -> Result<Option<bool>, GdalError> {
@@ -192,9 +233,9 @@ fn read_again<T: Number>(
     for (number, written) in (1..).zip(written) {
         let band = dataset.rasterband(number)?;
         for (number, known) in written.iter().enumerate() {
-            let place = grid.place(number);
+            let place = size.place(number);
             let block: Buffer<T> = band.read_block(place.into())?;
-            if checksum(block.data(), grid, place) != *known {
+            if checksum(block.data(), size, place) != *known {
                 return Ok(None);
             }
         }
@@ -205,11 +246,10 @@ fn read_again<T: Number>(
 }
 
 /// The checksum of what a block has of the raster: what is beyond it, GDAL chooses itself.
-fn checksum<T: Number>(block: &[T], grid: &RasterGrid, place: [usize; 2]) -> u32 {
-    let (mut crc, window) = (Crc::new(), grid.window(place));
-    for row in block.chunks(BLOCK).take(window.rows) {
-        let bytes: Vec<u8> =
-            row[..window.columns].iter().flat_map(|number| number.bytes()).collect();
+fn checksum<T: Pixel>(block: &[T], size: RasterSize, place: [usize; 2]) -> u32 {
+    let (mut crc, [columns, rows]) = (Crc::new(), size.block_size(place));
+    for row in block.chunks(BLOCK).take(rows) {
+        let bytes: Vec<u8> = row[..columns].iter().flat_map(|number| number.bytes()).collect();
         crc.update(&bytes);
     }
     crc.sum()

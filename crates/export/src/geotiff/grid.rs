@@ -1,4 +1,4 @@
-//! The nodes that are the pixels of a raster.
+//! The pixels of a raster, in blocks, and the nodes that they are.
 
 use corniche_dem::RecordedCrs;
 use corniche_geom::{NodeIndex, NodeWindow};
@@ -6,8 +6,33 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{bounds::DegreeBounds, error::ExportError};
 
-/// Nodes along each side of a block.
+/// Pixels along each side of a block.
 pub(crate) const BLOCK: usize = 256;
+
+/// How many pixels a raster has. They are written in blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct RasterSize {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl RasterSize {
+    /// Blocks from left to right and from the top down.
+    pub(crate) fn blocks(self) -> [usize; 2] {
+        [self.columns, self.rows].map(|pixels| pixels.div_ceil(BLOCK))
+    }
+
+    /// Column and row of a block by its number, row by row.
+    pub(crate) fn place(self, number: usize) -> [usize; 2] {
+        let [columns, _] = self.blocks();
+        [number % columns, number / columns]
+    }
+
+    /// Columns and rows of a block, of which those on the right and at the bottom may be smaller.
+    pub(crate) fn block_size(self, [column, row]: [usize; 2]) -> [usize; 2] {
+        [BLOCK.min(self.columns - column * BLOCK), BLOCK.min(self.rows - row * BLOCK)]
+    }
+}
 
 /// A rectangle of finest nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,28 +70,23 @@ impl RasterGrid {
         }
     }
 
-    /// Blocks from west to east and from north to south.
-    pub(crate) fn blocks(&self) -> [usize; 2] {
-        [self.columns, self.rows].map(|nodes| nodes.div_ceil(BLOCK))
-    }
-
-    /// Column and row of a block by its number, row by row.
-    pub(crate) fn place(&self, number: usize) -> [usize; 2] {
-        let [columns, _] = self.blocks();
-        [number % columns, number / columns]
+    /// Its nodes as pixels.
+    pub(crate) fn size(&self) -> RasterSize {
+        RasterSize { columns: self.columns, rows: self.rows }
     }
 
     /// The nodes of a block, of which those in the east and in the south may be smaller.
-    pub(crate) fn window(&self, [column, row]: [usize; 2]) -> NodeWindow {
-        let from = [column * BLOCK, row * BLOCK];
+    pub(crate) fn window(&self, place: [usize; 2]) -> NodeWindow {
+        let from = place.map(|blocks| blocks * BLOCK);
+        let [columns, rows] = self.size().block_size(place);
         NodeWindow {
             corner: NodeIndex {
                 i: self.corner.i + from[0] as i64,
                 j: self.corner.j - from[1] as i64,
             },
             stride: 1,
-            columns: BLOCK.min(self.columns - from[0]),
-            rows: BLOCK.min(self.rows - from[1]),
+            columns,
+            rows,
         }
     }
 

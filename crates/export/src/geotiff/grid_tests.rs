@@ -7,9 +7,9 @@ use super::*;
 fn blocks_cover_a_raster() {
     for (columns, rows) in [(1, 1), (256, 257), (1000, 300)] {
         let grid = RasterGrid { corner: NodeIndex { i: -7, j: 1000 }, columns, rows };
-        let [across, down] = grid.blocks();
+        let [across, down] = grid.size().blocks();
         let windows: Vec<NodeWindow> =
-            (0..across * down).map(|k| grid.window(grid.place(k))).collect();
+            (0..across * down).map(|k| grid.window(grid.size().place(k))).collect();
         let nodes: usize = windows.iter().map(|window| window.columns * window.rows).sum();
         assert_eq!(nodes, columns * rows);
         let last = windows.last().unwrap();

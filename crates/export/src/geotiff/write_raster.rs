@@ -8,7 +8,7 @@ use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
     block::{self, Block, Tins},
-    file::{Number, RasterFacts, RasterFile},
+    file::{HEIGHTS, Number, RasterFacts, RasterFile},
     geotiff_request::GeoTiffRequest,
     grid::RasterGrid,
 };
@@ -155,6 +155,7 @@ fn facts(
         metadata.push(("DEM", names.join("; ")));
     }
     RasterFacts {
+        pixels: &HEIGHTS,
         crs: places.crs().to_owned(),
         crs_from_pixel: grid.crs_from_pixel(manifest),
         descriptions,
@@ -179,11 +180,11 @@ struct Written {
 impl Writing<'_> {
     fn write<T: Number>(&self, path: &Path, facts: &RasterFacts) -> Result<Written, ExportError> {
         let Self { package, level, request, grid, observer } = self;
-        let mut file = RasterFile::<T>::create(path, grid, facts)?;
+        let mut file = RasterFile::<T>::create(path, grid.size(), facts)?;
         let tins = Tins::new(package, *level);
         let mut sums = SampleSums::new(package.manifest().vertical.quantum_m);
         let mut covered = 0;
-        let [columns, rows] = grid.blocks();
+        let [columns, rows] = grid.size().blocks();
         observer.begin(Stage::ExportBlocks, Some((columns * rows) as u64));
         let rows_at_once = BLOCKS_AT_ONCE.div_ceil(columns);
         for first in (0..rows).step_by(rows_at_once) {

@@ -1,4 +1,4 @@
-//! Binary glTF 2.0: a node for each tile, with its ground, under its photo and with its relief if it has them, and the roads of each class, as lines or as surfaces.
+//! Binary glTF 2.0: a node for each tile, with its ground, under its photo and with its relief if it has them, and the roads of each class, as lines or as surfaces and slabs.
 //!
 //! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
 //!
@@ -12,14 +12,17 @@ use std::{
 use serde_json::{Map, Value, json};
 
 use super::{
-    mesh_request::{ModelColors, UpAxis},
+    mesh_request::{ModelColors, UpAxis, ground_and_roads},
     model::TileMesh,
     spill::Spill,
     writer::{About, MeshWriter},
 };
-use crate::gltf::{
-    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, TRIANGLES, U32, linear,
-    range_of, sampler, write_container,
+use crate::{
+    gltf::{
+        ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, SLAB_NAME, TRIANGLES, U32,
+        linear, range_of, sampler, write_container,
+    },
+    surfaces::SurfaceKind,
 };
 
 pub(crate) struct GlbWriter {
@@ -29,36 +32,41 @@ pub(crate) struct GlbWriter {
     meshes: Vec<Value>,
     nodes: Vec<Value>,
     materials: Vec<Value>,
+    colors: ModelColors,
+    /// The number of the material of slabs, once there is one.
+    slab_material: Option<usize>,
     /// Views of pictures; textures have the same numbers.
     images: Vec<Value>,
 }
 
 impl GlbWriter {
-    pub(crate) fn new(path: &Path, colors: &ModelColors) -> io::Result<Self> {
-        let material = |(number, [red, green, blue]): (usize, &[f32; 3])| {
-            let name = match number {
-                0 => "terrain".to_owned(),
-                _ => format!("roads FRC {}", number - 1),
-            };
-            json!({
-                "name": name,
-                "pbrMetallicRoughness": {
-                    // Colours of styles are sRGB, those of glTF linear.
-                    "baseColorFactor": [linear(*red), linear(*green), linear(*blue), 1.0],
-                    "metallicFactor": 0.0,
-                    "roughnessFactor": 1.0,
-                },
-            })
-        };
+    pub(crate) fn new(path: &Path, colors: ModelColors) -> io::Result<Self> {
         Ok(Self {
             bytes: Spill::beside(path)?,
             views: Vec::new(),
             accessors: Vec::new(),
             meshes: Vec::new(),
             nodes: Vec::new(),
-            materials: colors.iter().enumerate().map(material).collect(),
+            materials: ground_and_roads().map(|kind| material(kind, &colors)).collect(),
+            colors,
+            slab_material: None,
             images: Vec::new(),
         })
+    }
+
+    /// The number of a material; that of slabs is added where the first one is.
+    fn material_of(&mut self, kind: SurfaceKind) -> usize {
+        match kind {
+            SurfaceKind::Ground => 0,
+            SurfaceKind::Road(class) => 1 + usize::from(class.number()),
+            SurfaceKind::Slab(_) => {
+                let Self { materials, colors, slab_material, .. } = self;
+                *slab_material.get_or_insert_with(|| {
+                    materials.push(material(kind, colors));
+                    materials.len() - 1
+                })
+            }
+        }
     }
 
     /// Adds numbers to the buffer; returns the number of its accessor.
@@ -160,6 +168,24 @@ impl GlbWriter {
     }
 }
 
+fn material(kind: SurfaceKind, colors: &ModelColors) -> Value {
+    let name = match kind {
+        SurfaceKind::Ground => "terrain".to_owned(),
+        SurfaceKind::Road(class) => format!("roads FRC {}", class.number()),
+        SurfaceKind::Slab(_) => SLAB_NAME.to_owned(),
+    };
+    let [red, green, blue] = colors.of(kind).map(linear);
+    json!({
+        "name": name,
+        "pbrMetallicRoughness": {
+            // Colours of styles are sRGB, those of glTF linear.
+            "baseColorFactor": [red, green, blue, 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 1.0,
+        },
+    })
+}
+
 enum Content<'a> {
     Vectors {
         vectors: &'a [[f32; 3]],
@@ -193,20 +219,22 @@ impl MeshWriter for GlbWriter {
         let name = tile.id.to_string();
         let (material, pictured) = self.add_pictures(tile, &name)?;
         let mut primitives = Vec::new();
-        // Ground and surfaces of roads have the same vertices.
-        for (class, triangles) in tile.groups() {
+        // Ground, surfaces of roads and slabs have one list of vertices.
+        for (kind, triangles) in tile.groups() {
             let indices = self.add(&Content::Indices(triangles.as_flattened()))?;
             let mut primitive = json!({
                 "attributes": { "POSITION": positions, "NORMAL": normals },
-                "indices": indices, "material": 0, "mode": TRIANGLES,
+                "indices": indices, "material": self.material_of(kind), "mode": TRIANGLES,
             });
-            if let Some(class) = class {
-                primitive["material"] = json!(1 + class.number());
-                primitive["extras"] = json!({ "frc": class.number() });
-            } else {
-                primitive["material"] = json!(material);
-                for (name, accessor) in pictured.as_object().into_iter().flatten() {
-                    primitive["attributes"][name] = accessor.clone();
+            match kind {
+                SurfaceKind::Ground => {
+                    primitive["material"] = json!(material);
+                    for (name, accessor) in pictured.as_object().into_iter().flatten() {
+                        primitive["attributes"][name] = accessor.clone();
+                    }
+                }
+                SurfaceKind::Road(class) | SurfaceKind::Slab(class) => {
+                    primitive["extras"] = json!({ "frc": class.number() });
                 }
             }
             primitives.push(primitive);
@@ -239,7 +267,7 @@ impl MeshWriter for GlbWriter {
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
-        let Self { bytes, views, accessors, meshes, nodes, materials, images } = *self;
+        let Self { bytes, views, accessors, meshes, nodes, materials, images, .. } = *self;
         let facts: Map<String, Value> = about
             .facts
             .iter()

@@ -3,9 +3,14 @@
 use std::{fmt::Write as _, path::Path};
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Style;
+use corniche_styles::{Rgb, Style};
+use corniche_tileset::Manifest;
 
-use crate::bounds::DegreeBounds;
+use crate::{
+    bounds::DegreeBounds,
+    gltf::{SLAB_COLOR, SLAB_NAME},
+    surfaces::SurfaceKind,
+};
 
 /// Formats of models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,20 +82,44 @@ impl UpAxis {
 pub enum ModelRoads {
     /// Roads are there as their centre-lines on the ground.
     Lines,
-    /// Surfaces of their true width, cut into the ground's own triangles; tunnels are left out.
+    /// Surfaces of their true width, cut into the ground's own triangles, and bridges as slabs where the package knows their heights; tunnels are left out.
     Surfaces,
     /// Roads are left out.
     None,
 }
 
-/// Red, green and blue from 0 to 1 (sRGB) of the ground, then of the roads of each class.
-pub(crate) type ModelColors = [[f32; 3]; 1 + FunctionalRoadClass::COUNT];
+/// Colours of what a model has.
+#[derive(Debug, Clone)]
+pub(crate) struct ModelColors {
+    /// Colours of the roads of each class.
+    roads: [Rgb; FunctionalRoadClass::COUNT],
+}
 
-pub(crate) const GROUND_COLOR: [f32; 3] = [0.85, 0.86, 0.78];
+pub(crate) const GROUND_COLOR: Rgb = [0.85, 0.86, 0.78];
 
-/// The name of what has a colour: the ground, or the roads of a class.
-pub(crate) fn group_name(class: Option<FunctionalRoadClass>) -> String {
-    class.map_or_else(|| "terrain".to_owned(), |class| format!("roads_frc_{}", class.number()))
+impl ModelColors {
+    pub(crate) fn of(&self, kind: SurfaceKind) -> Rgb {
+        match kind {
+            SurfaceKind::Ground => GROUND_COLOR,
+            SurfaceKind::Road(class) => self.roads[usize::from(class.number())],
+            SurfaceKind::Slab(_) => SLAB_COLOR,
+        }
+    }
+}
+
+/// The ground, and the roads of all classes.
+pub(crate) fn ground_and_roads() -> impl Iterator<Item = SurfaceKind> {
+    let roads = FunctionalRoadClass::all().map(SurfaceKind::Road);
+    std::iter::once(SurfaceKind::Ground).chain(roads)
+}
+
+/// The name of what has a colour. Slabs of all classes have one.
+pub(crate) fn group_name(kind: SurfaceKind) -> String {
+    match kind {
+        SurfaceKind::Ground => "terrain".to_owned(),
+        SurfaceKind::Road(class) => format!("roads_frc_{}", class.number()),
+        SurfaceKind::Slab(_) => SLAB_NAME.to_owned(),
+    }
 }
 
 /// What of a package becomes a model, and how.
@@ -118,21 +147,18 @@ pub struct MeshRequest {
 
 impl MeshRequest {
     pub(crate) fn colors(&self) -> ModelColors {
-        let mut colors = [GROUND_COLOR; 1 + FunctionalRoadClass::COUNT];
-        for (color, road) in colors[1..].iter_mut().zip(&self.style.roads) {
-            *color = road.bands.main_color();
-        }
-        colors
+        ModelColors { roads: self.style.roads.map(|road| road.bands.main_color()) }
     }
 
-    /// The materials of an OBJ, as a file of their own: colours are sRGB.
+    /// The materials of an OBJ of a package, as a file of their own: colours are sRGB.
     #[must_use]
-    pub fn materials(&self) -> String {
-        let classes = FunctionalRoadClass::all().map(Some);
-        let groups = std::iter::once(None).chain(classes);
+    pub fn materials(&self, package: &Manifest) -> String {
+        let colors = self.colors();
         let mut text = String::new();
-        for (group, [red, green, blue]) in groups.zip(self.colors()) {
-            let name = group_name(group);
+        let slabs = FunctionalRoadClass::all().map(SurfaceKind::Slab).take(1);
+        let slabs = slabs.filter(|_| package.spans.is_some());
+        for kind in ground_and_roads().chain(slabs) {
+            let (name, [red, green, blue]) = (group_name(kind), colors.of(kind));
             // Writing to a text cannot fail.
             let _ = write!(text, "newmtl {name}\nKd {red:.4} {green:.4} {blue:.4}\nillum 1\n");
         }

@@ -15,7 +15,7 @@ use crate::{
     places::Places,
     read,
     relief_map::{ReliefMap, tangent},
-    surfaces::{Divided, TileLines, across},
+    surfaces::{Divided, SurfaceKind, TileLines, across},
     texture::Texture,
 };
 
@@ -23,10 +23,10 @@ use crate::{
 pub(crate) struct TileMesh {
     pub(crate) id: TileId,
     pub(crate) corners: Vec<Corner>,
-    /// Counter-clockwise from above.
+    /// Counter-clockwise from above, and from outside of slabs.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// The class of the road whose surface each triangle is; `None` is ground.
-    pub(crate) classes: Vec<Option<FunctionalRoadClass>>,
+    /// What each triangle is a surface of.
+    pub(crate) kinds: Vec<SurfaceKind>,
     pub(crate) roads: Vec<RoadLine>,
     /// The photo of the ground, in formats that have pictures inside.
     pub(crate) picture: Option<Picture>,
@@ -49,12 +49,12 @@ pub(crate) struct ReliefPicture {
     pub(crate) tangents: Vec<[f32; 3]>,
 }
 
-/// A corner of the ground.
+/// A corner of the ground or of a slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Corner {
     pub(crate) at_m: [f64; 3],
     pub(crate) normal: [f32; 3],
-    /// Where it is if other tiles may have it, too: it lies on the tile's border.
+    /// Where it is if other tiles may have it, too: it lies on the ground on the tile's border.
     pub(crate) shared: Option<LatticePoint>,
 }
 
@@ -100,7 +100,7 @@ impl TileReading<'_> {
         let tile = frame.tile_lattice_bounds(id);
         // Corners of other triangles are left out.
         let mut place = vec![u32::MAX; mesh.vertices.len()];
-        let (mut corners, mut triangles, mut classes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut corners, mut triangles, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let mut acrosses = Vec::new();
         for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {
             if !is_wanted(triangle) {
@@ -119,12 +119,12 @@ impl TileReading<'_> {
                     corners.push(Corner {
                         at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),
                         normal: vertex.normal,
-                        shared: is_on_border.then_some(point),
+                        shared: (is_on_border && !vertex.on_slab).then_some(point),
                     });
                 }
                 *place
             }));
-            classes.push(divided.class_of(*label));
+            kinds.push(divided.kind_of(*label));
         }
         if triangles.is_empty() {
             return Ok(None);
@@ -161,7 +161,7 @@ impl TileReading<'_> {
             id,
             corners,
             triangles,
-            classes,
+            kinds,
             roads: roads.collect(),
             picture,
             relief,
@@ -170,11 +170,11 @@ impl TileReading<'_> {
 }
 
 impl TileMesh {
-    /// The triangles of the ground, then those of each class of roads; none that is empty.
-    pub(crate) fn groups(&self) -> Vec<(Option<FunctionalRoadClass>, Vec<[u32; 3]>)> {
+    /// The triangles of the ground, then those of the roads of each class, then those of slabs; none that is empty.
+    pub(crate) fn groups(&self) -> Vec<(SurfaceKind, Vec<[u32; 3]>)> {
         let mut groups = std::collections::BTreeMap::new();
-        for (triangle, class) in self.triangles.iter().zip(&self.classes) {
-            groups.entry(*class).or_insert_with(Vec::new).push(*triangle);
+        for (triangle, kind) in self.triangles.iter().zip(&self.kinds) {
+            groups.entry(*kind).or_insert_with(Vec::new).push(*triangle);
         }
         groups.into_iter().collect()
     }

@@ -14,6 +14,7 @@ use super::{
     weld::Welding,
     writer::{About, MeshWriter},
 };
+use crate::surfaces::SurfaceKind;
 
 pub(crate) struct ObjWriter {
     up: UpAxis,
@@ -58,8 +59,8 @@ impl MeshWriter for ObjWriter {
             position_of.push(*positions);
             u32::try_from(position_of.len()).map_err(io::Error::other)
         })?;
-        for (class, triangles) in tile.groups() {
-            let name = group_name(class);
+        for (kind, triangles) in tile.groups() {
+            let name = group_name(kind);
             let _ = writeln!(text, "g {name}");
             if material_file.is_some() {
                 let _ = writeln!(text, "usemtl {name}");
@@ -78,7 +79,7 @@ impl MeshWriter for ObjWriter {
                 position(&mut text, *point);
                 *positions += 1;
             }
-            let _ = write!(text, "g {}\nl", group_name(Some(road.class)));
+            let _ = write!(text, "g {}\nl", group_name(SurfaceKind::Road(road.class)));
             for number in first..=*positions {
                 let _ = write!(text, " {number}");
             }

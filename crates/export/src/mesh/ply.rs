@@ -8,8 +8,6 @@ use std::{
     path::Path,
 };
 
-use corniche_roads::FunctionalRoadClass;
-
 use super::{
     mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
@@ -17,6 +15,7 @@ use super::{
     weld::Welding,
     writer::{About, MeshWriter},
 };
+use crate::surfaces::SurfaceKind;
 
 /// The class of a vertex of the ground.
 const NO_ROAD: u8 = 255;
@@ -79,14 +78,17 @@ impl MeshWriter for PlyWriter {
         let numbers = self
             .welding
             .numbers(tile, |corner| vertices.add(up, corner.at_m, corner.normal, NO_ROAD))?;
-        for (triangle, class) in tile.triangles.iter().zip(&tile.classes) {
+        for (triangle, kind) in tile.triangles.iter().zip(&tile.kinds) {
             self.faces.push(&[3])?;
             for corner in triangle {
                 self.faces.push(&numbers[*corner as usize].to_le_bytes())?;
             }
             if let Some(colors) = &self.colors {
-                let number = class.map_or(NO_ROAD, FunctionalRoadClass::number);
-                let color = colors[class.map_or(0, |class| 1 + usize::from(class.number()))];
+                let number = match kind {
+                    SurfaceKind::Ground => NO_ROAD,
+                    SurfaceKind::Road(class) | SurfaceKind::Slab(class) => class.number(),
+                };
+                let color = colors.of(*kind);
                 self.faces.push(&[number])?;
                 self.faces.push(&color.map(|channel| (channel * 255.0).round() as u8))?;
             }

@@ -20,7 +20,7 @@ use crate::{
     feature_request::Coordinates,
     places::Places,
     read,
-    surfaces::{RoadLook, TileLines},
+    surfaces::{RoadLook, SurfaceKind, TileLines},
 };
 
 /// What was exported.
@@ -30,7 +30,7 @@ pub struct MeshSummary {
     pub level: u8,
     /// Tiles with ground.
     pub tiles: u64,
-    /// Triangles of the ground, roads as surfaces included.
+    /// Triangles of the ground, roads as surfaces and slabs of bridges included.
     pub triangles: u64,
     /// Triangles of roads.
     pub road_triangles: u64,
@@ -65,7 +65,7 @@ pub fn export_mesh(
     let local = LocalMetres::about(ground, manifest);
     let failed = |source| ExportError::WriteModel { path: path.to_path_buf(), source };
     let mut writer: Box<dyn MeshWriter> = match request.format {
-        MeshFormat::Glb => Box::new(GlbWriter::new(path, &request.colors()).map_err(failed)?),
+        MeshFormat::Glb => Box::new(GlbWriter::new(path, request.colors()).map_err(failed)?),
         MeshFormat::Ply => {
             let colors = (request.roads == ModelRoads::Surfaces).then(|| request.colors());
             Box::new(PlyWriter::new(path, request.up, colors).map_err(failed)?)
@@ -86,7 +86,8 @@ pub fn export_mesh(
         if let Some(tile) = reading.read(id)? {
             summary.tiles += 1;
             summary.triangles += tile.triangles.len() as u64;
-            summary.road_triangles += tile.classes.iter().flatten().count() as u64;
+            let is_road = |kind: &&SurfaceKind| matches!(kind, SurfaceKind::Road(_));
+            summary.road_triangles += tile.kinds.iter().filter(is_road).count() as u64;
             summary.lines += tile.roads.len() as u64;
             writer.tile(&tile).map_err(failed)?;
         }

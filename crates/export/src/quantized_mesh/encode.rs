@@ -11,7 +11,8 @@
 
 use super::{
     horizon::{occlusion_point, sphere},
-    mesh::{MeshVertex, TileMesh},
+    mesh::TileMesh,
+    mesh_vertex::MeshVertex,
     tiling::{Horizon, LAST_STEP},
 };
 

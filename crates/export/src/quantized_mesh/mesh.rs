@@ -3,52 +3,24 @@
 use corniche_geom::{HeightGrid, wgs84::SEMI_MAJOR_M};
 use corniche_tin::{Tin, TinSpec, TriangulateError, height_quantum_m, triangulate};
 use spade::{
-    DelaunayTriangulation, HasPosition, InsertionError, Point2, PositionInTriangulation,
-    Triangulation as _,
-    handles::{FixedFaceHandle, FixedVertexHandle, InnerTag},
+    DelaunayTriangulation, InsertionError, Triangulation as _, handles::FixedVertexHandle,
 };
 
 use super::{
+    facets::Facets,
+    mesh_vertex::MeshVertex,
     raster::{Sample, TileRaster},
     tiling::LAST_STEP,
 };
-use crate::globe::{between, cross, dot, geocentric_m};
+use crate::globe::{between, dot, geocentric_m};
 
 /// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
 const SHARE_OF_TIN: f64 = 0.7;
-/// The part from which on a place becomes a vertex. The rest is for the ground between places that are looked at ([`SHARE_OF_SAMPLES`]), and for the
-/// rounding of heights.
-const SHARE_OF_VERTICES: f64 = 0.8;
+/// The part from which on a place becomes a vertex. The rest is for the ground that is finer than the level that is looked at ([`SHARE_OF_SAMPLES`]), and
+/// for the rounding of places and heights.
+pub(crate) const SHARE_OF_VERTICES: f64 = 0.8;
 /// The part that the level of the package may be off whose vertices are looked at.
 pub(crate) const SHARE_OF_SAMPLES: f64 = 0.1;
-
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct MeshVertex {
-    pub(crate) u: u16,
-    pub(crate) v: u16,
-    /// Longitude, latitude and height above the ellipsoid.
-    pub(crate) place: [f64; 3],
-    /// The height in 32 767ths of the range, once the mesh is finished.
-    pub(crate) height: u16,
-    /// The position from the earth's centre.
-    pub(crate) at_m: [f64; 3],
-    /// The normal of the ground, in the same axes.
-    pub(crate) normal: [f64; 3],
-}
-
-impl HasPosition for MeshVertex {
-    type Scalar = f64;
-
-    fn position(&self) -> Point2<f64> {
-        Point2::new(f64::from(self.u), f64::from(self.v))
-    }
-}
-
-impl MeshVertex {
-    fn new([u, v]: [u16; 2], place: [f64; 3], normal: [f64; 3]) -> Self {
-        Self { u, v, place, height: 0, at_m: geocentric_m(place), normal }
-    }
-}
 
 /// A tile, as it is written.
 #[derive(Debug, Clone)]
@@ -71,6 +43,12 @@ pub(crate) struct Deviation {
 }
 
 impl Deviation {
+    pub(crate) fn note(&mut self, off_m: f64) {
+        self.places += 1;
+        self.largest_m = self.largest_m.max(off_m);
+        self.squares_m2 += off_m * off_m;
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.places += other.places;
         self.largest_m = self.largest_m.max(other.largest_m);
@@ -159,42 +137,29 @@ impl Mesh {
                 }
             }
             let Some((_, sample)) = worst else { continue };
-            let vertex = MeshVertex::new(sample.steps, sample.place, raster.normal_at(sample));
+            let normal = raster.normal_on_side(sample.between);
+            let vertex = MeshVertex::new(sample.steps, sample.place, normal);
             self.triangles.insert(vertex)?;
             chords.extend([[from, vertex], [vertex, to]]);
         }
         Ok(())
     }
 
-    /// Makes vertices of those samples that are too far from the triangles, the farthest of each triangle first, until none is. Borders stay as they are:
-    /// neighbours have the same.
-    pub(crate) fn refine(
+    /// Adds vertices, and tells how many of them were not there yet.
+    pub(crate) fn insert(
         &mut self,
-        raster: &TileRaster,
-        samples: &[Sample],
-        error_m: f64,
-    ) -> Result<(), InsertionError> {
-        let inside = 1..LAST_STEP;
-        let limit_m = error_m * SHARE_OF_VERTICES;
-        let may_be_vertex =
-            |sample: &&Sample| sample.steps.iter().all(|step| inside.contains(step));
-        let samples: Vec<&Sample> = samples.iter().filter(may_be_vertex).collect();
-        loop {
-            let mut worst: Vec<Option<(f64, &Sample)>> = vec![None; self.triangles.num_all_faces()];
-            self.each(samples.iter().copied(), |face, sample, off_m| {
-                let worst = &mut worst[face.index()];
-                if off_m > limit_m && worst.is_none_or(|(known_m, _)| off_m > known_m) {
-                    *worst = Some((off_m, sample));
-                }
-            });
-            if worst.iter().all(Option::is_none) {
-                return Ok(());
-            }
-            for (_, sample) in worst.into_iter().flatten() {
-                let vertex = MeshVertex::new(sample.steps, sample.place, raster.normal_at(sample));
-                self.triangles.insert(vertex)?;
-            }
+        vertices: impl Iterator<Item = MeshVertex>,
+    ) -> Result<usize, InsertionError> {
+        let before = self.triangles.num_vertices();
+        for vertex in vertices {
+            self.triangles.insert(vertex)?;
         }
+        Ok(self.triangles.num_vertices() - before)
+    }
+
+    /// The triangles, as they are now, told from `origin_m`.
+    pub(crate) fn facets(&self, origin_m: [f64; 3]) -> Facets {
+        Facets::new(&self.triangles, origin_m)
     }
 
     /// Rounds heights, as they are written.
@@ -211,59 +176,6 @@ impl Mesh {
             let [lon, lat, height_m] = vertex.place;
             vertex.height = quantized(height_m, self.range_m);
             vertex.at_m = geocentric_m([lon, lat, dequantized(vertex.height, self.range_m)]);
-        }
-    }
-
-    pub(crate) fn deviation<'s>(&self, samples: impl Iterator<Item = &'s Sample>) -> Deviation {
-        let mut found = Deviation::default();
-        self.each(samples, |_, _, off_m| {
-            found.places += 1;
-            found.largest_m = found.largest_m.max(off_m);
-            found.squares_m2 += off_m * off_m;
-        });
-        found
-    }
-
-    /// Tells of each sample in which triangle it is and how far from it, vertically.
-    fn each<'s>(
-        &self,
-        samples: impl Iterator<Item = &'s Sample>,
-        mut tell: impl FnMut(FixedFaceHandle<InnerTag>, &'s Sample, f64),
-    ) {
-        let mut hint = None;
-        for sample in samples {
-            let [u, v] = sample.steps.map(f64::from);
-            let Some(face) = self.face_at(Point2::new(u, v), hint) else { continue };
-            let corners = self.triangles.face(face).vertices();
-            hint = Some(corners[0].fix());
-            let off_m = sample.above_plane_m(corners.map(|corner| corner.data().at_m));
-            tell(face, sample, off_m.abs());
-        }
-    }
-
-    /// A triangle that holds a point, its border included.
-    fn face_at(
-        &self,
-        at: Point2<f64>,
-        hint: Option<FixedVertexHandle>,
-    ) -> Option<FixedFaceHandle<InnerTag>> {
-        let found = match hint {
-            Some(hint) => self.triangles.locate_with_hint(at, hint),
-            None => self.triangles.locate(at),
-        };
-        match found {
-            PositionInTriangulation::OnFace(face) => Some(face),
-            PositionInTriangulation::OnEdge(edge) => {
-                let edge = self.triangles.directed_edge(edge);
-                let face = edge.face().as_inner().or_else(|| edge.rev().face().as_inner());
-                face.map(|face| face.fix())
-            }
-            PositionInTriangulation::OnVertex(vertex) => {
-                let vertex = self.triangles.vertex(vertex);
-                vertex.out_edges().find_map(|edge| edge.face().as_inner()).map(|face| face.fix())
-            }
-            PositionInTriangulation::OutsideOfConvexHull(_)
-            | PositionInTriangulation::NoTriangulation => None,
         }
     }
 
@@ -303,12 +215,6 @@ impl Sample {
         let (flat, flat_out) = (in_plan(along), in_plan(out));
         let share = dot(flat, flat_out) / dot(flat, flat).max(f64::MIN_POSITIVE);
         dot(out, self.up) - share * dot(along, self.up)
-    }
-
-    /// How far the ground is above a plane, along the vertical.
-    fn above_plane_m(&self, [a, b, c]: [[f64; 3]; 3]) -> f64 {
-        let across = cross(between(a, b), between(a, c));
-        dot(between(a, self.at_m), across) / dot(self.up, across)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{
     ground::Ground,
+    mesh_vertex::MeshVertex,
     tiling::{LAST_STEP, Nodes, TerrainTile},
 };
 use crate::{
@@ -41,7 +42,7 @@ impl Window {
         nodes: Nodes,
         from: [i64; 2],
         to: [i64; 2],
-        ground: &mut Ground<'_>,
+        ground: &Ground<'_>,
     ) -> Result<Self, ExportError> {
         let lats: Vec<f64> = (from[1] - 1..=to[1] + 1).map(|j| nodes.lat_deg(j)).collect();
         let lons: Vec<f64> = (from[0] - 1..=to[0] + 1).map(|i| nodes.lon_deg(i)).collect();
@@ -52,7 +53,7 @@ impl Window {
     }
 
     /// The nodes of the level above between which those of this window lie.
-    fn above(&self, ground: &mut Ground<'_>) -> Result<Option<Self>, ExportError> {
+    fn above(&self, ground: &Ground<'_>) -> Result<Option<Self>, ExportError> {
         let Some(nodes) = self.nodes.above() else { return Ok(None) };
         let from = self.from.map(|index| index.div_euclid(2));
         let to = self.to.map(|index| (index + 1).div_euclid(2));
@@ -114,7 +115,7 @@ impl TileRaster {
     pub(crate) fn sample(
         nodes: Nodes,
         tile: TerrainTile,
-        ground: &mut Ground<'_>,
+        ground: &Ground<'_>,
     ) -> Result<Self, ExportError> {
         let n = nodes.per_tile;
         let [i, j] = [i64::from(tile.x) * n, i64::from(tile.y) * n];
@@ -183,29 +184,72 @@ impl TileRaster {
         if dot(across, across) > 0.0 { unit(across) } else { up_at([lon, lat]) }
     }
 
-    /// Normal of the ground at a sample.
-    pub(crate) fn normal_at(&self, sample: &Sample) -> [f64; 3] {
-        let mean = |nodes: &[usize]| {
-            let normals: Vec<[f64; 3]> = nodes.iter().map(|&at| self.normal(at)).collect();
-            unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
-        };
-        match sample.around {
-            Around::Node(at) => self.normal(at),
-            Around::Side(nodes) => mean(&nodes),
-            Around::Cell(at) => {
-                let below = at + self.lon_deg.len();
-                mean(&[at, at + 1, below, below + 1])
-            }
-        }
+    /// Normal of the ground on a border, between two of its nodes.
+    pub(crate) fn normal_on_side(&self, nodes: [usize; 2]) -> [f64; 3] {
+        self.mean_normal(&nodes)
     }
 
-    /// The ground of the tile: at nodes, in the middles of cells, where one of the package's levels bends and along its edges, `spacing_m` apart, and along borders. Where the ground ends, that
-    /// level may end earlier, so there it is looked at more closely.
+    fn normal_at(&self, steps: [u16; 2]) -> [f64; 3] {
+        let at = self.cell_at(steps);
+        let below = at + self.lon_deg.len();
+        let is_node = steps.iter().all(|&step| {
+            let cell = self.nodes.cell_of(step);
+            self.nodes.step(cell) == step
+        });
+        if is_node { self.normal(below) } else { self.mean_normal(&[at, at + 1, below, below + 1]) }
+    }
+
+    fn mean_normal(&self, nodes: &[usize]) -> [f64; 3] {
+        let normals: Vec<[f64; 3]> = nodes.iter().map(|&at| self.normal(at)).collect();
+        unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
+    }
+
+    /// The ground at the steps nearest to some u and v: longitude, latitude and height. Where there is none, at the nearest of the steps around that have
+    /// ground: so the ground is seen up to its end. `None` where none has.
+    pub(crate) fn at_steps(
+        &self,
+        uv: &[[f64; 2]],
+        ground: &Ground<'_>,
+    ) -> Result<Vec<Option<[f64; 3]>>, ExportError> {
+        let nearest: Vec<[u16; 2]> = uv.iter().map(|&uv| nearest_steps(uv)).collect();
+        let mut found = self.ground_at(&nearest, ground)?;
+        let gaps: Vec<usize> = (0..found.len()).filter(|&k| found[k].is_none()).collect();
+        let around: Vec<[u16; 2]> = gaps.iter().flat_map(|&k| steps_around(uv[k])).collect();
+        let beside = self.ground_at(&around, ground)?;
+        for (k, places) in gaps.into_iter().zip(beside.chunks_exact(4)) {
+            found[k] = places.iter().copied().flatten().next();
+        }
+        Ok(found)
+    }
+
+    fn ground_at(
+        &self,
+        steps: &[[u16; 2]],
+        ground: &Ground<'_>,
+    ) -> Result<Vec<Option<[f64; 3]>>, ExportError> {
+        let places: Vec<[f64; 2]> =
+            steps.iter().map(|&steps| self.nodes.place_deg(self.tile, steps)).collect();
+        let heights_m = ground.heights_m(&places)?;
+        let whole = |([lon, lat], height_m): ([f64; 2], f64)| {
+            (!height_m.is_nan()).then_some([lon, lat, height_m])
+        };
+        Ok(places.into_iter().zip(heights_m).map(whole).collect())
+    }
+
+    /// A vertex at a place of [`Self::at_steps`]; `None` on a border, where there are no others than both tiles have.
+    pub(crate) fn vertex(&self, place: [f64; 3]) -> Option<MeshVertex> {
+        let [lon, lat, _] = place;
+        let steps = nearest_steps(self.nodes.square_of(self.tile).uv_of([lon, lat]));
+        let is_inside = steps.iter().all(|step| (1..LAST_STEP).contains(step));
+        is_inside.then(|| MeshVertex::new(steps, place, self.normal_at(steps)))
+    }
+
+    /// The ground of the tile at nodes and along borders. `level` is the package's level whose edges are looked at; where the ground ends, it may end earlier
+    /// than the finest, so there the ground is looked at more closely.
     pub(crate) fn samples(
         &self,
-        level: u8,
-        spacing_m: f64,
-        ground: &mut Ground<'_>,
+        level: Looked,
+        ground: &Ground<'_>,
     ) -> Result<Samples, ExportError> {
         let last = self.side() - 1;
         let nodes_of =
@@ -216,30 +260,16 @@ impl TileRaster {
             let at = self.at(column, row);
             if self.is_ground[at] {
                 let steps = [step(column), step(last - row)];
-                inside.push(Sample::new(steps, self.place(at), Around::Node(at)));
+                inside.push(Sample::new(steps, self.place(at), [at; 2]));
             }
         }
-        let middles = nodes_of(last).map(|[column, row]| {
-            let between = |node: usize| step(node).midpoint(step(node + 1));
-            [between(column), between(last - row - 1)]
-        });
-        let at_outlines = nodes_of(last)
-            .filter(|[column, row]| self.is_on_outline(*column, *row))
-            .flat_map(|[column, row]| self.nodes.inside_cell([column, last - row - 1]));
-        let corners_deg = self.nodes.corners_deg(self.tile);
-        let mut bends: Vec<[u16; 2]> = ground
-            .bends_deg(corners_deg, level, spacing_m)?
-            .into_iter()
-            .filter_map(|place| self.nodes.steps_at(self.tile, place))
-            .collect();
-        // Tiles of the package share vertices.
-        bends.sort_unstable();
-        bends.dedup();
-        let mut wanted: Vec<([u16; 2], Around)> = middles
-            .chain(at_outlines)
-            .chain(bends)
-            .map(|steps| (steps, Around::Cell(self.cell_at(steps))))
-            .collect();
+        let mut wanted: Vec<([u16; 2], [usize; 2])> = Vec::new();
+        if !level.is_finest {
+            let at_outlines = nodes_of(last)
+                .filter(|[column, row]| self.is_on_outline(*column, *row))
+                .flat_map(|[column, row]| self.nodes.inside_cell([column, last - row - 1]));
+            wanted.extend(at_outlines.map(|steps| (steps, [self.cell_at(steps); 2])));
+        }
         let of_inside = wanted.len();
         let mut on_sides = Vec::new();
         for side in Side::ALL {
@@ -255,9 +285,9 @@ impl TileRaster {
             .into_iter()
             .zip(places)
             .zip(heights_m)
-            .map(|(((steps, around), [lon, lat]), height_m)| {
+            .map(|(((steps, between), [lon, lat]), height_m)| {
                 let has_ground = !height_m.is_nan();
-                has_ground.then(|| Sample::new(steps, [lon, lat, height_m], around))
+                has_ground.then(|| Sample::new(steps, [lon, lat, height_m], between))
             })
             .collect();
         let (more_inside, mut rest) = found.split_at(of_inside);
@@ -271,13 +301,13 @@ impl TileRaster {
         Ok(Samples { inside, borders })
     }
 
-    /// Where the ground is looked at along a border, from the south or the west: at parts of cells, and where an edge of the package's level crosses the
-    /// border, because there it bends.
+    /// Where the ground is looked at along a border, from the south or the west: at nodes, and where an edge of the package's level crosses the border,
+    /// because there it bends. Below the finest level, also at parts of cells.
     fn border_steps(
         &self,
         side: Side,
-        level: u8,
-        ground: &mut Ground<'_>,
+        level: Looked,
+        ground: &Ground<'_>,
     ) -> Result<Vec<u16>, ExportError> {
         let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
         let ends = match side {
@@ -286,9 +316,14 @@ impl TileRaster {
             Side::East => [[east, south], [east, north]],
             Side::North => [[west, north], [east, north]],
         };
-        let to_step = |share: f64| (share * f64::from(LAST_STEP)).round() as u16;
-        let mut steps = self.nodes.border_steps();
-        steps.extend(ground.crossings(ends, level)?.into_iter().map(to_step));
+        // On both sides: where the ground ends, one of them has none.
+        let to_steps = |share: f64| {
+            let step = share * f64::from(LAST_STEP);
+            [step.floor() as u16, step.ceil() as u16]
+        };
+        let parts = if level.is_finest { 1 } else { self.nodes.parts };
+        let mut steps = Nodes { parts, ..self.nodes }.border_steps();
+        steps.extend(ground.crossings(ends, level.level)?.into_iter().flat_map(to_steps));
         steps.sort_unstable();
         steps.dedup();
         Ok(steps)
@@ -302,7 +337,7 @@ impl TileRaster {
     }
 
     /// A place on a border. Its normal will come from the border's own nodes, which both tiles have.
-    fn on_side(&self, side: Side, step: u16) -> ([u16; 2], Around) {
+    fn on_side(&self, side: Side, step: u16) -> ([u16; 2], [usize; 2]) {
         let last = self.side() - 1;
         let cell = self.nodes.cell_of(step) as usize;
         let (steps, node): (_, fn(usize, usize) -> [usize; 2]) = match side {
@@ -315,7 +350,7 @@ impl TileRaster {
             let [column, row] = node(k, last);
             self.at(column, row)
         });
-        (steps, Around::Side(nodes))
+        (steps, nodes)
     }
 
     /// The north-western node of the cell that holds u and v.
@@ -338,6 +373,28 @@ impl Side {
     const ALL: [Self; 4] = [Self::West, Self::South, Self::East, Self::North];
 }
 
+/// The package's level that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Looked {
+    pub(crate) level: u8,
+    pub(crate) is_finest: bool,
+}
+
+/// The steps that are nearest to u and v.
+pub(crate) fn nearest_steps(uv: [f64; 2]) -> [u16; 2] {
+    uv.map(|step| step.round().clamp(0.0, f64::from(LAST_STEP)) as u16)
+}
+
+/// The steps around u and v, the nearest first.
+fn steps_around([u, v]: [f64; 2]) -> [[u16; 2]; 4] {
+    let [west, south] = [u.floor(), v.floor()];
+    let mut found = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+        .map(|[beside, above]| [west + beside, south + above]);
+    let away = |at: &[f64; 2]| f64::hypot(at[0] - u, at[1] - v);
+    found.sort_by(|one, other| away(one).total_cmp(&away(other)));
+    found.map(nearest_steps)
+}
+
 /// The ground of a tile, as its triangles must follow it.
 pub(crate) struct Samples {
     /// Anywhere in the tile.
@@ -347,21 +404,9 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    /// Each of them.
-    pub(crate) fn all(&self) -> impl Iterator<Item = &Sample> {
-        self.inside.iter().chain(self.borders.iter().flatten())
+    pub(crate) fn is_empty(&self) -> bool {
+        self.inside.is_empty() && self.borders.iter().all(Vec::is_empty)
     }
-}
-
-/// Where a sample is in its raster.
-#[derive(Debug, Clone, Copy)]
-enum Around {
-    /// The point lies at a node.
-    Node(usize),
-    /// The point lies in the cell whose north-western node this is.
-    Cell(usize),
-    /// The point lies on a border, between these nodes.
-    Side([usize; 2]),
 }
 
 /// A place with ground.
@@ -371,7 +416,8 @@ pub(crate) struct Sample {
     pub(crate) steps: [u16; 2],
     /// Longitude, latitude and height above the ellipsoid.
     pub(crate) place: [f64; 3],
-    around: Around,
+    /// On a border, its nodes on both sides.
+    pub(crate) between: [usize; 2],
     /// The position from the earth's centre.
     pub(crate) at_m: [f64; 3],
     /// The vertical.
@@ -379,8 +425,8 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    fn new(steps: [u16; 2], place: [f64; 3], around: Around) -> Self {
+    fn new(steps: [u16; 2], place: [f64; 3], between: [usize; 2]) -> Self {
         let [lon, lat, _] = place;
-        Self { steps, place, around, at_m: geocentric_m(place), up: up_at([lon, lat]) }
+        Self { steps, place, between, at_m: geocentric_m(place), up: up_at([lon, lat]) }
     }
 }

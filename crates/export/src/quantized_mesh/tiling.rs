@@ -123,6 +123,34 @@ impl Tiling {
     }
 }
 
+/// The degrees of a tile, in which u and v are fractions of steps.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Square {
+    corner_deg: [f64; 2],
+    size_deg: [f64; 2],
+    seam: Seam,
+}
+
+impl Square {
+    /// u and v of a longitude and latitude, which may be beyond the tile.
+    pub(crate) fn uv_of(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
+        let at = [self.seam.image(lon), lat];
+        let share = |axis: usize| (at[axis] - self.corner_deg[axis]) / self.size_deg[axis];
+        [0, 1].map(|axis| share(axis) * f64::from(LAST_STEP))
+    }
+
+    /// Longitude and latitude at u and v.
+    pub(crate) fn place_deg(&self, uv: [f64; 2]) -> [f64; 2] {
+        let share = |axis: usize| uv[axis] / f64::from(LAST_STEP);
+        [0, 1].map(|axis| self.corner_deg[axis] + self.size_deg[axis] * share(axis))
+    }
+}
+
+/// Whether u and v, in steps, are those of a place in a tile or on its border.
+pub(crate) fn is_in_tile(uv: [f64; 2]) -> bool {
+    uv.iter().all(|step| (0.0..=f64::from(LAST_STEP)).contains(step))
+}
+
 /// The places of a level's rasters: a grid of nodes over the globe, so many along each side of a tile.
 ///
 /// ```text
@@ -200,13 +228,11 @@ impl Nodes {
         south + (north - south) * f64::from(v) / f64::from(LAST_STEP)
     }
 
-    /// u and v nearest to a longitude and latitude, if it is in the tile.
-    pub(crate) fn steps_at(self, tile: TerrainTile, [lon, lat]: [f64; 2]) -> Option<[u16; 2]> {
+    /// The square of degrees of a tile.
+    pub(crate) fn square_of(self, tile: TerrainTile) -> Square {
         let [[west, south], [east, north]] = self.corners_deg(tile);
-        let lon = Seam::of_degrees().around(f64::midpoint(west, east)).image(lon);
-        let shares = [(lon - west) / (east - west), (lat - south) / (north - south)];
-        let inside = shares.iter().all(|share| (0.0..=1.0).contains(share));
-        inside.then(|| shares.map(|share| (share * f64::from(LAST_STEP)).round() as u16))
+        let seam = Seam::of_degrees().around(f64::midpoint(west, east));
+        Square { corner_deg: [west, south], size_deg: [east - west, north - south], seam }
     }
 
     /// The cell along a side that holds u or v.

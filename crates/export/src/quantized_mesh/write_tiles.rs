@@ -7,31 +7,36 @@ use std::{
     path::Path,
 };
 
-use corniche_geom::{Bounds, wgs84::radii_m};
+use corniche_geom::{Bounds, TILE_CELLS, wgs84::radii_m};
 use corniche_tileset::{FilePackage, LevelRecord, Manifest};
 use corniche_tin::TriangulateError;
 use corniche_work::{Observer, Stage, workers::make_all};
 use flate2::{Compression, write::GzEncoder};
+use spade::InsertionError;
 
 use super::{
     available::{Block, blocks},
+    comparison::{Comparison, Point, PointFrame},
     encode::encode,
     ground::Ground,
     layer::{LAYER, layer, metadata},
-    mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, tin_of},
+    mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
     quantized_mesh_request::QuantizedMeshRequest,
-    raster::TileRaster,
+    raster::{Looked, TileRaster},
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
+    surfaces::{KEPT_BYTES, Surfaces},
     tiling::{FINEST, Nodes, TerrainTile, Tiling},
 };
 use crate::{error::ExportError, feature_request::Coordinates, places::Places, read};
 
-/// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices of the package's own triangles.
-const CELLS: [i64; 2] = [16, 128];
+/// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.
+const CELLS: [i64; 2] = [16, 64];
+/// The package's cells along one of a tile, at most, as long as tiles have few enough cells.
+const PACKAGE_CELLS: f64 = 2.0;
 /// The most tiles of the finest level. Some hundred bytes are kept for each.
 const MOST_TILES: i64 = 4_000_000;
-/// How far apart places along edges are, as a share of a level's error.
-const SPACING: f64 = 0.25;
+/// From how many of the package's tiles in a row on a tile is made without others beside it.
+const WIDE_TILES: i64 = 4;
 /// Parts of a cell on borders and where the ground ends, the fewest and the most.
 const PARTS: [f64; 2] = [4.0, 32.0];
 
@@ -50,7 +55,8 @@ pub fn export_quantized_mesh(
     let finest = finest_level(manifest, request);
     let heights = heights_in_words(manifest, request.coordinates)?;
     let candidates = candidates(package, request, finest)?;
-    let job = Job { package, request, folder, observer };
+    let surfaces = Surfaces::new(KEPT_BYTES);
+    let job = Job { package, surfaces: &surfaces, request, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
     // Which tiles have ground is told by those of the finest level.
@@ -109,8 +115,8 @@ fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), ExportError> {
 fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
     let of_package = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
     let is_fine_enough = |level: &u8| {
-        let nodes = nodes(manifest, request.tiling, *level);
-        request.tiling.level_error_m(*level) <= of_package || nodes.per_tile == CELLS[0]
+        let [side_m, cell_m] = side_and_cell_m(manifest, request.tiling, *level);
+        request.tiling.level_error_m(*level) <= of_package || side_m <= cell_m * CELLS[0] as f64
     };
     let by_error = || (0..=FINEST).find(is_fine_enough).unwrap_or(FINEST);
     request.max_level.unwrap_or_else(by_error).min(FINEST)
@@ -208,6 +214,7 @@ struct Made {
 
 struct Job<'a> {
     package: &'a FilePackage,
+    surfaces: &'a Surfaces,
     request: &'a QuantizedMeshRequest,
     folder: &'a Path,
     observer: &'a dyn Observer,
@@ -220,21 +227,39 @@ impl<'a> Job<'a> {
         emptiness: Emptiness,
         available: &[Vec<Block>],
     ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
-        let (package, coordinates) = (self.package, self.request.coordinates);
-        let made = make_all(
-            (self.observer, Stage::ExportTiles),
-            self.request.threads,
-            tiles,
-            || Ok(Ground::new(package, Places::new(package.manifest(), coordinates)?)),
-            |ground, tile| self.tile(*tile, ground, emptiness, available),
-        )?;
+        let (package, surfaces) = (self.package, self.surfaces);
+        let coordinates = self.request.coordinates;
+        let wide = tiles.partition_point(|tile| !self.is_wide(tile.z));
+        let mut made = Vec::with_capacity(tiles.len());
+        for (part, threads) in [(&tiles[..wide], self.request.threads), (&tiles[wide..], 1)] {
+            made.extend(make_all(
+                (self.observer, Stage::ExportTiles),
+                threads,
+                part,
+                || {
+                    Ok(Ground::new(
+                        package,
+                        surfaces,
+                        Places::new(package.manifest(), coordinates)?,
+                    ))
+                },
+                |ground, tile| self.tile(*tile, ground, emptiness, available),
+            )?);
+        }
         Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
+    }
+
+    /// Whether a level's tiles lie on so many of the package's that one is made after the other, to save memory.
+    fn is_wide(&self, level: u8) -> bool {
+        let manifest = self.package.manifest();
+        let [side_m, cell_m] = side_and_cell_m(manifest, self.request.tiling, level);
+        side_m > cell_m * (TILE_CELLS * WIDE_TILES) as f64
     }
 
     fn tile(
         &self,
         tile: TerrainTile,
-        ground: &mut Ground<'a>,
+        ground: &Ground<'a>,
         emptiness: Emptiness,
         available: &[Vec<Block>],
     ) -> Result<Option<Made>, ExportError> {
@@ -242,8 +267,13 @@ impl<'a> Job<'a> {
         let error_m = tiling.level_error_m(tile.z);
         let nodes = nodes(self.package.manifest(), tiling, tile.z);
         let raster = TileRaster::sample(nodes, tile, ground)?;
-        let samples = raster.samples(self.sampled_level(error_m), error_m * SPACING, ground)?;
-        if emptiness == Emptiness::IsLeftOut && samples.all().next().is_none() {
+        let level = self.sampled_level(error_m);
+        let samples = raster.samples(level, ground)?;
+        let frame = PointFrame::new(nodes.square_of(tile));
+        let mut bends =
+            ground.bends(nodes.corners_deg(tile), level.level, |place| frame.point(place))?;
+        let is_empty = samples.is_empty() && !bends.points.iter().any(Point::is_in_tile);
+        if emptiness == Emptiness::IsLeftOut && is_empty {
             return Ok(None);
         }
         let failed = |source| ExportError::Triangulate { tile: tile.to_string(), source };
@@ -253,9 +283,16 @@ impl<'a> Job<'a> {
         for border in &samples.borders {
             mesh.refine_border(&raster, border, error_m).map_err(inserted)?;
         }
-        mesh.refine(&raster, &samples.inside, error_m).map_err(inserted)?;
+        bends.points.reserve_exact(samples.inside.len());
+        bends.points.extend(samples.inside.iter().map(|sample| frame.point(sample.place)));
+        let mut comparison = Comparison::new(frame, bends, &mesh);
+        let limit_m = error_m * SHARE_OF_VERTICES;
+        let at_steps = |uv: &[[f64; 2]]| raster.at_steps(uv, ground);
+        follow(&mut comparison, &mut mesh, &raster, limit_m, inserted, at_steps)?;
         mesh.finish();
-        let deviation = mesh.deviation(samples.all());
+        comparison.update(&mesh);
+        let on_borders = samples.borders.iter().flatten();
+        let deviation = comparison.deviation(on_borders, limit_m, level.is_finest, at_steps)?;
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available, tile);
         let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
@@ -279,10 +316,11 @@ impl<'a> Job<'a> {
     }
 
     /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.
-    fn sampled_level(&self, error_m: f64) -> u8 {
+    fn sampled_level(&self, error_m: f64) -> Looked {
         let Manifest { levels, frame, .. } = self.package.manifest();
         let near = |level: &&LevelRecord| level.geometric_error_m <= error_m * SHARE_OF_SAMPLES;
-        levels.iter().find(near).map_or(frame.max_level(), |level| level.level)
+        let level = levels.iter().find(near).map_or(frame.max_level(), |level| level.level);
+        Looked { level, is_finest: level == frame.max_level() }
     }
 
     fn empty_level(&self, level: u8) -> QuantizedMeshLevel {
@@ -295,23 +333,59 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The raster of a level: cells no longer than the package's, as long as tiles have few enough of them.
-fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> Nodes {
+/// Adds vertices to a mesh until it is within `limit_m` of the ground: the farthest place of each triangle, again and again. `at_steps` tells the ground at the
+/// steps to which places are rounded.
+fn follow(
+    comparison: &mut Comparison,
+    mesh: &mut Mesh,
+    raster: &TileRaster,
+    limit_m: f64,
+    inserted: impl Fn(InsertionError) -> ExportError,
+    at_steps: impl Fn(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, ExportError>,
+) -> Result<(), ExportError> {
+    loop {
+        // Points first: there are many, and only those of triangles that changed are looked at again.
+        let points = comparison.far_points(limit_m);
+        let far = if points.is_empty() { comparison.far_crossings(limit_m) } else { points };
+        if far.is_empty() {
+            return Ok(());
+        }
+        let uv: Vec<[f64; 2]> = far.iter().map(|far| far.uv).collect();
+        let mut vertices = Vec::new();
+        for (far, place) in far.iter().zip(at_steps(&uv)?) {
+            if let Some(point) = far.point {
+                comparison.round(point, place);
+            }
+            vertices.extend(place.and_then(|place| raster.vertex(place)));
+        }
+        let added = mesh.insert(vertices.into_iter()).map_err(&inserted)?;
+        if added > 0 {
+            comparison.update(mesh);
+        }
+    }
+}
+
+/// The length of a side of a level's tiles and that of the package's cells, in the middle of the data.
+fn side_and_cell_m(manifest: &Manifest, tiling: Tiling, level: u8) -> [f64; 2] {
     let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
-    let [_, meridian_m] = radii_m(lat);
+    let [parallel_m, meridian_m] = radii_m(lat);
     let row = tiling.row_of(level, lat);
     let [south, north] = [row, row + 1].map(|row| tiling.lat_deg(level, row));
-    let [parallel_m, _] = radii_m(lat);
     let column = tiling.column_of(level, lon);
     let [west, east] = [column, column + 1].map(|column| tiling.lon_deg(level, column));
     let side_m =
         ((north - south).to_radians() * meridian_m).max((east - west).to_radians() * parallel_m);
     let cell = manifest.frame.cell();
     let [scale_x, scale_y] = manifest.scale.center;
-    let cell_m = (cell.east_m / scale_x).min(cell.north_m / scale_y);
+    [side_m, (cell.east_m / scale_x).min(cell.north_m / scale_y)]
+}
+
+/// The raster of a level: cells no longer than some of the package's, as long as tiles have few enough of them.
+fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> Nodes {
+    let [side_m, cell_m] = side_and_cell_m(manifest, tiling, level);
     let [fewest, most] = CELLS;
     let mut per_tile = fewest;
-    while per_tile < most && side_m / per_tile as f64 > cell_m {
+    while per_tile < most && side_m / per_tile as f64 > PACKAGE_CELLS * cell_m {
         per_tile *= 2;
     }
     // As finely as the package has the ground.

@@ -87,6 +87,7 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
             at: mesh.seen_from_middle(*at),
             height_m: surface.heights_m()[vertex],
             normal: decode_normal(ground.normals[vertex]),
+            on_slab: false,
         });
     }
     for (triangle, corners) in surface.triangles().iter().enumerate() {
@@ -336,7 +337,7 @@ impl Above<'_> {
             let [from, to] = [one, other].map(of_corner);
             let normal = [0, 1, 2].map(|axis| from[axis] + share as f32 * (to[axis] - from[axis]));
             let height_m = one_m + share * (other_m - one_m);
-            return Some(GroundVertex { at, height_m, normal: unit(normal) });
+            return Some(GroundVertex { at, height_m, normal: unit(normal), on_slab: false });
         }
         let mut normal = [0.0_f32; 3];
         for (corner, share) in corners.iter().zip(shares) {
@@ -346,7 +347,7 @@ impl Above<'_> {
         }
         let on_lattice = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
         let height_m = surface.height_in_triangle_m(triangle, on_lattice);
-        Some(GroundVertex { at, height_m, normal: unit(normal) })
+        Some(GroundVertex { at, height_m, normal: unit(normal), on_slab: false })
     }
 
     /// The edge of the triangle along the tile's border on which a position lies.

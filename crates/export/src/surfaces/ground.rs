@@ -1,4 +1,4 @@
-//! A tile's ground as triangles with labels, in plan on the lattice.
+//! A tile's ground, and slabs above it, as triangles with labels, in plan on the lattice.
 
 use std::collections::HashMap;
 
@@ -13,6 +13,8 @@ pub(crate) struct GroundVertex {
     pub(crate) height_m: f64,
     /// Unit normal: east, north, up along the axes of the package's CRS.
     pub(crate) normal: [f32; 3],
+    /// Whether it belongs to a slab, and not to the ground.
+    pub(crate) on_slab: bool,
 }
 
 /// Triangles with labels.
@@ -23,7 +25,7 @@ pub(crate) struct GroundMesh {
     pub(crate) vertices: Vec<GroundVertex>,
     /// Counter-clockwise from above.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// The label of each triangle: 0 is ground, others are roads.
+    /// The label of each triangle: 0 is ground, others are roads and slabs.
     pub(crate) labels: Vec<u32>,
 }
 
@@ -109,6 +111,7 @@ impl GroundVertex {
             at: [middle(one.at[0], other.at[0]), middle(one.at[1], other.at[1])],
             height_m: middle(one.height_m, other.height_m),
             normal: unit(normal),
+            on_slab: one.on_slab,
         }
     }
 }

@@ -8,7 +8,7 @@ fn square(side: f64) -> GroundMesh {
     let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
     for at in [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]] {
         let height_m = at[0] * 0.5;
-        mesh.vertices.push(GroundVertex { at, height_m, normal: [0.0, 0.0, 1.0] });
+        mesh.vertices.push(GroundVertex { at, height_m, normal: [0.0, 0.0, 1.0], on_slab: false });
     }
     mesh.add([0, 1, 2], 0);
     mesh.add([0, 2, 3], 7);

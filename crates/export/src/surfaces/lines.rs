@@ -5,18 +5,24 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_roads::{Form, FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_styles::{RoadStyle, Style};
+use corniche_geom::{LatticePoint, Polyline, TileId, Work};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
 
-use super::ribbon::CenterLine;
-use crate::{error::ExportError, piece::Piece, read};
+use super::{
+    deck_ends::DeckEnds,
+    ribbon::CenterLine,
+    stretches::{Stretch, stretches},
+};
+use crate::{error::ExportError, read};
 
 /// The error that clients allow: Cesium's for ground, which the example asks for.
 const ALLOWED_ERROR_PX: f64 = 2.0;
 /// Tiles whose lines are kept: some rows of neighbours along a Hilbert curve.
 const KEPT_TILES: usize = 256;
+/// Steps that finding the runs of a tile on its lines may take: a vertex that a point is compared with is one. Real tiles take some thousand.
+const MOST_STEPS: u64 = 1 << 28;
 
 /// Which roads become surfaces, and how wide.
 #[derive(Debug, Clone, Copy)]
@@ -32,16 +38,17 @@ pub(crate) struct Road {
     pub(crate) class: FunctionalRoadClass,
     pub(crate) attributes: Arc<RoadAttributes>,
     pub(crate) center: CenterLine,
+    /// Heights of the deck at the points of its line, where it is a slab and not on the ground.
+    pub(crate) deck_m: Option<Vec<f64>>,
 }
 
-/// What one tile has of a way.
+/// What one tile has of a way, on the ground or as a slab.
 #[derive(Debug)]
 struct TileLine {
     way_id: i64,
     class: FunctionalRoadClass,
     attributes: Arc<RoadAttributes>,
-    points: Vec<LatticePoint>,
-    goes_on: [bool; 2],
+    stretch: Stretch,
 }
 
 /// The lines of tiles, read once for a tile and its neighbours.
@@ -75,7 +82,8 @@ impl Detail {
         let is_seen = |class: &FunctionalRoadClass| {
             let road = look.style.road(*class);
             // The style says how many pixels of the road it insists on: the more, the longer it stays.
-            let stays_m = f64::from(road.width_m * road.min_width_px.max(1.0));
+            let width_m = road.width_m.min(road.carriageway_width_m);
+            let stays_m = f64::from(width_m * road.min_width_px.max(1.0));
             stays_m >= pixel_m && road.last_pixel_m() > pixel_m
         };
         Self {
@@ -98,8 +106,7 @@ impl<'a> TileLines<'a> {
             return Ok(Arc::clone(known));
         }
         let detail = &self.details[usize::from(id.z())];
-        let pieces = read::pieces(self.package, id, &detail.classes)?;
-        let mut lines: Vec<TileLine> = pieces.into_iter().filter_map(TileLine::of_piece).collect();
+        let mut lines = self.read(id, &detail.classes)?;
         simplify(&mut lines, detail.tolerance_steps);
         let lines = Arc::new(lines);
         let mut kept = lock();
@@ -110,63 +117,104 @@ impl<'a> TileLines<'a> {
         Ok(lines)
     }
 
-    /// The roads in a tile and in those around it, the most important first. Lines that go on across a border know the point beyond it.
+    /// The lines of a tile; none of a tunnel, which is not on the ground.
+    fn read(
+        &self,
+        id: TileId,
+        classes: &[FunctionalRoadClass],
+    ) -> Result<Vec<TileLine>, ExportError> {
+        let runs = read::span_runs(self.package, id)?;
+        let quantum_m = self.package.manifest().vertical.quantum_m;
+        let work = Work::new(MOST_STEPS);
+        let failed = |source| ExportError::TooManyBridges { tile: id, source };
+        let mut lines = Vec::new();
+        for piece in read::pieces(self.package, id, classes)? {
+            if piece.attributes.structure == Structure::Tunnel {
+                continue;
+            }
+            let own = runs.get(&piece.key.way_id).map_or(&[][..], Vec::as_slice);
+            let stretches = stretches(&piece, own, quantum_m, &work).map_err(failed)?;
+            let (way_id, class) = (piece.key.way_id, piece.class);
+            let attributes = Arc::new(piece.attributes);
+            lines.extend(stretches.into_iter().map(|stretch| TileLine {
+                way_id,
+                class,
+                attributes: Arc::clone(&attributes),
+                stretch,
+            }));
+        }
+        Ok(lines)
+    }
+
+    /// The roads in a tile and in those around it, and the slabs in the tile, the most important first. Lines that go on across a border know the point beyond it.
     pub(crate) fn around(&self, id: TileId) -> Result<Vec<Road>, ExportError> {
         let mut tiles = Vec::new();
         for dy in -1..=1 {
             for dx in -1..=1 {
                 if let Some(near) = id.neighbour(dx, dy) {
-                    tiles.push(self.of_tile(near)?);
+                    tiles.push((near, self.of_tile(near)?));
                 }
             }
         }
-        let lines: Vec<&TileLine> = tiles.iter().flat_map(|tile| tile.iter()).collect();
+        let lines: Vec<(TileId, &TileLine)> = tiles
+            .iter()
+            .flat_map(|(near, tile)| tile.iter().map(move |line| (*near, line)))
+            .collect();
         // Lines of a way that end at a point, and those that begin there.
         let mut across: HashMap<(i64, LatticePoint), [Vec<usize>; 2]> = HashMap::new();
         let mut meetings: HashMap<LatticePoint, u32> = HashMap::new();
-        for (number, line) in lines.iter().enumerate() {
-            let ends = [line.points[0], line.points[line.points.len() - 1]];
-            for (end, point) in ends.into_iter().enumerate() {
-                if line.goes_on[end] {
+        for (number, (_, line)) in lines.iter().enumerate() {
+            for (end, point) in line.stretch.ends().into_iter().enumerate() {
+                if line.stretch.goes_on[end] {
                     across.entry((line.way_id, point)).or_default()[1 - end].push(number);
                 }
             }
-            for point in &line.points {
+            for point in &line.stretch.points {
                 *meetings.entry(*point).or_default() += 1;
             }
         }
+        let decks = DeckEnds::of(lines.iter().map(|(_, line)| &line.stretch));
         // Across a border the same point is that of two lines of one way.
-        let is_met = |point: &LatticePoint| meetings[point] > 1;
+        let is_met = |point: LatticePoint| meetings[&point] > 1;
         let joined = |way_id: i64, point: LatticePoint| {
             across.get(&(way_id, point)).and_then(|found| match found {
                 [ending, beginning] if ending.len() == 1 && beginning.len() == 1 => {
-                    Some([lines[ending[0]], lines[beginning[0]]])
+                    Some([ending[0], beginning[0]].map(|number| &lines[number].1.stretch.points))
                 }
                 _ => None,
             })
         };
         let center = |line: &TileLine| {
-            let [first, last] = [line.points[0], line.points[line.points.len() - 1]];
-            let before = joined(line.way_id, first)
-                .filter(|_| line.goes_on[0])
-                .map(|[ending, _]| ending.points[ending.points.len() - 2]);
-            let after = joined(line.way_id, last)
-                .filter(|_| line.goes_on[1])
-                .map(|[_, beginning]| beginning.points[1]);
+            let Stretch { points, deck_m, goes_on } = &line.stretch;
+            let [first, last] = line.stretch.ends();
+            let mut beyond = [
+                joined(line.way_id, first)
+                    .filter(|_| goes_on[0])
+                    .map(|[ending, _]| ending[ending.len() - 2]),
+                joined(line.way_id, last).filter(|_| goes_on[1]).map(|[_, beginning]| beginning[1]),
+            ];
+            if deck_m.is_some() {
+                // Bridges of several ways.
+                let other = [0, 1].map(|end| decks.beyond(&line.stretch, end));
+                beyond = [0, 1].map(|end| beyond[end].or(other[end]));
+            }
             CenterLine {
-                points: line.points.clone(),
-                beyond: [before, after],
-                is_met: [is_met(&first), is_met(&last)],
+                points: points.clone(),
+                beyond,
+                is_met: [is_met(first), is_met(last)],
                 half_width: self.half_width(line),
             }
         };
         let mut roads: Vec<Road> = lines
             .iter()
-            .map(|line| Road {
+            // Each tile has its own slabs.
+            .filter(|(near, line)| *near == id || line.stretch.deck_m.is_none())
+            .map(|(_, line)| Road {
                 way_id: line.way_id,
                 class: line.class,
                 attributes: Arc::clone(&line.attributes),
                 center: center(line),
+                deck_m: line.stretch.deck_m.clone(),
             })
             .collect();
         roads.sort_by(|one, other| {
@@ -179,38 +227,8 @@ impl<'a> TileLines<'a> {
     /// Half the width of a road, lattice steps.
     fn half_width(&self, line: &TileLine) -> f64 {
         let manifest = self.package.manifest();
-        let RoadAttributes { form, highway, .. } = &*line.attributes;
-        // As the viewer draws them.
-        let is_narrow = *form == Form::Link || highway == "service";
-        let share = if is_narrow { RoadStyle::NARROW_WIDTH_SHARE } else { 1.0 };
-        let width_m = self.look.style.width_m(line.class, line.attributes.own_width());
-        f64::from(width_m * share) / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
-    }
-}
-
-impl TileLine {
-    /// The plan of a piece; `None` for a tunnel, which is not on the ground, and for one without length.
-    fn of_piece(piece: Piece) -> Option<Self> {
-        if piece.attributes.structure == Structure::Tunnel {
-            return None;
-        }
-        // A line that ends where the ground ends has no point of its own there.
-        let last = piece.vertices.len() - 1;
-        let own = piece.vertices.iter().enumerate();
-        let own = own.filter(|(at, vertex)| vertex.is_source || *at == 0 || *at == last);
-        let mut points: Vec<LatticePoint> = own
-            .map(|(_, vertex)| {
-                LatticePoint::new(vertex.at[0].round() as i64, vertex.at[1].round() as i64)
-            })
-            .collect();
-        points.dedup();
-        (points.len() > 1).then(|| Self {
-            way_id: piece.key.way_id,
-            class: piece.class,
-            attributes: Arc::new(piece.attributes),
-            points,
-            goes_on: piece.goes_on,
-        })
+        let width_m = self.look.style.width_of_m(line.class, &line.attributes);
+        f64::from(width_m) / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
     }
 }
 
@@ -219,12 +237,12 @@ impl TileLine {
 fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
     let mut uses: HashMap<LatticePoint, u32> = HashMap::new();
     for line in lines.iter() {
-        for point in &line.points {
+        for point in &line.stretch.points {
             *uses.entry(*point).or_default() += 1;
         }
     }
-    for line in lines {
-        let Ok(whole) = Polyline::new(line.points.clone()) else { continue };
+    for line in lines.iter_mut().filter(|line| line.stretch.deck_m.is_none()) {
+        let Ok(whole) = Polyline::new(line.stretch.points.clone()) else { continue };
         let fixed = |(_, point): &(u32, &LatticePoint)| uses[*point] > 1;
         let fixed = (0..).zip(whole.points()).filter(fixed).map(|(at, _)| at).collect();
         let road = corniche_roads::Road {
@@ -236,6 +254,6 @@ fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
             node_ids: Vec::new(),
             same_places: Vec::new(),
         };
-        line.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
+        line.stretch.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
     }
 }

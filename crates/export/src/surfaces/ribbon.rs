@@ -38,46 +38,135 @@ pub(crate) struct Ribbon {
     pub(crate) parts: Vec<Vec<LatticePoint>>,
 }
 
+/// A line across a road at a point of its centre-line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct CrossSection {
+    /// The number of the point.
+    pub(crate) point: usize,
+    /// The left side and the right one.
+    pub(crate) sides: [LatticePoint; 2],
+}
+
 /// The two sides at a point of the line, on the left and on the right: where the segment before ends, and where the one after begins.
 struct Sides {
     before: [[f64; 2]; 2],
     after: [[f64; 2]; 2],
     /// Whether a side of the segment before ends where that of the one after begins.
     meet: [bool; 2],
+    /// The side inside of a turn.
+    inner: Option<InnerSide>,
+}
+
+/// The side inside of a turn, where both segments end on the bisector.
+#[derive(Clone, Copy)]
+struct InnerSide {
+    side: usize,
+    /// How far before the point they end, and after it they begin, along the line: less than where they cross if that is too far.
+    back: f64,
+    /// The way along the bisector for one of `back`.
+    direction: [f64; 2],
+}
+
+/// A centre-line with the points beyond its ends.
+struct LongLine {
+    all: Vec<LatticePoint>,
+    /// Where the line's own first and last point are among them.
+    own: [usize; 2],
+    half_width: f64,
+}
+
+impl LongLine {
+    fn of(line: &CenterLine) -> Self {
+        let CenterLine { points, beyond, half_width, .. } = line;
+        let before = beyond[0].filter(|before| *before != points[0]);
+        let after = beyond[1].filter(|after| *after != points[points.len() - 1]);
+        let from = usize::from(before.is_some());
+        Self {
+            all: before.into_iter().chain(points.iter().copied()).chain(after).collect(),
+            own: [from, from + points.len() - 1],
+            half_width: *half_width,
+        }
+    }
+
+    fn sides_at(&self, index: usize) -> Sides {
+        let Self { all, half_width, .. } = self;
+        let at = all[index];
+        let normal = |one: usize, other: usize| left_normal(all[one], all[other]);
+        match (index.checked_sub(1), all.get(index + 1)) {
+            (Some(previous), Some(_)) => {
+                let reach = length(all[previous], at).min(length(at, all[index + 1]));
+                let normals = [normal(previous, index), normal(index, index + 1)];
+                Sides::at_turn(at, normals, *half_width, reach)
+            }
+            (Some(previous), None) => Sides::at_end(at, normal(previous, index), *half_width),
+            _ => Sides::at_end(at, normal(index, index + 1), *half_width),
+        }
+    }
+
+    /// Whether the line goes on beyond its last point.
+    fn goes_on(&self) -> bool {
+        self.own[1] + 1 < self.all.len()
+    }
+}
+
+impl CenterLine {
+    /// Lines across the road: the sides of its [`Ribbon`], but inside of turns they never cross, so that a strip can go through them. There is one at
+    /// each point, and two where a turn is bevelled.
+    pub(crate) fn cross_sections(&self) -> Vec<CrossSection> {
+        let line = LongLine::of(self);
+        let [from, end] = line.own;
+        let mut turns: Vec<Sides> = (from..=end).map(|index| line.sides_at(index)).collect();
+        let lengths = self.points.array_windows().map(|[one, other]| length(*one, *other));
+        let shares = inner_shares(&turns, lengths);
+        let mut sections: Vec<CrossSection> = Vec::with_capacity(self.points.len());
+        for (point, (sides, share)) in turns.iter_mut().zip(shares).enumerate() {
+            if let Some(InnerSide { side, back, direction }) = sides.inner
+                && (share < 1.0 || !sides.meet[side])
+            {
+                let corner = moved(self.points[point], direction, back * share);
+                (sides.before[side], sides.after[side]) = (corner, corner);
+            }
+            // A turn belongs to the segment before it.
+            let before = if point == 0 { sides.after } else { sides.before };
+            for sides in [before, sides.after] {
+                let next = CrossSection { point, sides: sides.map(snap) };
+                if sections.last() != Some(&next) {
+                    sections.push(next);
+                }
+            }
+        }
+        sections
+    }
+}
+
+/// Which share of its way back each turn may have, so that no two of them share more than the segment between them.
+fn inner_shares(turns: &[Sides], lengths: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut shares = vec![1.0_f64; turns.len()];
+    for (number, length) in lengths.enumerate() {
+        if let [Some(one), Some(other)] = [number, number + 1].map(|point| turns[point].inner)
+            && one.side == other.side
+            && one.back + other.back > length
+        {
+            // A little remains between them.
+            let share = 0.99 * length / (one.back + other.back);
+            for point in [number, number + 1] {
+                shares[point] = shares[point].min(share);
+            }
+        }
+    }
+    shares
 }
 
 impl Ribbon {
     /// The surface along a line.
     pub(crate) fn around(line: &CenterLine) -> Self {
-        let CenterLine { points, beyond, is_met, half_width } = line;
+        let CenterLine { points, is_met, half_width, .. } = line;
         let mut ribbon = Self::default();
         let [first, last] = [points[0], points[points.len() - 1]];
-        let before = beyond[0].filter(|before| *before != first);
-        let after = beyond[1].filter(|after| *after != last);
-        let all: Vec<LatticePoint> =
-            before.into_iter().chain(points.iter().copied()).chain(after).collect();
-        let from = usize::from(before.is_some());
-        let end = from + points.len() - 1;
-        let sides_at = |index: usize| {
-            let at = all[index];
-            let normal = |one: usize, other: usize| left_normal(all[one], all[other]);
-            match (index.checked_sub(1), all.get(index + 1)) {
-                (Some(previous), Some(_)) => {
-                    let reach = length(all[previous], at).min(length(at, all[index + 1]));
-                    Sides::at_turn(
-                        at,
-                        normal(previous, index),
-                        normal(index, index + 1),
-                        *half_width,
-                        reach,
-                    )
-                }
-                (Some(previous), None) => Sides::at_end(at, normal(previous, index), *half_width),
-                _ => Sides::at_end(at, normal(index, index + 1), *half_width),
-            }
-        };
-        let mut start = sides_at(from);
-        if before.is_none() {
+        let long = LongLine::of(line);
+        let [from, end] = long.own;
+        let mut start = long.sides_at(from);
+        if from == 0 {
             ribbon.cap(
                 first,
                 left_normal(points[0], points[1]).map(|n| -n),
@@ -86,13 +175,13 @@ impl Ribbon {
             );
         }
         for index in from..end {
-            let stop = sides_at(index + 1);
+            let stop = long.sides_at(index + 1);
             let [left, right] = [0, 1].map(|side| [start.after[side], stop.before[side]].map(snap));
             ribbon.outline.extend([left, right]);
             ribbon.parts.push(vec![left[0], left[1], right[1], right[0]]);
             // A turn belongs to the segment before it.
-            if index + 1 < end || after.is_some() {
-                let at = all[index + 1];
+            if index + 1 < end || long.goes_on() {
+                let at = long.all[index + 1];
                 for side in [0, 1] {
                     if !stop.meet[side] {
                         let [one, other] = [stop.before[side], stop.after[side]].map(snap);
@@ -103,7 +192,7 @@ impl Ribbon {
             }
             start = stop;
         }
-        if after.is_none() {
+        if !long.goes_on() {
             let normal = left_normal(points[points.len() - 2], last);
             ribbon.cap(last, normal, *half_width, is_met[1]);
         }
@@ -138,13 +227,12 @@ impl Ribbon {
 impl Sides {
     fn at_end(at: LatticePoint, [nx, ny]: [f64; 2], half_width: f64) -> Self {
         let sides = [moved(at, [nx, ny], half_width), moved(at, [-nx, -ny], half_width)];
-        Self { before: sides, after: sides, meet: [true; 2] }
+        Self { before: sides, after: sides, meet: [true; 2], inner: None }
     }
 
     fn at_turn(
         at: LatticePoint,
-        before: [f64; 2],
-        after: [f64; 2],
+        [before, after]: [[f64; 2]; 2],
         half_width: f64,
         reach: f64,
     ) -> Self {
@@ -152,19 +240,28 @@ impl Sides {
         let Self { after: starts, .. } = Self::at_end(at, after, half_width);
         let product = before[0] * after[0] + before[1] * after[1];
         let turn = before[0] * after[1] - before[1] * after[0];
-        let mut sides = Self { before: ends, after: starts, meet: [false; 2] };
+        let bisector = [0, 1].map(|axis| before[axis] + after[axis]);
+        let inner = usize::from(turn <= 0.0);
+        let sign = |side: usize| if side == 0 { 1.0 } else { -1.0 };
+        // How far before the point the inner sides cross: the tangent of half the turn.
+        let back = half_width * turn.abs() / (1.0 + product);
+        let direction = bisector.map(|axis| axis * sign(inner) / turn.abs());
+        // On a way back along itself there is no bisector.
+        let inner_side = direction.iter().all(|axis| axis.is_finite()).then(|| InnerSide {
+            side: inner,
+            back: if back > reach { reach.min(half_width) } else { back },
+            direction,
+        });
+        let mut sides = Self { before: ends, after: starts, meet: [false; 2], inner: inner_side };
         if product <= SHARPEST_MITRE {
             return sides;
         }
-        let mitre = [0, 1].map(|axis| (before[axis] + after[axis]) / (1.0 + product));
-        // How far before the point the inner sides cross: the tangent of half the turn.
-        let back = half_width * turn.abs() / (1.0 + product);
-        let inner = usize::from(turn <= 0.0);
-        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+        let mitre = bisector.map(|axis| axis / (1.0 + product));
+        for side in [0, 1] {
             if side == inner && back > reach {
                 continue;
             }
-            let corner = moved(at, mitre.map(|axis| axis * sign), half_width);
+            let corner = moved(at, mitre.map(|axis| axis * sign(side)), half_width);
             (sides.before[side], sides.after[side]) = (corner, corner);
             sides.meet[side] = true;
         }

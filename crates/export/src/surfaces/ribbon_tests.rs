@@ -100,3 +100,31 @@ fn ends_at_other_roads_are_round() {
     assert!(beyond.contains(&point(1050, 0)) && beyond.contains(&point(1035, 35)));
     assert!(beyond.iter().all(|at| at.distance_steps(point(1000, 0)) <= 51.0));
 }
+
+/// Lines across a road have the corners of its ribbon, one pair at a turn and two at a bevel.
+#[test]
+fn cross_sections_are_the_sides_of_the_ribbon() {
+    let turn = line(&[(0, 0), (1000, 0), (1000, 1000)], 50.0);
+    let sections = turn.cross_sections();
+    let sides: Vec<_> = sections.iter().map(|section| section.sides).collect();
+    let expected = [
+        [point(0, 50), point(0, -50)],
+        [point(950, 50), point(1050, -50)],
+        [point(950, 1000), point(1050, 1000)],
+    ];
+    assert_eq!(sides, expected);
+    assert_eq!(sections.iter().map(|section| section.point).collect::<Vec<_>>(), [0, 1, 2]);
+    // Outside of a sharp turn there are two corners, inside there is one.
+    let sharp = line(&[(0, 0), (1000, 0), (0, 100)], 50.0).cross_sections();
+    assert_eq!(sharp.len(), 4);
+    assert_eq!(sharp[1].sides[0], sharp[2].sides[0]);
+    assert_eq!(sharp[1].sides[1], point(1000, -50));
+    assert_ne!(sharp[1].sides[1], sharp[2].sides[1]);
+    // What two halves have at their border is the same.
+    let west =
+        CenterLine { beyond: [None, Some(point(2000, 300))], ..line(&[(0, 0), (1000, 0)], 50.0) };
+    let east =
+        CenterLine { beyond: [Some(point(0, 0)), None], ..line(&[(1000, 0), (2000, 300)], 50.0) };
+    let [west, east] = [west, east].map(|half| half.cross_sections());
+    assert_eq!(west.last().map(|section| section.sides), east.first().map(|section| section.sides));
+}

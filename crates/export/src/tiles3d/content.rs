@@ -18,7 +18,7 @@ use crate::{
     gltf::linear,
     read,
     relief_map::ReliefMap,
-    surfaces::{Divided, Road, TileLines},
+    surfaces::{Divided, SurfaceKind, TileLines},
     texture::Texture,
 };
 
@@ -61,7 +61,7 @@ pub(crate) struct TileFacts {
     pub(crate) error_m: f64,
     /// Triangles of the package.
     pub(crate) package_triangles: u64,
-    /// Triangles of the ground that are written, roads included, and of roads alone.
+    /// Triangles that are written, walls not included, and those of roads alone.
     pub(crate) triangles: u64,
     pub(crate) road_triangles: u64,
     /// Time for cutting roads in.
@@ -88,27 +88,28 @@ pub(crate) fn make(
     let Some(terrain) = &payload.terrain else { return Ok(None) };
     let manifest = package.manifest();
     let lines = (request.roads == TileRoads::Cut).then_some(lines);
-    let Some(divided) = Divided::of_tile(manifest, id, terrain, lines)? else { return Ok(None) };
-    let Divided { mut mesh, roads, package_triangles, cut_s } = divided;
-    let longest = level.longest_edge_m * level.steps_per_metre;
-    mesh.split_long_edges(|[east, north]| east.hypot(north) > longest);
-    let placed = placing.place(id, &mesh)?;
-    let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), &mesh)?;
+    let divided = Divided::of_tile(manifest, id, terrain, lines)?;
+    let Some(mut divided) = divided else { return Ok(None) };
+    let longest = (level.longest_edge_m * level.steps_per_metre).powi(2);
+    divided.mesh.split_long_edges(|[east, north]| east * east + north * north > longest);
+    let placed = placing.place(id, &divided.mesh)?;
+    let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), &divided.mesh)?;
     let skirt =
         if request.skirts { Skirt::below(&placed, level.skirt_m) } else { Skirt::default() };
     let bound_m = terrain.geometric_error_m;
+    let is_road = |label: &&u32| matches!(divided.kind_of(**label), SurfaceKind::Road(_));
     let facts = TileFacts {
         bound_m,
         error_m: bound_m + level.sag_m,
-        package_triangles,
+        package_triangles: divided.package_triangles,
         triangles: placed.triangles.len() as u64,
-        road_triangles: placed.labels.iter().filter(|label| **label != 0).count() as u64,
-        cut_s,
+        road_triangles: placed.labels.iter().filter(is_road).count() as u64,
+        cut_s: divided.cut_s,
     };
     let texture =
         Texture::of_tile(package, id, &request.style, mean_color(manifest, request, &placed))?;
     let mut builder = Builder::new(manifest, request, &placed, Look { texture, relief });
-    builder.ground(&roads);
+    builder.surfaces(&divided);
     builder.skirt(&skirt);
     let mut vector = Builder::new(manifest, request, &placed, Look::default());
     match request.roads {
@@ -192,24 +193,24 @@ impl<'a> Builder<'a> {
         part.colors.push([red, green, blue, u8::MAX]);
     }
 
-    fn ground(&mut self, roads: &[Road]) {
+    /// Adds the ground, the surfaces of roads and slabs.
+    fn surfaces(&mut self, divided: &Divided) {
         let mut labels: Vec<u32> = self.placed.labels.clone();
         labels.sort_unstable();
         labels.dedup();
         // Parts in the order of classes, ground first; roads come sorted by class.
-        let mut by_class: BTreeMap<Option<FunctionalRoadClass>, Vec<u32>> = BTreeMap::new();
+        let mut by_kind: BTreeMap<SurfaceKind, Vec<u32>> = BTreeMap::new();
         for label in labels {
-            let class = (label != 0).then(|| roads[label as usize - 1].class);
-            by_class.entry(class).or_default().push(label);
+            by_kind.entry(divided.kind_of(label)).or_default().push(label);
         }
         let mut of_label: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
         for (triangle, label) in self.placed.triangles.iter().zip(&self.placed.labels) {
             of_label.entry(*label).or_default().push(*triangle);
         }
-        for (class, labels) in by_class {
+        for (kind, labels) in by_kind {
             let (mut part, mut ways) = (Primitive::default(), Vec::new());
             for label in labels {
-                let road = (label != 0).then(|| &roads[label as usize - 1]);
+                let road = divided.road_of(label);
                 let mut place = BTreeMap::new();
                 for corner in of_label[&label].as_flattened() {
                     let vertex = &self.placed.vertices[*corner as usize];
@@ -230,7 +231,11 @@ impl<'a> Builder<'a> {
                         .or_insert_with(|| row(road.way_id, road.class, &road.attributes));
                 }
             }
-            let kind = class.map_or(PrimitiveKind::Terrain, PrimitiveKind::RoadSurfaces);
+            let kind = match kind {
+                SurfaceKind::Ground => PrimitiveKind::Terrain,
+                SurfaceKind::Road(class) => PrimitiveKind::RoadSurfaces(class),
+                SurfaceKind::Slab(class) => PrimitiveKind::BridgeSlabs(class),
+            };
             self.parts.push((kind, part));
             self.ways.push(ways);
         }

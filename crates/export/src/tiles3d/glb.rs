@@ -10,8 +10,8 @@ use serde_json::{Map, Value, json};
 
 use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
 use crate::gltf::{
-    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, TRIANGLES, U8,
-    U16, U32, linear, range_of, sampler, write_container,
+    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, SLAB_COLOR,
+    TRIANGLES, U8, U16, U32, linear, range_of, sampler, write_container,
 };
 
 /// A text of a row.
@@ -77,10 +77,13 @@ fn material(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
         })
     };
     let name = kind.name();
-    match kind.class() {
-        None => json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) }),
+    match (kind, kind.class()) {
+        (PrimitiveKind::BridgeSlabs(_), _) => {
+            json!({ "name": name, "pbrMetallicRoughness": base(SLAB_COLOR.map(linear)) })
+        }
+        (_, None) => json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) }),
         // Colours of roads are those of the legend, whatever the light.
-        Some(class) => json!({
+        (_, Some(class)) => json!({
             "name": name,
             "pbrMetallicRoughness": base(colors[usize::from(class.number())].map(linear)),
             "extensions": { "KHR_materials_unlit": {} },
@@ -161,7 +164,10 @@ impl File {
         match kind {
             PrimitiveKind::RoadLines(_) => primitive["mode"] = json!(LINES),
             PrimitiveKind::RoadStrips(_) => primitive["mode"] = json!(LINE_STRIP),
-            PrimitiveKind::Terrain | PrimitiveKind::Skirt | PrimitiveKind::RoadSurfaces(_) => {}
+            PrimitiveKind::Terrain
+            | PrimitiveKind::Skirt
+            | PrimitiveKind::RoadSurfaces(_)
+            | PrimitiveKind::BridgeSlabs(_) => {}
         }
         primitive["attributes"] = Value::Object(attributes);
         primitive["indices"] = self.indices(&part.indices, count, kind)?;

@@ -3,7 +3,7 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Rgb;
 
-use crate::relief_map::ReliefMap;
+use crate::{gltf::SLAB_NAME, relief_map::ReliefMap};
 
 /// A list of vertices of one material, as glTF has it: y upwards.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,6 +32,8 @@ pub(crate) enum PrimitiveKind {
     Terrain,
     Skirt,
     RoadSurfaces(FunctionalRoadClass),
+    /// What slabs of bridges have beside the surface of the road.
+    BridgeSlabs(FunctionalRoadClass),
     RoadLines(FunctionalRoadClass),
     RoadStrips(FunctionalRoadClass),
 }
@@ -41,9 +43,10 @@ impl PrimitiveKind {
     pub(crate) fn class(self) -> Option<FunctionalRoadClass> {
         match self {
             Self::Terrain | Self::Skirt => None,
-            Self::RoadSurfaces(class) | Self::RoadLines(class) | Self::RoadStrips(class) => {
-                Some(class)
-            }
+            Self::RoadSurfaces(class)
+            | Self::BridgeSlabs(class)
+            | Self::RoadLines(class)
+            | Self::RoadStrips(class) => Some(class),
         }
     }
 
@@ -51,6 +54,7 @@ impl PrimitiveKind {
         match self {
             Self::Terrain => "terrain".to_owned(),
             Self::Skirt => "skirt".to_owned(),
+            Self::BridgeSlabs(_) => SLAB_NAME.to_owned(),
             Self::RoadSurfaces(class) | Self::RoadLines(class) | Self::RoadStrips(class) => {
                 format!("roads FRC {}", class.number())
             }

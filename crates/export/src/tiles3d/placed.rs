@@ -63,8 +63,8 @@ pub(crate) struct Placing<'a> {
 }
 
 impl Placing<'_> {
-    /// Carries a tile's triangles to the globe, each vertex by itself. Vertices that come to the same place become one, and triangles without an inside
-    /// are left out.
+    /// Carries a tile's triangles to the globe, each vertex by itself. Vertices that come to the same place become one, those of slabs only with the same
+    /// normal, and triangles without an inside are left out.
     pub(crate) fn place(&self, id: TileId, mesh: &GroundMesh) -> Result<PlacedTile, ExportError> {
         let frame = &self.manifest.frame;
         let bounds = frame.tile_lattice_bounds(id);
@@ -91,18 +91,24 @@ impl Placing<'_> {
             labels: Vec::with_capacity(mesh.labels.len()),
             axes,
         };
-        let mut known: HashMap<[u32; 3], u32> = HashMap::with_capacity(at.len());
+        let mut known: HashMap<([u32; 3], Option<[u32; 3]>), u32> =
+            HashMap::with_capacity(at.len());
         let mut number = Vec::with_capacity(at.len());
         for (index, vertex) in mesh.vertices.iter().enumerate() {
             let at_m = [0, 1, 2].map(|axis| (at[index][axis] - middle_m[axis]) as f32);
             let next = tile.vertices.len() as u32;
             // Adding 0 makes one of both zeros.
-            let place = *known.entry(at_m.map(|axis| (axis + 0.0).to_bits())).or_insert(next);
+            let bits = |vector: [f32; 3]| vector.map(|axis| (axis + 0.0).to_bits());
+            let own_normal = vertex.on_slab.then(|| bits(vertex.normal));
+            let place = *known.entry((bits(at_m), own_normal)).or_insert(next);
             number.push(place);
-            let sides = sides(mesh.on_lattice(vertex), &bounds);
+            // No wall hangs from a slab.
+            let on_sides = sides(mesh.on_lattice(vertex), &bounds);
+            let sides = on_sides.map(|on_side| on_side && !vertex.on_slab);
             if place == next {
-                let turned = |axis| turned(axis, axes, self.root.up_at(plan[index]));
-                let [normal, tangent] = [vertex.normal, tangent(vertex.normal)].map(turned);
+                let grid = grid_axes(axes, self.root.up_at(plan[index]));
+                let [normal, tangent] =
+                    [vertex.normal, tangent(vertex.normal)].map(|along| turned(along, grid));
                 let height_m = vertex.height_m;
                 let across = across(mesh.on_lattice(vertex), &bounds);
                 tile.vertices.push(PlacedVertex { at_m, normal, tangent, height_m, across, sides });
@@ -159,16 +165,17 @@ impl Placing<'_> {
     }
 }
 
-/// A direction of the package, east, north and up of the grid, where `up` is upwards.
-fn turned(
-    [east, north, upwards]: [f32; 3],
-    [_, grid_north, _]: [[f64; 3]; 3],
-    up: [f64; 3],
-) -> [f32; 3] {
-    let e = unit(cross(grid_north, up));
-    let n = cross(up, e);
-    let [x, y, z] = [east, north, upwards].map(f64::from);
-    unit([0, 1, 2].map(|axis| x * e[axis] + y * n[axis] + z * up[axis])).map(|axis| axis as f32)
+/// East, north and up of the grid where `up` is upwards.
+fn grid_axes([_, grid_north, _]: [[f64; 3]; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
+    let east = unit(cross(grid_north, up));
+    [east, cross(up, east), up]
+}
+
+/// A direction of the package, given along these axes.
+fn turned(along: [f32; 3], [east, north, up]: [[f64; 3]; 3]) -> [f32; 3] {
+    let [x, y, z] = along.map(f64::from);
+    let turned = [0, 1, 2].map(|axis| x * east[axis] + y * north[axis] + z * up[axis]);
+    unit(turned).map(|axis| axis as f32)
 }
 
 /// The middle of the box around some positions.

@@ -95,7 +95,7 @@ fn roads(style: &Style) -> Vec<Category> {
 
 fn areas(style: &Style) -> Vec<Category> {
     let category = |(below, class): (usize, AreaClass)| {
-        let AreaStyle { color, opacity } = *style.area(class);
+        let AreaStyle { color, opacity, .. } = *style.area(class);
         let pass = AreaClass::COUNT - 1 - below;
         let parts = vec![SymbolPart { pass, drawing: Drawing::Fill { color } }];
         Category::named(class.name(), opacity, parts)

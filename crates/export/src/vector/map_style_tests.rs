@@ -28,8 +28,8 @@ fn every_class_has_a_category() {
     assert_eq!(qml("line", &style), None);
 }
 
-/// Colours and widths are those of `config/styles/road-atlas.toml`: a motorway has 5.5 px of #D93A2B and an edge of 1 px on both sides,
-/// #5E1410. A pixel is 25.4 / 96 mm.
+/// Colours and widths are those of `config/styles/road-atlas.toml`: a motorway has 5.5 px of #C50D2B and an edge of 1 px on both sides,
+/// #6B1413. A pixel is 25.4 / 96 mm.
 #[test]
 fn colours_and_widths_are_those_of_the_default_style() {
     let roads = qml("roads", &Style::road_atlas()).unwrap();
@@ -37,17 +37,17 @@ fn colours_and_widths_are_those_of_the_default_style() {
     let motorway = roads.split("</symbol>").next().unwrap();
     for part in [
         "pass=\"0\"",
-        r#"k="line_color" v="94,20,16,255""#,
+        r#"k="line_color" v="107,20,19,255""#,
         r#"k="line_width" v="1.984""#,
         "pass=\"9\"",
-        r#"k="line_color" v="217,58,43,255""#,
+        r#"k="line_color" v="197,13,43,255""#,
         r#"k="line_width" v="1.455""#,
     ] {
         assert!(motorway.contains(part), "{part}: {motorway}");
     }
     let areas = qml("areas", &Style::road_atlas()).unwrap();
     assert!(areas.contains(r#"alpha="0.42""#) && areas.contains("127,174,120,255"), "{areas}");
-    // 18, 5, 4 and 5 px.
+    // 16, 4, 3 and 4 px.
     let boundaries = qml("boundaries", &Style::road_atlas()).unwrap();
-    assert!(boundaries.contains(r#"v="4.762;1.323;1.058;1.323""#), "{boundaries}");
+    assert!(boundaries.contains(r#"v="4.233;1.058;0.794;1.058""#), "{boundaries}");
 }

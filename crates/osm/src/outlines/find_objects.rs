@@ -39,7 +39,7 @@ pub(crate) fn find_objects<R: Read + Seek>(
         let judges: Vec<Judge<'_>> =
             wanted.iter().map(|&wanted| Judge::new(&texts, wanted)).collect();
         let mut found: Vec<OfBlock> = judges.iter().map(|_| OfBlock::default()).collect();
-        let looked = Looked::scan(&message, &block);
+        let looked = Looked::scan(&block);
         if with_ways {
             for way in block.ways() {
                 for (found, judge) in found.iter_mut().zip(&judges) {

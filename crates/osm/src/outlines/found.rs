@@ -115,7 +115,7 @@ impl<'a> Outlines<'a> {
         let mut ways = MemberWays::new(ways.finish().map_err(failed)?, members, kept);
         // What these count is of roads.
         let none = &mut ExtractSummary::default();
-        let numbered = number_nodes(reading, &mut ways, none, on_defect)?;
+        let numbered = number_nodes(reading, &mut ways, none, on_defect, None)?;
         let members = ways.into_members().map_err(failed)?.read();
         let known = known.read();
         let objects =

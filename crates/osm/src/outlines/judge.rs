@@ -94,7 +94,7 @@ impl OfBlock {
             return false;
         }
         let member = Member { way_id: way.id, is_inner: false };
-        let what = (AreaObject::Way(way.id), way.version);
+        let what = (AreaObject::Way(way.id), way.info.version);
         self.push(what, (class, is_coastline), &tags, Box::new([member]));
         true
     }
@@ -112,7 +112,7 @@ impl OfBlock {
             way_id: way.id,
             age: 0,
             order: 0,
-            version: known_version(way.version).unwrap_or_default(),
+            version: known_version(way.info.version).unwrap_or_default(),
             file: 0,
             bytes: node_bytes(&self.node_ids),
             facts: Box::default(),

@@ -90,10 +90,12 @@ pub fn read_kept_roads(
         .collect();
     let mut nodes = KeptNodes { places: Ahead::new(Merged::new(places.map_err(failed)?)) };
     let ways = Merged::new(ways.collect());
-    let numbered = number_nodes(&reading, ways, &mut summary, &mut |defect| defects.push(&defect))?;
-    let NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } = numbered;
+    let on_duplicate = &mut |defect| defects.push(&defect);
+    let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)?;
+    let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
+        numbered;
     let mentions = mentions.finish().map_err(|error| reading.scratch_failed(error))?;
-    let questions = vec![NodeQuestions { mentions, mentions_count }];
+    let questions = vec![NodeQuestions { mentions, mentions_count, left_out }];
     let located = Merged::new(located.collect());
     let on_conflict = &mut |_, defect| defects.push(&defect);
     let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)?;

@@ -11,8 +11,9 @@ use crate::{
 
 /// Nodes along a side of a tile.
 pub(crate) const TILE_NODES: usize = TILE_CELLS as usize + 1;
-/// The same with one node of halo at both ends.
-pub(crate) const HALO_NODES: usize = TILE_NODES + 2;
+/// So many nodes of halo lie on every side of a tile's heights: one for slopes at the border, and one for the low-pass of what slopes
+/// are taken from.
+pub(crate) const HALO: usize = 2;
 
 /// Columns and rows of a tile's nodes that belong to it: those on the east and south border belong to the next tile, if there can
 /// be one.
@@ -24,14 +25,14 @@ pub(crate) fn own_size(id: TileId) -> [usize; 2] {
 /// Heights of a finest tile.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FinestHeights {
-    /// 259 × 259 nodes: the tile's own, borders included, and one more on every side.
-    pub(crate) with_halo: HeightGrid,
+    /// 261 × 261 nodes: the tile's own, borders included, and two more on every side.
+    with_halo: HeightGrid,
     /// Which of the tile's own nodes (257 × 257, row by row from the north) are filled voids; ascending.
     pub(crate) filled: Vec<usize>,
 }
 
 impl FinestHeights {
-    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least 1. `None`
+    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least [`HALO`]. `None`
     /// where the tile itself has no height.
     pub(crate) fn cut(window: &DemWindow, left: usize, top: usize) -> Option<Self> {
         let own = |column: usize, row: usize| (left + column, top + row);
@@ -53,13 +54,14 @@ impl FinestHeights {
         } else {
             (0..TILE_NODES * TILE_NODES).filter(is_filled).collect()
         };
-        let with_halo = window.heights.window(left - 1, top - 1, HALO_NODES, HALO_NODES);
+        let side = TILE_NODES + 2 * HALO;
+        let with_halo = window.heights.window(left - HALO, top - HALO, side, side);
         Some(Self { with_halo, filled })
     }
 
-    /// The tile's own nodes, borders included.
-    pub(crate) fn own(&self) -> HeightGrid {
-        self.with_halo.window(1, 1, TILE_NODES, TILE_NODES)
+    /// The tile's own nodes, borders included, and so many more on every side, at most [`HALO`].
+    pub(crate) fn with_halo(&self, halo: usize) -> HeightGrid {
+        self.with_halo.inner(HALO - halo)
     }
 
     pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
@@ -83,13 +85,13 @@ impl FinestHeights {
             return Ok(None);
         }
         let (heights, filled) = bytes
-            .split_at_checked(HALO_NODES * HALO_NODES * 4)
+            .split_at_checked((TILE_NODES + 2 * HALO).pow(2) * 4)
             .ok_or_else(|| damaged(key, &"it is too short"))?;
         let filled = filled
             .chunks_exact(4)
             .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
             .collect();
-        Ok(Some(Self { with_halo: grid_of(heights, HALO_NODES), filled }))
+        Ok(Some(Self { with_halo: grid_of(heights, TILE_NODES + 2 * HALO), filled }))
     }
 }
 

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     data_tiles::DataTiles,
-    finest::{FinestHeights, TILE_NODES, own_size},
+    finest::{FinestHeights, HALO, TILE_NODES, own_size},
     rasters,
 };
 use crate::{
@@ -148,8 +148,9 @@ impl<'a> PatchReader<'a> {
             let stride = frame.stride(level);
             for id in data.above(level).within(patch) {
                 let (own, window_corner) = (frame.tile_corner(id), frame.tile_corner(first));
-                // The window starts one node before the tile `first`.
-                let (left, top) = (own.i - window_corner.i + 1, window_corner.j - own.j + 1);
+                // The window starts with the halo of the tile `first`.
+                let halo = HALO as i64;
+                let (left, top) = (own.i - window_corner.i + halo, window_corner.j - own.j + halo);
                 let at = |from: i64, index: usize, nodes: usize| {
                     usize::try_from(from + index as i64 * stride).ok().filter(|&at| at < nodes)
                 };
@@ -183,7 +184,7 @@ impl PatchRecord {
     }
 }
 
-/// The nodes from one finest tile to another, borders included, with one node of halo.
+/// The nodes from one finest tile to another, borders included, with halo.
 fn window_of(frame: &GridFrame, first: TileId, last: TileId) -> NodeWindow {
     let NodeIndex { i, j } = frame.tile_corner(first);
     let side = |first: u32, last: u32| (last - first + 1) as usize * TILE_CELLS as usize + 1;
@@ -193,11 +194,11 @@ fn window_of(frame: &GridFrame, first: TileId, last: TileId) -> NodeWindow {
         columns: side(first.x(), last.x()),
         rows: side(first.y(), last.y()),
     }
-    .with_halo(1)
+    .with_halo(HALO)
 }
 
 /// Column and row of a tile's north-west node in the window that begins with the tile at `first`.
 fn place(first: [u32; 2], id: TileId) -> (usize, usize) {
-    let nodes = |first: u32, at: u32| (at - first) as usize * TILE_CELLS as usize + 1;
+    let nodes = |first: u32, at: u32| (at - first) as usize * TILE_CELLS as usize + HALO;
     (nodes(first[0], id.x()), nodes(first[1], id.y()))
 }

@@ -113,6 +113,8 @@ pub(crate) struct HeightSums {
     pub(crate) samples: SampleCounts,
     /// Lowest and highest node; zeros where there is none.
     pub(crate) range_m: [f32; 2],
+    /// The step between heights that the DEM can tell apart, metres.
+    pub(crate) step_m: f64,
 }
 
 impl HeightSums {
@@ -120,7 +122,8 @@ impl HeightSums {
     pub(crate) fn recorded(manifest: &Manifest) -> Self {
         // They were 32-bit numbers before they were written.
         let range_m = manifest.vertical.range_m.map(|height_m| height_m as f32);
-        Self { samples: manifest.counts.samples, range_m }
+        let step_m = manifest.vertical.height_step_m;
+        Self { samples: manifest.counts.samples, range_m, step_m }
     }
 }
 
@@ -157,7 +160,11 @@ impl Pyramid<'_> {
             filled: all.filled,
             void: nodes.saturating_sub(all.with_height),
         };
-        HeightSums { samples, range_m: all.range_m.unwrap_or_default() }
+        HeightSums {
+            samples,
+            range_m: all.range_m.unwrap_or_default(),
+            step_m: self.audit(all).height_step_m(self.dem),
+        }
     }
 
     /// The records of all patches together; fails if one is missing.

@@ -7,7 +7,7 @@ use corniche_store::Artifacts;
 
 use super::{
     data_tiles::DataTiles,
-    finest::{FinestHeights, HALO_NODES, TILE_NODES, grid_of, height_bytes},
+    finest::{FinestHeights, TILE_NODES, grid_of, height_bytes},
 };
 use crate::{
     BuildError,
@@ -50,7 +50,7 @@ fn own_nodes(
     id: TileId,
 ) -> Result<Option<HeightGrid>, BuildError> {
     if data.contains(id) {
-        Ok(FinestHeights::get(store, id)?.map(|heights| heights.own()))
+        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo(0)))
     } else {
         get(store, data, id)
     }
@@ -79,27 +79,28 @@ pub(crate) fn put_from_children(
     put(store, id, &HeightGrid::new(TILE_NODES, TILE_NODES, heights_m))
 }
 
-/// The heights of a tile above the finest level, with one node of halo on every side: 259 × 259 nodes. `None` where the
-/// tile itself has no height.
+/// The heights of a tile above the finest level, with so many nodes of halo on every side, at least one. `None` where the tile itself
+/// has no height.
 pub(crate) fn with_halo(
     store: &dyn Artifacts,
     data: &DataTiles,
     id: TileId,
+    halo: usize,
 ) -> Result<Option<HeightGrid>, BuildError> {
+    let side = TILE_NODES + 2 * halo;
     let Some(own) = get(store, data, id)? else { return Ok(None) };
-    let mut heights_m = vec![f32::NAN; HALO_NODES * HALO_NODES];
+    let mut heights_m = vec![f32::NAN; side * side];
     let mut fill = |raster: &HeightGrid, dx: i32, dy: i32| {
         // The part of the window that a neighbour fills, and where it begins in the neighbour. Borders are the same in both.
         let span = |d: i32| match d {
-            -1 => (0..1, TILE_NODES - 2),
-            0 => (1..HALO_NODES - 1, 0),
-            _ => (HALO_NODES - 1..HALO_NODES, 1),
+            -1 => (0..halo, TILE_NODES - 1 - halo),
+            0 => (halo..side - halo, 0),
+            _ => (side - halo..side, 1),
         };
         let ((columns, left), (rows, top)) = (span(dx), span(dy));
         for (r, row) in rows.enumerate() {
             for (c, column) in columns.clone().enumerate() {
-                heights_m[row * HALO_NODES + column] =
-                    raster.raw()[(top + r) * TILE_NODES + left + c];
+                heights_m[row * side + column] = raster.raw()[(top + r) * TILE_NODES + left + c];
             }
         }
     };
@@ -110,7 +111,7 @@ pub(crate) fn with_halo(
             fill(&raster, dx, dy);
         }
     }
-    Ok(Some(HeightGrid::new(HALO_NODES, HALO_NODES, heights_m)))
+    Ok(Some(HeightGrid::new(side, side, heights_m)))
 }
 
 /// The heights of any tile with one node of halo; `None` where the tile has no height, and beside the data.
@@ -120,8 +121,8 @@ pub(crate) fn of_any_level(
     id: TileId,
 ) -> Result<Option<HeightGrid>, BuildError> {
     if data.contains(id) {
-        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo))
+        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo(1)))
     } else {
-        with_halo(store, data, id)
+        with_halo(store, data, id, 1)
     }
 }

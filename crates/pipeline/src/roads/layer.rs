@@ -37,6 +37,7 @@ pub(crate) struct RoadLayer<'a> {
     span_tiles: BTreeSet<u64>,
     /// Pairs of nodes that lie at one place.
     same_places: Vec<[i64; 2]>,
+    memory_bytes: u64,
 }
 
 impl<'a> RoadLayer<'a> {
@@ -56,6 +57,7 @@ impl<'a> RoadLayer<'a> {
             pieces: PartsByTile::new(scratch, memory_bytes),
             span_tiles: BTreeSet::new(),
             same_places: Vec::new(),
+            memory_bytes,
         }
     }
 }
@@ -125,7 +127,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
         if self.splitting.spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);
             let spans = (&self.span_tiles, &self.same_places[..]);
-            near_spans::keep(spans, self.store, reach, told.pool)?;
+            near_spans::keep(spans, self.store, reach, (told.pool, self.memory_bytes))?;
         }
         Ok((self.totals, summary))
     }

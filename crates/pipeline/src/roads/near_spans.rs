@@ -17,8 +17,11 @@ use crate::{
 
 /// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
 const BLOCK_ROADS: usize = 4096;
+/// What a segment takes in memory, half of it room that lists have left, and what a road takes without them, bytes.
+const SEGMENT_BYTES: u64 = 160;
+const ROAD_BYTES: u64 = 320;
 /// Tiles whose pieces are read side by side.
-const TILES_AT_ONCE: usize = 64;
+const TILES_AT_ONCE: usize = 8;
 
 /// A piece of a road.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,7 +76,7 @@ struct Segment {
     nodes: [Option<i64>; 2],
 }
 
-/// What was found of a road: as little as is needed, since all of a country are in memory.
+/// What was found of a road.
 struct Found {
     way_id: i64,
     class: FunctionalRoadClass,
@@ -85,39 +88,95 @@ struct Found {
 }
 
 /// Gathers the roads near all bridges and tunnels from the finest tiles with such, and keeps them. What lies within `reach` lattice steps of a
-/// node of theirs is near.
+/// node of theirs is near. So many bytes of them are in memory at once, beside what some tiles have of them: of the rest the tiles are read again.
 pub(crate) fn keep(
     (tiles, same_places): (&BTreeSet<u64>, &[[i64; 2]]),
     store: &dyn Artifacts,
     reach: f64,
-    pool: &rayon::ThreadPool,
+    (pool, memory_bytes): (&rayon::ThreadPool, u64),
 ) -> Result<(), BuildError> {
     let tiles: Vec<u64> = tiles.iter().copied().collect();
-    let mut all: BTreeMap<u32, Found> = BTreeMap::new();
-    for some in tiles.chunks(TILES_AT_ONCE) {
-        let found: Result<Vec<_>, BuildError> =
-            pool.install(|| some.par_iter().map(|&tile| in_tile(tile, store, reach)).collect());
-        for (ordinal, own) in found?.into_iter().flatten() {
-            match all.get_mut(&ordinal) {
-                Some(known) => known.segments.extend(own.segments),
-                None => drop(all.insert(ordinal, own)),
+    let mut blocks = BlocksWriter { store, block: Vec::new(), number: 0 };
+    let mut same_places = Some(same_places.to_vec());
+    let mut next = Some(0);
+    while let Some(first) = next {
+        let mut some = SomeRoads::default();
+        for tiles in tiles.chunks(TILES_AT_ONCE) {
+            let found: Result<Vec<_>, BuildError> = pool.install(|| {
+                tiles.par_iter().map(|&tile| in_tile((tile, first), store, reach)).collect()
+            });
+            for (ordinal, own) in found?.into_iter().flatten() {
+                some.add(ordinal, own);
+                some.shrink(memory_bytes);
             }
         }
+        for (ordinal, found) in some.roads {
+            for mut road in joined(ordinal, found) {
+                road.same_places = same_places.take().unwrap_or_default();
+                blocks.push(road)?;
+            }
+        }
+        next = some.rest;
     }
-    let mut roads: Vec<NearRoad> =
-        all.into_iter().flat_map(|(ordinal, found)| joined(ordinal, found)).collect();
-    if let Some(first) = roads.first_mut() {
-        first.same_places = same_places.to_vec();
-    }
-    let mut blocks = roads.chunks(BLOCK_ROADS);
-    for block in 0.. {
-        let own = blocks.next().unwrap_or_default();
-        artifacts::put(store, Kind::SpanRoads.item(block), &own)?;
-        if own.len() < BLOCK_ROADS {
-            break;
+    blocks.finish()
+}
+
+/// Roads in their order, as many as have room.
+#[derive(Default)]
+struct SomeRoads {
+    roads: BTreeMap<u32, Found>,
+    segments: u64,
+    /// The first road that has no room.
+    rest: Option<u32>,
+}
+
+impl SomeRoads {
+    fn add(&mut self, ordinal: u32, own: Found) {
+        if self.rest.is_some_and(|rest| ordinal >= rest) {
+            return;
+        }
+        self.segments += own.segments.len() as u64;
+        match self.roads.get_mut(&ordinal) {
+            Some(known) => known.segments.extend(own.segments),
+            None => drop(self.roads.insert(ordinal, own)),
         }
     }
-    Ok(())
+
+    /// Leaves out the last roads until there is room for the others; one has room always.
+    fn shrink(&mut self, memory_bytes: u64) {
+        let bytes =
+            |segments: u64, roads: usize| segments * SEGMENT_BYTES + roads as u64 * ROAD_BYTES;
+        while bytes(self.segments, self.roads.len()) > memory_bytes && self.roads.len() > 1 {
+            let Some((ordinal, last)) = self.roads.pop_last() else { return };
+            self.segments -= last.segments.len() as u64;
+            self.rest = Some(ordinal);
+        }
+    }
+}
+
+/// Puts roads into the store, block by block.
+struct BlocksWriter<'a> {
+    store: &'a dyn Artifacts,
+    block: Vec<NearRoad>,
+    number: u64,
+}
+
+impl BlocksWriter<'_> {
+    fn push(&mut self, road: NearRoad) -> Result<(), BuildError> {
+        self.block.push(road);
+        if self.block.len() == BLOCK_ROADS { self.put() } else { Ok(()) }
+    }
+
+    fn put(&mut self) -> Result<(), BuildError> {
+        artifacts::put(self.store, Kind::SpanRoads.item(self.number), &self.block)?;
+        self.number += 1;
+        self.block.clear();
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<(), BuildError> {
+        self.put()
+    }
 }
 
 /// Hands all roads near spans to `take`, in their order; one block of them is in memory.
@@ -138,8 +197,12 @@ pub(crate) fn for_each(
     Ok(())
 }
 
-/// What a finest tile has of bridges, tunnels and roads near them.
-fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Found)>, BuildError> {
+/// What a finest tile has of bridges, tunnels and roads near them, from a road on.
+fn in_tile(
+    (tile, first): (u64, u32),
+    store: &dyn Artifacts,
+    reach: f64,
+) -> Result<Vec<(u32, Found)>, BuildError> {
     let id = artifacts::tile_of(Kind::RoadPieces.item(tile))?;
     let pieces = TilePieces::load(store, id)?;
     let (of_spans, others): (Vec<_>, Vec<_>) = pieces
@@ -154,13 +217,15 @@ fn in_tile(tile: u64, store: &dyn Artifacts, reach: f64) -> Result<Vec<(u32, Fou
         both.filter_map(|(at, node)| node.map(|_| at))
     });
     let near = Vicinity::new(segments().map(|segment| segment.ends), nodes, reach);
-    let near_ones = others.into_iter().map(|(ordinal, road)| {
-        let found = Found::of(road, |ends| near.may_meet(ends));
-        (ordinal, found)
-    });
+    let near_ones =
+        others.into_iter().filter(|(ordinal, _)| *ordinal >= first).map(|(ordinal, road)| {
+            let found = Found::of(road, |ends| near.may_meet(ends));
+            (ordinal, found)
+        });
     let near_ones: Vec<(u32, Found)> =
         near_ones.filter(|(_, found)| !found.segments.is_empty()).collect();
-    Ok(of_spans.into_iter().chain(near_ones).collect())
+    let all = of_spans.into_iter().chain(near_ones);
+    Ok(all.filter(|(ordinal, _)| *ordinal >= first).collect())
 }
 
 impl Found {

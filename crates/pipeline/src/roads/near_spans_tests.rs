@@ -44,9 +44,17 @@ fn what_lies_near_a_bridge_is_kept() {
     let key = Kind::RoadPieces.of_tile(id);
     store.put(key, &writer.into_bytes()).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
-    let mut kept = Vec::new();
-    for_each(&store, |road| kept.push(road)).unwrap();
+    let kept_within = |memory_bytes: u64| {
+        keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, (&pool, memory_bytes)).unwrap();
+        let mut kept = Vec::new();
+        for_each(&store, |road| kept.push(road)).unwrap();
+        kept
+    };
+    let kept = kept_within(u64::MAX);
+    for roads in [0, 1, 2, 3] {
+        let memory_bytes = roads * (ROAD_BYTES + 2 * SEGMENT_BYTES);
+        assert_eq!(kept_within(memory_bytes), kept, "{roads} roads at once");
+    }
     let found: Vec<(u32, usize, u64)> =
         kept.iter().map(|road| (road.ordinal, road.points.len(), road.from_um)).collect();
     // Of the first road the segment at the bridge's end, of the third the one that crosses.

@@ -37,17 +37,29 @@ impl Station {
     }
 }
 
+/// What a line has of a bridge or a tunnel.
+pub(crate) struct LineRuns {
+    /// Where it is off the ground.
+    pub(crate) runs: Vec<SpanRun>,
+    /// How far the ground is on the wrong side of it at most, metres: there it stays on the ground.
+    pub(crate) within_m: f64,
+}
+
 /// The runs of a line. Heights are multiples of `quantum_m`, rounded away from the ground, so a bridge is never below it, and a tunnel never above.
 pub(crate) fn runs_of(
     line: &GroundLine,
     (network, decks): (&SpanNetwork, &Decks),
     quantum_m: f64,
-) -> Vec<SpanRun> {
+) -> LineRuns {
     let steps = |deck_m: f64| match line.kind() {
         SpanKind::Bridge => (deck_m / quantum_m).ceil() as i64,
         SpanKind::Tunnel => (deck_m / quantum_m).floor() as i64,
     };
     let stations = stations(line, (network, decks));
+    let within_m = stations
+        .iter()
+        .filter_map(|own| own.off_m)
+        .fold(0.0, |most_m, off_m| f64::max(most_m, -off_m));
     let mut runs = Vec::new();
     let mut first = 0;
     while first < stations.len() {
@@ -83,7 +95,7 @@ pub(crate) fn runs_of(
         }
         first += off;
     }
-    runs
+    LineRuns { runs, within_m }
 }
 
 /// All places of a line at which its deck or the ground bends, or where they meet.

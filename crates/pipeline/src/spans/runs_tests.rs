@@ -60,7 +60,8 @@ impl World {
         let key = Kind::RoadPieces.of_tile(TileId::ROOT);
         store.put(key, &writer.into_bytes()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        near_spans::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, &pool).unwrap();
+        near_spans::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, (&pool, u64::MAX))
+            .unwrap();
         let projection = FlatProjection::new([1e5; 2]);
         let bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 2048.0, max_y: 2048.0 };
         let coordinates = CoordinateTable::sample(&projection, bounds, 0.01).unwrap();
@@ -84,6 +85,11 @@ impl World {
 
     /// The runs over ground with these heights at distances along the bridge, metres.
     fn runs(&self, ground: &[(i64, f64)]) -> Vec<SpanRun> {
+        self.found(ground).runs
+    }
+
+    /// What the bridge has over such ground.
+    fn found(&self, ground: &[(i64, f64)]) -> LineRuns {
         let vertex = |&(metres, height_m): &(i64, f64)| GroundVertex {
             at: LatticePoint::new((600 + metres) * self.metre, 1000 * self.metre),
             triangle: metres as u32,
@@ -128,6 +134,10 @@ fn a_hill_parts_a_deck() {
     assert_eq!(ends, [[0, 80], [312, 400]]);
     let last = runs[0].points.last().unwrap();
     assert_eq!(last.height, SpanHeight::Ground { triangle: 51 }, "that of the edge from 50 m");
+    assert!(
+        (world.found(&ground).within_m - 35.0).abs() < 1e-9,
+        "150 m at 150 m, where the deck has 115"
+    );
     // Where all is ground, there is no run.
     assert_eq!(world.runs(&[(0, 100.0), (200, 160.0), (400, 140.0)]), []);
 }

@@ -3,10 +3,13 @@
 //! Spans go through many tiles, and decks of a level need the ground of that level at all their supports, so they are solved when all tiles are
 //! there. Of all tiles together the network of bridges and tunnels is in memory, and nothing else.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use corniche_geom::{LatticePoint, TileId};
-use corniche_spans::Decks;
+use corniche_spans::{Decks, SpanKind, SpanProblem, SpanReason};
 use corniche_tileset::{SpanRun, SpansSection, encode_spans, pmtiles_order};
 use corniche_tin::{Placement, Surface, Tin};
 
@@ -25,6 +28,9 @@ use crate::{
 
 /// Ends of lines are where they are to within this, micrometres: a few steps of the lattice.
 const NEAR_END_UM: u64 = 5_000;
+
+/// Where the ground is on the wrong side of a bridge or a tunnel by more than this on the finest level, it is told, metres.
+const MOST_WITHIN_M: f64 = 1.0;
 
 /// What solving needs.
 pub(crate) struct SpanSolving<'a> {
@@ -58,6 +64,7 @@ impl SpanSolving<'_> {
         )?;
         let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
         let joints = network.joints();
+        let mut within: BTreeSet<SpanProblem> = BTreeSet::new();
         for (level, tiles) in by_level {
             let of_level;
             let decks = if level == finest {
@@ -72,14 +79,17 @@ impl SpanSolving<'_> {
                 tiles.len(),
                 || Ok(()),
                 |(), index| self.put_section((&network, decks), tiles[index]),
-                |_, ()| {
+                |_, found| {
+                    if level == finest {
+                        within.extend(found);
+                    }
                     observer.advance(Stage::Spans, 1);
                     Ok::<(), BuildError>(())
                 },
             )?;
         }
         observer.end(Stage::Spans);
-        Ok(SpanTotals::of(&decks))
+        Ok(SpanTotals::of(&decks, within))
     }
 
     /// The ground of the finest level at places along bridges and tunnels, whose lines there lie in `tiles`.
@@ -157,11 +167,12 @@ impl SpanSolving<'_> {
         })
     }
 
+    /// Keeps the runs of a tile. Returns which of its bridges and tunnels the ground has, not they.
     fn put_section(
         &self,
         (network, decks): (&SpanNetwork, &Decks),
         id: TileId,
-    ) -> Result<(), BuildError> {
+    ) -> Result<Vec<SpanProblem>, BuildError> {
         let mut lines = ground_lines::get(self.of.store, id)?;
         lines.sort_by_key(|line| {
             (
@@ -171,13 +182,25 @@ impl SpanSolving<'_> {
                 line.vertices.first().map(|first| first.along_um),
             )
         });
-        let runs: Vec<SpanRun> =
-            lines.iter().flat_map(|line| runs_of(line, (network, decks), self.quantum_m)).collect();
+        let mut runs: Vec<SpanRun> = Vec::new();
+        let mut within = Vec::new();
+        for line in &lines {
+            let of_line = runs_of(line, (network, decks), self.quantum_m);
+            runs.extend(of_line.runs);
+            if of_line.within_m > MOST_WITHIN_M {
+                let reason = match line.kind() {
+                    SpanKind::Bridge => SpanReason::DeckInGround,
+                    SpanKind::Tunnel => SpanReason::TunnelAboveGround,
+                };
+                within.push(SpanProblem { reason, way_id: line.way_id });
+            }
+        }
         let points = runs.iter().map(|run| run.points.len() as u64).sum();
         let counts = [runs.len() as u64, points];
         let tile = (SectionLayer::Spans, pmtiles_order(id));
         TileSection::put(tile, self.of.store, counts, |id| {
             Ok(encode_spans(id, self.of.frame, &runs)?.map(SpansSection::into_bytes))
-        })
+        })?;
+        Ok(within)
     }
 }

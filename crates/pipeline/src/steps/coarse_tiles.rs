@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 
-use super::tins;
+use super::{tins, top};
 use crate::{
     BuildError, Stage,
     artifacts::{Kind, damaged},
@@ -32,6 +32,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         context,
         ids.iter().copied().filter(|&id| !store.has(Kind::Tin.of_tile(id))).collect(),
     )?;
+    let step_m = top::height_step_m(context)?;
     workers::make_missing(
         context.observer,
         Stage::CoarseTiles,
@@ -43,17 +44,17 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
-            let heights = || rasters::with_halo(store, &data, id);
+            let heights = |halo| rasters::with_halo(store, &data, id, halo);
             // A tile without relief needs them only where it has roads.
             let (read, relief) = if context.has_relief(id) {
-                let heights = heights()?.ok_or_else(empty)?;
-                let relief = relief::of_tile(context, id, &heights)?;
-                (Some(heights), relief)
+                let heights = heights(2)?.ok_or_else(empty)?;
+                let relief = relief::of_tile(context, id, &heights, step_m)?;
+                (Some(heights.inner(1)), relief)
             } else {
                 (None, None)
             };
             let owned = || {
-                let heights = if read.is_some() { read } else { heights()? };
+                let heights = if read.is_some() { read } else { heights(1)? };
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
             let tile = (meshed, relief);

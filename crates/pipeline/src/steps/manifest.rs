@@ -79,6 +79,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
             unit: manifest_texts::HEIGHT_UNIT.to_owned(),
             datum: manifest_texts::datum(plan).to_owned(),
             treatment: plan.vertical.clone(),
+            height_step_m: outcome.heights.step_m,
             range_m: outcome.heights.range_m.map(f64::from),
         },
         datum_operations: manifest_texts::datum_operations(&plan.datum_operations),

@@ -1,6 +1,7 @@
 //! What a merge does first: the heights of bridges and tunnels on each level, and their runs by tile.
 
 use corniche_geom::TileId;
+use corniche_tileset::{Sections, decode};
 use corniche_tin::Tin;
 
 use crate::{
@@ -12,8 +13,6 @@ use crate::{
         tile_section::{SectionOfTile, TileSection},
     },
     spans::{solving::SpanSolving, span_network::SpanInputs, totals::SpanTotals},
-    terrain::ground::GroundSource,
-    tile::mesh::Meshed,
 };
 
 /// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
@@ -54,19 +53,14 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
     solving.solve()
 }
 
-/// The TIN of a coarse tile; `None` where it has no ground.
+/// The TIN of a tile, out of its payload; `None` where it has no ground. TINs by themselves are only with the parts that made them.
 fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, BuildError> {
-    match context.source {
-        GroundSource::Dem(_) if context.store.has(Kind::Tin.of_tile(id)) => {
-            Ok(Meshed::get(context.store, id)?.map(|meshed| meshed.tin))
-        }
-        // A tile without ground has no payload.
-        GroundSource::Dem(_) if !context.store.has(Kind::Payload.of_tile(id)) => Ok(None),
-        GroundSource::Dem(_) => {
-            Err(BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" })
-        }
-        GroundSource::Package(terrain) => Ok(terrain.ground(id)?.map(|(_, ground)| ground.tin)),
-    }
+    let key = Kind::Payload.of_tile(id);
+    let Some(bytes) = context.store.get(key)? else { return Ok(None) };
+    let quantum_m = context.levels.quantum_m();
+    let payload = decode(&bytes, id, context.frame(), quantum_m, Sections::TERRAIN)
+        .map_err(|error| artifacts::damaged(key, &error))?;
+    Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
 }
 
 /// The payload of a tile with its section of spans, and what that takes.

@@ -43,6 +43,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
 }
 
 fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), BuildError> {
+    let step_m = top::height_step_m(context)?;
     let Context { store, observer, .. } = *context;
     let mut ids = context.data().in_order_within(scope);
     let all = ids.len();
@@ -54,7 +55,7 @@ fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), Bu
         context.threads(),
         (&ids, all),
         || Ok((dem, dem.reader(context.grid))),
-        |source, &id| make_tile(context, &grounds, source, id),
+        |source, &id| make_tile(context, &grounds, source, id, step_m),
     )
 }
 
@@ -63,9 +64,11 @@ fn make_tile(
     grounds: &Grounds<'_>,
     (dem, reader): &mut (&Dem, Reader<'_>),
     id: TileId,
+    step_m: f64,
 ) -> Result<(), BuildError> {
     let heights = FinestHeights::get(context.store, id)?;
-    let with_halo = heights.as_ref().map(|heights| &heights.with_halo);
+    let with_halo = heights.as_ref().map(|heights| heights.with_halo(1));
+    let with_halo = with_halo.as_ref();
     let meshed = with_halo.map(|heights| mesh_tile(heights, id, context.levels)).transpose()?;
     let meshed = meshed.filter(|meshed| !meshed.tin.is_empty());
     let column = Column::new(context, grounds, id, meshed.as_ref().map(|meshed| &meshed.tin))?;
@@ -73,10 +76,10 @@ fn make_tile(
     drop(column);
     let own = levels.last().map_or(Seen::default(), |share| share.seen);
     let owned = || encode::owned_by_heights(context, id, with_halo);
-    let record = match meshed.zip(with_halo) {
+    let record = match meshed.zip(heights.as_ref()) {
         Some((meshed, heights)) => {
             let deviation = TileDeviation::of(own, 0.0, 0.0);
-            let relief = relief::of_tile(context, id, heights)?;
+            let relief = relief::of_tile(context, id, &heights.with_halo(2), step_m)?;
             encode::with_ground(context, id, (meshed, relief), deviation, None, owned)?
         }
         None => encode::without_ground(context, id, owned)?,

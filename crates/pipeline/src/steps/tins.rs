@@ -26,7 +26,7 @@ pub(crate) fn make(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), Bu
         (&ids, all),
         || Ok(()),
         |(), &id| {
-            let meshed = match rasters::with_halo(store, &data, id)? {
+            let meshed = match rasters::with_halo(store, &data, id, 1)? {
                 Some(heights) => mesh_tile(&heights, id, context.levels)?,
                 None => Meshed::default(),
             };

@@ -6,23 +6,30 @@ use corniche_geom::TileId;
 use corniche_tileset::{pmtiles_order, tile_of_order};
 
 use super::{photos, tins};
-use crate::{BuildError, artifacts::Kind, context::Context};
+use crate::{
+    BuildError,
+    artifacts::{Kind, damaged},
+    context::Context,
+};
 
 /// Checks the heights of all subtrees, which must be there, and makes what lies above them.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
+    let mut step_m = 0.0;
     if let Some(pyramid) = context.pyramid() {
         // Before any tile is made, because no tile has ground where no node has a height.
         let patches = pyramid.all_patches()?;
         pyramid.check(&patches)?;
         pyramid.warn_of_spikes(&patches);
-        if pyramid.sums(&patches).samples.with_data == 0 {
+        let sums = pyramid.sums(&patches);
+        step_m = sums.step_m;
+        if sums.samples.with_data == 0 {
             return Err(BuildError::NoHeights { dem: context.settings.terrain_files() });
         }
         pyramid.make_rasters(TileId::ROOT)?;
         tins::make(context, above_subtrees(context))?;
     }
     photos::make_rasters(context, TileId::ROOT)?;
-    Ok(context.store.put(Kind::Top.item(0), &[])?)
+    Ok(context.store.put(Kind::Top.item(0), &step_m.to_le_bytes())?)
 }
 
 /// Fails if the step was not done.
@@ -32,6 +39,16 @@ pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
     }
     let what = "what lies above the subtrees of heights".to_owned();
     Err(BuildError::Missing { what, step: "top" })
+}
+
+/// The step between heights that the DEM can tell apart, metres ([`corniche_dem::Audit::height_step_m`]). Fails if the step *top*
+/// was not done.
+pub(crate) fn height_step_m(context: &Context<'_>) -> Result<f64, BuildError> {
+    check_done(context)?;
+    let key = Kind::Top.item(0);
+    let bytes = context.store.get(key)?.unwrap_or_default();
+    let bytes = <[u8; 8]>::try_from(&bytes[..]).map_err(|_| damaged(key, &"it is no height"))?;
+    Ok(f64::from_le_bytes(bytes))
 }
 
 /// The tiles above all subtrees that heights were made for, in package order.

@@ -20,7 +20,7 @@ use crate::{
 /// The grounds above and on a finest tile, root first; `None` where a level has none there.
 pub(crate) struct Column {
     finest: TileId,
-    grounds: Vec<Option<Arc<Ground>>>,
+    grounds: Vec<Arc<Option<Ground>>>,
 }
 
 impl Column {
@@ -32,7 +32,7 @@ impl Column {
     ) -> Result<Self, BuildError> {
         let above = (0..finest.z()).map(|level| grounds.of(finest.ancestor(level)));
         let mut all = above.collect::<Result<Vec<_>, _>>()?;
-        all.push(tin.map(|tin| Arc::new(Ground::new(context, finest, tin))));
+        all.push(Arc::new(tin.map(|tin| Ground::new(context, finest, tin))));
         Ok(Self { finest, grounds: all })
     }
 
@@ -74,7 +74,7 @@ impl Column {
     ) {
         let frame = context.frame();
         let finest = self.finest;
-        let window = heights.own();
+        let window = heights.with_halo(0);
         let range_m = window.range_m();
         let is_own_sample = own_samples(finest, &window, &heights.filled);
         let last = window.columns() - 1;
@@ -88,7 +88,7 @@ impl Column {
                     sums.add(distance_m);
                 }
             };
-            share.seen = if let Some(ground) = ground {
+            share.seen = if let Some(ground) = &**ground {
                 let (corner, above) =
                     (frame.tile_corner(finest), frame.tile_corner(finest.ancestor(level)));
                 let placement = WindowPlacement {
@@ -130,7 +130,7 @@ impl Column {
                     continue;
                 }
                 for (ground, share) in self.grounds.iter().zip(&mut *shares) {
-                    let surface = ground.as_ref().and_then(|ground| ground.surface.as_ref());
+                    let surface = Option::as_ref(ground).and_then(|ground| ground.surface.as_ref());
                     let distance_m = surface.filter(|_| root.contains(point)).and_then(|surface| {
                         let triangle = surface.locate(point)?;
                         let ground_m = surface.height_at_point_m(triangle, point);

@@ -94,6 +94,7 @@ checks! {
     BoundarySums "boundaries.sums" Package "parts, points and bytes of boundaries on each level are those of the tiles, and ways are kept or lost"
     SpanEnds "spans.ends" Package "a run of a bridge or a tunnel ends on the ground of its way, or where the way's line ends"
     SpanSide "spans.side" Package "a bridge is nowhere below the ground of its level, and a tunnel nowhere above it, along its centre-line"
+    SpanOrder "spans.order" Package "on the finest level bridges that cross bridges, and tunnels that cross tunnels, are in the order of their layers, but as often as the manifest tells that they are not (`order_reversed`)"
     SpanSeams "spans.seams" Package "where a bridge or a tunnel goes over a border, the tiles on both sides have the same height there"
     SpanSums "spans.sums" Package "runs, points and bytes of bridges and tunnels on each level are those of the tiles"
     SettingsHash "settings.hash" Package "the recorded hash is that of the recorded settings"

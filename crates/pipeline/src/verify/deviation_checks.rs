@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::{Distribution, FilePackage, Manifest, Sections, VerticalRecord};
+use corniche_tileset::{Distribution, Manifest, VerticalRecord};
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     deviations::TrueDeviation,
     error::VerifyError,
     report::ErrorFigures,
@@ -21,12 +22,12 @@ const TIGHT_SHARE: f64 = 0.95;
 
 /// Compares stored errors with true ones; gives the figures of each level.
 pub(crate) fn verify(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
 ) -> Result<Vec<ErrorFigures>, VerifyError> {
-    let manifest = package.manifest();
-    let stored_m = check_tiles(package, truths, findings)?;
+    let manifest = tiles.package.manifest();
+    let stored_m = check_tiles(tiles, truths, findings)?;
     let mut levels: BTreeMap<u8, TrueDeviation> = BTreeMap::new();
     for (&id, truth) in truths {
         // Tiles that are not there count too: what lies beneath them must lie at a void or an edge.
@@ -62,14 +63,14 @@ pub(crate) fn verify(
 
 /// Looks at what tiles with ground say of the nodes beneath them; gives their stored errors.
 fn check_tiles(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
 ) -> Result<BTreeMap<TileId, f64>, VerifyError> {
     let mut stored_m = BTreeMap::new();
-    for id in package.tile_ids()? {
-        let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-        let Some(terrain) = payload.and_then(|payload| payload.terrain) else { continue };
+    for id in tiles.package.tile_ids()? {
+        let tile = tiles.of(id);
+        let Some(terrain) = tile.terrain() else { continue };
         let said = terrain.uncovered_nodes;
         let truth = truths.get(&id).copied().unwrap_or_default();
         findings.look(CheckId::Uncovered, said == truth.uncovered, || {

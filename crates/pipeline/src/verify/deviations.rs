@@ -1,12 +1,14 @@
 //! How far the TINs of all levels are from the full resolution: measured at every finest node with data.
 
-use std::{collections::BTreeMap, rc::Rc};
+use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, DemWindow, GridPlan, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
-use corniche_tileset::{FilePackage, Manifest, SampleSums, Sections};
+use corniche_tileset::{Manifest, SampleSums};
 
-use super::{error::VerifyError, samples, triangle_soup::TriangleSoup};
+use super::{
+    decoded_tiles::DecodedTiles, error::VerifyError, samples, triangle_soup::TriangleSoup,
+};
 use crate::{Observer, Stage, heights::data_tiles::DataTiles, workers};
 
 /// How far a tile's TIN is from the nodes looked at so far.
@@ -47,13 +49,13 @@ pub(crate) struct Measured {
 
 /// Compares the TINs of all levels with the elevation files.
 pub(crate) fn measure(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     dem: &Dem,
     plan: &GridPlan,
     threads: usize,
     observer: &dyn Observer,
 ) -> Result<Measured, VerifyError> {
-    let manifest = package.manifest();
+    let manifest = tiles.package.manifest();
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, also those without ground: a coarser level may cover their nodes.
     let finest = DataTiles::of(plan).within(corniche_geom::TileId::ROOT);
@@ -65,27 +67,17 @@ pub(crate) fn measure(
         observer,
         threads,
         finest.len(),
-        || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, Rc<TriangleSoup>>::new())),
-        |(reader, cache), index| {
+        || Ok::<_, VerifyError>(dem.reader(plan)),
+        |reader, index| {
             let id = finest[index];
             let read = reader.window(manifest.frame.tile_window(id))?;
             let mut found_at_samples = samples::none(manifest);
             let window = &read.heights;
-            // Of each level above, only the tile used last is kept: the next finest tile usually lies under the same one.
-            cache.retain(|cached, _| *cached == id.ancestor(cached.z()));
             let mut found = Vec::new();
             for level in 0..=max_level {
                 let ancestor = id.ancestor(level);
-                let ground = Rc::clone(cache.entry(ancestor).or_insert_with(|| {
-                    // A tile that does not exist or cannot be read covers nothing: all its nodes count as uncovered.
-                    let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
-                    let tin =
-                        payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
-                    Rc::new(TriangleSoup::new(
-                        &tin.unwrap_or_default(),
-                        manifest.vertical.quantum_m,
-                    ))
-                }));
+                // A tile that does not exist or cannot be read covers nothing: all its nodes count as uncovered.
+                let ground = tiles.ground(ancestor);
                 let sums = &mut found_at_samples[usize::from(level)];
                 let mut look = |[column, row]: [usize; 2], distance_m: Option<f64>| {
                     if nodes_are_samples && is_own_sample(id, &read, [column, row]) {
@@ -129,12 +121,15 @@ fn compare(
     let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(ancestor));
     let mut truth = TrueDeviation { range_m: window.range_m(), ..TrueDeviation::default() };
     let mut bare: BTreeMap<NodeIndex, u64> = BTreeMap::new();
+    let first = [corner.i - above.i, above.j - corner.j];
+    let in_cells = first.map(|cells| cells as f64 / stride as f64);
+    let grounds_m = ground.raster(in_cells, 1.0 / stride as f64, window.columns());
     for row in 0..window.rows() {
         for column in 0..window.columns() {
             let Some(height_m) = window.height(column, row) else { continue };
-            let cells = [corner.i - above.i + column as i64, above.j - corner.j + row as i64];
-            let ground_m = ground.height_m(cells.map(|cells| cells as f64 / stride as f64));
-            let distance_m = ground_m.map(|ground_m| (ground_m - f64::from(height_m)).abs());
+            let cells = [first[0] + column as i64, first[1] + row as i64];
+            let ground_m = grounds_m[row * window.columns() + column];
+            let distance_m = (!ground_m.is_nan()).then(|| (ground_m - f64::from(height_m)).abs());
             look([column, row], distance_m);
             match distance_m {
                 Some(distance_m) => {

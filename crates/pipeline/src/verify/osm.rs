@@ -6,13 +6,14 @@ use std::{collections::BTreeMap, path::PathBuf};
 use corniche_geom::TileId;
 use corniche_roads::FrcTable;
 use corniche_store::Artifacts;
-use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
+use corniche_tileset::{InputRecord, Manifest, pmtiles_order};
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     error::VerifyError,
     georeference, grid, osm_layers,
-    osm_tile::{Found, Laying, SoupCache, look_at},
+    osm_tile::{Found, Laying, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
     verify_settings::{VerifyOsm, VerifySettings},
@@ -38,7 +39,7 @@ use crate::{
 };
 
 pub(crate) fn verify(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     osm: &VerifyOsm,
     settings: &VerifySettings,
     findings: &mut Findings,
@@ -46,18 +47,19 @@ pub(crate) fn verify(
 ) -> Result<(), VerifyError> {
     let others = OtherInputs { osm: &osm.paths, polygon: None, photo: &[] };
     let inputs = Inputs::find(&[], others)?;
-    let compared = compare_all(package, osm, settings, &inputs, findings, observer);
+    let compared = compare_all(tiles, osm, settings, &inputs, findings, observer);
     VerifyError::unless_changed(&inputs, compared)
 }
 
 fn compare_all(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     osm: &VerifyOsm,
     request: &VerifySettings,
     inputs: &Inputs,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let package = tiles.package;
     let manifest = package.manifest();
     let paths = check_inputs(manifest, osm, inputs, findings, observer)?;
     let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
@@ -104,7 +106,7 @@ fn compare_all(
     let roads = partition(&input, store, &scratch, observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
     let spans = settings.spans;
-    let laying = Laying { package, levels: &levels, data: [first, last], spans };
+    let laying = Laying { tiles, levels: &levels, data: [first, last], spans };
     let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
@@ -123,7 +125,7 @@ fn compare_all(
             coordinates: &manifest.coordinates,
             within: input.clip.map_or(data, |clip| clip.intersection(&data)),
         };
-        osm_layers::compare_spans(package, inputs, request.threads, findings, observer)?;
+        osm_layers::compare_spans(tiles, inputs, request.threads, findings, observer)?;
     }
     if let Some(region) = &polygon {
         polygon_cut::verify(package, region, request.threads, findings, observer)?;
@@ -210,7 +212,7 @@ fn lay(
     observer: &dyn Observer,
 ) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
     let [first, last] = laying.data;
-    let mut ids = laying.package.tile_ids()?;
+    let mut ids = laying.tiles.package.tile_ids()?;
     for y in first.y()..=last.y() {
         for x in first.x()..=last.x() {
             ids.extend(TileId::new(first.z(), x, y).ok());
@@ -224,10 +226,10 @@ fn lay(
         observer,
         threads,
         ids.len(),
-        || Ok::<_, VerifyError>(SoupCache::default()),
-        |grounds, index| {
+        || Ok::<_, VerifyError>(()),
+        |(), index| {
             let id = ids[index];
-            Ok(look_at(laying, grounds, id, &TilePieces::load(store, id)?))
+            Ok(look_at(laying, id, &TilePieces::load(store, id)?))
         },
         |index, found: Found| {
             findings.merge(found.findings);

@@ -4,12 +4,13 @@ use corniche_areas::{AreaTable, ClassedLayer};
 use corniche_geom::TileId;
 use corniche_store::Artifacts;
 use corniche_tileset::{
-    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, Sections, SpanRun,
+    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, SpanRun,
     SpansSection, decode_areas, decode_lines, decode_spans,
 };
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     each_tile::{compare_in_order, each_tile},
     error::VerifyError,
     lines::LineChecks,
@@ -102,18 +103,16 @@ pub(crate) fn compare_lines(
 
 /// Solves bridges and tunnels again on the ground of the package, and compares them with those of each tile.
 pub(crate) fn compare_spans(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     of: SpanInputs<'_>,
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let package = tiles.package;
     let manifest = package.manifest();
     let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
-    let tin = |id| {
-        let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-        Ok(payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin))
-    };
+    let tin = |id| Ok(tiles.of(id).terrain().map(|terrain| terrain.tin.clone()));
     let solving = SpanSolving { of, quantum_m, tin: &tin, threads, observer };
     let counts = match solving.solve() {
         Ok(totals) => totals.counts(),

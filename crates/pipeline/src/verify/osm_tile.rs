@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
 use corniche_roads::RoadAttributes;
-use corniche_tileset::{FilePackage, Sections, TilePayload};
+use corniche_tileset::TilePayload;
 use corniche_tin::{Placement, Surface};
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     grid::clip_of,
-    triangle_soup::TriangleSoup,
 };
 use crate::{
     levels::Levels,
@@ -24,7 +24,7 @@ use crate::{
 
 /// What is needed to lay roads again.
 pub(crate) struct Laying<'a> {
-    pub(crate) package: &'a FilePackage,
+    pub(crate) tiles: &'a DecodedTiles<'a>,
     pub(crate) levels: &'a Levels,
     /// First and last of the finest tiles of the data.
     pub(crate) data: [TileId; 2],
@@ -42,25 +42,21 @@ pub(crate) struct Found {
     pub(crate) ground_lines: Vec<GroundLine>,
 }
 
-pub(crate) fn look_at(
-    laying: &Laying<'_>,
-    grounds: &mut SoupCache,
-    id: TileId,
-    pieces: &TilePieces,
-) -> Found {
+pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> Found {
     let mut found = Found {
         findings: Findings::default(),
         fates: Vec::new(),
         classes: BTreeMap::new(),
         ground_lines: Vec::new(),
     };
-    let manifest = laying.package.manifest();
+    let manifest = laying.tiles.package.manifest();
     let frame = &manifest.frame;
-    let payload = laying.package.payload(id, Sections::ALL).ok().flatten();
-    let terrain = payload.as_ref().and_then(|payload| payload.terrain.as_ref());
-    let (Some(payload), Some(terrain)) = (&payload, terrain) else {
+    let tile = laying.tiles.of(id);
+    let payload = tile.payload();
+    let terrain = payload.and_then(|payload| payload.terrain.as_ref());
+    let (Some(payload), Some(terrain)) = (payload, terrain) else {
         if id.z() == frame.max_level() {
-            let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
+            let owned = laying.owned_borders(id, !pieces.roads.is_empty());
             found.fates =
                 lay::lost_pieces(pieces, &frame.tile_lattice_bounds(id), owned, clip_of(manifest));
         }
@@ -68,7 +64,7 @@ pub(crate) fn look_at(
     };
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
-    let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
+    let owned = laying.owned_borders(id, !pieces.roads.is_empty());
     let (clip, spans) = (clip_of(manifest), laying.spans);
     let on = TileToLayOn { id, surface: &surface, owned, clip, spans };
     let mut laid = Laid::of_tile(pieces, &on, laying.levels);
@@ -133,38 +129,23 @@ fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
     }
 }
 
-/// The ground of the tiles used last; their neighbours need it.
-#[derive(Default)]
-pub(crate) struct SoupCache {
-    kept: BTreeMap<TileId, Option<TriangleSoup>>,
-}
-
-/// How many grounds are kept: enough for a tile, its neighbours, and some tiles before it in the package's order.
-const GROUNDS: usize = 32;
-
-impl SoupCache {
-    fn load(&mut self, package: &FilePackage, id: TileId) {
-        if self.kept.len() >= GROUNDS && !self.kept.contains_key(&id) {
-            self.kept.clear();
-        }
-        self.kept.entry(id).or_insert_with(|| {
-            let terrain = package.payload(id, Sections::TERRAIN).ok().flatten()?.terrain?;
-            Some(TriangleSoup::new(&terrain.tin, package.manifest().vertical.quantum_m))
-        });
-    }
-
+impl Laying<'_> {
     /// What a tile owns of its borders, by the cells on both sides that TINs cover: these are exactly the cells with ground.
-    fn owned_borders(&mut self, laying: &Laying<'_>, id: TileId, has_roads: bool) -> OwnedBorders {
+    fn owned_borders(&self, id: TileId, has_roads: bool) -> OwnedBorders {
         if !has_roads {
             return OwnedBorders::ALL;
         }
-        let [first, last] = laying.data;
+        let [first, last] = self.data;
         let around =
             [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| id.neighbour(dx, dy));
-        for other in around.iter().flatten() {
-            self.load(laying.package, *other);
-        }
-        let ground_of = |other: Option<TileId>| self.kept.get(&other?)?.as_ref();
+        let grounds = around.map(|other| {
+            let other = other.filter(|&other| self.tiles.of(other).terrain().is_some())?;
+            Some((other, self.tiles.ground(other)))
+        });
+        let ground_of = |other: Option<TileId>| {
+            let found = grounds.iter().flatten().find(|(id, _)| Some(*id) == other);
+            found.map(|(_, ground)| ground)
+        };
         let is_asked = |other: Option<TileId>| {
             other.is_some_and(|other| {
                 ground_of(Some(other)).is_some()

@@ -25,10 +25,10 @@ fn is(east: f64, south: f64, node: [i64; 2]) -> bool {
 
 /// How many findings there are when the relief of one raster is compared with another raster.
 fn broken(of: &HeightGrid, beside: &HeightGrid) -> u64 {
-    let relief = Relief::of_heights(of, CELL, 0.125).unwrap();
+    let relief = Relief::of_heights(of, of, CELL, 0.125).unwrap();
     let mut findings = Findings::default();
     let slope_at = |at: [usize; 2]| corniche_tin::gradient(beside, at, CELL);
-    verify(TileId::ROOT, &relief, beside, slope_at, &mut findings);
+    verify(TileId::ROOT, &relief, (beside, [0.0; 2]), slope_at, &mut findings);
     findings.of(CheckId::Relief).broken
 }
 
@@ -49,8 +49,10 @@ fn another_height_gap_or_slope_is_found() {
 #[test]
 fn borders_are_the_same_on_both_sides_and_only_there() {
     let last = (TILE_NODES - 1) as f64;
-    let of =
-        |left: f64| Relief::of_heights(&raster(|e, s| hills(e + left, s)), CELL, 0.125).unwrap();
+    let of = |left: f64| {
+        let raster = raster(|e, s| hills(e + left, s));
+        Relief::of_heights(&raster, &raster, CELL, 0.125).unwrap()
+    };
     let ([_, _, west, east], [_, _, next_west, next_east]) =
         (borders(&of(0.0)), borders(&of(last)));
     assert_eq!(east, next_west);

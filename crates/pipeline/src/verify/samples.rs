@@ -1,21 +1,19 @@
 //! P2 at the DEM's own samples: computes again the figures that the package states.
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{GridFrame, TileId};
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums, Sections};
+use corniche_tileset::{Manifest, SampleErrorRecord, SampleSums};
 
 use super::{
     checks::{Check, CheckId},
+    decoded_tiles::DecodedTiles,
     error::VerifyError,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
     verify_settings::VerifySettings,
 };
 use crate::{Observer, Stage, workers};
-
-/// How many tiles' ground a worker keeps. Blocks of samples are compact, so a tile is not loaded twice in a row.
-const GROUNDS: usize = 24;
 
 /// Empty sums for every level, root first.
 pub(crate) fn none(manifest: &Manifest) -> Vec<SampleSums> {
@@ -32,13 +30,13 @@ pub(crate) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
 
 /// Measures every level at every sample used; for a DEM whose samples are not the nodes.
 pub(crate) fn measure(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     dem: &Dem,
     plan: &GridPlan,
     settings: &VerifySettings,
     observer: &dyn Observer,
 ) -> Result<Vec<SampleSums>, VerifyError> {
-    let manifest = package.manifest();
+    let manifest = tiles.package.manifest();
     let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);
     observer.begin(Stage::Samples, Some(ranges.len() as u64));
@@ -46,8 +44,13 @@ pub(crate) fn measure(
         observer,
         settings.threads,
         ranges.len(),
-        || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
-        |(reader, grounds), index| {
+        || {
+            Ok::<_, VerifyError>((
+                dem.reader(plan),
+                vec![None; usize::from(manifest.frame.max_level()) + 1],
+            ))
+        },
+        |(reader, last), index| {
             let block = reader.used_samples(&ranges[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
@@ -61,10 +64,11 @@ pub(crate) fn measure(
                 };
                 for (level, sums) in found.iter_mut().enumerate() {
                     let ground_m = tile_at(frame, level as u8, position_m).and_then(|id| {
-                        if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
-                            grounds.clear();
+                        let last: &mut Option<(TileId, Arc<TriangleSoup>)> = &mut last[level];
+                        if last.as_ref().is_none_or(|(of, _)| *of != id) {
+                            *last = Some((id, tiles.ground(id)));
                         }
-                        let ground = grounds.entry(id).or_insert_with(|| load(package, id));
+                        let (_, ground) = last.as_ref()?;
                         ground.height_m(cells(frame, id, position_m))
                     });
                     sums.add(ground_m.map(|ground_m| (ground_m - f64::from(height_m)).abs()));
@@ -80,13 +84,6 @@ pub(crate) fn measure(
     )?;
     observer.end(Stage::Samples);
     Ok(sums)
-}
-
-/// A tile's ground. A tile that does not exist or cannot be read covers nothing.
-fn load(package: &FilePackage, id: TileId) -> TriangleSoup {
-    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-    let tin = payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
-    TriangleSoup::new(&tin.unwrap_or_default(), package.manifest().vertical.quantum_m)
 }
 
 /// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or

@@ -1,4 +1,4 @@
-//! The bridges and tunnels of all tiles: where they end, on which side of the ground they are, and what neighbours have of them.
+//! The bridges and tunnels of all tiles: where they end, on which side of the ground they are, which is above, and what neighbours have of them.
 
 use std::{
     collections::BTreeMap,
@@ -7,6 +7,7 @@ use std::{
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_spans::{SpanKind, SpanReason};
 use corniche_tileset::{
     FilePackage, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode,
     decode_spans, payload_sizes,
@@ -17,6 +18,7 @@ use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
     layer_sums::{Counts, OfTile, look_at_layer},
+    span_order::{self, OrderedCrossing, Piece},
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
@@ -24,6 +26,8 @@ use crate::{Observer, inputs::InputKind};
 
 /// A bridge may be below the ground by this, and a tunnel above it: points are put on a lattice of a millimetre.
 const SIDE_M: f64 = 0.01;
+/// The upper one of two spans that cross may be below the other by this: their lines are simplified, and the crossing moves.
+const LEVEL_M: f64 = 0.05;
 /// Places on the lattice are the same within so many steps.
 const NEAR_STEPS: f64 = 2.0;
 
@@ -51,8 +55,13 @@ pub(crate) fn verify(
     let levels = record.iter().flat_map(|record| &record.levels);
     let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
-    let look_at = |id| look_at(package, id, &ends);
+    let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
+    let look_at = |id| look_at(package, id, (&ends, &crossings));
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
+    // Heights of both are rounded away from the ground.
+    let least_m = LEVEL_M.max(2.0 * manifest.vertical.quantum_m);
+    look_at_order(told(manifest, SpanReason::OrderReversed), crossings, least_m, findings);
     let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
     for ((level, way_id, at), of_tiles) in ends {
         let [(first, height), others @ ..] = &of_tiles[..] else { continue };
@@ -64,7 +73,38 @@ pub(crate) fn verify(
     Ok(())
 }
 
-fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTile {
+/// Bridges are in the order of their layers where they cross, but as often as the manifest tells that they are not.
+fn look_at_order(
+    told: u64,
+    mut crossings: Vec<(TileId, OrderedCrossing)>,
+    least_m: f64,
+    findings: &mut Findings,
+) {
+    crossings.sort_by_key(|&(id, crossing)| (id, crossing.way_ids));
+    let mut reversed = 0;
+    for (id, crossing) in crossings {
+        let OrderedCrossing { way_ids: [upper, lower], free_m } = crossing;
+        let is_reversed = free_m < -least_m;
+        reversed += u64::from(is_reversed);
+        findings.look(CheckId::SpanOrder, !is_reversed || reversed <= told, || {
+            let below_m = -free_m;
+            format!(
+                "in tile {id} way {upper} is {below_m:.3} m below way {lower}, whose layer is lower"
+            )
+        });
+    }
+}
+
+/// How often the manifest tells a reason to look at bridges or tunnels.
+fn told(manifest: &Manifest, wanted: SpanReason) -> u64 {
+    let reasons = manifest.spans.iter().flat_map(|record| &record.counts.reasons);
+    reasons.filter(|(reason, _)| reason == wanted.id()).map(|(_, count)| count).sum()
+}
+
+/// What is collected of all tiles: what lies on borders, and where spans cross on the finest level.
+type Collected<'a> = (&'a Mutex<EndsByPlace>, &'a Mutex<Vec<(TileId, OrderedCrossing)>>);
+
+fn look_at(package: &FilePackage, id: TileId, (ends, crossings): Collected<'_>) -> OfTile {
     let mut found = OfTile::default();
     // Tiles that cannot be read are told elsewhere.
     let Some(bytes) = package.tile(id).ok().flatten() else { return found };
@@ -84,7 +124,7 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
     let bounds = manifest.frame.tile_lattice_bounds(id);
     put_ends((id, &bounds), &lines, &runs, ends);
     let place = TilePlace::of(&manifest.frame, id);
-    let ground = TriangleSoup::placed(&terrain.tin, quantum_m, place.steps);
+    let ground = TriangleSoup::new(&terrain.tin, quantum_m, place.steps);
     let work = Work::new(MOST_STEPS);
     let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
@@ -101,6 +141,18 @@ fn look_at(package: &FilePackage, id: TileId, ends: &Mutex<EndsByPlace>) -> OfTi
             break;
         }
     }
+    // Lifts are those of the finest level.
+    if id.z() == manifest.frame.max_level() {
+        match span_order::crossings(tile.pieces(&runs, &of_structures), &work) {
+            Ok(all) => {
+                let all = all.into_iter().map(|crossing| (id, crossing));
+                crossings.lock().unwrap_or_else(PoisonError::into_inner).extend(all);
+            }
+            Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
+                format!("tile {id}: more of its runs lie over each other than any writer has made: {error}")
+            }),
+        }
+    }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
     let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
     found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
@@ -112,23 +164,25 @@ type Line = Vec<[f64; 3]>;
 /// Lines by way, class and whether it is a tunnel.
 type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), Vec<Line>>;
 
-/// The ways of a tile that are bridges or tunnels.
-fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, Structure> {
+/// The ways of a tile that are bridges or tunnels, with their layers.
+fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (Structure, i8)> {
     let quantum_m = manifest.vertical.quantum_m;
     let read = decode(bytes, id, &manifest.frame, quantum_m, Sections::ATTRIBUTES);
     let records = read.map(|payload| payload.attributes).unwrap_or_default();
-    let ways = records.into_iter().map(|record| (record.way_id, record.attributes.structure));
-    ways.filter(|(_, structure)| *structure != Structure::Ground).collect()
+    let ways = records
+        .into_iter()
+        .map(|record| (record.way_id, (record.attributes.structure, record.attributes.layer)));
+    ways.filter(|(_, (structure, _))| *structure != Structure::Ground).collect()
 }
 
 fn lines_of_structures(
     payload: &TilePayload,
-    structures: &BTreeMap<i64, Structure>,
+    structures: &BTreeMap<i64, (Structure, i8)>,
     surface: &Surface,
 ) -> Lines {
     let mut lines = Lines::new();
     for road in &payload.roads_geo {
-        let Some(structure) = structures.get(&road.way_id) else { continue };
+        let Some((structure, _)) = structures.get(&road.way_id) else { continue };
         if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
             let key = (road.way_id, road.class, *structure == Structure::Tunnel);
             lines.entry(key).or_default().push(vertices);
@@ -220,16 +274,37 @@ impl Tile<'_> {
         is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
     }
 
+    /// The pieces of runs, where their heights are known.
+    fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<Piece> {
+        let of_run = |run: &SpanRun| {
+            let kind = SpanKind::of(run.structure);
+            let tagged = ways.get(&run.way_id).map_or(0, |(_, layer)| *layer);
+            let pairs = run.points.array_windows().map(move |[from, to]| {
+                let kind = kind?;
+                let heights_m = [self.height_m(from)?, self.height_m(to)?];
+                let (ends, layer) = ([from.at, to.at], kind.layer(tagged));
+                Some(Piece { way_id: run.way_id, kind, layer, ends, heights_m })
+            });
+            pairs.flatten().collect::<Vec<_>>()
+        };
+        runs.iter().flat_map(of_run).collect()
+    }
+
+    fn height_m(&self, point: &SpanPoint) -> Option<f64> {
+        match point.height {
+            SpanHeight::Steps(steps) => Some(steps as f64 * self.quantum_m),
+            SpanHeight::Ground { .. } => self.ground_m(point.at.in_steps()),
+        }
+    }
+
     /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
     fn look_at_side(&self, run: &SpanRun, lines: &[Line], findings: &mut Findings) {
         let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
-        let height_m = |point: &SpanPoint| match point.height {
-            SpanHeight::Steps(steps) => Some(steps as f64 * self.quantum_m),
-            SpanHeight::Ground { .. } => self.ground_m(point.at.in_steps()),
-        };
         let mut lowest_m = f64::INFINITY;
         for [from, to] in run.points.array_windows() {
-            let (Some(from_m), Some(to_m)) = (height_m(from), height_m(to)) else { continue };
+            let (Some(from_m), Some(to_m)) = (self.height_m(from), self.height_m(to)) else {
+                continue;
+            };
             let [a, b] = [from.at.in_steps(), to.at.in_steps()];
             let ends = [[a[0], a[1], from_m], [b[0], b[1], to_m]];
             self.work.add(lines.iter().map(Vec::len).sum());
@@ -270,3 +345,7 @@ fn share_of([[au, av, _], [bu, bv, _]]: [[f64; 3]; 2], [u, v]: [f64; 2]) -> Opti
     let is_on = across.abs() <= NEAR_STEPS && along >= -NEAR_STEPS && along <= length + NEAR_STEPS;
     is_on.then_some((along / length).clamp(0.0, 1.0))
 }
+
+#[cfg(test)]
+#[path = "spans_tests.rs"]
+mod tests;

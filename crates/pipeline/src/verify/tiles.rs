@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::FilePackage;
 
 use super::{
     attributes::Ways,
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     each_tile::check_readable,
     error::VerifyError,
     manifest_sums::LENGTH_SHARE,
-    one_tile::{Ancestors, Found, look_at},
+    one_tile::{Found, look_at},
     report::{GapFigures, VerifyReport},
     roads_on_tin::counts_for_sums,
     seams,
@@ -20,10 +20,11 @@ use super::{
 use crate::{Observer, Stage, levels::Levels, workers};
 
 pub(crate) fn verify(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     threads: usize,
     observer: &dyn Observer,
 ) -> Result<(VerifyReport, Findings), VerifyError> {
+    let package = tiles.package;
     let manifest = package.manifest();
     let frame = manifest.frame;
     // `None` if the record is not valid; then the check `levels.derived` is broken.
@@ -40,9 +41,9 @@ pub(crate) fn verify(
         observer,
         threads,
         ids.len(),
-        || Ok::<_, VerifyError>(Ancestors::new()),
-        |above, index| {
-            let found = look_at(package, ids[index], levels.as_ref(), above);
+        || Ok::<_, VerifyError>(()),
+        |(), index| {
+            let found = look_at(tiles, ids[index], levels.as_ref());
             check_readable(package)?;
             Ok(found)
         },

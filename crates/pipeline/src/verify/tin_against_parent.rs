@@ -1,5 +1,7 @@
 //! Compares a child's TIN with its parent's TIN at every finest node that both cover.
 
+use std::sync::Arc;
+
 use corniche_geom::{GridFrame, TILE_NODES, TileId};
 
 use super::{
@@ -8,19 +10,19 @@ use super::{
 };
 
 /// A tile's ground and its geometric error.
-pub(crate) struct Level<'a> {
+pub(crate) struct Level {
     pub(crate) id: TileId,
-    pub(crate) ground: &'a TriangleSoup,
+    pub(crate) ground: Arc<TriangleSoup>,
     pub(crate) error_m: f64,
 }
 
 /// Compares the TINs above a finest tile: `levels` are that tile and all of its ancestors that have ground, from the
 /// finest up. Nodes that the finest level does not cover may be void, and nothing is promised there.
-pub(crate) fn verify(frame: &GridFrame, levels: &[Level<'_>], findings: &mut Findings) {
+pub(crate) fn verify(frame: &GridFrame, levels: &[Level], findings: &mut Findings) {
     let Some(finest) = levels.first() else { return };
     let corner = frame.tile_corner(finest.id);
     let mut has_data: Vec<bool> = Vec::new();
-    let mut below: Option<(&Level<'_>, Vec<f64>)> = None;
+    let mut below: Option<(&Level, Vec<f64>)> = None;
     for level in levels {
         let id = level.id;
         let (own, stride) = (frame.tile_corner(id), frame.stride(id.z()) as f64);

@@ -1,8 +1,8 @@
 //! Geometry of TINs for checks. It shares no code with the build: f64 in cells of the tile, a grid of buckets, no adjacency.
 
-use std::ops::RangeInclusive;
+use std::{mem::size_of_val, ops::RangeInclusive};
 
-use corniche_geom::Work;
+use corniche_geom::{IndexLists, Work};
 use corniche_tin::Tin;
 
 /// Buckets along one side of a tile.
@@ -23,8 +23,9 @@ const INSIDE_STEPS: f64 = 2.0;
 pub(crate) struct TriangleSoup {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
-    buckets: Vec<Vec<u32>>,
-    /// First row, and first and last column of each triangle's buckets.
+    /// Triangles by bucket.
+    buckets: IndexLists,
+    /// First and last row and column of each triangle's buckets.
     boxes: Vec<BucketBox>,
     /// Lowest and highest corner of the triangles of each bucket.
     heights_m: Vec<[f64; 2]>,
@@ -36,7 +37,7 @@ type Corners = [[f64; 3]; 3];
 
 #[derive(Clone, Copy)]
 struct BucketBox {
-    row: u8,
+    rows: [u8; 2],
     columns: [u8; 2],
 }
 
@@ -48,12 +49,8 @@ struct Strip {
 }
 
 impl TriangleSoup {
-    pub(crate) fn new(tin: &Tin, quantum_m: f64) -> Self {
-        Self::placed(tin, quantum_m, [1.0; 2])
-    }
-
-    /// The same, with the lattice steps of a cell, which queries about lengths need.
-    pub(crate) fn placed(tin: &Tin, quantum_m: f64, steps: [f64; 2]) -> Self {
+    /// `steps` are the lattice steps of a cell, which queries about lengths need.
+    pub(crate) fn new(tin: &Tin, quantum_m: f64, steps: [f64; 2]) -> Self {
         let triangles: Vec<Corners> = tin
             .triangles()
             .iter()
@@ -65,35 +62,48 @@ impl TriangleSoup {
                 })
             })
             .collect();
-        let mut buckets = vec![Vec::new(); BUCKETS * BUCKETS];
-        let mut boxes = Vec::with_capacity(triangles.len());
-        let mut heights_m = vec![[f64::INFINITY, f64::NEG_INFINITY]; BUCKETS * BUCKETS];
-        for (index, corners) in triangles.iter().enumerate() {
-            let extent = |axis: usize| {
-                let values = corners.map(|corner| corner[axis]);
-                let low = values.into_iter().fold(f64::INFINITY, f64::min);
-                [low, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-            };
-            let [columns, rows] = [0, 1].map(|axis| buckets_of(extent(axis)));
-            let [low_m, high_m] = extent(2);
-            boxes.push(BucketBox {
-                row: *rows.start() as u8,
-                columns: [*columns.start() as u8, *columns.end() as u8],
-            });
-            for row in rows {
-                for column in columns.clone() {
-                    let at = row * BUCKETS + column;
-                    buckets[at].push(index as u32);
-                    heights_m[at] = [heights_m[at][0].min(low_m), heights_m[at][1].max(high_m)];
-                }
-            }
-        }
+        let extent = |triangle: usize, axis: usize| {
+            let values = triangles[triangle].map(|corner| corner[axis]);
+            let low = values.into_iter().fold(f64::INFINITY, f64::min);
+            [low, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let boxes: Vec<BucketBox> = (0..triangles.len())
+            .map(|triangle| {
+                let [columns, rows] = [0, 1].map(|axis| buckets_of(extent(triangle, axis)));
+                BucketBox { rows, columns }
+            })
+            .collect();
+        let buckets = IndexLists::new(BUCKETS * BUCKETS, triangles.len(), |triangle| {
+            let BucketBox { rows, columns } = boxes[triangle];
+            let [first, last] = columns.map(usize::from);
+            let rows = usize::from(rows[0])..=usize::from(rows[1]);
+            rows.flat_map(move |row| (first..=last).map(move |column| row * BUCKETS + column))
+        });
+        let heights_m = (0..BUCKETS * BUCKETS).map(|bucket| {
+            let none = [f64::INFINITY, f64::NEG_INFINITY];
+            buckets.of(bucket).iter().fold(none, |[low, high], &triangle| {
+                let [low_m, high_m] = extent(triangle as usize, 2);
+                [low.min(low_m), high.max(high_m)]
+            })
+        });
+        let heights_m = heights_m.collect();
         Self { triangles, buckets, boxes, heights_m, steps }
+    }
+
+    /// What it takes in memory.
+    pub(crate) fn bytes(&self) -> usize {
+        let [starts, indices] = self.buckets.parts();
+        size_of_val(starts)
+            + size_of_val(indices)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.boxes)
+            + size_of_val(&*self.heights_m)
     }
 
     /// All triangles that hold the point, borders included.
     fn holding(&self, at: [f64; 2]) -> impl Iterator<Item = &Corners> + '_ {
-        self.buckets[bucket(at[1]) * BUCKETS + bucket(at[0])]
+        self.buckets
+            .of(bucket(at[1]) * BUCKETS + bucket(at[0]))
             .iter()
             .map(|&triangle| &self.triangles[triangle as usize])
             .filter(move |corners| holds(corners, at))
@@ -137,12 +147,13 @@ impl TriangleSoup {
                     let is_first = move |triangle: &usize| {
                         let own = &self.boxes[*triangle];
                         let [first, last] = own.columns.map(usize::from);
-                        let was_above = usize::from(own.row) < row
+                        let was_above = usize::from(own.rows[0]) < row
                             && above.is_some_and(|[begin, end]| begin <= last && first <= end);
                         !was_above && column == first.max(begin)
                     };
                     let bucket = row * BUCKETS + column;
-                    let triangles = self.buckets[bucket].iter().map(|&triangle| triangle as usize);
+                    let triangles =
+                        self.buckets.of(bucket).iter().map(|&triangle| triangle as usize);
                     let given =
                         triangles.filter(is_first).map(|triangle| &self.triangles[triangle]);
                     (bucket, given)
@@ -179,7 +190,14 @@ impl TriangleSoup {
             let is_inside = |[along, across, _]: &[f64; 3]| {
                 (-margin..=length + margin).contains(along) && across.abs() <= margin
             };
-            let part = if turned.iter().all(is_inside) {
+            // Most triangles of a bucket are beside the rectangle, on one side of it.
+            let is_beside = turned.iter().all(|[along, ..]| *along < -margin)
+                || turned.iter().all(|[along, ..]| *along > length + margin)
+                || turned.iter().all(|[_, across, _]| *across < -margin)
+                || turned.iter().all(|[_, across, _]| *across > margin);
+            let part = if is_beside {
+                Vec::new()
+            } else if turned.iter().all(is_inside) {
                 turned.to_vec()
             } else {
                 let part = cut(&turned, |[along, ..]| along + margin);
@@ -263,13 +281,17 @@ impl TriangleSoup {
             let rows = at.map(|corner| corner[1]);
             let low = rows.into_iter().fold(f64::INFINITY, f64::min).max(0.0).ceil();
             let high = rows.into_iter().fold(f64::NEG_INFINITY, f64::max).min(last).floor();
+            let length = [0, 1, 2].map(|k| {
+                let (a, b) = (flat(at[k]), flat(at[(k + 1) % 3]));
+                (b[0] - a[0]).hypot(b[1] - a[1])
+            });
             let mut row = low;
             while row <= high {
                 let (mut west, mut east) = (0.0_f64, last);
                 for k in 0..3 {
                     let (a, b) = (flat(at[k]), flat(at[(k + 1) % 3]));
                     let (rise, reach) = (b[1] - a[1], (b[0] - a[0]) * (row - a[1]));
-                    let slack = SLACK_CELLS * (b[0] - a[0]).hypot(rise);
+                    let slack = SLACK_CELLS * length[k];
                     // As in `holds`: reach − rise · (column − a) is at most the slack.
                     if rise > 0.0 {
                         west = west.max(a[0] + (reach - slack) / rise);
@@ -347,9 +369,9 @@ fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> 
     kept
 }
 
-/// The rows or columns of the buckets that hold what reaches from one place to another, in cells.
-fn buckets_of([low, high]: [f64; 2]) -> RangeInclusive<usize> {
-    bucket(low - SLACK_CELLS)..=bucket(high + SLACK_CELLS)
+/// The first and the last row or column of the buckets that hold what reaches from one place to another, in cells.
+fn buckets_of([low, high]: [f64; 2]) -> [u8; 2] {
+    [bucket(low - SLACK_CELLS), bucket(high + SLACK_CELLS)].map(|bucket| bucket as u8)
 }
 
 fn bucket(cells: f64) -> usize {
@@ -368,8 +390,9 @@ fn flat([column, row, _]: [f64; 3]) -> [f64; 2] {
 fn holds(corners: &Corners, at: [f64; 2]) -> bool {
     (0..3).all(|k| {
         let (a, b) = (flat(corners[k]), flat(corners[(k + 1) % 3]));
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-        area(a, b, at) <= SLACK_CELLS * length
+        let area = area(a, b, at);
+        // Nearly all points are on one side or the other, and need no length.
+        area <= 0.0 || area <= SLACK_CELLS * (b[0] - a[0]).hypot(b[1] - a[1])
     })
 }
 

@@ -22,7 +22,7 @@ fn roof() -> Tin {
 #[test]
 fn heights_of_a_roof() {
     let roof = roof();
-    let ground = TriangleSoup::new(&roof, 0.5);
+    let ground = TriangleSoup::new(&roof, 0.5, [1.0; 2]);
     for column in 0..=256_u16 {
         let expected = (128.0 - (f64::from(column) - 128.0).abs()) / 128.0 * 4.0;
         let height_m = ground.height_m([f64::from(column), 37.25]).unwrap();
@@ -34,7 +34,7 @@ fn heights_of_a_roof() {
 #[test]
 fn an_edge_over_the_ridge_is_on_no_triangle_and_one_in_the_air_has_its_gap() {
     let roof = roof();
-    let ground = TriangleSoup::new(&roof, 0.5);
+    let ground = TriangleSoup::new(&roof, 0.5, [1.0; 2]);
     assert_eq!(ground.edge_gap_m([100.0, 10.0, 3.125], [150.0, 10.0, 3.3125]), None);
     let gap_m = ground.edge_gap_m([0.0, 3.0, 0.25], [1.0, 3.0, 4.0 / 128.0]).unwrap();
     assert!((gap_m - 0.25).abs() < 1e-9);
@@ -44,7 +44,7 @@ fn an_edge_over_the_ridge_is_on_no_triangle_and_one_in_the_air_has_its_gap() {
 fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
     let roof = roof();
     // Cells of 3 by 2 steps.
-    let ground = TriangleSoup::placed(&roof, 0.5, [3.0, 2.0]);
+    let ground = TriangleSoup::new(&roof, 0.5, [3.0, 2.0]);
     let along = [[100.0, 10.0], [100.0, 40.0]];
     // 20 cells east: 60 steps.
     let [low_m, high_m] = ground.range_near(along, 60.0, &Work::unlimited()).unwrap();
@@ -56,7 +56,7 @@ fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
 #[test]
 fn a_line_meets_ground_where_it_runs_inside_it() {
     let roof = roof();
-    let ground = TriangleSoup::placed(&roof, 0.5, [1000.0, 1000.0]);
+    let ground = TriangleSoup::new(&roof, 0.5, [1000.0, 1000.0]);
     assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]], &Work::unlimited()));
     assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]], &Work::unlimited()));
     assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]], &Work::unlimited()), "along the boundary");
@@ -65,7 +65,7 @@ fn a_line_meets_ground_where_it_runs_inside_it() {
 #[test]
 fn a_raster_has_the_heights_of_its_nodes() {
     let roof = roof();
-    let ground = TriangleSoup::new(&roof, 0.5);
+    let ground = TriangleSoup::new(&roof, 0.5, [1.0; 2]);
     let heights = ground.raster([250.0, 100.0], 0.5, 20);
     for (k, height_m) in heights.into_iter().enumerate() {
         let at = [250.0 + 0.5 * (k % 20) as f64, 100.0 + 0.5 * (k / 20) as f64];
@@ -82,7 +82,7 @@ fn what_lies_near_a_segment_is_found_once_and_little_else() {
     let mut random = Random::new(38);
     let fine = corniche_testing::package::full_tin();
     for tin in [&fine, &roof()] {
-        let ground = TriangleSoup::new(tin, 0.5);
+        let ground = TriangleSoup::new(tin, 0.5, [1.0; 2]);
         for _ in 0..60 {
             let mut place = || [0, 1].map(|_| random.below(400) as f64 / 1.25 - 30.0);
             let ends = [place(), place()];

@@ -2,11 +2,12 @@
 
 use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
-use corniche_tileset::{FilePackage, Sections, Terrain};
+use corniche_tileset::Terrain;
 use corniche_tin::normal_shift;
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     error::VerifyError,
     relief,
     report::VerifyReport,
@@ -21,14 +22,14 @@ const COMPUTED: f64 = 1e-6;
 
 /// Compares vertices and normals with the rasters of their levels, which are kept in a temporary folder.
 pub(crate) fn verify(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     dem: &Dem,
     plan: &GridPlan,
     threads: usize,
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let manifest = package.manifest();
+    let manifest = tiles.package.manifest();
     let work = TemporaryStore::new(observer)?;
     let pyramid = Pyramid {
         dem,
@@ -54,14 +55,14 @@ pub(crate) fn verify(
     findings.look(CheckId::DemCounts, same_range, || {
         format!("heights from {said_m:?} are recorded, {found_m:?} were found")
     });
-    let ids = package.tile_ids()?;
+    let ids = tiles.package.tile_ids()?;
     observer.begin(Stage::Verify, Some(ids.len() as u64));
     workers::in_order_unless_cancelled(
         observer,
         threads,
         ids.len(),
         || Ok(()),
-        |(), index| look_at(package, &pyramid, ids[index]),
+        |(), index| look_at(tiles, &pyramid, ids[index]),
         |_, found: Findings| {
             findings.merge(found);
             observer.advance(Stage::Verify, 1);
@@ -85,16 +86,15 @@ fn refusal(audited: Result<(), BuildError>) -> Result<Option<String>, VerifyErro
 }
 
 fn look_at(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     pyramid: &Pyramid<'_>,
     id: TileId,
 ) -> Result<Findings, VerifyError> {
     let mut findings = Findings::default();
-    let manifest = package.manifest();
-    let wanted = Sections::TERRAIN | Sections::RELIEF;
-    let Some(payload) = package.payload(id, wanted).ok().flatten() else { return Ok(findings) };
-    let relief = payload.relief;
-    let Some(Terrain { tin, normals, .. }) = payload.terrain else { return Ok(findings) };
+    let manifest = tiles.package.manifest();
+    let tile = tiles.of(id);
+    let Some(payload) = tile.payload() else { return Ok(findings) };
+    let Some(Terrain { tin, normals, .. }) = &payload.terrain else { return Ok(findings) };
     let Some(heights) = pyramid.tile(id)? else {
         findings.look(CheckId::Nodes, false, || {
             format!("tile {id} has ground, the DEM no height there")
@@ -108,10 +108,13 @@ fn look_at(
         .get(usize::from(id.z()))
         .map_or(1.0, |level| f64::from(1_u8 << normal_shift(level.max_error_m, cell)));
     let farthest = (STEPS / step).floor() * step;
-    if let Some(relief) = &relief {
-        relief::verify(id, relief, &heights, |at| gradient(&heights, at, cell_m), &mut findings);
+    if let Some(relief) = &payload.relief {
+        let step_m = manifest.vertical.height_step_m;
+        let may_move = relief::may_move(step_m, cell);
+        let slope_at = |at| gradient(&heights, at, cell_m);
+        relief::verify(id, relief, (&heights, may_move), slope_at, &mut findings);
     }
-    for (vertex, normal) in tin.vertices().iter().zip(&normals) {
+    for (vertex, normal) in tin.vertices().iter().zip(normals) {
         // The raster has the tile's own nodes and one row or column of nodes of its neighbours on each side.
         let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
         let wanted = heights

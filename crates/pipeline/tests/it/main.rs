@@ -9,6 +9,7 @@ mod plan;
 mod plan_remote;
 mod polygon;
 mod promises;
+mod reader_of_before;
 mod recorded_terrain;
 mod rectangles;
 mod roads_beside_data;

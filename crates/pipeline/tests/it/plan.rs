@@ -190,9 +190,9 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 7", "\"plan_version\": 8");
+    let later = text.replace("\"plan_version\": 8", "\"plan_version\": 9");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 8") && error.contains("version 7"), "{error}");
+    assert!(error.contains("version 9") && error.contains("version 8"), "{error}");
     for bad in ["", "{}", "[7]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");

@@ -189,7 +189,7 @@ fn other_relief(parts: &mut Parts) {
     let with_halo = HeightGrid::from_fn(259, 259, |column, row| {
         heights.height(nearest(column), nearest(row)).map_or(f32::NAN, |height_m| -height_m)
     });
-    *relief = Some(Relief::of_heights(&with_halo, cell, quantum_m).unwrap());
+    *relief = Some(Relief::of_heights(&with_halo, &with_halo, cell, quantum_m).unwrap());
 }
 
 /// The finest tile with the most roads.

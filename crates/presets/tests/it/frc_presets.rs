@@ -58,12 +58,11 @@ fn all_presets_are_compared() {
 }
 
 #[test]
-fn a_living_street_is_residential_in_the_default_table() {
+fn streets_of_towns_are_residential_in_the_default_table() {
     let class = FunctionalRoadClass::new(6).unwrap();
-    assert_eq!(
-        preset("default").classify(&[("highway", "living_street")]),
-        Classified::Road(class)
-    );
+    for value in ["living_street", "pedestrian"] {
+        assert_eq!(preset("default").classify(&[("highway", value)]), Classified::Road(class));
+    }
 }
 
 #[test]
@@ -107,16 +106,7 @@ fn what_is_not_there_is_a_road_in_no_preset() {
 #[test]
 fn by_default_other_roads_are_known_and_off() {
     let (table, other) = (preset("default"), FunctionalRoadClass::new(8).unwrap());
-    for value in [
-        "footway",
-        "path",
-        "cycleway",
-        "steps",
-        "pedestrian",
-        "bridleway",
-        "corridor",
-        "via_ferrata",
-    ] {
+    for value in ["footway", "path", "cycleway", "steps", "bridleway", "corridor", "via_ferrata"] {
         assert_eq!(table.classify(&[("highway", value)]), Classified::NotShown(other), "{value}");
     }
 }

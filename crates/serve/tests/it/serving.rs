@@ -85,6 +85,7 @@ fn start_at(host: &str) -> Running {
     routes.add("corniche_web_bg.wasm", of("\0asm"), Readers::AnyPage);
     routes.add("empty.css", of(""), Readers::AnyPage);
     routes.add("examples/fly.html", of(PAGE), Readers::AnyPage);
+    routes.add("long.js", Content::Memory("export {};\n".repeat(200).into()), Readers::AnyPage);
     routes.add("packages.json", of("[]"), Readers::OwnPages);
     routes.add(
         "packages/a b.pmtiles",
@@ -193,6 +194,28 @@ fn files_are_sent_as_they_are_with_what_they_are() {
     assert_eq!(answer.header("content-type"), "application/vnd.pmtiles");
     assert_eq!(answer.header("accept-ranges"), "bytes");
     assert!(!answer.headers.contains_key("content-encoding"), "{:?}", answer.headers);
+}
+
+#[test]
+fn a_page_is_packed_for_clients_that_unpack_it() {
+    let (server, text) = (start(), "export {};\n".repeat(200));
+    let plain = server.get("/long.js", &[]);
+    assert!(plain.text() == text && !plain.headers.contains_key("content-encoding"));
+    let accepts = ("Accept-Encoding", "gzip, deflate, br, zstd");
+    let packed = server.get("/long.js", &[accepts]);
+    assert_eq!((packed.status, packed.header("content-encoding")), (200, "br"));
+    assert_eq!(packed.header("content-length"), packed.body.len().to_string());
+    assert!(packed.body.len() < plain.body.len() / 10);
+    let mut unpacked = String::new();
+    brotli::Decompressor::new(&*packed.body, 4096).read_to_string(&mut unpacked).unwrap();
+    assert_eq!(unpacked, text);
+    // A cache keeps both apart.
+    assert_ne!(packed.header("etag"), plain.header("etag"));
+    assert_eq!([&plain, &packed].map(|answer| answer.header("vary")), ["accept-encoding"; 2]);
+    let again = server.get("/long.js", &[accepts, ("If-None-Match", packed.header("etag"))]);
+    assert_eq!(again.status, 304);
+    let part = server.get("/long.js", &[accepts, ("Range", "bytes=0-5")]);
+    assert_eq!((part.status, part.text().as_str()), (206, "export"));
 }
 
 #[test]

@@ -11,8 +11,8 @@ use std::path::Path;
 
 use crate::{PlanHash, StoreError};
 
-/// The format that this version writes, and the only one that it reads.
-pub(crate) const VERSION: u32 = 1;
+/// The format of stores that this version writes, and the only one that it reads.
+pub const VERSION: u32 = 1;
 /// Bytes of a header.
 pub(crate) const HEADER_BYTES: u64 = 48;
 
@@ -77,6 +77,11 @@ pub(crate) fn decode(kind: FileKind, bytes: &[u8], path: &Path) -> Result<PlanHa
     }
     let found = u32_at(bytes, 8);
     if found != VERSION {
+        // What is of another version, and may be removed, is the whole store.
+        let path = match kind {
+            FileKind::Store => path.parent().unwrap_or(path),
+            FileKind::Journal | FileKind::Data | FileKind::Sealed => path,
+        };
         return Err(StoreError::OtherVersion { path: path.to_owned(), found, known: VERSION });
     }
     if u32_at(bytes, 44) != crc32fast::hash(&bytes[..44]) {

@@ -254,9 +254,12 @@ fn a_store_of_another_version_is_refused() {
     header[8] += 1;
     disk.set_content(&path, &header);
     let error = open(&disk, NEVER).unwrap_err();
-    assert!(matches!(error, StoreError::OtherVersion { found: 2, known: 1, .. }), "{error}");
+    assert!(error.is_unusable(), "{error}");
+    let other = StoreError::OtherVersion { path: folder().into(), found: 2, known: 1 };
+    // It is the folder that can be removed.
+    assert_eq!(error.to_string(), other.to_string());
     let error = LocalStore::stored_plan(disk.disk(), folder()).unwrap_err();
-    assert!(matches!(error, StoreError::OtherVersion { .. }), "{error}");
+    assert_eq!(error.to_string(), other.to_string());
     // It can still be removed.
     assert_eq!(LocalStore::discard(disk.disk(), folder()).unwrap(), NOTHING);
     assert_eq!(disk.paths(), NOTHING);

@@ -150,6 +150,7 @@ impl Manifest {
     fn check_spans(&self) -> Result<(), String> {
         let Some(SpansRecord { counts, levels }) = &self.spans else { return Ok(()) };
         let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+        check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
         let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
     }

@@ -148,6 +148,10 @@ pub struct VerticalRecord {
     pub datum: String,
     /// What was done to the inputs' heights, in words: "as in the files", a transformation, a shift.
     pub treatment: String,
+    /// The step between heights that the DEM can tell apart, metres: 1 where all are whole metres; left out where they have
+    /// fractions. Slopes of reliefs are taken from heights that are low-passed by it.
+    #[serde(default, skip_serializing_if = "is_no_step")]
+    pub height_step_m: f64,
     /// Lowest and highest node, metres. Values that no land has tell of an undeclared "no data".
     pub range_m: [f64; 2],
 }
@@ -167,6 +171,11 @@ pub struct DatumOperationRecord {
     /// Whether one datum was taken for another, as PROJ knows nothing between them (`--allow-ballpark`); left out where not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub ballpark: bool,
+}
+
+/// Whether heights have no step.
+fn is_no_step<Step: PartialOrd + Default>(step_m: &Step) -> bool {
+    *step_m <= Step::default()
 }
 
 impl VerticalRecord {
@@ -246,7 +255,7 @@ pub struct SettingsRecord {
     /// Whether there are boundaries (`--boundaries`); left out without any.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub boundaries: bool,
-    /// Whether bridges and tunnels leave the ground (`--structures spans`); left out without.
+    /// Whether bridges and tunnels leave the ground (all but `--structures ground`); left out without.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub spans: bool,
 }
@@ -390,6 +399,12 @@ pub struct SpanCounts {
     pub bridges: u64,
     /// Tunnels.
     pub tunnels: u64,
+    /// The true length of all bridges in plan, as far as there is data, micrometres.
+    #[serde(default)]
+    pub bridges_um: u64,
+    /// The same of all tunnels.
+    #[serde(default)]
+    pub tunnels_um: u64,
     /// Where they cross other roads or each other.
     pub crossings: u64,
     /// How often there is a reason to look at one.

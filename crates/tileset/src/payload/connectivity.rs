@@ -20,7 +20,7 @@
 //! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
 //! What we changed: all positions come first, sorted, which is cheaper than positions in walking order.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeSet, VecDeque};
 
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
@@ -41,102 +41,139 @@ pub(crate) struct Reached {
     pub(crate) gate: [u32; 3],
 }
 
-/// Directed edges with the corner to their left.
+/// Directed edges that have a triangle on their left.
 ///
 /// The first few of each origin are in a list: most vertices have six, and the memory of a list is near where the
 /// walk is (one hash table for all edges took 50 % longer). The others are in a tree, so that a vertex with a
 /// thousand triangles is not slow.
 #[derive(Debug)]
 pub(crate) struct Edges<'w> {
-    first: Vec<u32>,
-    /// How long each list is.
-    lengths: Vec<u8>,
-    /// Next in the list of the same origin, target, corner.
-    listed: Vec<[u32; 3]>,
-    /// Corners by origin and target, of origins whose lists are full.
-    more: BTreeMap<[u32; 2], u32>,
+    origins: Vec<Origin>,
+    /// Next in the list of the same origin, target.
+    listed: Vec<[u32; 2]>,
+    /// Origin and target, of origins whose lists are full.
+    more: BTreeSet<[u32; 2]>,
     work: &'w Work,
+}
+
+/// What is known of the edges of an origin.
+#[derive(Debug, Clone, Copy)]
+struct Origin {
+    /// A bit for each target, by its number modulo 64: most edges that do not exist need no look at the list.
+    targets: u64,
+    first: u32,
+    /// How long the list is.
+    length: u32,
 }
 
 const END: u32 = u32::MAX;
 /// A list has no more edges than this; a lookup in the tree also counts as this many steps.
-const LIST_EDGES: u8 = 16;
+const LIST_EDGES: u32 = 16;
 
 impl<'w> Edges<'w> {
-    /// Looking at an edge counts as `work`.
-    pub(crate) fn new(vertices: usize, work: &'w Work) -> Self {
+    /// No edges yet, of so many vertices and triangles. Looking at an edge counts as `work`.
+    pub(crate) fn new(vertices: usize, triangles: usize, work: &'w Work) -> Self {
+        // A section may claim more triangles than its vertices can have: at most two each.
+        let triangles = triangles.min(2 * vertices);
         Self {
-            first: vec![END; vertices],
-            lengths: vec![0; vertices],
-            listed: Vec::new(),
-            more: BTreeMap::new(),
+            origins: vec![Origin { targets: 0, first: END, length: 0 }; vertices],
+            listed: Vec::with_capacity(3 * triangles),
+            more: BTreeSet::new(),
             work,
         }
     }
 
     /// How many vertices edges may have.
     pub(crate) fn vertices(&self) -> usize {
-        self.first.len()
+        self.origins.len()
     }
 
-    pub(crate) fn corner(&self, a: u32, b: u32) -> Option<u32> {
-        let mut at = self.first[a as usize];
+    /// Whether a ► b has a triangle on its left.
+    #[inline]
+    pub(crate) fn has(&self, a: u32, b: u32) -> bool {
+        let Origin { targets, first, length } = self.origins[a as usize];
+        if targets >> (b % 64) & 1 == 0 {
+            self.work.add(1);
+            return false;
+        }
+        let mut at = first;
         let mut steps = 0;
-        let mut found = None;
-        while let Some(&[next, target, corner]) = self.listed.get(at as usize) {
+        let mut found = false;
+        while let Some(&[next, target]) = self.listed.get(at as usize) {
             steps += 1;
             if target == b {
-                found = Some(corner);
+                found = true;
                 break;
             }
             at = next;
         }
-        if found.is_none() && steps == usize::from(LIST_EDGES) {
-            steps += usize::from(LIST_EDGES);
-            found = self.more.get(&[a, b]).copied();
+        if !found && length == LIST_EDGES {
+            steps += LIST_EDGES;
+            found = self.more.contains(&[a, b]);
         }
-        self.work.add(steps);
+        self.work.add(steps as usize);
         found
     }
 
     /// Whether neither b ► c nor c ► a has a triangle on its left.
+    #[inline]
     fn allow(&self, [a, b, c]: [u32; 3]) -> bool {
-        // A vertex without edges has no triangle.
-        if self.lengths[c as usize] == 0 {
-            self.work.add(1);
-            return true;
-        }
-        self.corner(b, c).is_none() && self.corner(c, a).is_none()
+        !self.has(b, c) && !self.has(c, a)
     }
 
-    fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
-        let length = &mut self.lengths[a as usize];
-        if *length == LIST_EDGES {
-            self.more.insert([a, b], corner);
+    #[inline]
+    fn add_edge(&mut self, a: u32, b: u32) {
+        let origin = &mut self.origins[a as usize];
+        origin.targets |= 1 << (b % 64);
+        if origin.length == LIST_EDGES {
+            self.more.insert([a, b]);
             return;
         }
-        *length += 1;
-        let at = self.listed.len() as u32;
-        self.listed.push([self.first[a as usize], b, corner]);
-        self.first[a as usize] = at;
+        origin.length += 1;
+        let next = std::mem::replace(&mut origin.first, self.listed.len() as u32);
+        self.listed.push([next, b]);
     }
 
     /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
     pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
-        for [from, to, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
-            if from == to || self.corner(from, to).is_some() {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            if from == to || self.has(from, to) {
                 return Err(Damage::Invalid { what: "two triangles on the same side of an edge" });
             }
-            self.add_edge(from, to, corner);
+            self.add_edge(from, to);
         }
         Ok(())
     }
 
     /// Adds a triangle whose edges are known to have none on that side.
+    #[inline]
     fn add_new(&mut self, [a, b, c]: [u32; 3]) {
-        for [from, to, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
-            self.add_edge(from, to, corner);
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            self.add_edge(from, to);
         }
+    }
+}
+
+/// The guesses at a gate.
+pub(crate) struct Guesses<'g, 'w> {
+    /// `[a, b, d]`: the gate a ► b has the corner d on its right.
+    pub(crate) gate: [u32; 3],
+    pub(crate) nodes: &'g Nodes<'w>,
+    edges: &'g Edges<'w>,
+}
+
+impl Guesses<'_, '_> {
+    /// The best.
+    #[inline]
+    pub(crate) fn first(&self) -> Option<Corner> {
+        let [a, b, _] = self.gate;
+        self.nodes.best_corner([a, b], |c| self.edges.allow([a, b, c]))
+    }
+
+    /// The best of the vertices that are not among these.
+    pub(crate) fn best_but(&self, no: &[u32]) -> Option<Corner> {
+        let [a, b, _] = self.gate;
+        self.nodes.best_corner([a, b], |c| !no.contains(&c) && self.edges.allow([a, b, c]))
     }
 }
 
@@ -155,14 +192,8 @@ pub(crate) enum Answer {
 pub(crate) trait Guide {
     /// A triangle to start from, not found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
-    /// What is to the left of the gate a ► b with the corner d on its right. `guess` takes the vertices that are no answer and gives the
-    /// next best one.
-    fn corner(
-        &mut self,
-        gate: [u32; 3],
-        nodes: &Nodes<'_>,
-        guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Answer, Damage>;
+    /// What is to the left of a gate.
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage>;
 }
 
 /// Walks until `count` triangles are found; gives them and the vertices in the order of the walk. Fails when that
@@ -173,20 +204,18 @@ pub(crate) fn walk(
     guide: &mut impl Guide,
 ) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
     let work = nodes.work();
-    let mut edges = Edges::new(nodes.len(), work);
+    let mut edges = Edges::new(nodes.len(), count, work);
     let mut triangles = Vec::with_capacity(count);
     let mut order = Vec::with_capacity(nodes.len());
     let mut seen = vec![false; nodes.len()];
     let mut gates: VecDeque<[u32; 3]> = VecDeque::new();
     while triangles.len() < count {
-        let (triangle, gate) = if let Some([a, b, d]) = gates.pop_front() {
-            if edges.corner(a, b).is_some() {
+        let (triangle, gate) = if let Some(gate) = gates.pop_front() {
+            let [a, b, d] = gate;
+            if edges.has(a, b) {
                 continue;
             }
-            let guess = |no: &[u32]| {
-                nodes.best_corner([a, b], |c| !no.contains(&c) && edges.allow([a, b, c]))
-            };
-            let answer = guide.corner([a, b, d], nodes, &guess)?;
+            let answer = guide.corner(&Guesses { gate, nodes, edges: &edges })?;
             work.check()?;
             let (Answer::Guessed(c) | Answer::Named(c)) = answer else { continue };
             if let Answer::Guessed(_) = answer {
@@ -210,12 +239,11 @@ pub(crate) fn walk(
             }
         }
         let [a, b, c] = triangle;
-        let sides: &[[u32; 3]] = if gate.is_some() {
-            &[[c, b, a], [a, c, b]]
-        } else {
-            &[[b, a, c], [c, b, a], [a, c, b]]
-        };
-        gates.extend(sides);
+        if gate.is_none() {
+            gates.push_back([b, a, c]);
+        }
+        gates.push_back([c, b, a]);
+        gates.push_back([a, c, b]);
     }
     // Vertices that belong to no triangle come last.
     let rest = (0..nodes.len() as u32).filter(|&vertex| !seen[vertex as usize]);

@@ -2,6 +2,7 @@
 
 use corniche_geom::TILE_NODES;
 
+use crate::payload::near_corners::{MARGIN, NearCorners, NearNode, STRIDE};
 use crate::payload::work_limit::Work;
 
 /// Vertices of a tile's grid, sorted by row, then column.
@@ -9,19 +10,75 @@ use crate::payload::work_limit::Work;
 pub(crate) struct Nodes<'w> {
     /// Column and row.
     at: Vec<[i32; 2]>,
-    /// A bit for each node, row by row: rows of [`GROUPS`] groups of 64, the westernmost node of a group in its lowest bit. One group
-    /// more at the end, so that 64 nodes can be read from any place.
-    grid: Vec<u64>,
-    /// How many vertices come before each group.
-    before: Vec<u32>,
+    grid: Box<Grid>,
+    near_corners: &'static NearCorners,
     work: &'w Work,
 }
 
-/// Groups of 64 nodes in a row of the grid.
-const GROUPS: usize = TILE_NODES.div_ceil(64);
+/// Which nodes have a vertex, and which vertex that is.
+#[derive(Debug)]
+struct Grid {
+    /// A bit for each node, row by row, in groups of 64, the westernmost node of a group in its lowest bit. Rows are [`STRIDE`] bits apart, and there are
+    /// [`MARGIN`] nodes without vertex on every side.
+    groups: [u64; GROUPS],
+    /// How many vertices come before each group.
+    before: [u32; GROUPS],
+}
+
+/// Groups of 64 nodes: a power of two, so that a place modulo it needs no check of bounds.
+const GROUPS: usize = ((TILE_NODES + 2 * MARGIN) * STRIDE).div_ceil(64).next_power_of_two();
+
+/// The bit of a node.
+#[inline]
+fn place(column: i32, row: i32) -> usize {
+    (row as usize + MARGIN) * STRIDE + column as usize + MARGIN
+}
+
+impl Grid {
+    /// `at` as in [`Nodes::new`].
+    fn new(at: &[[i32; 2]]) -> Self {
+        let mut groups = [0_u64; GROUPS];
+        for &[column, row] in at {
+            let place = place(column, row);
+            groups[place / 64] |= 1 << (place % 64);
+        }
+        let mut before = [0; GROUPS];
+        let mut count = 0;
+        for (before, group) in before.iter_mut().zip(groups) {
+            *before = count;
+            count += group.count_ones();
+        }
+        Self { groups, before }
+    }
+
+    /// Whether the node at a place has a vertex.
+    #[inline]
+    fn has_vertex(&self, place: usize) -> bool {
+        self.groups[place / 64 % GROUPS] >> (place % 64) & 1 == 1
+    }
+
+    /// The vertex at a place that has one.
+    #[inline]
+    fn vertex(&self, place: usize) -> u32 {
+        let group = place / 64 % GROUPS;
+        let west = self.groups[group] & ((1 << (place % 64)) - 1);
+        self.before[group] + west.count_ones()
+    }
+
+    /// Which of 64 nodes from a place on have vertices, the first in the lowest bit.
+    #[inline]
+    fn from(&self, place: usize) -> u64 {
+        let (group, shift) = (place / 64, place % 64);
+        let here = self.groups[group % GROUPS] >> shift;
+        here | (self.groups[(group + 1) % GROUPS] << 1) << (63 - shift)
+    }
+}
 
 /// The last column, and the last row.
 const LAST: i32 = TILE_NODES as i32 - 1;
+
+/// So many nodes of a list count as a step of the walk: they take as long as a row.
+const NODES_OF_A_STEP: usize = 16;
 
 /// Marks the limit of a search before any vertex is found.
 const NO_VERTEX: u32 = u32::MAX;
@@ -41,20 +98,11 @@ impl<'w> Nodes<'w> {
     /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column. Searches count as `work`.
     pub(crate) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
         let at: Vec<[i32; 2]> = at.map(|node| node.map(i32::from)).collect();
-        let mut grid = vec![0_u64; TILE_NODES * GROUPS + 1];
-        for &[column, row] in &at {
-            grid[row as usize * GROUPS + column as usize / 64] |= 1 << (column % 64);
-        }
-        let before = grid.iter().scan(0, |count, group| {
-            let before = *count;
-            *count += group.count_ones();
-            Some(before)
-        });
-        let before = before.collect();
-        Self { at, grid, before, work }
+        let grid = Box::new(Grid::new(&at));
+        Self { at, grid, near_corners: NearCorners::get(), work }
     }
 
-    /// How the corner on the right of a ► b sees this gate: dot and cross, which is positive.
+    /// How the corner on the right of a ► b sees this gate: dot and cross, which is positive. For one on the left cross is negative.
     pub(crate) fn behind(&self, [a, b, d]: [u32; 3]) -> [i64; 2] {
         let [[ac, ar], [bc, br], [dc, dr]] =
             [a, b, d].map(|vertex| self.at[vertex as usize].map(i64::from));
@@ -79,15 +127,53 @@ impl<'w> Nodes<'w> {
 
     /// The allowed vertex strictly to the left of a ► b that sees it under the largest angle; of several the
     /// one with the smallest index.
-    ///
-    /// Rows are searched outwards from the gate until they leave a box around the circle through the best vertex so far. Floating
-    /// point only bounds the search, by more than its error; decisions are exact.
+    #[inline]
     pub(crate) fn best_corner(
         &self,
         [a, b]: [u32; 2],
         allowed: impl Fn(u32) -> bool,
     ) -> Option<Corner> {
-        let gate = Gate::new(self.at[a as usize], self.at[b as usize]);
+        let ends = [a, b].map(|vertex| self.at[vertex as usize]);
+        let [[ac, ar], [bc, br]] = ends;
+        let near = self.near_corners.of([bc - ac, br - ar]);
+        let origin = place(ac, ar);
+        let vertex_of = |node: &NearNode| {
+            let place = origin.wrapping_add_signed(node.offset());
+            self.grid.has_vertex(place).then(|| self.grid.vertex(place))
+        };
+        let mut found = None;
+        for (number, node) in near.iter().enumerate() {
+            if let Some(vertex) = vertex_of(node).filter(|&vertex| allowed(vertex)) {
+                found = Some((number, vertex));
+                break;
+            }
+        }
+        let Some((number, vertex)) = found else {
+            if is_on_rim(ends) {
+                self.work.add(1);
+                return None;
+            }
+            return self.far_corner(ends, allowed);
+        };
+        self.work.add(1 + number / NODES_OF_A_STEP);
+        let mut is_tied = false;
+        for pair in near[number..].windows(2) {
+            if is_tied || !pair[0].ties_with_next() {
+                break;
+            }
+            is_tied = vertex_of(&pair[1]).is_some_and(&allowed);
+        }
+        let [dot, cross] = self.behind([a, b, vertex]);
+        Some(Corner { vertex, is_tied, dot, cross: -cross })
+    }
+
+    /// The same without the lists of near nodes.
+    ///
+    /// Rows are searched outwards from the gate until they leave a box around the circle through the best vertex so far. Floating
+    /// point only bounds the search, by more than its error; decisions are exact.
+    #[inline(never)]
+    fn far_corner(&self, [a, b]: [[i32; 2]; 2], allowed: impl Fn(u32) -> bool) -> Option<Corner> {
+        let gate = Gate::new(a, b);
         // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
         let found = [Some(2), Some(16), None].into_iter().find_map(|limit_cot| {
             let mut best = Best::within(limit_cot, &gate);
@@ -134,9 +220,7 @@ impl<'w> Nodes<'w> {
         let dot_in_row = (ar - row) * (br - row);
         let mut looked_at = 0;
         while low <= high {
-            let (group, shift) = (row as usize * GROUPS + low as usize / 64, low as u32 % 64);
-            let here = self.grid[group] >> shift;
-            let mut left = here | (self.grid[group + 1] << 1) << (63 - shift);
+            let mut left = self.grid.from(place(low, row));
             left &= u64::MAX >> (63 - (high - low).min(63));
             while left != 0 {
                 let column = low + left.trailing_zeros() as i32;
@@ -149,7 +233,7 @@ impl<'w> Nodes<'w> {
                     i64::from(best.dot) * i64::from(cross),
                 ];
                 if cross > 0 && new <= old {
-                    let vertex = self.vertex(column, row);
+                    let vertex = self.grid.vertex(place(column, row));
                     if allowed(vertex) {
                         best.take(vertex, [dot, cross], new == old, gate);
                     }
@@ -159,13 +243,12 @@ impl<'w> Nodes<'w> {
         }
         looked_at
     }
+}
 
-    /// The vertex at a node that has one.
-    fn vertex(&self, column: i32, row: i32) -> u32 {
-        let group = row as usize * GROUPS + column as usize / 64;
-        let west = self.grid[group] & ((1 << (column % 64)) - 1);
-        self.before[group] + west.count_ones()
-    }
+/// Whether a gate lies on the border of the grid and has no node on its left.
+fn is_on_rim([[ac, ar], [bc, br]]: [[i32; 2]; 2]) -> bool {
+    (ar == br && (ar == 0 && ac < bc || ar == LAST && ac > bc))
+        || (ac == bc && (ac == 0 && ar > br || ac == LAST && ar < br))
 }
 
 /// A directed edge a ► b.

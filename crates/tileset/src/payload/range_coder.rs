@@ -16,12 +16,11 @@ pub(crate) trait Bits {
     fn even(&mut self, bit: u32) -> u32;
 }
 
-/// How probable a 0 is, in 65 536ths: one estimate that learns fast, and one that learns slowly.
+/// How probable a 0 is, in 65 536ths: one estimate that learns fast, in the upper half, and one that learns slowly.
+///
+/// They are one number, because they are read as one: a processor waits for memory where it reads at once what it has just written in two parts.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Model {
-    fast: u16,
-    slow: u16,
-}
+pub(crate) struct Model(u32);
 
 impl Default for Model {
     fn default() -> Self {
@@ -34,26 +33,37 @@ const LEAST: u32 = 48;
 
 impl Model {
     /// Knows nothing yet.
-    pub(crate) const NEW: Self = Self { fast: 1 << 15, slow: 1 << 15 };
+    pub(crate) const NEW: Self = Self(1 << 31 | 1 << 15);
 
+    /// The sum of both estimates.
+    #[inline]
+    fn sum(self) -> u32 {
+        (self.0 >> 16) + (self.0 & 0xffff)
+    }
+
+    #[inline]
     fn of_zero(self) -> u32 {
-        u32::midpoint(u32::from(self.fast), u32::from(self.slow)).clamp(LEAST, (1 << 16) - LEAST)
+        (self.sum() >> 1).clamp(LEAST, (1 << 16) - LEAST)
     }
 
     /// The mean of two models' estimates.
+    #[inline]
     fn of_zero_in_both([one, other]: [&Self; 2]) -> u32 {
-        let sum = [one.fast, one.slow, other.fast, other.slow].map(u32::from).iter().sum::<u32>();
-        (sum >> 2).clamp(LEAST, (1 << 16) - LEAST)
+        ((one.sum() + other.sum()) >> 2).clamp(LEAST, (1 << 16) - LEAST)
+    }
+
+    /// A 16th of the fast estimate, and a 128th of the slow one.
+    #[inline]
+    fn parts(estimates: u32) -> u32 {
+        ((estimates >> 4) & 0x0fff_0000) | ((estimates & 0xffff) >> 7)
     }
 
     #[inline]
     fn learn(&mut self, bit: u32) {
         if bit == 0 {
-            self.fast += (u16::MAX - self.fast) >> 4;
-            self.slow += (u16::MAX - self.slow) >> 7;
+            self.0 += Self::parts(!self.0);
         } else {
-            self.fast -= self.fast >> 4;
-            self.slow -= self.slow >> 7;
+            self.0 -= Self::parts(self.0);
         }
     }
 }
@@ -111,13 +121,11 @@ impl Writer {
         self.low = (self.low & 0x00ff_ffff) << 8;
     }
 
+    /// Without a branch on the bit, which nobody foretells where it says something.
+    #[inline]
     fn narrow(&mut self, bound: u32, bit: u32) {
-        if bit == 0 {
-            self.range = bound;
-        } else {
-            self.low += u64::from(bound);
-            self.range -= bound;
-        }
+        self.low += u64::from(bound & bit.wrapping_neg());
+        self.range = if bit == 0 { bound } else { self.range - bound };
         while self.range < LEAST_RANGE {
             self.range <<= 8;
             self.shift();
@@ -127,12 +135,14 @@ impl Writer {
 
 #[cfg(feature = "write")]
 impl Bits for Writer {
+    #[inline]
     fn bit(&mut self, model: &mut Model, bit: u32) -> u32 {
         self.narrow((self.range >> 16) * model.of_zero(), bit);
         model.learn(bit);
         bit
     }
 
+    #[inline]
     fn mixed(&mut self, [one, other]: [&mut Model; 2], bit: u32) -> u32 {
         self.narrow((self.range >> 16) * Model::of_zero_in_both([one, other]), bit);
         one.learn(bit);
@@ -140,6 +150,7 @@ impl Bits for Writer {
         bit
     }
 
+    #[inline]
     fn even(&mut self, bit: u32) -> u32 {
         self.narrow(self.range >> 1, bit);
         bit
@@ -196,45 +207,80 @@ impl<'a> Reader<'a> {
         }
     }
 
+    #[inline]
     fn widen(&mut self) {
         let byte = self.bytes.get(self.taken).copied().unwrap_or_default();
         self.taken += 1;
         self.code = (self.code << 8) | u32::from(byte);
     }
 
-    fn narrow(&mut self, bound: u32) -> u32 {
-        let bit = u32::from(self.code >= bound);
-        if bit == 0 {
-            self.range = bound;
-        } else {
-            self.code -= bound;
-            self.range -= bound;
-        }
+    /// The bit is 0: the code is below the bound.
+    #[inline]
+    fn take_zero(&mut self, bound: u32) {
+        self.range = bound;
+        self.widen_range();
+    }
+
+    /// The bit is 1.
+    #[inline]
+    fn take_one(&mut self, bound: u32) {
+        self.code -= bound;
+        self.range -= bound;
+        self.widen_range();
+    }
+
+    #[inline]
+    fn widen_range(&mut self) {
         while self.range < LEAST_RANGE {
             self.range <<= 8;
             self.widen();
         }
-        bit
     }
 }
 
+// One branch for each bit with a model, and all that follows from the bit behind it: a processor that foretells the branch goes on with the
+// next bit before this one is computed.
 impl Bits for Reader<'_> {
+    #[inline]
     fn bit(&mut self, model: &mut Model, _: u32) -> u32 {
-        let bit = self.narrow((self.range >> 16) * model.of_zero());
-        model.learn(bit);
-        bit
+        let bound = (self.range >> 16) * model.of_zero();
+        if self.code < bound {
+            model.learn(0);
+            self.take_zero(bound);
+            0
+        } else {
+            model.learn(1);
+            self.take_one(bound);
+            1
+        }
     }
 
     #[inline]
     fn mixed(&mut self, [one, other]: [&mut Model; 2], _: u32) -> u32 {
-        let bit = self.narrow((self.range >> 16) * Model::of_zero_in_both([one, other]));
-        one.learn(bit);
-        other.learn(bit);
-        bit
+        let bound = (self.range >> 16) * Model::of_zero_in_both([one, other]);
+        if self.code < bound {
+            one.learn(0);
+            other.learn(0);
+            self.take_zero(bound);
+            0
+        } else {
+            one.learn(1);
+            other.learn(1);
+            self.take_one(bound);
+            1
+        }
     }
 
+    /// Nobody foretells such a bit, so there is no branch.
+    #[inline]
     fn even(&mut self, _: u32) -> u32 {
-        self.narrow(self.range >> 1)
+        let bound = self.range >> 1;
+        let bit = u32::from(self.code >= bound);
+        self.code -= bound & bit.wrapping_neg();
+        // What is left of an odd range for a 1 is larger by one.
+        self.range = bound + (self.range & bit);
+        self.widen_range();
+        bit
     }
 }
 

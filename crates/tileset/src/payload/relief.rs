@@ -127,29 +127,36 @@ impl Relief {
     /// the distance of its nodes, `quantum_m` the package's height step. All tiles of a level must have the same `cell` and
     /// `quantum_m`. Equal heights make equal bytes, on every processor.
     ///
+    /// What is coded, and what slopes are taken from, is `shown`: the raster itself, or one that was low-passed. Gaps and water are the
+    /// raster's, and the error is that from the raster.
+    ///
     /// # Errors
     /// With what cannot be encoded: a tile without any height, or heights of 2^38 units and more (a unit is a 512th of the cell or a
     /// 64th of the height step, whichever is larger).
     ///
     /// # Panics
-    /// When the grid has another size.
+    /// When a grid has another size.
     #[cfg(feature = "write")]
     pub fn of_heights(
         with_halo: &HeightGrid,
+        shown: &HeightGrid,
         cell: Cell,
         quantum_m: f64,
     ) -> Result<Self, &'static str> {
-        assert_eq!([with_halo.columns(), with_halo.rows()], [SIDE + 2; 2], "a tile with its halo");
+        for grid in [with_halo, shown] {
+            assert_eq!([grid.columns(), grid.rows()], [SIDE + 2; 2], "a tile with its halo");
+        }
         let exponent = steps::unit_exponent(cell, quantum_m);
-        let (mask, units) = fill::whole_units(with_halo, head::unit_m(exponent))?;
+        let (mask, of_raster) = fill::whole_units(with_halo, head::unit_m(exponent))?;
+        let (_, units) = fill::whole_units(shown, head::unit_m(exponent))?;
         let steps = steps::of_cell(cell, head::unit_m(exponent));
-        let mut square = units.clone();
+        let mut square = units;
         wavelet::forward(&mut square);
         quantise::quantise(&mut square, &steps);
         let mut found = square.clone();
         let unencodable = |_| "heights that leave the range of the code";
         quantise::reconstruct(&mut found, &steps).map_err(unencodable)?;
-        let errors = units.iter().zip(&found).zip(&mask).filter(|(_, there)| **there);
+        let errors = of_raster.iter().zip(&found).zip(&mask).filter(|(_, there)| **there);
         // Half a unit more for the rounding to whole units.
         let error = errors.map(|((unit, found), _)| unit.abs_diff(*found)).max().unwrap_or(0) + 1;
         let water = water::of_raster(with_halo);
@@ -161,7 +168,7 @@ impl Relief {
             steps,
             greatest_error: error,
         };
-        let border = border::of_raster(with_halo, cell);
+        let border = border::of_raster(shown, cell);
         let mut parts = Parts { mask, water, square, border };
         let mut writer = Writer::new(head.to_bytes());
         let units = parts.code(&mut writer, &head, |_| ()).map_err(unencodable)?;

@@ -22,7 +22,7 @@ fn hills(east: f64, south: f64) -> f64 {
 
 /// Compresses, checks that the bytes give the same relief back, and that it keeps what it promises.
 fn check(with_halo: &HeightGrid) -> Relief {
-    let relief = Relief::of_heights(with_halo, CELL, QUANTUM_M).unwrap();
+    let relief = Relief::of_heights(with_halo, with_halo, CELL, QUANTUM_M).unwrap();
     let read = Relief::decode(relief.coded()).unwrap();
     assert_eq!(read.coded, relief.coded);
     assert_eq!(read.border, relief.border);
@@ -107,7 +107,7 @@ fn voids_of_every_shape_come_back() {
         eprintln!("{name}: {} bytes", check(&with_halo).coded().len());
     }
     let nothing = raster(|_, _| f64::NAN);
-    assert!(Relief::of_heights(&nothing, CELL, QUANTUM_M).is_err());
+    assert!(Relief::of_heights(&nothing, &nothing, CELL, QUANTUM_M).is_err());
 }
 
 /// Two tiles side by side: their shared nodes have the same slopes, to the bit, although the heights of both are rounded
@@ -134,7 +134,7 @@ fn high_and_low_heights_come_back() {
         check(&raster(|east, south| height_m + hills(east, south)));
     }
     let beyond = raster(|_, _| 1.0e16);
-    assert!(Relief::of_heights(&beyond, CELL, QUANTUM_M).is_err());
+    assert!(Relief::of_heights(&beyond, &beyond, CELL, QUANTUM_M).is_err());
 }
 
 /// Any change of bytes is an error or another relief, never a panic, and takes no more memory or time.

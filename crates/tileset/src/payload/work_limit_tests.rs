@@ -19,11 +19,10 @@ const SRTM: &str = "liechtenstein/N47E009.hgt";
 /// Steps of the writer's walk, which looks at no less than a reader's, and what it may take.
 fn walk_steps(tin: &Tin) -> [u64; 2] {
     let (vertices, triangles) = (tin.vertices(), tin.triangles());
-    let (work, lookups) = (Work::new(u64::MAX), Work::new(u64::MAX));
+    let work = Work::new(u64::MAX);
     let nodes = Nodes::new(vertices.iter().map(|v| [v.column, v.row]), &work);
     let mut bits = Writer::new(Vec::new());
-    let mut recorder =
-        Recorder::new(vertices.len(), triangles, &lookups, &mut bits).expect("a TIN");
+    let mut recorder = Recorder::new(vertices.len(), triangles, &mut bits);
     let (found, _) = walk(&nodes, triangles.len(), &mut recorder).expect("a TIN");
     assert_eq!(found.len(), triangles.len());
     [work.done(), max_walk_steps(vertices.len(), triangles.len())]
@@ -80,12 +79,10 @@ fn a_walk_beyond_its_limit_is_refused() {
     let tin = tin.expect("usable heights");
     let [whole, _] = walk_steps(&tin);
     for limit in [0, whole / 2, whole - whole / 16] {
-        let (work, lookups) = (Work::new(limit), Work::new(u64::MAX));
+        let work = Work::new(limit);
         let nodes = Nodes::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
         let mut bits = Writer::new(Vec::new());
-        let mut recorder =
-            Recorder::new(tin.vertices().len(), tin.triangles(), &lookups, &mut bits)
-                .expect("a TIN");
+        let mut recorder = Recorder::new(tin.vertices().len(), tin.triangles(), &mut bits);
         let outcome = walk(&nodes, tin.triangles().len(), &mut recorder).map(|_| ());
         assert_eq!(outcome, Err(Damage::TooMuchWork { limit }));
     }

@@ -6,17 +6,17 @@ use super::letters::{Letters, draw_box, line_px};
 
 /// Writes credits into the lower right corner, on a light box. Without credits the picture stays as it is.
 ///
-/// Lines that are too long for the picture are broken between words.
-pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) {
+/// Lines that are too long for the picture are broken between words. Returns width and height of the box.
+pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) -> [u32; 2] {
     let (width, height) = picture.dimensions();
     let line_px = line_px(height);
     let pad_px = line_px / 2;
-    let Some(letters) = Letters::new(line_px) else { return };
+    let Some(letters) = Letters::new(line_px) else { return [0; 2] };
     let room_px = width.saturating_sub(2 * pad_px) as f32;
     let lines: Vec<String> =
         credits.iter().flat_map(|credit| letters.wrap(credit, room_px)).collect();
     if lines.is_empty() {
-        return;
+        return [0; 2];
     }
     let widest_px = letters.widest_px(lines.iter().map(String::as_str));
     let left = width.saturating_sub(widest_px + 2 * pad_px);
@@ -27,6 +27,7 @@ pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) {
         let y_px = (top + pad_px / 2 + row * line_px) as f32;
         letters.draw(picture, line, x_px, y_px);
     }
+    [width - left, height - top]
 }
 
 #[cfg(test)]

@@ -1,134 +1,195 @@
-//! A legend is drawn into the lower left corner of a picture: classes, scale bar and an arrow to the north.
+//! A legend is drawn into the lower left corner of a picture: rows of samples, heights, scale bar and an arrow to the north.
 
 use image::RgbaImage;
 
-use super::letters::{INK, Letters, blend, draw_box, fill, line_px};
-use corniche_styles::{LineStyle, Rgb, RoadBands};
+use super::{
+    legend_row::LegendRow,
+    letters::{INK, Letters, blend, draw_opaque_box, fill, line_px, of_255},
+};
+use corniche_styles::Rgb;
 
 /// What a legend tells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Legend {
-    /// How much true ground a pixel covers in the middle of the picture, metres.
+    /// How much true ground a pixel covers in the middle of the picture, metres; from east to west as on the parallel in the middle of the data.
     pub pixel_m: f64,
     /// Where north is: clockwise from the picture's upward direction.
     pub north_deg: f64,
-    /// The roads of the picture, most important first.
-    pub roads: Vec<LegendRoad>,
-    /// The areas of the picture, the topmost first.
-    pub areas: Vec<LegendArea>,
-    /// The boundaries of the picture, most important first.
-    pub boundaries: Vec<LegendLine>,
+    /// The picture in print is so many times smaller than the ground, if that is known.
+    pub scale: Option<u32>,
+    /// The colour of the ground in the middle of the picture, behind the samples.
+    pub ground: Rgb,
+    /// What the picture shows, the most important first.
+    pub rows: Vec<LegendRow>,
+    /// The heights of the ground in the picture, if colours tell them.
+    pub heights: Option<LegendHeights>,
 }
 
-/// A class of boundaries in a legend.
+/// The colours of the ground by its height.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LegendLine {
-    /// What people call it.
-    pub label: String,
-    /// How it is drawn, with its colour as over the ground.
-    pub style: LineStyle,
-}
-
-/// A class of areas in a legend.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LegendArea {
-    /// What people call it.
-    pub label: String,
-    /// Its colour on the ground.
-    pub color: Rgb,
-}
-
-/// A class of roads in a legend.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LegendRoad {
-    /// What people call it.
-    pub label: String,
-    /// The colours of its surface.
-    pub bands: RoadBands,
-    /// The colour of its edge.
-    pub outline: Rgb,
+pub struct LegendHeights {
+    /// The lowest and the highest ground in the picture, metres.
+    pub range_m: [f64; 2],
+    /// Colours from the lowest ground to the highest, evenly spread.
+    pub colors: Vec<Rgb>,
 }
 
 /// The scale bar is about this part of the picture's width.
 const BAR_SHARE: f64 = 0.12;
 
-/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads, areas and boundaries, an arrow to the north, and a bar
-/// with its length on the ground in the middle of the picture.
-pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
-    let (width, height) = picture.dimensions();
-    let line_px = line_px(height);
-    let pad_px = line_px / 2;
-    let Some(letters) = Letters::new(line_px) else { return };
-    let Some(bar_m) = bar_length_m(f64::from(width) * BAR_SHARE * legend.pixel_m) else { return };
-    let bar_text = bar_length(bar_m);
+/// Where the parts of a row are. All lengths are pixels.
+struct Columns {
+    line: u32,
+    pad: u32,
+    sample: u32,
+}
+
+impl Columns {
+    fn of(picture: &RgbaImage) -> Self {
+        let line = line_px(picture.height());
+        Self { line, pad: line / 2, sample: 2 * line }
+    }
+
+    /// Where the text of a row begins.
+    fn text(&self) -> u32 {
+        2 * self.pad + self.sample
+    }
+
+    /// How long the ramp of heights is.
+    fn ramp(&self) -> u32 {
+        4 * self.line
+    }
+}
+
+/// What stands on the picture already where a legend could lie, pixels.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Taken {
+    /// How high the title is, from the top.
+    pub title_px: u32,
+    /// Width and height of the credits in the lower right corner.
+    pub credits_px: [u32; 2],
+}
+
+/// Draws a legend into the lower left corner, on an opaque box: a sample and a name in each row, the colours of heights, an arrow to the north, and a bar
+/// with its length on the ground in the middle of the picture. Where there is no room beside the credits it lies above them. What does not fit between
+/// them and the title is counted in a last row. Tells whether the picture is too small even so, so that a part is cut off.
+pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: Taken) -> bool {
+    let width = picture.width();
+    let columns = Columns::of(picture);
+    let Columns { line, pad, .. } = columns;
+    let Some(letters) = Letters::new(line) else { return false };
+    let bar_m = bar_length_m(f64::from(width) * BAR_SHARE * legend.pixel_m);
+    let Some(bar_m) = bar_m else { return false };
+    let bar_text = scale_text(bar_m, legend.scale);
     let bar_px = (bar_m / legend.pixel_m).round() as u32;
-    let sample_px = 2 * line_px;
-    let labels = legend.roads.iter().map(|road| road.label.as_str());
-    let labels = labels.chain(legend.areas.iter().map(|area| area.label.as_str()));
-    let labels = labels.chain(legend.boundaries.iter().map(|line| line.label.as_str()));
-    let labels_px = letters.widest_px(labels);
-    let bar_line_px = bar_px + pad_px + letters.widest_px([bar_text.as_str()].into_iter());
-    let classes = (legend.roads.len() + legend.areas.len() + legend.boundaries.len()) as u32;
-    let classes_px = if classes == 0 { 0 } else { sample_px + pad_px + labels_px };
-    let right = bar_line_px.max(classes_px) + 2 * pad_px + 2 * line_px;
-    let lines = classes + 1;
-    let top = height.saturating_sub(lines.max(2) * line_px + pad_px);
-    draw_box(picture, 0..right.min(width), top..height);
 
-    let above_row = |row: u32| top + pad_px / 2 + row * line_px;
-    let of_255 = |rgb: Rgb| rgb.map(|part| part * 255.0);
-    for (road, row) in legend.roads.iter().zip(0_u32..) {
-        let above = above_row(row);
-        // With more bands a sample is thicker, so that each of them is seen, as far as a line has room.
-        let bands = road.bands.all();
-        let thick = (line_px / 3).max(2 * bands.len() as u32 + 1).min(line_px - 2);
-        let start = above + (line_px - thick) / 2;
-        let rows = start..start + thick;
-        let columns = pad_px..pad_px + sample_px;
-        fill(picture, columns.clone(), rows, of_255(road.outline), 1.0);
-        for band in bands {
-            let beside =
-                (0.5 * f64::from(thick - 2) * f64::from(1.0 - band.width_share)) as u32 + 1;
-            let rows = start + beside..start + thick - beside;
-            fill(picture, columns.clone(), rows, of_255(band.color), 1.0);
-        }
-        letters.draw(picture, &road.label, (2 * pad_px + sample_px) as f32, above as f32);
+    let ends = legend.heights.as_ref().map(|heights| heights.range_m.map(height_text));
+    let below = 1 + u32::from(ends.is_some());
+    let labels = legend.rows.iter().map(|row| row.label.as_str());
+    let label_px = columns.text() + letters.widest_px(labels);
+    let ramp_px = ends.as_ref().map(|[low, high]| {
+        let texts_px = letters.widest_px([low.as_str()].into_iter())
+            + letters.widest_px([high.as_str()].into_iter());
+        3 * pad + columns.ramp() + texts_px
+    });
+    let bar_line_px = 2 * pad + bar_px + letters.widest_px([bar_text.as_str()].into_iter());
+    let widest_px = bar_line_px.max(label_px).max(ramp_px.unwrap_or(0));
+    let wanted_px = widest_px + pad + 2 * line;
+    let right = wanted_px.min(width);
+    let is_beside = right + taken.credits_px[0] <= width;
+    let below_px = if is_beside { 0 } else { taken.credits_px[1] };
+    let height = picture.height().saturating_sub(below_px);
+
+    let room_px = height.saturating_sub(taken.title_px + pad);
+    let room = (room_px / line).saturating_sub(below) as usize;
+    let (rows, rest) = fitting(&legend.rows, room);
+    let lines = rows.len() as u32 + u32::from(rest.is_some()) + below;
+    let top = height.saturating_sub(lines.max(2) * line + pad);
+    draw_opaque_box(picture, 0..right, top..height);
+
+    let above_row = |row: u32| top + pad / 2 + row * line;
+    for (row, number) in rows.iter().zip(0_u32..) {
+        let above = above_row(number);
+        fill(picture, pad..pad + columns.sample, above..above + line, of_255(legend.ground), 1.0);
+        row.sample.draw(picture, [pad, above], [columns.sample, line]);
+        letters.draw(picture, &row.label, columns.text() as f32, above as f32);
+    }
+    if let Some(rest) = rest {
+        letters.draw(picture, &rest, columns.text() as f32, above_row(rows.len() as u32) as f32);
+    }
+    if let (Some(heights), Some(ends)) = (&legend.heights, &ends) {
+        let above = height.saturating_sub(2 * line + pad / 2);
+        draw_ramp(picture, &letters, (&heights.colors, ends), above, &columns);
     }
 
-    for (area, row) in legend.areas.iter().zip(legend.roads.len() as u32..) {
-        let above = above_row(row);
-        let rows = above + line_px / 8..above + line_px - line_px / 8;
-        fill(picture, pad_px..pad_px + sample_px, rows, of_255(area.color), 1.0);
-        letters.draw(picture, &area.label, (2 * pad_px + sample_px) as f32, above as f32);
-    }
-
-    let first = (legend.roads.len() + legend.areas.len()) as u32;
-    for (line, row) in legend.boundaries.iter().zip(first..) {
-        let above = above_row(row);
-        let thick = (line.style.width_px.round() as u32).clamp(1, line_px - 2);
-        let start = above + (line_px - thick) / 2;
-        for column in 0..sample_px {
-            let share = line.style.dash.width_at(column as f32 + 0.5);
-            let beside = (0.5 * (1.0 - share) * thick as f32).round() as u32;
-            if share > 0.0 && 2 * beside < thick {
-                let rows = start + beside..start + thick - beside;
-                let columns = pad_px + column..pad_px + column + 1;
-                fill(picture, columns, rows, of_255(line.style.color), 1.0);
-            }
-        }
-        letters.draw(picture, &line.label, (2 * pad_px + sample_px) as f32, above as f32);
-    }
-
-    let above = height.saturating_sub(line_px + pad_px / 2);
-    let (base, tick) = (above + line_px * 3 / 4, line_px / 3);
-    fill(picture, pad_px..pad_px + bar_px, base - 2..base, INK, 1.0);
-    for end in [pad_px, pad_px + bar_px - 2] {
+    let above = height.saturating_sub(line + pad / 2);
+    let (base, tick) = (above + line * 3 / 4, line / 3);
+    fill(picture, pad..pad + bar_px, base - 2..base, INK, 1.0);
+    for end in [pad, pad + bar_px - 2] {
         fill(picture, end..end + 2, base - tick..base, INK, 1.0);
     }
-    letters.draw(picture, &bar_text, (2 * pad_px + bar_px) as f32, above as f32);
+    letters.draw(picture, &bar_text, (2 * pad + bar_px) as f32, above as f32);
 
-    let middle = [f64::from(right - pad_px / 2 - line_px), f64::from(top + line_px + pad_px / 2)];
-    draw_arrow(picture, middle, f64::from(line_px) * 0.85, legend.north_deg);
+    let middle = [f64::from(right.saturating_sub(pad / 2 + line)), f64::from(top + line + pad / 2)];
+    draw_arrow(picture, middle, f64::from(line) * 0.85, legend.north_deg);
+    wanted_px > width || lines.max(2) * line > room_px
+}
+
+/// The rows for which there is room, and, if these are not all, a text for one more that says how many lack.
+fn fitting(rows: &[LegendRow], room: usize) -> (&[LegendRow], Option<String>) {
+    if rows.len() <= room {
+        return (rows, None);
+    }
+    let shown = room.saturating_sub(1);
+    (&rows[..shown], Some(format!("and {} more", rows.len() - shown)))
+}
+
+/// The lowest height, the colours from it to the highest one, and that.
+fn draw_ramp(
+    picture: &mut RgbaImage,
+    letters: &Letters,
+    (colors, [low, high]): (&[Rgb], &[String; 2]),
+    above: u32,
+    columns: &Columns,
+) {
+    let Columns { line, pad, .. } = *columns;
+    let ramp = columns.ramp();
+    letters.draw(picture, low, pad as f32, above as f32);
+    let left = pad + letters.widest_px([low.as_str()].into_iter()) + pad / 2;
+    for column in 0..ramp {
+        let place = column as usize * colors.len() / ramp as usize;
+        let Some(color) = colors.get(place) else { continue };
+        let rows = above + line / 5..above + line - line / 5;
+        fill(picture, left + column..left + column + 1, rows, of_255(*color), 1.0);
+    }
+    letters.draw(picture, high, (left + ramp + pad / 2) as f32, above as f32);
+}
+
+/// What stands beside a scale bar.
+fn scale_text(bar_m: f64, scale: Option<u32>) -> String {
+    let length = bar_length(bar_m);
+    scale.map_or(length.clone(), |scale| format!("{length}   1 : {}", grouped(u64::from(scale))))
+}
+
+/// A height in words: "2 340 m".
+fn height_text(height_m: f64) -> String {
+    let metres = height_m.round();
+    let sign = if metres < 0.0 { "−" } else { "" };
+    format!("{sign}{} m", grouped(metres.abs() as u64))
+}
+
+/// A whole number in groups of three: "1 234 567". No-break spaces are between them; some fonts lack the narrow one.
+#[must_use]
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push('\u{a0}');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// The longest length for a scale bar that is not longer than `most_m`: 1, 2 or 5 times a power of ten, metres. `None` where
@@ -144,15 +205,17 @@ pub fn bar_length_m(most_m: f64) -> Option<f64> {
     Some(step * power)
 }
 
-/// Such a length in words: "20 m", "5 km", "10 cm".
+/// Such a length in words: "20 m", "5 km", "10 cm", "2 mm".
 #[must_use]
 pub fn bar_length(m: f64) -> String {
     if m >= 1000.0 {
         format!("{:.0} km", m / 1000.0)
     } else if m >= 1.0 {
         format!("{m:.0} m")
-    } else {
+    } else if m >= 0.01 {
         format!("{:.0} cm", m * 100.0)
+    } else {
+        format!("{} mm", m * 1000.0)
     }
 }
 

@@ -1,30 +1,53 @@
 //! A legend shows each class, a scale bar of the right length and where north is.
 
-use super::*;
+use corniche_styles::{LineStyle, RoadBand};
+
+use super::{
+    super::legend_row::{LegendEdge, LegendRoad, LegendSample},
+    *,
+};
 
 fn picture() -> RgbaImage {
     RgbaImage::from_pixel(640, 480, image::Rgba([90, 120, 90, 255]))
 }
 
+fn row(label: &str, sample: LegendSample) -> LegendRow {
+    LegendRow { label: label.to_owned(), sample }
+}
+
+fn road(color: Rgb) -> LegendSample {
+    LegendSample::Road(LegendRoad {
+        width_px: 5.0,
+        bands: vec![RoadBand { width_share: 1.0, color }],
+        edge: Some(LegendEdge { color: [0.0, 0.0, 1.0], width_px: 1 }),
+    })
+}
+
 fn legend(north_deg: f64) -> Legend {
-    let road = |label: &str, color| LegendRoad {
-        label: label.to_owned(),
-        bands: RoadBands::one(color),
-        outline: [0.0, 0.0, 1.0],
+    let dashed = LineStyle {
+        dash: corniche_styles::Dash::new(&[6.0, 4.0]).unwrap(),
+        ..LineStyle::solid([1.0, 0.0, 1.0], 3.0)
     };
     Legend {
         pixel_m: 10.0,
         north_deg,
-        roads: vec![road("motorway", [1.0, 0.0, 0.0]), road("track", [1.0, 1.0, 0.0])],
-        areas: vec![LegendArea { label: "water".to_owned(), color: [0.0, 1.0, 1.0] }],
-        boundaries: vec![LegendLine {
-            label: "country border".to_owned(),
-            style: LineStyle {
-                dash: corniche_styles::Dash::new(&[6.0, 4.0]).unwrap(),
-                ..LineStyle::solid([1.0, 0.0, 1.0], 3.0)
-            },
-        }],
+        scale: None,
+        ground: [1.0; 3],
+        rows: vec![
+            row("motorway", road([1.0, 0.0, 0.0])),
+            row("track", road([1.0, 1.0, 0.0])),
+            row("country border", LegendSample::Line(dashed)),
+            row("water", LegendSample::Area([0.0, 1.0, 1.0])),
+        ],
+        heights: None,
     }
+}
+
+#[test]
+fn numbers_are_grouped() {
+    assert_eq!(grouped(7), "7");
+    assert_eq!(grouped(1234), "1\u{a0}234");
+    assert_eq!(grouped(123_456_789), "123\u{a0}456\u{a0}789");
 }
 
 #[test]
@@ -38,6 +61,7 @@ fn bars_have_round_lengths() {
         (2300.0, 2000.0, "2 km"),
         (150_000.0, 100_000.0, "100 km"),
         (0.5, 0.5, "50 cm"),
+        (0.0023, 0.002, "2 mm"),
     ] {
         let found_m = bar_length_m(most_m).unwrap();
         let found = bar_length(found_m);
@@ -61,7 +85,7 @@ fn without_a_length_there_is_no_bar() {
 #[test]
 fn the_bar_is_as_long_as_it_says() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0));
+    draw_legend(&mut picture, &legend(0.0), Taken::default());
     let dark = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [32, 36, 40];
     let longest = (400..480)
         .map(|y| {
@@ -78,7 +102,7 @@ fn the_bar_is_as_long_as_it_says() {
 #[test]
 fn each_class_has_its_colours() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0));
+    draw_legend(&mut picture, &legend(0.0), Taken::default());
     for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255]] {
         let count = picture.pixels().filter(|pixel| pixel.0[..3] == color).count();
         assert!(count > 40, "{color:?}: {count}");
@@ -89,7 +113,7 @@ fn each_class_has_its_colours() {
 #[test]
 fn boundaries_have_their_dashes() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0));
+    draw_legend(&mut picture, &legend(0.0), Taken::default());
     let is_line = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [255, 0, 255];
     let rows: Vec<u32> = (0..480).filter(|&y| (0..640).any(|x| is_line(x, y))).collect();
     assert_eq!(rows.len(), 3, "{rows:?}");
@@ -117,7 +141,98 @@ fn the_arrow_points_to_the_north() {
 }
 
 #[test]
-fn a_legend_fits_into_a_small_picture() {
-    let mut small = RgbaImage::new(40, 20);
-    draw_legend(&mut small, &legend(30.0));
+fn a_legend_without_room_says_so() {
+    for (size_px, is_cut) in [([40, 20], true), ([120, 300], true), ([640, 480], false)] {
+        let mut picture = RgbaImage::new(size_px[0], size_px[1]);
+        assert_eq!(draw_legend(&mut picture, &legend(30.0), Taken::default()), is_cut);
+        assert!(picture.pixels().any(|pixel| pixel.0[0] > 0), "{size_px:?}: something is drawn");
+    }
+}
+
+/// Where both do not fit side by side, the legend lies above the credits; and below the title it has fewer rows.
+#[test]
+fn a_legend_keeps_clear_of_credits_and_title() {
+    let drawn = |credits_px, title_px| {
+        let mut picture = RgbaImage::new(640, 480);
+        draw_legend(&mut picture, &legend(0.0), Taken { title_px, credits_px });
+        let rows = (0..480).filter(|row| picture.get_pixel(3, *row).0[0] > 0);
+        (rows.clone().min().unwrap(), rows.max().unwrap())
+    };
+    let (top, bottom) = drawn([0, 0], 0);
+    assert_eq!(bottom, 479);
+    assert_eq!(drawn([200, 30], 0), (top, bottom), "beside short credits");
+    assert_eq!(drawn([600, 30], 0), (top - 30, bottom - 30), "above long ones");
+    let title_px = top + 20;
+    assert!(drawn([0, 0], title_px).0 >= title_px, "below the title");
+}
+
+/// The colours of the box, of ink and of both mixed, and those of samples: nothing of the picture beneath.
+#[test]
+fn nothing_shows_through_the_box() {
+    let drawn = |ground: [u8; 3]| {
+        let [red, green, blue] = ground;
+        let mut picture = RgbaImage::from_pixel(640, 480, image::Rgba([red, green, blue, 255]));
+        draw_legend(&mut picture, &legend(0.0), Taken::default());
+        picture
+    };
+    let (dark, light) = (drawn([0; 3]), drawn([200, 250, 200]));
+    let pixels = dark.pixels().zip(light.pixels());
+    let (mut inside, mut outside) = (0, 0);
+    for (dark, light) in pixels {
+        if dark == light {
+            inside += 1;
+        } else {
+            assert_eq!(dark.0[..3], [0; 3]);
+            assert_eq!(light.0[..3], [200, 250, 200]);
+            outside += 1;
+        }
+    }
+    // 5 lines of 14 pixels and a half of one.
+    assert_eq!(inside % (5 * 14 + 7), 0, "the box is a rectangle");
+    assert!(inside > 77 * 100 && outside > 640 * 480 / 2, "{inside} {outside}");
+}
+
+#[test]
+fn a_scale_in_print_stands_beside_the_bar() {
+    assert_eq!(scale_text(500.0, None), "500 m");
+    assert_eq!(scale_text(500.0, Some(25_000)), "500 m   1 : 25\u{a0}000");
+    assert_eq!(scale_text(500.0, Some(500)), "500 m   1 : 500");
+}
+
+#[test]
+fn heights_are_whole_metres_in_groups_of_three_digits() {
+    for (height_m, text) in [
+        (0.4, "0 m"),
+        (-0.4, "0 m"),
+        (-27.5, "−28 m"),
+        (999.5, "1\u{a0}000 m"),
+        (2340.2, "2\u{a0}340 m"),
+        (-1_234_567.0, "−1\u{a0}234\u{a0}567 m"),
+    ] {
+        assert_eq!(height_text(height_m), text);
+    }
+}
+
+/// From the lowest at the left to the highest at the right.
+#[test]
+fn heights_have_a_ramp() {
+    let colors = vec![[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]];
+    let heights = Some(LegendHeights { range_m: [412.0, 2340.0], colors });
+    let mut picture = picture();
+    draw_legend(&mut picture, &Legend { heights, ..legend(0.0) }, Taken::default());
+    let columns = |color: [u8; 3]| {
+        let is_it = |x: &u32| (0..480).any(|y| picture.get_pixel(*x, y).0[..3] == color);
+        (0..640).filter(is_it).collect::<Vec<u32>>()
+    };
+    let (low, high) = (columns([255, 128, 0]), columns([0, 128, 255]));
+    assert_eq!([low.len(), high.len()], [28, 28]);
+    assert_eq!(low.last().unwrap() + 1, high[0]);
+}
+
+#[test]
+fn rows_without_room_are_counted() {
+    let rows: Vec<LegendRow> = (0..9).map(|k| row(&k.to_string(), road([0.1; 3]))).collect();
+    assert_eq!(fitting(&rows, 9), (&rows[..], None));
+    assert_eq!(fitting(&rows, 4), (&rows[..3], Some("and 6 more".to_owned())));
+    assert_eq!(fitting(&rows, 0), (&rows[..0], Some("and 9 more".to_owned())));
 }

@@ -3,6 +3,7 @@
 use std::ops::{Range, RangeInclusive};
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
+use corniche_styles::Rgb;
 use image::RgbaImage;
 
 /// Smallest and largest height of a line of text, pixels.
@@ -31,6 +32,18 @@ impl Letters {
         // The font is part of the program, so it can be parsed; otherwise nothing could be written.
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok()?;
         Some(Self { font, scale: PxScale::from(line_px as f32) })
+    }
+
+    /// The letters of a text that the font does not have, each once. It draws a box in their places.
+    pub(crate) fn lacking(&self, text: &str) -> String {
+        let mut lacking = String::new();
+        let letters = text.chars().filter(|letter| !letter.is_whitespace());
+        for letter in letters.filter(|letter| self.font.glyph_id(*letter).0 == 0) {
+            if !lacking.contains(letter) {
+                lacking.push(letter);
+            }
+        }
+        lacking
     }
 
     pub(crate) fn width_px(&self, text: &str) -> f32 {
@@ -81,7 +94,12 @@ impl Letters {
     }
 }
 
-/// A light box, to write on.
+/// A light box through which nothing shows, to write on.
+pub(crate) fn draw_opaque_box(picture: &mut RgbaImage, columns: Range<u32>, rows: Range<u32>) {
+    fill(picture, columns, rows, BOX.0, 1.0);
+}
+
+/// A light box through which a little shows, to write on.
 pub(crate) fn draw_box(picture: &mut RgbaImage, columns: Range<u32>, rows: Range<u32>) {
     fill(picture, columns, rows, BOX.0, BOX.1);
 }
@@ -99,6 +117,11 @@ pub(crate) fn fill(
             blend(picture, x, y, color, opacity);
         }
     }
+}
+
+/// A colour of shares in parts of 255.
+pub(crate) fn of_255(color: Rgb) -> [f32; 3] {
+    color.map(|part| part * 255.0)
 }
 
 /// Mixes a colour into a pixel; outside the picture, nothing.

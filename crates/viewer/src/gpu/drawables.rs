@@ -10,7 +10,7 @@
 //! - how it is drawn (`draw`).
 //!
 //! Terrain, roads, connectors and composite draw into a pass that the renderer began, so that several drawables can share
-//! one. [`average`], [`difference`] and the search for blocks with roads ([`composite`]) begin and end passes of their own:
+//! one. [`average`], [`difference`], [`depth_numbers`], the search for blocks with roads ([`composite`]) and depths and labels of [`decks`] begin and end passes of their own:
 //! each of them replaces all that is in its target, and no other drawable can share that pass.
 //!
 //! A drawable may use
@@ -19,8 +19,8 @@
 //!   `picture`, `ground_buffers`, `area_buffers`, `tile_textures` and `road_instances`;
 //! - of the crate: `tiles`, `scene`, `options`, `frame_view` and `style`.
 //!
-//! It uses neither the renderer nor another drawable. There is one exception: [`level_connectors`] makes instances in the
-//! format of [`sv_roads`].
+//! It uses neither the renderer nor another drawable, with two exceptions: [`level_connectors`] makes instances in the
+//! formats of [`sv_roads`] and [`decks`], and [`decks`] has the colours of [`composite`].
 //!
 //! # How a drawable is added
 //!
@@ -32,13 +32,15 @@
 //! 4. If it draws into a texture of its own: add that to `Targets`, and its format to `formats`.
 //! 5. Add it to `Renderer`: a field, a line in `Renderer::new`, and a call in the pass in which it is drawn. Things over the
 //!    map are drawn after the composite. `passes::begin` begins a pass, with cleared targets or with what is in them. A new
-//!    pass is counted to one of the four times that `timings` measures.
+//!    pass is counted to one of the five times that `timings` measures.
 //! 6. If users choose it or how it looks: add that to `RoadOptions` or to a struct beside it, and to `Style`; from there to
 //!    the drawable's `rows`, or to `uniforms` if other drawables need it too.
 
 pub(crate) mod areas;
 pub(crate) mod average;
 pub(crate) mod composite;
+pub(crate) mod decks;
+pub(crate) mod depth_numbers;
 pub(crate) mod difference;
 pub(crate) mod geo_roads;
 pub(crate) mod label_blocks;

@@ -1,7 +1,7 @@
-//! What each sample of a drawing is made of, read back for tests: they compare it with references on the processor. Programs
-//! read the picture only.
+//! What each sample of a drawing is made of, read back: tests compare it with references on the processor, and a legend lists what it shows. Else
+//! programs read the picture only.
 
-use super::{Gpu, ReadBackError, targets::Targets};
+use super::{Gpu, ReadBackError, drawables::depth_numbers::depth_numbers, targets::Targets};
 
 /// This bit of the owner of a sample is set if the sample shows a skirt or a wall.
 const SKIRT_BIT: u32 = 1 << 31;
@@ -33,6 +33,11 @@ impl Owner {
     }
 }
 
+/// The owners that texels tell, four bytes each.
+pub(crate) fn owners(texels: &[u8]) -> impl Iterator<Item = Owner> {
+    texels.chunks_exact(4).map(|b| Owner::of(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
+}
+
 impl Targets {
     /// The picture: four bytes a pixel (red, green, blue, 255), rows from the top.
     ///
@@ -56,7 +61,7 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadBackError> {
-        let bytes = self.depth.read(gpu)?;
+        let bytes = depth_numbers(gpu, &self.depth).read(gpu)?;
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
 
@@ -65,11 +70,16 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_owners(&self, gpu: &Gpu) -> Result<Vec<Owner>, ReadBackError> {
-        let bytes = self.owners.read(gpu)?;
-        Ok(bytes
-            .chunks_exact(4)
-            .map(|b| Owner::of(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
-            .collect())
+        let texels = self.owners.read(gpu)?;
+        Ok(owners(&texels).collect())
+    }
+
+    /// The label of the deck of each sample, as decks were drawn last; `None` if none ever were. 1 is a side, 2 an underside, others are labels of roads.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub fn read_deck_labels(&self, gpu: &Gpu) -> Result<Option<Vec<u8>>, ReadBackError> {
+        self.drawn_decks().map(|decks| decks.labels.labels.read(gpu)).transpose()
     }
 
     /// The road label of each sample, as `gpu::labels` draws them; 0 without a road.

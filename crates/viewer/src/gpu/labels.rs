@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   0                nothing
-//!   2 … 19           tunnels        2 · (9 − class), plus 1 on a dash of the edge
+//!   2 … 19           tunnels        2 · (9 − class), plus 1 on a dash of the edge and on the tick of a portal
 //!  21 … 29           service roads  20 + (9 − class)
 //!  32 … 175          other roads    ┌──── 4 bits ────┬─ 4 bits ─┐
 //!                                   │   10 − class   │   band   │

@@ -3,21 +3,28 @@
 use std::time::{Duration, Instant};
 
 use super::*;
-use crate::gpu::GpuError;
+use crate::gpu::{
+    GpuError, drawables::depth_numbers::depth_numbers, formats::DEPTH,
+    target_texture::TargetTexture,
+};
+
+fn gpu() -> Option<Gpu> {
+    match Gpu::new() {
+        Ok(gpu) => Some(gpu),
+        Err(error @ GpuError::NoAdapter { .. }) => {
+            assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
+            corniche_testing::skip(&error.to_string());
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
 
 /// A texture of 37 × 11 texels with ascending bytes is read in bands of all rows, in bands of several rows (the last band is
 /// shorter), and row by row.
 #[test]
 fn bands_add_up_to_the_picture() {
-    let gpu = match Gpu::new() {
-        Ok(gpu) => gpu,
-        Err(error @ GpuError::NoAdapter { .. }) => {
-            assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
-            corniche_testing::skip(&error.to_string());
-            return;
-        }
-        Err(error) => panic!("{error}"),
-    };
+    let Some(gpu) = gpu() else { return };
     let size = wgpu::Extent3d { width: 37, height: 11, depth_or_array_layers: 1 };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -57,4 +64,35 @@ fn bands_add_up_to_the_picture() {
         assert!(arrived == texels);
     }
     assert!(read_texture(&gpu, &texture).is_err());
+}
+
+/// Depths come back in bands, too, which a depth texture itself cannot.
+#[test]
+fn depths_are_read_in_bands() {
+    let Some(gpu) = gpu() else { return };
+    let depth = TargetTexture::new(&gpu, "depth", DEPTH, [70, 11]);
+    let descriptor = wgpu::CommandEncoderDescriptor { label: None };
+    let mut encoder = gpu.device.create_command_encoder(&descriptor);
+    // A value of which a float has all digits.
+    let value = 0.123_456_79_f32;
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: None,
+        color_attachments: &[],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth.view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(value),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    gpu.queue.submit([encoder.finish()]);
+    let numbers = depth_numbers(&gpu, &depth);
+    for most_bytes in [1 << 20, 3 * 512, 1] {
+        let texels = read_by_bands(&gpu, numbers.texture(), most_bytes).unwrap();
+        assert_eq!(texels.len(), 70 * 11 * 4);
+        assert!(texels.chunks_exact(4).all(|texel| texel == value.to_le_bytes()), "{most_bytes}");
+    }
 }

@@ -1,5 +1,8 @@
 //! The renderer draws tiles into targets, pass by pass, and holds nothing of any frame.
 
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+mod read_seen;
+
 use std::sync::OnceLock;
 
 use wgpu::{CommandEncoder, LoadOp};
@@ -10,6 +13,7 @@ use super::{
         areas::{AreaTile, StencilAreas},
         average::Average,
         composite::Composite,
+        decks::Decks,
         difference::Difference,
         geo_roads,
         label_blocks::LabelBlocks,
@@ -22,6 +26,7 @@ use super::{
     picture::Picture,
     road_instances::{RoadBuffers, RoadPipeline},
     shared_bindings::{SharedBindings, SharedLayouts},
+    target_texture::TargetTexture,
     targets::{LabelTargets, Targets},
     tile_buffers::{DrawTile, TileBuffers},
     timings::PassTimer,
@@ -40,6 +45,7 @@ pub struct Renderer {
     areas: OnceLock<StencilAreas>,
     geo_roads: OnceLock<RoadPipeline>,
     sv_roads: OnceLock<RoadPipeline>,
+    decks: OnceLock<Decks>,
     blocks: LabelBlocks,
     composite: Composite,
     line_colors: OnceLock<LineColors>,
@@ -58,6 +64,7 @@ impl Renderer {
             areas: OnceLock::new(),
             geo_roads: OnceLock::new(),
             sv_roads: OnceLock::new(),
+            decks: OnceLock::new(),
             blocks: LabelBlocks::new(device, &layouts),
             composite: Composite::new(device, &layouts),
             line_colors: OnceLock::new(),
@@ -90,8 +97,9 @@ impl Renderer {
         let drawn_style = view.style.with_drawn_areas();
         let drawn_view = FrameView { style: &drawn_style, ..*view };
         let drawn_areas = areas_of(tiles, &drawn_view, DrawTile::drawn_areas);
+        let decks = DrawnDecks::new(gpu, tiles, view);
         if let Some(timer) = &mut timer {
-            timer.begin(!areas.is_empty() || !drawn_areas.is_empty());
+            timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), !decks.is_empty()]);
         }
         let mut mark = |encoder: &mut CommandEncoder, number| {
             if let Some(timer) = &mut timer {
@@ -101,17 +109,20 @@ impl Renderer {
         mark(&mut encoder, 0);
         self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.areas_pass(gpu, &mut encoder, &shared, &areas, view, targets);
-        self.areas_pass(gpu, &mut encoder, &shared, &drawn_areas, &drawn_view, targets);
+        let ground = (&targets.ground, targets);
+        self.areas_pass(gpu, &mut encoder, &shared, &areas, view, ground);
+        self.areas_pass(gpu, &mut encoder, &shared, &drawn_areas, &drawn_view, ground);
         mark(&mut encoder, 2);
         self.labels_pass(gpu, &mut encoder, &shared, &roads, view, &targets.roads);
         mark(&mut encoder, 3);
-        self.composite_pass(gpu, &mut encoder, &shared, view, targets);
+        self.decks_passes(gpu, &mut encoder, &shared, &decks, targets);
+        mark(&mut encoder, 4);
+        self.composite_pass(gpu, &mut encoder, &shared, view, (targets, &decks));
         for layer in LineLayer::ALL {
             self.lines_pass(gpu, &mut encoder, &shared, (tiles, layer), view, targets);
         }
         self.average.draw(gpu, &mut encoder, targets.picture());
-        mark(&mut encoder, 4);
+        mark(&mut encoder, 5);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -165,7 +176,7 @@ impl Renderer {
         self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
     }
 
-    /// Areas, over the colours of the ground. Without areas there is no such pass.
+    /// Areas, over colours such as those of the ground. Without areas there is no such pass.
     fn areas_pass(
         &self,
         gpu: &Gpu,
@@ -173,13 +184,13 @@ impl Renderer {
         shared: &SharedBindings,
         areas: &[AreaTile<'_>],
         view: &FrameView<'_>,
-        targets: &Targets,
+        (into, targets): (&TargetTexture, &Targets),
     ) {
         if areas.is_empty() {
             return;
         }
         let stencil = &targets.stencil(gpu).view;
-        let mut pass = begin_with_stencil(encoder, "areas", &targets.ground.view, stencil);
+        let mut pass = begin_with_stencil(encoder, "areas", &into.view, stencil);
         let drawable = self.areas.get_or_init(|| StencilAreas::new(&gpu.device, &self.layouts));
         drawable.draw(gpu, &mut pass, shared, areas, view);
     }
@@ -200,12 +211,16 @@ impl Renderer {
         let of_tiles =
             of_tiles.filter_map(|(index, (buffers, classes))| Some((index, (*buffers)?, *classes)));
         match view.roads.method {
-            RoadMethod::Geometry => self.geo_roads(gpu).draw(&mut pass, shared, of_tiles),
-            RoadMethod::ShadowVolumes => self.sv_roads(gpu).draw(&mut pass, shared, of_tiles),
+            RoadMethod::Geometry => {
+                self.geo_roads(gpu).draw(&mut pass, shared, shared.ground(), of_tiles);
+            }
+            RoadMethod::ShadowVolumes => {
+                self.sv_roads(gpu).draw(&mut pass, shared, shared.ground(), of_tiles);
+            }
             RoadMethod::None => return,
         }
         if !lines.connectors.is_empty() {
-            lines.connectors.draw(&mut pass, shared, self.sv_roads(gpu));
+            lines.connectors.draw(&mut pass, shared, shared.ground(), self.sv_roads(gpu));
         }
     }
 
@@ -243,7 +258,7 @@ impl Renderer {
         let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
         let line_colors =
             self.line_colors.get_or_init(|| LineColors::new(&gpu.device, &self.layouts));
-        line_colors.draw(gpu, &mut pass, &shared, &view, targets);
+        line_colors.draw(gpu, &mut pass, &shared, (&view, layer), targets);
     }
 
     /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or
@@ -254,14 +269,69 @@ impl Renderer {
         encoder: &mut CommandEncoder,
         shared: &SharedBindings,
         view: &FrameView<'_>,
-        targets: &Targets,
+        (targets, decks): (&Targets, &DrawnDecks<'_>),
     ) {
         if view.roads.method != RoadMethod::None {
             self.blocks.find(gpu, encoder, shared, &targets.roads);
         }
+        if !decks.is_empty() {
+            self.blocks.find(gpu, encoder, shared, &targets.decks(gpu).labels);
+        }
         let into = [targets.picture().drawn()];
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
         self.composite.draw(gpu, &mut pass, shared, view, targets);
+        if !decks.is_empty() {
+            let seen = (targets, targets.decks(gpu));
+            self.decks(gpu).draw_colors(gpu, &mut pass, shared, view, seen);
+        }
+    }
+
+    /// Depths and labels of decks of bridges. Without decks there are no such passes.
+    fn decks_passes(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        decks: &DrawnDecks<'_>,
+        targets: &Targets,
+    ) {
+        if !decks.is_empty() {
+            let tiles = decks.of_tiles.iter().copied();
+            let into = (targets, targets.decks(gpu));
+            self.decks(gpu).draw(gpu, encoder, shared, &tiles, into, &|pass, drawn, pipeline| {
+                decks.connectors.draw(pass, shared, drawn, pipeline);
+            });
+        }
+    }
+
+    fn decks(&self, gpu: &Gpu) -> &Decks {
+        self.decks.get_or_init(|| Decks::new(&gpu.device, &self.layouts))
+    }
+}
+
+/// The decks of bridges of a frame. They are part of the roads, whatever the method.
+struct DrawnDecks<'a> {
+    /// The decks of tiles, each with its index in the list of tiles of the frame and the classes that are shown there.
+    of_tiles: Vec<(usize, &'a RoadBuffers, ClassSet)>,
+    connectors: LevelConnectors,
+}
+
+impl<'a> DrawnDecks<'a> {
+    fn new(gpu: &Gpu, tiles: &'a [DrawTile<'_>], view: &FrameView<'_>) -> Self {
+        let tiles = if view.roads.method == RoadMethod::None { &[] } else { tiles };
+        let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
+        let all = tiles.iter().zip(&shown).enumerate();
+        let of_tiles =
+            all.map(|(index, (tile, shown))| (index, &tile.buffers.decks, *shown)).collect();
+        let borders: Vec<_> =
+            tiles.iter().map(|tile| tile.border(Some(&tile.buffers.decks))).collect();
+        let reference_of = |index: usize| tiles[index].buffers.reference_m;
+        let connectors = LevelConnectors::of_decks(gpu, &borders, reference_of, &shown);
+        Self { of_tiles, connectors }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.of_tiles.iter().all(|(_, decks, shown)| decks.runs(*shown).is_empty())
     }
 }
 
@@ -286,7 +356,7 @@ impl<'a> LabelledLines<'a> {
         let borders: Vec<_> =
             tiles.iter().zip(&of_tiles).map(|(tile, roads)| tile.border(*roads)).collect();
         let reference_of = |index: usize| tiles[index].buffers.reference_m;
-        let connectors = LevelConnectors::new(gpu, &borders, reference_of, &shown);
+        let connectors = LevelConnectors::on_ground(gpu, &borders, reference_of, &shown);
         Self { of_tiles, shown, connectors }
     }
 

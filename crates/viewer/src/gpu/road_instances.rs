@@ -1,19 +1,19 @@
-//! What both methods of drawing roads have in common: an instance for each piece of a road, sorted by class, and a pipeline
-//! that keeps the largest label.
+//! What both methods of drawing roads, and decks of bridges, have in common: an instance for each piece of a road, sorted by class, and a
+//! pipeline that draws labels.
 
 use std::ops::Range;
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use wgpu::{
-    BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages, ColorWrites,
-    Device, FrontFace, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
+    BindGroup, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages,
+    ColorWrites, Device, FrontFace, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
     VertexBufferLayout, VertexStepMode,
 };
 
 use super::{
     Gpu,
     formats::LABEL,
-    pipeline::{ENTRIES, PipelineRecipe, Shader},
+    pipeline::{PipelineRecipe, Shader},
     shared_bindings::{SharedBindings, SharedLayouts},
 };
 use crate::{
@@ -37,7 +37,7 @@ pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
     }
 }
 
-/// What the pipelines of the two methods differ in.
+/// What such pipelines differ in.
 pub(crate) struct RoadRecipe<'a> {
     pub(crate) shader: Shader,
     pub(crate) instance_bytes: u64,
@@ -45,6 +45,13 @@ pub(crate) struct RoadRecipe<'a> {
     pub(crate) cull: Option<wgpu::Face>,
     /// Corners of the strip of triangles that is drawn for each instance.
     pub(crate) corners: Range<u32>,
+    /// The layout of what is bound at group 2.
+    pub(crate) drawn: &'a wgpu::BindGroupLayout,
+    pub(crate) entries: [&'a str; 2],
+    /// Without it no depth is tested.
+    pub(crate) depth: Option<wgpu::DepthStencilState>,
+    /// Whether labels are drawn, of which the largest stays; else only depth is.
+    pub(crate) has_labels: bool,
 }
 
 /// Draws roads by one method into the labels.
@@ -55,10 +62,12 @@ pub(crate) struct RoadPipeline {
 
 impl RoadPipeline {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts, recipe: &RoadRecipe<'_>) -> Self {
-        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
+        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(recipe.drawn)];
+        let largest = BlendState { color: LARGEST, alpha: LARGEST };
+        let labels = [(LABEL, ColorWrites::ALL)];
         let pipeline = PipelineRecipe {
             shader: recipe.shader,
-            entries: ENTRIES,
+            entries: recipe.entries,
             groups: &groups,
             buffer: Some(VertexBufferLayout {
                 array_stride: recipe.instance_bytes,
@@ -68,9 +77,9 @@ impl RoadPipeline {
             topology: PrimitiveTopology::TriangleStrip,
             front_face: FrontFace::Ccw,
             cull: recipe.cull,
-            depth: None,
-            targets: &[(LABEL, ColorWrites::ALL)],
-            blend: Some(BlendState { color: LARGEST, alpha: LARGEST }),
+            depth: recipe.depth.clone(),
+            targets: if recipe.has_labels { &labels } else { &[] },
+            blend: recipe.has_labels.then_some(largest),
             constants: &[],
         };
         Self { pipeline: pipeline.build(device), corners: recipe.corners.clone() }
@@ -82,9 +91,10 @@ impl RoadPipeline {
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
+        drawn: &BindGroup,
         tiles: impl Iterator<Item = (usize, &'a RoadBuffers, ClassSet)>,
     ) {
-        self.begin(pass, shared);
+        self.begin(pass, shared, drawn);
         for (index, roads, classes) in tiles {
             shared.set_tile(pass, index);
             roads.draw(pass, classes, &self.corners);
@@ -96,10 +106,11 @@ impl RoadPipeline {
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
+        drawn: &BindGroup,
         instances: &Buffer,
         by_tile: impl Iterator<Item = (usize, Range<u32>)>,
     ) {
-        self.begin(pass, shared);
+        self.begin(pass, shared, drawn);
         pass.set_vertex_buffer(0, instances.slice(..));
         for (index, range) in by_tile {
             shared.set_tile(pass, index);
@@ -107,10 +118,10 @@ impl RoadPipeline {
         }
     }
 
-    fn begin(&self, pass: &mut RenderPass<'_>, shared: &SharedBindings) {
+    fn begin(&self, pass: &mut RenderPass<'_>, shared: &SharedBindings, drawn: &BindGroup) {
         pass.set_pipeline(&self.pipeline);
         shared.set_frame(pass);
-        shared.set_ground(pass);
+        pass.set_bind_group(2, drawn, &[]);
     }
 }
 

@@ -109,9 +109,9 @@ impl SharedBindings {
         pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
     }
 
-    /// Binds the ground as the terrain pass drew it.
-    pub(crate) fn set_ground(&self, pass: &mut RenderPass<'_>) {
-        pass.set_bind_group(2, &self.ground, &[]);
+    /// The bind group of the ground as the terrain pass drew it.
+    pub(crate) fn ground(&self) -> &BindGroup {
+        &self.ground
     }
 }
 

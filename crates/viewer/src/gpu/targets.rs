@@ -30,6 +30,13 @@ impl LabelTargets {
     }
 }
 
+/// What is drawn of decks of bridges.
+pub(crate) struct DeckTargets {
+    /// The depth of the nearest deck, as the ground's; 0 where none is seen.
+    pub(crate) depth: TargetTexture,
+    pub(crate) labels: LabelTargets,
+}
+
 /// The textures that the passes draw into: a picture and, sample by sample, what it is made of.
 pub struct Targets {
     pub(crate) ground: TargetTexture,
@@ -40,13 +47,16 @@ pub struct Targets {
     stencil: OnceLock<TargetTexture>,
     /// Made when lines beside roads are first drawn.
     lines: OnceLock<LabelTargets>,
+    /// Made when decks are first drawn.
+    decks: OnceLock<DeckTargets>,
     picture: Picture,
 }
 
 impl Targets {
     /// Targets for a picture of this size, with so many samples on each side of a pixel; 1 takes the pixel's centre
     /// alone. Besides the picture they take 17 bytes for each sample, one more once areas
-    /// have been drawn and one more once lines beside roads have been, and one byte for each block of 16 × 16 samples.
+    /// have been drawn, one more once lines beside roads have been and five more once decks of bridges have been, and one byte for each
+    /// block of 16 × 16 samples.
     ///
     /// # Errors
     /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
@@ -62,6 +72,7 @@ impl Targets {
             roads: LabelTargets::new(gpu, "road labels", sampled_px),
             stencil: OnceLock::new(),
             lines: OnceLock::new(),
+            decks: OnceLock::new(),
             picture,
         })
     }
@@ -95,6 +106,20 @@ impl Targets {
     pub(crate) fn lines(&self, gpu: &Gpu) -> &LabelTargets {
         let sampled_px = self.picture.sampled_px();
         self.lines.get_or_init(|| LabelTargets::new(gpu, "line labels", sampled_px))
+    }
+
+    /// What is drawn of decks.
+    pub(crate) fn decks(&self, gpu: &Gpu) -> &DeckTargets {
+        let sampled_px = self.picture.sampled_px();
+        self.decks.get_or_init(|| DeckTargets {
+            depth: TargetTexture::new(gpu, "deck depth", DEPTH, sampled_px),
+            labels: LabelTargets::new(gpu, "deck labels", sampled_px),
+        })
+    }
+
+    /// What was drawn of decks; `None` if none were yet.
+    pub(crate) fn drawn_decks(&self) -> Option<&DeckTargets> {
+        self.decks.get()
     }
 
     /// How many blocks its samples are divided into. Blocks on the right and at the bottom may reach beyond the samples.

@@ -8,7 +8,7 @@ use super::{
     area_buffers::AreaBuffers,
     drawables::{
         areas::{AreaTile, Counting},
-        geo_roads, sv_roads,
+        decks, geo_roads, sv_roads,
     },
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
@@ -39,9 +39,11 @@ pub struct TileBuffers {
     drawn_areas: Option<AreaBuffers>,
     segments: RoadBuffers,
     volumes: RoadBuffers,
+    /// Bridges, for both methods.
+    pub(crate) decks: RoadBuffers,
     layers: [LayerBuffers; LineLayer::ALL.len()],
     width_margin_m: f64,
-    /// Lowest and highest true height of its ground; `None` without ground.
+    /// Lowest and highest true height of its ground and its decks; `None` without ground.
     height_range_m: Option<[f64; 2]>,
     triangles: u64,
 }
@@ -82,6 +84,7 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
         + AreaBuffers::bytes_of(&tile.areas)
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
+        + decks::bytes_of(&tile.decks)
         + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.of(layer))).iter().sum::<u64>()
 }
 
@@ -104,6 +107,7 @@ impl TileBuffers {
             drawn_areas: None,
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
+            decks: decks::upload(gpu, &tile.decks),
             layers: LineLayer::ALL.map(|layer| LayerBuffers::new(gpu, tile.lines.of(layer))),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
@@ -136,6 +140,7 @@ impl TileBuffers {
             + self.textures.gpu_bytes()
             + self.segments.gpu_bytes()
             + self.volumes.gpu_bytes()
+            + self.decks.gpu_bytes()
             + self.layers.iter().map(LayerBuffers::gpu_bytes).sum::<u64>()
     }
 
@@ -187,11 +192,13 @@ impl DrawTile<'_> {
         }
     }
 
-    /// How many segments or volumes of its roads are drawn in a view.
+    /// How many segments or volumes of its roads, and pieces of decks, are drawn in a view.
     #[must_use]
     pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
         let roads = self.buffers.roads(view.roads.method);
-        let drawn = roads.into_iter().flat_map(|roads| roads.runs(self.shown_classes(view)));
+        let decks = roads.map(|_| &self.buffers.decks);
+        let drawn = [roads, decks].into_iter().flatten();
+        let drawn = drawn.flat_map(|roads| roads.runs(self.shown_classes(view)));
         drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
 

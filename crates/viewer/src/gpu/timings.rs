@@ -8,15 +8,15 @@ use wgpu::{
 
 use super::{Gpu, ReadBackError, device::TIMESTAMPS};
 
-/// Timestamps of a frame: one before each of its four parts and one after the last.
-const MARKS: u32 = 5;
+/// Timestamps of a frame: one before each of its five parts and one after the last.
+const MARKS: u32 = 6;
 /// Bytes of all marks of a frame; each is a u64.
 const MARK_BYTES: u64 = 8 * MARKS as u64;
 /// The times of so many frames may be waited for at once. A graphics card is two or three frames behind the processor.
 const FRAMES: usize = 4;
 
 /// Milliseconds that the passes of a frame took on the graphics card.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PassTimes {
     /// The pass of the terrain.
     pub terrain_ms: f64,
@@ -24,6 +24,8 @@ pub struct PassTimes {
     pub areas_ms: f64,
     /// The passes of roads.
     pub roads_ms: f64,
+    /// The passes of decks of bridges; 0 where none were drawn.
+    pub decks_ms: f64,
     /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
     pub composite_ms: f64,
 }
@@ -43,8 +45,8 @@ pub struct PassTimer {
     free: Vec<usize>,
     /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
-    /// Tells for each readable buffer whether its frame has areas.
-    has_areas: [bool; FRAMES],
+    /// Tells for each readable buffer whether its frame has areas, and decks.
+    has: [[bool; 2]; FRAMES],
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
     period_ns: f64,
@@ -57,7 +59,7 @@ impl PassTimes {
     /// The time of all passes together.
     #[must_use]
     pub fn total_ms(&self) -> f64 {
-        self.terrain_ms + self.areas_ms + self.roads_ms + self.composite_ms
+        self.terrain_ms + self.areas_ms + self.roads_ms + self.decks_ms + self.composite_ms
     }
 }
 
@@ -88,18 +90,18 @@ impl PassTimer {
             readable: std::array::from_fn(|_| readable()),
             free: (0..FRAMES).collect(),
             current: None,
-            has_areas: [false; FRAMES],
+            has: [[false; 2]; FRAMES],
             sender,
             receiver,
             period_ns: f64::from(gpu.queue.get_timestamp_period()),
         })
     }
 
-    /// Begins a frame. Without areas it has no areas pass, though some time passes between the marks around it.
-    pub(crate) fn begin(&mut self, has_areas: bool) {
+    /// Begins a frame, with areas and with decks. Without them it has no such passes, though some time passes between the marks around them.
+    pub(crate) fn begin(&mut self, has: [bool; 2]) {
         self.current = self.free.pop();
         if let Some(slot) = self.current {
-            self.has_areas[slot] = has_areas;
+            self.has[slot] = has;
         }
     }
 
@@ -160,11 +162,13 @@ impl PassTimer {
         let marks: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
         // If the clock was set back in between, the time counts as 0.
         let ms = |k: usize| marks[k + 1].saturating_sub(marks[k]) as f64 * self.period_ns / 1e6;
+        let [has_areas, has_decks] = self.has[slot];
         Ok(PassTimes {
             terrain_ms: ms(0),
-            areas_ms: if self.has_areas[slot] { ms(1) } else { 0.0 },
+            areas_ms: if has_areas { ms(1) } else { 0.0 },
             roads_ms: ms(2),
-            composite_ms: ms(3),
+            decks_ms: if has_decks { ms(3) } else { 0.0 },
+            composite_ms: ms(4),
         })
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use corniche_styles::{Dash, OwnWidths, RoadBands, RoadStyle};
+use corniche_styles::{Dash, OwnWidths, RoadBands};
 
 use crate::{
     camera::Projection,
@@ -32,7 +32,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         RoadMethod::None => 0,
         _ => view.roads.outline_px(style),
     };
-    let scaling = view.roads.width_scaling(style);
+    let constant = view.roads.width_scaling(style, &style.roads[0]).constant;
 
     let mut rows: Vec<[f32; 4]> = camera
         .clip_from_relative()
@@ -48,7 +48,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         .map(row),
     );
     // Half of what is drawn for each metre of a road's own width: 0 if own widths do not count.
-    let half_of_own = if style.own_widths.is_some() { 0.5 * scaling.constant } else { 0.0 };
+    let half_of_own = if style.own_widths.is_some() { 0.5 * constant } else { 0.0 };
     let lane_m = style.own_widths.and_then(|widths| widths.lane_m).unwrap_or_default();
     rows.push([
         camera.pixel_at_unit_depth_m() as f32,
@@ -57,8 +57,8 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         lane_m,
     ]);
     rows.push([
-        scaling.threshold_m * view.point_scale as f32,
-        scaling.exponent,
+        style.width_scaling.threshold_m * view.point_scale as f32,
+        0.0,
         outline_px as f32 * samples,
         samples,
     ]);
@@ -77,16 +77,21 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, parallel[0], parallel[1]]);
     rows.extend(style.roads.iter().map(|road| {
         let bands = road.bands.all().len() as f32;
-        let half_width_m = road.width_m / 2.0 * scaling.constant;
+        let half_width_m = road.width_m / 2.0 * constant;
         // In pixels of the picture: how many samples a pixel has changes nothing.
-        let full_m = class_scale::full_distance_m(road, view.camera, view.point_scale) as f32;
-        [half_width_m, road.min_width_px / 2.0 * samples, bands, full_m]
+        let full_m = class_scale::distance_m(road.max_pixel_m, view.camera, view.point_scale);
+        [half_width_m, road.min_width_px / 2.0 * samples, bands, full_m as f32]
+    }));
+    rows.extend(style.roads.iter().map(|road| {
+        let exponent = view.roads.width_scaling(style, road).exponent;
+        let edge_m = class_scale::distance_m(road.edge_max_pixel_m, view.camera, view.point_scale);
+        [exponent, edge_m as f32, 0.0, 0.0]
     }));
     rows.extend(style.roads.iter().map(|road| {
         let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
         [
             limit as f32,
-            RoadStyle::NARROW_WIDTH_SHARE,
+            road.carriageway_width_m / road.width_m,
             road.opacity,
             road.bands.of_slip_roads() as f32,
         ]
@@ -124,7 +129,7 @@ pub(crate) struct TileUniforms {
     pub(crate) skirt_depth_m: f64,
 }
 
-/// A tile's block, as `struct Tile` of `shaders/coverage.wgsl` and `shaders/terrain.wgsl` declares it. `number` is the tile's
+/// A tile's block, as `struct Tile` of `shaders/tile.wgsl` declares it. `number` is the tile's
 /// number in the frame, from 1; numbers below 2^24 are exact in f32.
 pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 2] {
     let [x, y, height_m] = tile.reference_m;

@@ -50,6 +50,8 @@ pub(crate) struct LevelConnector {
     pub(crate) look: RoadLook,
     /// Its two ends in plan, working CRS: that in the finer tile, then that in the coarser one.
     pub(crate) ends_m: [[f64; 2]; 2],
+    /// The true height of each end; the lowest, where only a range is known.
+    pub(crate) heights_m: [f64; 2],
     /// The lowest and the highest true height at which there may be ground or a skirt to paint.
     pub(crate) height_range_m: [f64; 2],
     /// Working metres across the road for each true metre across it.
@@ -80,6 +82,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
                 look: end.look,
                 ends_m: [end.at_m, partner.at_m],
                 width_factor: end.width_factor,
+                heights_m: [low[0], high[0]],
                 height_range_m: [low[0].min(high[0]) - skirt_m, low[1].max(high[1]) + skirt_m],
             });
         }

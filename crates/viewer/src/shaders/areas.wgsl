@@ -88,10 +88,11 @@ fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> 
     return is_left(first, last, vec2(0.0)) != is_left(first, last, at);
 }
 
-// Where the tile's own ground or skirt is at a pixel; w is 0 if the pixel shows something else.
+// Where the tile's own ground or skirt is at a pixel; w is 0 if the pixel shows something else, or lies beside the picture.
 fn own_ground(center: vec2<f32>) -> vec4<f32> {
-    let pixel = vec2<i32>(center);
-    if (textureLoad(owners, pixel, 0).r & ~SKIRT) != u32(tile.base.z) {
+    let pixel = vec2<i32>(floor(center));
+    let is_outside = any(pixel < vec2(0)) || any(pixel >= vec2<i32>(textureDimensions(owners)));
+    if is_outside || (textureLoad(owners, pixel, 0).r & ~SKIRT) != u32(tile.base.z) {
         return vec4(0.0);
     }
     return vec4(position_at(center, textureLoad(terrain_depth, pixel, 0).r), 1.0);
@@ -117,8 +118,17 @@ fn cap_fragment(in: Face) {
     }
 }
 
-// Colours and opacities of the classes, by their numbers.
-@group(3) @binding(0) var<uniform> colors: array<vec4<f32>, 8>;
+const AREA_CLASSES = 8u;
+
+// By the numbers of the classes.
+struct Looks {
+    // rgb; w: opacity.
+    colors: array<vec4<f32>, AREA_CLASSES>,
+    // x: the slope from which on nothing is painted, tangent of the angle; y: up to which all is.
+    steepest: array<vec4<f32>, AREA_CLASSES>,
+}
+
+@group(3) @binding(0) var<uniform> looks: Looks;
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
 // bit 0: east, bit 1: north, bit 2: top.
@@ -126,7 +136,7 @@ const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u,
 
 struct Covered {
     @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) color: vec4<f32>,
+    @location(0) @interpolate(flat) area_class: u32,
 }
 
 // The box around the volumes of a class. Only its far faces are drawn: one fragment for each pixel that sees the box, also with the
@@ -140,11 +150,32 @@ fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @l
     let height = height_of(vec2(low.z, high.z), (corner & 4u) != 0u);
     var out: Covered;
     out.clip = clip_of(vec3(plan, height));
-    out.color = colors[area_class];
+    out.area_class = area_class;
     return out;
+}
+
+// From the place of a tile's own ground at a pixel to that at the pixel beside it, on the side where it is nearer. Where there is none, 0.
+fn step_on_ground(center: vec2<f32>, here: vec3<f32>, aside: vec2<f32>) -> vec3<f32> {
+    let after = own_ground(center + aside);
+    let before = own_ground(center - aside);
+    let forth = after.xyz - here;
+    let back = here - before.xyz;
+    let is_forth = after.w != 0.0 && (before.w == 0.0 || dot(forth, forth) <= dot(back, back));
+    return select(select(vec3(0.0), back, before.w != 0.0), forth, is_forth);
+}
+
+// How steep a tile's own ground is at a pixel: tangent of the angle.
+fn slope_at(center: vec2<f32>) -> f32 {
+    let here = own_ground(center).xyz;
+    let normal = cross(step_on_ground(center, here, vec2(1.0, 0.0)), step_on_ground(center, here, vec2(0.0, 1.0)));
+    // Where the ground is a pixel wide, nothing is told.
+    return select(length(normal.xy) / max(abs(normal.z), 1e-9) / frame.scale.y, 0.0, dot(normal, normal) == 0.0);
 }
 
 @fragment
 fn box_fragment(in: Covered) -> @location(0) vec4<f32> {
-    return in.color;
+    let color = looks.colors[in.area_class];
+    let steepest = looks.steepest[in.area_class];
+    let painted = clamp((steepest.x - slope_at(in.clip.xy)) / (steepest.x - steepest.y), 0.0, 1.0);
+    return vec4(color.rgb, color.a * painted);
 }

@@ -8,7 +8,8 @@ override BLOCK: i32 = 16;
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-    let radius = i32(frame.road_scale.z);
+    // The edges of bridges reach farthest.
+    let radius = i32(ceil(1.5 * frame.road_scale.z));
     let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
     let corner = vec2<i32>(position.xy) * BLOCK;
     let first = max(corner - radius, vec2(0));

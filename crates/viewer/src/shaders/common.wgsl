@@ -23,7 +23,7 @@ struct Frame {
     // x: side of a pixel at depth 1, metres; y: world height of one metre of true height; z: half of what is drawn for each
     // metre of a road's own width, 0 if own widths do not count; w: width of a lane, 0 if lanes do not count.
     scale: vec4<f32>,
-    // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
+    // x: distance up to which road widths are true; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
@@ -36,8 +36,11 @@ struct Frame {
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
     // w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
-    // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of slip roads and service roads as a
-    // share of that of their class; z: how much of the ground a road hides; w: number of the bands of a slip road.
+    // x: exponent with which widths grow beyond the distance up to which they are true; y: distance from the eye up to which roads have their
+    // edge in full.
+    road_growth: array<vec4<f32>, CLASSES>,
+    // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of one of two carriageways as a share
+    // of that of their class; z: how much of the ground a road hides; w: number of the bands of a slip road.
     road_limits: array<vec4<f32>, CLASSES>,
     // The widths of the bands of each class as shares of the road's width, four in each row.
     road_bands: array<vec4<f32>, BANDS / 4u * CLASSES>,
@@ -82,6 +85,14 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
+// The value in the depth buffer for a depth.
+fn depth_buffer_of(view_depth: f32) -> f32 {
+    if is_from_above() {
+        return (frame.network.z - view_depth) / (frame.network.z - frame.forward.w);
+    }
+    return frame.forward.w / max(view_depth, frame.forward.w);
+}
+
 // Where the ground at a pixel is, relative to the eye.
 fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
     return ray_start_at(pixel) + ray_at(pixel) * view_depth_of(depth_buffer);
@@ -97,7 +108,7 @@ fn scale_depth_of(depth_buffer: f32) -> f32 {
     return select(view_depth_of(depth_buffer), frame.network.w, is_from_above());
 }
 
-// How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL or SERVICE), half its width near the eye, and the length of its
+// How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL, SERVICE, BORE, CARRIAGEWAY, …), half its width near the eye, and the length of its
 // part of the network, both world metres.
 struct Road {
     class_number: u32,
@@ -112,30 +123,70 @@ const PLAIN = 0u;
 const LINK = 1u;
 const TUNNEL = 2u;
 const SERVICE = 3u;
+// A tunnel of which it is known where it is under the ground.
+const BORE = 4u;
+// One of the two carriageways of a road, on or above the ground, and in tunnels of both kinds.
+const CARRIAGEWAY = 5u;
+const CARRIAGEWAY_TUNNEL = 6u;
+const CARRIAGEWAY_BORE = 7u;
+
+fn is_bore(look: u32) -> bool {
+    return look == BORE || look == CARRIAGEWAY_BORE;
+}
+
+fn is_carriageway(look: u32) -> bool {
+    return look >= CARRIAGEWAY;
+}
+
+fn is_under_ground(look: u32) -> bool {
+    return look == TUNNEL || look == CARRIAGEWAY_TUNNEL || is_bore(look);
+}
+
+// Bores are drawn half as wide as other roads of their class.
+const BORE_SHARE = 0.5;
+// So wide are slip roads and service roads: `RoadStyle::NARROW_WIDTH_SHARE`.
+const NARROW_SHARE = 0.6;
+
+// How wide a carriageway of a class is as a share of the class's width, if a road is one, or a slip road, which is narrower than that.
+fn carriageway_share(class_number: u32, look: u32) -> f32 {
+    return select(1.0, frame.road_limits[class_number].y, is_carriageway(look) || look == LINK);
+}
+
+// How wide a road is as a share of the width of its class.
+fn class_share(class_number: u32, look: u32) -> f32 {
+    let narrow = select(1.0, NARROW_SHARE, look == LINK || look == SERVICE);
+    return narrow * carriageway_share(class_number, look) * select(1.0, BORE_SHARE, is_bore(look));
+}
+
+// The same of the widths in pixels; service roads are shown from near alone, and have those of their class.
+fn px_share(class_number: u32, look: u32) -> f32 {
+    return select(class_share(class_number, look), 1.0, look == SERVICE);
+}
 
 // `own_width` is metres above 0, lanes below it, 0 for neither; `width_factor` is world metres across the road for each true one.
 fn road_with(class_number: u32, look: u32, own_width: f32, width_factor: f32) -> Road {
     let own_m = select(own_width, -own_width * frame.scale.w, own_width < 0.0);
     var half_width_m = frame.road_widths[class_number].x;
+    var share = class_share(class_number, look);
     if own_m > 0.0 && frame.scale.z > 0.0 {
         half_width_m = min(own_m, frame.road_options.w) * frame.scale.z;
+        // Tags of a carriageway are about itself.
+        share /= carriageway_share(class_number, look);
     }
-    if look == LINK || look == SERVICE {
-        half_width_m *= frame.road_limits[class_number].y;
-    }
-    return Road(class_number, look, half_width_m * width_factor, OPEN_M);
+    return Road(class_number, look, half_width_m * width_factor * share, OPEN_M);
 }
 
 // Half width of a road in world metres, before the least width in pixels is applied.
 fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
-    let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
-    let limit_m = max(road.half_width_m, frame.road_limits[road.class_number].x * distance_m);
+    let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_growth[road.class_number].x);
+    let limit = frame.road_limits[road.class_number].x * px_share(road.class_number, road.look);
+    let limit_m = max(road.half_width_m, limit * distance_m);
     return min(road.half_width_m * growth, limit_m);
 }
 
 // Least half width in world metres at a depth.
 fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
-    return frame.road_widths[road.class_number].y * frame.scale.x * view_depth;
+    return frame.road_widths[road.class_number].y * px_share(road.class_number, road.look) * frame.scale.x * view_depth;
 }
 
 // A class has faded away at this many times the distance up to which it is shown in full: half a zoom step.
@@ -166,6 +217,11 @@ fn is_shown(road: Road, distance_m: f32) -> bool {
 fn shown_share(class_number: u32, look: u32, distance_m: f32) -> f32 {
     let steps = log2(max(distance_m, 1e-3) / full_distance_m(class_number, look)) / log2(FADE_FACTOR);
     return clamp(1.0 - steps, 0.0, 1.0);
+}
+
+// Share of the edge of a road that is drawn at a distance from the eye: it goes within a zoom step, before roads that run side by side fuse.
+fn edge_share(class_number: u32, distance_m: f32) -> f32 {
+    return clamp(1.0 - log2(max(distance_m, 1e-3) / frame.road_growth[class_number].y), 0.0, 1.0);
 }
 
 // Share of the width of a road that one of its bands takes. Band 0 is the whole road.

@@ -3,32 +3,9 @@
 // pixels need not be read.
 //
 // Outlines are found as in Vaaraniemi, Treib & Westermann 2011, section 6.2, by a maximum filter over the importance of the
-// roads around a pixel. Where the maximum is more important than the pixel's own road, the pixel is on the outline of the
-// more important road.
+// roads around a pixel. Where there is no road, or a tunnel of lower rank, the pixel is on the outline of the most important road around it.
 
 @group(1) @binding(4) var ground_color: texture_2d<f32>;
-
-// The same fields as in gpu/drawables/composite.rs, in the same order.
-struct PictureColors {
-    // rgb; w: distance at which haze hides two thirds of a colour.
-    haze: vec4<f32>,
-    sky: vec4<f32>,
-    background: vec4<f32>,
-    // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
-    // above it; w: the widest spacing of its lines. World metres.
-    void_plane: vec4<f32>,
-    road_bands: array<vec4<f32>, BANDS * CLASSES>,
-    road_outlines: array<vec4<f32>, CLASSES>,
-    // Tunnels and service roads.
-    road_mains: array<vec4<f32>, CLASSES>,
-    // Roads that are too thin for an edge.
-    road_thins: array<vec4<f32>, CLASSES>,
-}
-
-@group(1) @binding(3) var<uniform> colors: PictureColors;
-
-// Ground that is this many times farther away than its neighbour in the picture lies behind it. From above none does.
-const FARTHER = 1.1;
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
 fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
@@ -94,25 +71,6 @@ fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     return color + grain;
 }
 
-// Width of a road at a place in pixels of the final picture, before the least width is applied.
-fn width_px(road_class: u32, look: u32, distance_m: f32, depth: f32) -> f32 {
-    // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
-    // package, and its width that of its class.
-    let road = road_with(road_class, look, 0.0, frame.road_options.z);
-    return 2.0 * scaled_half_width_m(road, distance_m) / pixel_m_at(depth);
-}
-
-// The ground or the sky at a pixel.
-struct Sight {
-    color: vec3<f32>,
-    // Share of the ground's colour that is lost on the way.
-    haze: f32,
-    // 0 in the sky, where the fields that follow have no meaning.
-    depth_buffer: f32,
-    depth: f32,
-    distance_m: f32,
-}
-
 fn sight_at(position: vec2<f32>) -> Sight {
     // Derivatives also ask for places beyond the last row and column.
     let pixel = min(vec2<i32>(position), vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1);
@@ -131,27 +89,10 @@ fn sight_at(position: vec2<f32>) -> Sight {
     return sight;
 }
 
-// How much of the ground roads of a class hide at a distance from the eye.
-fn opacity_at(road_class: u32, look: u32, distance_m: f32) -> f32 {
-    return frame.road_limits[road_class].z * shown_share(road_class, look, distance_m);
-}
-
-// What is left of the colours of a tunnel's surface and of its edge.
-const TUNNEL_FILL = 0.35;
-const TUNNEL_EDGE = 0.75;
-
-const LEAST_FACING = 0.3;
-
-// How much of the width of a road is seen, if the road runs across the view: 1, and less where the ground at a pixel is
-// seen at less than 19 degrees. At a silhouette, where this cannot be told, it is at least LEAST_FACING, so that a wide road
-// keeps its edge there. It must be asked for every pixel, in the sky too.
-fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
-    let ray = ray_at(position);
-    let depth = select(sight.depth, view_depth_of(sight.depth_buffer), is_from_above());
-    let ground = ray_start_at(position) + ray * depth;
-    let normal = cross(dpdx(ground), dpdy(ground));
-    let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
-    return clamp(3.0 * sine, LEAST_FACING, 1.0);
+// Share of the edge of a more important road that lies over this one. Streets of a few pixels would make dashes of the edge of a road that many of
+// them meet; wide ones join it without an edge.
+fn edge_over_share(label: u32, sight: Sight) -> f32 {
+    return 1.0 - smoothstep(2.2, 3.4, width_px(class_of(label), look_of(label), sight.distance_m, sight.depth));
 }
 
 @fragment
@@ -167,35 +108,21 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if sight.depth_buffer == 0.0 {
         return vec4(sight.color, 1.0);
     }
-    var color = sight.color;
-
     let own = textureLoad(road_labels, pixel, 0).r;
     let label = label_of(own);
+    var color = sight.color;
     if label != 0u {
-        let road_class = class_of(label);
-        let look = look_of(label);
-        let seen_px = width_px(road_class, look, sight.distance_m, sight.depth);
-        let wide = select(colors.road_mains[road_class].rgb, colors.road_bands[road_class * BANDS + label % BANDS].rgb,
-            look == PLAIN);
-        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.2, seen_px));
-        // A road that is drawn wider than it is, because of its least width, is made paler.
-        let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, look, sight.distance_m)
-            * select(1.0, TUNNEL_FILL, is_tunnel(label));
-        color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
+        let fill = fill_of(label, sight);
+        color = mix(color, fill.rgb, fill.a);
     }
-
-    let most = label_of(largest_around(pixel, own, select(sight.depth_buffer / FARTHER, 0.0, is_from_above())));
-    // The edge of a tunnel is dashed.
-    if rank_of(most) > rank_of(label) && (!is_tunnel(most) || (most & 1u) == 1u) {
-        let road_class = class_of(most);
-        // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
-        // the edge would break into dashes.
-        let look = look_of(most);
-        let seen_px = width_px(road_class, look, sight.distance_m, sight.depth) * facing;
-        let presence = smoothstep(1.2, 4.0, seen_px) * opacity_at(road_class, look, sight.distance_m)
-            * select(1.0, TUNNEL_EDGE, is_tunnel(most));
-        color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
+    // Roads that meet have no edge between them: which of them goes on in the other, labels do not tell. The edge of a tunnel is dashed.
+    let share = select(edge_over_share(label, sight), 1.0, label == 0u || is_tunnel(label));
+    if share > 0.0 {
+        let most = label_of(largest_around(pixel, own, select(sight.depth_buffer / FARTHER, 0.0, is_from_above())));
+        if rank_of(most) > rank_of(label) && (!is_tunnel(most) || (most & 1u) == 1u) {
+            let edge = edge_of(most, sight, facing);
+            color = mix(color, edge.rgb, edge.a * share);
+        }
     }
     return vec4(color, 1.0);
 }

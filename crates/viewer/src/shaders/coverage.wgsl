@@ -19,7 +19,7 @@ struct RoadFragment {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    // Lowest four bits: class; two bits: look; one bit each if the segment ends flat at its start and at its end. Above, for a
+    // Lowest four bits: class; three bits: look; one bit each if the segment ends flat at its start and at its end. Above, for a
     // connector, the number of the other tile it belongs to, else 0.
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
@@ -32,7 +32,7 @@ struct RoadFragment {
 }
 
 fn road_of(in: RoadFragment) -> Road {
-    return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 3u, in.half_width_m, in.part_m);
+    return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 7u, in.half_width_m, in.part_m);
 }
 
 // A segment of a road in plan, relative to the eye; or in the picture.
@@ -45,7 +45,7 @@ struct Segment {
 }
 
 fn segment_of(in: RoadFragment) -> Segment {
-    return Segment(in.start, in.start_to_end, (in.class_and_other & 64u) != 0u, (in.class_and_other & 128u) != 0u);
+    return Segment(in.start, in.start_to_end, (in.class_and_other & 128u) != 0u, (in.class_and_other & 256u) != 0u);
 }
 
 const MAX_STRETCH = 8.0;
@@ -63,7 +63,7 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
 
 // How many bands a road has. Slip roads lack the narrow ones; tunnels and service roads have one colour.
 fn band_count(road: Road) -> u32 {
-    if road.look == TUNNEL || road.look == SERVICE {
+    if is_under_ground(road.look) || road.look == SERVICE {
         return 1u;
     }
     return u32(select(frame.road_widths[road.class_number].z, frame.road_limits[road.class_number].w, road.look == LINK));
@@ -146,6 +146,30 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -
     return length(from_segment(vec2(0.0), seen));
 }
 
+// A tick across the road at the portals of a tunnel: half its length as a share of half the width of the tunnel, and its breadth.
+const TICK_REACH = 3.4;
+const TICK_BREADTH = 0.4;
+// The tick of a narrower road would be a blot.
+const LEAST_TICK_PX = 1.2;
+
+// Whether the ground at a place is on the tick of a tunnel. Its segments end flat at portals alone.
+fn is_tick(segment: Segment, road: Road, position: vec3<f32>, distance_m: f32) -> bool {
+    let half_m = scaled_half_width_m(road, distance_m);
+    let length_m = length(segment.start_to_end);
+    let pixel_m = pixel_m_at(distance_m);
+    if half_m < LEAST_TICK_PX * pixel_m || length_m < 1e-6 {
+        return false;
+    }
+    let direction = segment.start_to_end / length_m;
+    let from_start = position.xy - segment.start;
+    let along = dot(from_start, direction);
+    let across = abs(dot(from_start, vec2(-direction.y, direction.x)));
+    let breadth_m = max(TICK_BREADTH * half_m, pixel_m);
+    let at_start = segment.flat_start && along >= 0.0 && along <= breadth_m;
+    let at_end = segment.flat_end && along <= length_m && along >= length_m - breadth_m;
+    return (at_start || at_end) && across <= TICK_REACH * half_m;
+}
+
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
 // `width_share` says how wide the road is there, of its width.
 fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32, width_share: f32) -> u32 {
@@ -157,6 +181,9 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     let plan_m = length(from_segment(position.xy, segment));
     if plan_m > widest_m {
         return NOTHING;
+    }
+    if is_bore(road.look) && is_tick(segment, road, position, distance_m) {
+        return band_label(road, 1u);
     }
     // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
     let bands = band_count(road);
@@ -175,7 +202,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, segment);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, segment);
     let seen = seen_px(right, down, position.xy, segment);
-    let least_px = part * frame.road_widths[road.class_number].y;
+    let least_px = part * frame.road_widths[road.class_number].y * px_share(road.class_number, road.look);
     while within < bands {
         let share = band_share(road.class_number, within);
         if plan_m > share * looks_m || seen > share * least_px {
@@ -192,7 +219,8 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     let first = max(scaled_half_width_m(road, far_m), MAX_STRETCH * least_half_width_m(road, far_m));
     let reach_m = far_m + 2.0 * first;
     let stretch = stretch_of(reach_m, near_height_m);
-    return max(scaled_half_width_m(road, reach_m), stretch * least_half_width_m(road, reach_m));
+    let half_m = max(scaled_half_width_m(road, reach_m), stretch * least_half_width_m(road, reach_m));
+    return half_m * select(1.0, TICK_REACH, is_bore(road.look));
 }
 
 // The label of the innermost of so many bands of a road. More important classes have larger labels, and each band of a class
@@ -274,8 +302,9 @@ fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     if label == NOTHING {
         return NOTHING;
     }
-    if road.look == TUNNEL {
-        let is_dash = dash_share(in, position, TUNNEL_DASH_PX) < 0.5;
+    if is_under_ground(road.look) {
+        let is_dash = dash_share(in, position, TUNNEL_DASH_PX) < 0.5
+            || (is_bore(road.look) && is_tick(segment_of(in), road, position, distance_to(position)));
         return (CLASSES - road.class_number) * 2u + select(0u, 1u, is_dash);
     }
     let dashes = frame.dashes[road.class_number];

@@ -64,6 +64,24 @@ fn light_on(normal: vec3<f32>) -> f32 {
     return mix(first, light_from(colors.second_light.xyz, normal), 0.6 * turned);
 }
 
+// The light on a slope from where the first light is, turned by 60° to that side from which the slope gets less.
+fn light_from_the_side(normal: vec3<f32>) -> f32 {
+    let across = length(colors.light.xy);
+    let level = colors.light.xy / max(across, 1e-6);
+    let along = dot(level, normal.xy);
+    let beside = abs(level.x * normal.y - level.y * normal.x);
+    return normal.z + (0.5 * along - 0.866 * beside) * across / max(colors.light.z, 0.17);
+}
+
+// What slopes that face the light lack, so that they keep their form: all of them are nearly as bright, whatever their
+// steepness. A ridge that runs up to the light has two sides; the side light shades that which turns away from it, and, on both,
+// what is steep. 0 on level ground and on slopes that the light misses, and without a step anywhere.
+fn lacking_in_light(normal: vec3<f32>) -> f32 {
+    let lacking = max(1.0 - light_from_the_side(normal), 0.0);
+    let faces = smoothstep(0.0, 0.3, light_from(colors.light.xyz, normal) - 1.0);
+    return 1.2 * faces * lacking * lacking / (lacking + 0.2);
+}
+
 // Shades a colour, more or less strongly. `normal` is the unit normal of the ground as it is drawn, exaggeration included.
 fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
     // Gentle ground is shaded as if it were steeper; steep ground as it is.
@@ -73,7 +91,7 @@ fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
     let seen = normalize(vec3(normal.xy * steeper, normal.z));
     let light = light_on(seen);
     // Shadow grows ever more slowly and is never full, so that shadow sides keep their form.
-    let lacking = max(1.0 - light, 0.0);
+    let lacking = max(1.0 - light, 0.0) + lacking_in_light(seen);
     let steep = strength * colors.second_light.w * (1.0 - seen.z);
     let dark = strength * colors.light.w * (1.0 - exp(-1.15 * lacking));
     let bright = strength * colors.light.w * 0.75 * (1.0 - exp(-1.6 * max(light - 1.0, 0.0)));

@@ -4,10 +4,49 @@
 struct LineColors {
     // rgb; w: distance at which haze hides two thirds of a colour.
     haze: vec4<f32>,
+    // x: 1 for lines that make room for roads.
+    layer: vec4<f32>,
     bands: array<vec4<f32>, BANDS * CLASSES>,
 }
 
 @group(1) @binding(3) var<uniform> colors: LineColors;
+@group(1) @binding(4) var labels_of_roads: texture_2d<f32>;
+
+// A line is not drawn so near to a road, pixels of the final picture, and pale within twice as much.
+const APART_PX = 2.0;
+const PALE = 0.3;
+// Roads of these classes and above are wide enough to be found by samples on a circle, and to be taken for what follows them.
+const LAST_ROAD = 6u;
+
+fn is_road(pixel: vec2<i32>) -> bool {
+    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let label = label_of(textureLoad(labels_of_roads, clamp(pixel, vec2(0), last), 0).r);
+    return label != 0u && !is_tunnel(label) && class_of(label) <= LAST_ROAD;
+}
+
+// Whether there is a road on a circle around a pixel: samples lie at most two pixels from each other.
+fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
+    for (var k = 0u; k < samples; k++) {
+        let angle = 6.2831853 * f32(k) / f32(samples);
+        let offset = radius_px * frame.road_scale.w * vec2(cos(angle), sin(angle));
+        if is_road(pixel + vec2<i32>(round(offset))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// How much of a line is drawn at a pixel. A boundary that follows a road would be taken for the dashes of a tunnel; one that crosses it leaves
+// the road whole.
+fn share_beside_roads(pixel: vec2<i32>) -> f32 {
+    if colors.layer.x == 0.0 {
+        return 1.0;
+    }
+    if is_road(pixel) || is_road_around(pixel, APART_PX, 8u) {
+        return 0.0;
+    }
+    return select(1.0, PALE, is_road_around(pixel, 2.0 * APART_PX, 14u));
+}
 
 @fragment
 fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -22,5 +61,6 @@ fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let reach = distance_m / colors.haze.w;
     let haze = 1.0 - exp(-reach * reach);
     let color = mix(colors.bands[line_class * BANDS + label % BANDS].rgb, colors.haze.rgb, 0.5 * haze);
-    return vec4(color, frame.road_limits[line_class].z * shown_share(line_class, PLAIN, distance_m));
+    let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel);
+    return vec4(color, opacity * shown_share(line_class, PLAIN, distance_m));
 }

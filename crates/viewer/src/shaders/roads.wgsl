@@ -29,7 +29,7 @@ struct SegmentIn {
     // Height of the piece's start; world metres across the road for each true metre.
     @location(2) height_width_factor: vec2<f32>,
     // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
-    // reaches, if ground of other tiles may be within it. Then two bits for the look, and two if the segment ends flat at its start
+    // reaches, if ground of other tiles may be within it. Then three bits for the look, and two if the segment ends flat at its start
     // and at its end.
     @location(3) class_and_flags: u32,
     // At most how far the ground lies below and above the plane. xy: for each metre of distance, within the first reach;
@@ -168,7 +168,7 @@ fn least_of(values: vec4<f32>) -> f32 {
 @vertex
 fn vertex(in: SegmentIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let look = (in.class_and_flags >> LOOK_SHIFT) & 3u;
+    let look = (in.class_and_flags >> LOOK_SHIFT) & 7u;
     let road = road_with(in.class_and_flags & 15u, look, in.own_width, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
@@ -240,7 +240,7 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     out.start = start;
     out.start_to_end = start_to_end;
     // Look and flat ends.
-    out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 15u) << 4u);
+    out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 31u) << 4u);
     out.half_width_m = road.half_width_m;
     out.dash = in.dash;
     out.part_m = in.part_m;

@@ -5,15 +5,6 @@
 // a pipeline of their own, so that not even their upper edge counts as ground.
 // Alpha says the same in the colour target: 1 ground, 0.5 skirt, 0 nothing.
 
-struct Tile {
-    // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
-    offset: vec4<f32>,
-    // x: true height of the reference point; z: the tile's number in this frame, from 1.
-    base: vec4<f32>,
-}
-
-@group(1) @binding(0) var<uniform> tile: Tile;
-
 // 0 draws ground, 1 skirts, 2 the walls along the edge of the data, which hang beneath the skirts.
 override SKIRT: u32 = 0u;
 // Lines of the wireframe are moved towards the eye by this many sides of a pixel. The edges of triangles lie in the

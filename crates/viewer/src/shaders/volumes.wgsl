@@ -37,10 +37,6 @@ struct VolumeIn {
     @location(8) part_m: f32,
 }
 
-// The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
-// bit 0: end or start, bit 1: left or right of the segment, bit 2: top or bottom.
-const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
-
 struct Reach {
     radius_m: f32,
     // Relative to the eye.
@@ -73,9 +69,9 @@ fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
 @vertex
 fn vertex(in: VolumeIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let look = (in.class_and_other >> 4u) & 3u;
+    let look = (in.class_and_other >> 4u) & 7u;
     let road = road_with(in.class_and_other & 15u, look, in.own_width, in.near_rise_width_factor.y);
-    let is_connector = in.class_and_other > 255u;
+    let is_connector = in.class_and_other > 511u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
     let length_m = length(ab);
@@ -188,7 +184,7 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
-    let other = in.class_and_other >> 8u;
+    let other = in.class_and_other >> 9u;
     let is_mine = owner == own;
     let number = owner & ~(SKIRT | WALL);
     let is_connected = other != 0u && (number == own || number == other);

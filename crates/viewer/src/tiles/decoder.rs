@@ -5,7 +5,10 @@ use std::sync::Arc;
 use corniche_areas::ClassedLayer;
 use corniche_geom::{TileId, TooMuchWork};
 use corniche_styles::Style;
-use corniche_tileset::{Manifest, Sections, decode, decode_areas, decode_lines, decode_photo};
+use corniche_tileset::{
+    DecodeError, Manifest, Sections, SpanRun, decode, decode_areas, decode_lines, decode_photo,
+    decode_spans,
+};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -129,6 +132,19 @@ impl TileDecoder {
         tile.map_err(|source| LoadTileError { id, source })
     }
 
+    /// The bridges and tunnels of a tile; `None` if the package tells nothing of them, or no roads are read.
+    pub(crate) fn spans(
+        &self,
+        payload: &[u8],
+        id: TileId,
+        manifest: &Manifest,
+    ) -> Result<Option<Vec<SpanRun>>, DecodeError> {
+        if manifest.spans.is_none() || !self.sections.contains(Sections::ATTRIBUTES) {
+            return Ok(None);
+        }
+        decode_spans(payload, id, &manifest.frame, manifest.vertical.quantum_m).map(Some)
+    }
+
     fn read(
         &self,
         payload: &[u8],
@@ -148,7 +164,10 @@ impl TileDecoder {
             scale: &scale,
             vertical_scale: *point_scale,
         };
-        let tile = TileGeometry::from_payload(&decoded, frame, quantum_m, margin_m, scale)?;
+        let spans = self.spans(payload, id, manifest)?;
+        let spans = spans.as_deref();
+        let tile =
+            TileGeometry::from_payload(&decoded, spans, frame, quantum_m, (margin_m, scale))?;
         let methods = self.line_methods();
         let boundaries = match self.boundaries {
             Layer::Read => decode_lines(payload, id, ClassedLayer::Boundaries)?,

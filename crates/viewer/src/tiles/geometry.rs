@@ -3,13 +3,14 @@
 use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, TileId, TooMuchWork, Work, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
-use corniche_tileset::{AreaRecord, Terrain, TilePayload};
+use corniche_tileset::{AreaRecord, SpanRun, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AreaVolumes, BadAreas, BadRoads, GroundMesh, LayerLine, LineLayer, LineLayers, LineMethods,
-    PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
+    AreaVolumes, BadAreas, BadRoads, DeckPieces, GroundLine, GroundMesh, InNet, LayerLine,
+    LineLayer, LineLayers, LineMethods, OffGround, PhotoImage, PlanLine, PlanScale, RoadSegments,
+    RoadVolumes, ShadingSlopes, TileLines,
     line_layers::{TileGround, lay},
     relief::Relief,
 };
@@ -34,6 +35,8 @@ pub struct TileGeometry {
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
     pub volumes: RoadVolumes,
+    /// Bridges over it; empty if they were not read.
+    pub decks: DeckPieces,
     /// The areas on it as volumes; empty if that section was not read.
     pub areas: AreaVolumes,
     /// Lines beside its roads.
@@ -130,13 +133,18 @@ impl TileGeometry {
         let wide = relief.wide(&lines.ground);
         let scale = &lines.scale;
         let sources = lines.ground.iter().flat_map(|line| line.sources_m.iter().copied());
-        let in_plan = lines
+        let segments = lines
             .plan
             .iter()
             .flat_map(|line| line.points_m.windows(2))
             .map(|pair| [pair[0], pair[1]]);
         let most_width_factor =
-            sources.chain(in_plan).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
+            sources.chain(segments).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
+        let decks = OffGround::new(lines, bounds, work);
+        let (on_ground, net) = InNet::<GroundLine>::all_of(&lines.ground, &decks);
+        let (in_plan, net_in_plan) =
+            InNet::<PlanLine>::all_of(&lines.plan, &decks, lines.width_margin_m);
+        let net = if lines.ground.is_empty() { net_in_plan } else { net };
         Self {
             id,
             reference_m,
@@ -147,38 +155,42 @@ impl TileGeometry {
             areas: AreaVolumes::default(),
             lines: LineLayers::default(),
             most_width_factor,
-            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
+            roads: RoadSegments::of_lines(&on_ground, &decks, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
             }),
-            volumes: RoadVolumes::new(
-                &lines.plan,
-                (bounds, lines.width_margin_m),
-                reference_m,
-                scale,
-                |ends_m| relief.near(ends_m),
-            ),
+            volumes: RoadVolumes::new(&in_plan, &decks, reference_m, scale, |ends_m| {
+                relief.near(ends_m)
+            }),
+            decks: DeckPieces::of_decks(&lines.decks, &net, (bounds, reference_m), scale, work),
             width_margin_m: lines.width_margin_m,
             size_m: [bounds.width(), bounds.height()],
             wide_ways: wide_ways(lines),
         }
     }
 
-    /// Decodes a tile's payload: its terrain and the sections of roads that were read. `width_margin_m` is that of the
+    /// Decodes a tile's payload: its terrain, the sections of roads that were read, and these spans of it; `None` if the
+    /// package tells nothing of bridges and tunnels. `width_margin_m` is that of the
     /// tile's level, `scale` that of the tile.
     ///
     /// # Errors
     /// When a road does not fit the ground, or placing them takes too much work.
     pub fn from_payload(
         payload: &TilePayload,
+        spans: Option<&[SpanRun]>,
         frame: &GridFrame,
         quantum_m: f64,
-        width_margin_m: f64,
-        scale: PlanScale,
+        (width_margin_m, scale): (f64, PlanScale),
     ) -> Result<Self, BadRoads> {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
-        let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
+        let lines = TileLines::of_payload(
+            payload,
+            spans,
+            surface.as_ref(),
+            (frame, quantum_m),
+            width_margin_m,
+        )?;
         let lines = TileLines { scale, ..lines };
         let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
         let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
@@ -186,7 +198,9 @@ impl TileGeometry {
         let ground = (id, terrain, surface.as_ref());
         let tile = Self::on_surface(ground, &lines, frame, quantum_m, &work);
         work.check()?;
-        Ok(Self { shading, ..tile })
+        let spans = spans.unwrap_or_default();
+        let summary = tile.summary.map(|ground| ground.with_bridges(spans, quantum_m));
+        Ok(Self { summary, shading, ..tile })
     }
 
     /// The same tile with these areas of it.
@@ -256,6 +270,7 @@ impl TileGeometry {
             shading: None,
             roads: RoadSegments::default(),
             volumes: RoadVolumes::default(),
+            decks: DeckPieces::default(),
             areas: AreaVolumes::default(),
             lines: LineLayers::default(),
             photo: None,

@@ -4,8 +4,10 @@ use super::*;
 
 const DATA: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100_000.0, max_y: 50_000.0 };
 
-fn piece(at: [f64; 2], length_m: f64) -> ([f64; 2], f64) {
-    (at, length_m)
+/// A piece with its middle there, along the first axis.
+fn piece([x, y]: [f64; 2], length_m: f64) -> Piece {
+    let ends = [-0.5, 0.5].map(|share| [x + share * length_m, y]);
+    Piece { ends, class: FunctionalRoadClass::new(4).unwrap() }
 }
 
 #[test]
@@ -38,6 +40,32 @@ fn the_margin_stays_within_the_data() {
 
 #[test]
 fn parts_of_segments_have_their_middle_and_length() {
-    let (at, length_m) = part_of([10.0, 0.0], [10.0, 100.0], 0.5, 1.0);
-    assert_eq!((at, length_m), ([10.0, 75.0], 50.0));
+    assert_eq!(part_of([10.0, 0.0], [10.0, 100.0], [0.5, 1.0]), [[10.0, 50.0], [10.0, 100.0]]);
+}
+
+/// A town, and stray roads of other towns around it, which are less than half of all. Important roads count more.
+#[test]
+fn most_roads_in_one_place_are_the_map() {
+    let town = (0..40).map(|k| piece([f64::from(k % 8) * 50.0, f64::from(k / 8) * 50.0], 50.0));
+    let town: Vec<Piece> = town.collect();
+    let stray: Vec<Piece> =
+        (0..10).map(|k| piece([f64::from(k) * 3000.0 + 5000.0, 9000.0], 150.0)).collect();
+    let all = |stray: &[Piece]| densest_cluster(town.iter().chain(stray).copied().collect());
+    assert_eq!(all(&stray), town);
+    let longer: Vec<Piece> = stray
+        .iter()
+        .map(|piece| Piece { ends: [piece.ends[0], [piece.ends[1][0] + 100.0, 9000.0]], ..*piece })
+        .collect();
+    assert_eq!(all(&longer).len(), 50, "no cluster has most of them");
+    let motorway = |piece: &Piece| Piece { class: FunctionalRoadClass::new(0).unwrap(), ..*piece };
+    assert_eq!(all(&stray.iter().map(motorway).collect::<Vec<_>>()).len(), 50);
+    // Pieces that cut a corner of a cell count, too.
+    let slant = |k: i32| {
+        let x = f64::from(k) * 37.0;
+        Piece { ends: [[x, x + 11.0], [x + 37.0, x + 61.0]], ..town[0] }
+    };
+    let slants: Vec<Piece> = (0..200).map(slant).collect();
+    assert_eq!(densest_cluster(slants.clone()), slants);
+    assert_eq!(densest_cluster(Vec::new()), []);
+    assert_eq!(densest_cluster(vec![piece([3.0, 4.0], 0.0)]).len(), 1);
 }

@@ -77,10 +77,15 @@ impl<S: ByteSource> PackageTiles<S> {
         let summary =
             terrain_summary(payload, id, self.frame(), self.manifest().vertical.quantum_m)
                 .map_err(|error| LoadTileError { id, source: error.into() })?;
-        Ok(summary.map(|ground| GroundSummary {
+        let spans = self.decoder.spans(payload, id, self.manifest());
+        let spans = spans.map_err(|error| LoadTileError { id, source: error.into() })?;
+        let summary = summary.map(|ground| GroundSummary {
             geometric_error_m: ground.geometric_error_m,
             height_range_m: ground.height_range_m,
-        }))
+        });
+        let quantum_m = self.manifest().vertical.quantum_m;
+        Ok(summary
+            .map(|ground| ground.with_bridges(spans.as_deref().unwrap_or_default(), quantum_m)))
     }
 
     /// Reads the slopes, errors and heights of a tile that exists, and nothing else of it.

@@ -1,6 +1,9 @@
 //! The roads of a tile: lines as the package has them, cut into the pieces that are uploaded.
 
+mod cut;
 mod dashes;
+mod deck_line;
+mod decks;
 pub(crate) mod ends;
 mod flat_ends;
 mod ground_beside;
@@ -12,21 +15,27 @@ mod records;
 mod segments;
 mod volumes;
 
+pub(crate) use self::{
+    cut::OffGround,
+    dashes::dash_of_segment_m,
+    ends::RoadEnd,
+    ground_beside::{Bed, NearHeights},
+    parts::{InNet, OPEN_M},
+    segments::Piece,
+};
 pub use self::{
     dashes::DashPlace,
+    deck_line::DeckLine,
+    decks::{DeckPiece, DeckPieces},
     lines::{BadRoads, GroundLine, PlanLine, TileLines},
     list::RoadList,
     look::RoadLook,
     segments::{RoadSegment, RoadSegments},
     volumes::{RoadVolume, RoadVolumes},
 };
-pub(crate) use self::{
-    dashes::dash_of_segment_m,
-    ends::RoadEnd,
-    ground_beside::{Bed, NearHeights},
-    parts::OPEN_M,
-    segments::Piece,
-};
+
+#[cfg(test)]
+pub(crate) use self::decks::GroundNet;
 
 #[cfg(test)]
 #[path = "roads_tests.rs"]

@@ -2,7 +2,7 @@
 
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Work};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
@@ -21,16 +21,23 @@ fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
     GroundLine::of_source(1, class(number), points_m)
 }
 
+fn segments(lines: &[GroundLine]) -> RoadSegments {
+    let work = Work::unlimited();
+    let none = TileLines::default();
+    let decks = OffGround::new(&none, TILE, &work);
+    let (lines, _) = InNet::<GroundLine>::all_of(lines, &decks);
+    RoadSegments::of_lines(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
+        Bed::default()
+    })
+}
+
 #[test]
 fn segments_are_relative_and_sorted_by_class() {
     let lines = vec![
         ground_line(6, vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
         ground_line(0, vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
     ];
-    let roads =
-        RoadSegments::of_lines(&lines, TILE, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
-            Bed::default()
-        });
+    let roads = segments(&lines);
     assert_eq!(roads.range_of(class(0)), 0..1);
     assert_eq!(roads.range_of(class(6)), 1..3);
     assert!(roads.range_of(class(3)).is_empty());
@@ -45,10 +52,7 @@ fn pieces_of_a_segment_have_caps_at_its_ends_only() {
     let segment = [[10.0, 20.0], [14.0, 20.0]];
     let sources_m = vec![segment, segment, [[14.0, 20.0], [14.0, 40.0]]];
     let line = GroundLine { sources_m, ..ground_line(2, points_m) };
-    let roads =
-        RoadSegments::of_lines(&[line], TILE, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
-            Bed::default()
-        });
+    let roads = segments(&[line]);
     let found: Vec<_> = roads.all().iter().map(|piece| (piece.shares, piece.has_caps)).collect();
     // The last line ends halfway along its segment, at the tile's border or beside a void.
     let expected =
@@ -70,8 +74,11 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
     let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
-    let roads =
-        RoadVolumes::new(&lines, (TILE, 8.0), [10.0, 20.0, 1.0], &PlanScale::default(), near);
+    let work = Work::unlimited();
+    let none = TileLines::default();
+    let decks = OffGround::new(&none, TILE, &work);
+    let (lines, _) = InNet::<PlanLine>::all_of(&lines, &decks, 8.0);
+    let roads = RoadVolumes::new(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
     assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);
     let [low, high] = roads.all()[1].height_range_in_tile.map(f64::from);
@@ -89,7 +96,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
 #[test]
 fn a_line_on_the_ground_ends_on_the_border_it_was_cut_at() {
     let check = |points_m: Vec<[f64; 3]>, expected: &[(Side, f64)]| {
-        let ends = ground_ends(&[ground_line(4, points_m)], TILE, &PlanScale::default());
+        let ends = ground_ends([ground_line(4, points_m)].iter(), TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.height_range_m[0])).collect();
         assert_eq!(found, expected);
     };
@@ -113,7 +120,7 @@ fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
             points_m,
             ground_range_m,
         };
-        let ends = plan_ends(&[line], TILE, &PlanScale::default());
+        let ends = plan_ends([line].iter(), TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.at_m)).collect();
         assert_eq!(found, expected);
     };

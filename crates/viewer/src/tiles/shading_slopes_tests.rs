@@ -15,7 +15,7 @@ fn relief() -> Relief {
         let (east, north) = (column as f32 * 10.0, row as f32 * -20.0);
         500.0 + east * east * 1e-4 - 0.25 * north
     });
-    Relief::of_heights(&heights, CELL, 0.125).unwrap()
+    Relief::of_heights(&heights, &heights, CELL, 0.125).unwrap()
 }
 
 #[test]

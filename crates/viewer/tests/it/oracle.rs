@@ -16,6 +16,7 @@ use crate::support;
 mod agreement;
 mod areas;
 mod class_scale;
+mod decks;
 mod from_above;
 mod ground_rays;
 mod level_steps;

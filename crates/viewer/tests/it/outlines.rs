@@ -107,7 +107,7 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// Whether a sample is on the edge of a more important road: looked for around every sample, with no short cut.
+/// Whether a sample without a road, or in a tunnel, is on the edge of a more important road: looked for around every sample, with no short cut.
 fn plain_filter(labels: &[u8], depth: &[f32], width: usize, radius: i64) -> Vec<bool> {
     let height = labels.len() / width;
     let around = |at: usize, end: usize| {
@@ -124,7 +124,10 @@ fn plain_filter(labels: &[u8], depth: &[f32], width: usize, radius: i64) -> Vec<
                 .map(|k| labels[k])
                 .max()
                 .unwrap_or(0);
-            depth[index] > 0.0 && importance(most) > importance(labels[index])
+            // Roads that meet have no edge between them.
+            let own = labels[index];
+            let is_free = own == 0 || is_tunnel(own);
+            depth[index] > 0.0 && is_free && importance(most) > importance(own)
         })
         .collect()
 }
@@ -208,5 +211,32 @@ fn edges_are_where_the_plain_filter_finds_them() {
         let edges = Edges::new(&gpu, &camera, style(width_m as f32), samples);
         let count = edges.check(&tile, &format!("{size_px:?} with {samples}"));
         assert!(count > 0 || size_px[0] < 16, "no edge in {size_px:?}");
+    }
+}
+
+/// The edge of a wide road goes on over a street of two pixels, and is open where a wide street meets it.
+#[test]
+fn edges_are_open_for_wide_streets_alone() {
+    let Some(gpu) = gpu() else { return };
+    let at = |x: f64, y: f64| center() + DVec2::new(x, y);
+    let roads = [(0, [at(0.0, -900.0), at(0.0, 900.0)]), (5, [at(-900.0, 0.0), at(900.0, 0.0)])];
+    let tile = tile(256, |_, _| 0.0, &roads);
+    let orientation = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
+    let camera = Camera::look_at(center().extend(0.0), 1500.0, orientation, [160, 128]);
+    let pixel_m = (1500.0 * camera.pixel_at_unit_depth_m()) as f32;
+    for (street_px, is_open) in [(1.9, false), (2.1, false), (4.0, true), (14.0, true)] {
+        let mut style = style(14.0 * pixel_m);
+        style.roads[5].width_m = street_px * pixel_m;
+        style.roads[5].carriageway_width_m = street_px * pixel_m;
+        let edges = Edges::new(&gpu, &camera, style, 1);
+        let bare = edges.picture(&tile, Outline::None);
+        let labels = edges.targets.read_labels(&gpu).unwrap();
+        let drawn = edges.picture(&tile, Outline::Kernel3);
+        let pairs = drawn.chunks_exact(4).zip(bare.chunks_exact(4));
+        let over = pairs
+            .zip(&labels)
+            .filter(|((a, b), label)| a != b && class_of(**label) == Some(5))
+            .count();
+        assert_eq!(over == 0, is_open, "{street_px} px: {over} pixels of the street");
     }
 }

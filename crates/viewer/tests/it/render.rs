@@ -25,6 +25,7 @@ fn request(package: &Path) -> RenderRequest {
         exaggeration: 1.0,
         supersampling: 2,
         legend: None,
+        title: None,
         wireframe: Wireframe::Hidden,
         style: Style::road_atlas(),
     }

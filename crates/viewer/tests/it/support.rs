@@ -209,11 +209,14 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
     let road = RoadStyle {
         dash: corniche_styles::Dash::SOLID,
         width_m,
+        carriageway_width_m: width_m,
         min_width_px: 0.0,
         bands: RoadBands::one([1.0; 3]),
         outline: [0.0; 3],
         max_pixel_m: None,
         max_width_px: None,
+        exponent: None,
+        edge_max_pixel_m: None,
         thin: None,
         opacity: 1.0,
     };
@@ -242,6 +245,8 @@ pub(crate) struct Drawing {
     pub(crate) ground: Vec<u8>,
     pub(crate) depth: Vec<f32>,
     pub(crate) labels: Vec<u8>,
+    /// The labels of decks; `None` if no decks were drawn.
+    pub(crate) decks: Option<Vec<u8>>,
     pub(crate) owners: Vec<Owner>,
 }
 
@@ -253,6 +258,7 @@ impl Drawing {
             ground: targets.read_ground(gpu).unwrap(),
             depth: targets.read_depth(gpu).unwrap(),
             labels: targets.read_labels(gpu).unwrap(),
+            decks: targets.read_deck_labels(gpu).unwrap(),
             owners: targets.read_owners(gpu).unwrap(),
         };
         keep(&drawing);

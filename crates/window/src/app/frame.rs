@@ -6,6 +6,7 @@
 use corniche_live::{Changes, MapScene};
 use corniche_styles::Rgb;
 use corniche_viewer::{
+    BoundaryLines,
     camera::Camera,
     flight::{Pose, WorkingCrs},
     gpu::GpuError,
@@ -311,6 +312,7 @@ impl App {
             overlays: &self.overlays,
             overlay_colors: self.overlay_colors(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),
+            boundary_lines: BoundaryLines::of(manifest, self.styles.at(self.settings.style)),
             road_colors,
             class_labels: &self.class_labels,
             tiles_drawn: self.tiles.drawn().len(),

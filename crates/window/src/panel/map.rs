@@ -1,6 +1,7 @@
 //! The panel's section for style, heights, areas, lines of files and photos.
 
-use egui::{Color32, ComboBox, RichText, Slider, Ui};
+use corniche_viewer::BoundaryLines;
+use egui::{Color32, ComboBox, Label, Rect, RichText, Slider, Ui, pos2, vec2};
 
 use super::slide::slide;
 use crate::{
@@ -36,6 +37,9 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
         let mut are_shown = settings.boundaries == Visibility::Shown;
         ui.checkbox(&mut are_shown, "Boundaries").on_hover_text("As the style draws them");
         settings.boundaries = if are_shown { Visibility::Shown } else { Visibility::Hidden };
+        if are_shown {
+            boundaries(ui, &content.boundary_lines);
+        }
     }
     for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
     {
@@ -59,5 +63,23 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
         if ui.add(slider).on_hover_text("How strongly the photo is seen").changed() {
             settings.photo = Some(strength);
         }
+    }
+}
+
+/// The legend of boundaries: how they are drawn, and what they are called.
+fn boundaries(ui: &mut Ui, all: &[BoundaryLines]) {
+    for BoundaryLines { label, style } in all {
+        ui.horizontal(|ui| {
+            let (swatch, _) = ui.allocate_exact_size(vec2(36.0, 10.0), egui::Sense::hover());
+            let [red, green, blue] = style.color.map(|part| (part * 255.0).round() as u8);
+            for column in 0..swatch.width() as u16 {
+                let along = f32::from(column) + 0.5;
+                let width = style.width_px * style.dash.width_at(along);
+                let middle = pos2(swatch.left() + along, swatch.center().y);
+                let part = Rect::from_center_size(middle, vec2(1.0, width));
+                ui.painter().rect_filled(part, 0, Color32::from_rgb(red, green, blue));
+            }
+            ui.add(Label::new(label).wrap());
+        });
     }
 }

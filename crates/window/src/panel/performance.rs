@@ -32,8 +32,8 @@ pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
         let [used, allowed] = content.gpu_bytes;
         for (name, value) in [
             ("tiles", tiles),
-            ("triangles", formatting::grouped(content.triangles)),
-            ("segments", formatting::grouped(content.segments)),
+            ("triangles", corniche_viewer::grouped(content.triangles)),
+            ("segments", corniche_viewer::grouped(content.segments)),
             (
                 "GPU memory",
                 format!("{} of {}", formatting::mebibytes(used), formatting::mebibytes(allowed)),
@@ -49,15 +49,15 @@ pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
 }
 
 fn passes(ui: &mut Ui, content: &WindowContent<'_>) {
-    Grid::new("passes").num_columns(6).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
-        for heading in ["GPU ms", "terrain", "areas", "roads", "composite", "sum"] {
+    Grid::new("passes").num_columns(7).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
+        for heading in ["GPU ms", "terrain", "areas", "roads", "bridges", "composite", "sum"] {
             ui.small(heading);
         }
         ui.end_row();
         for (method, times) in content.passes {
             ui.label(formatting::method(*method));
-            let PassTimes { terrain_ms, areas_ms, roads_ms, composite_ms } = *times;
-            for ms in [terrain_ms, areas_ms, roads_ms, composite_ms, times.total_ms()] {
+            let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
+            for ms in [terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms, times.total_ms()] {
                 let digits = if ms < 100.0 { 2 } else { 0 };
                 ui.monospace(format!("{ms:.digits$}"));
             }

@@ -137,14 +137,16 @@ fn positions(settings: &Settings, content: &WindowContent<'_>) -> Vec<Item> {
     let by = if content.is_software { ", drawn by the processor" } else { "" };
     items.push(Item::new(3, format!("{roads}{by}")));
     for (method, times) in content.passes {
-        let PassTimes { terrain_ms, areas_ms, roads_ms, composite_ms } = *times;
+        let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
         let areas =
             if content.has.areas { format!(" areas {areas_ms:.1},") } else { String::new() };
+        let bridges =
+            if decks_ms > 0.0 { format!(" bridges {decks_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);
         items.push(Item::new(
             8,
             format!(
-                "{method}: terrain {terrain_ms:.1},{areas} roads {roads_ms:.1}, composite {composite_ms:.1} ms"
+                "{method}: terrain {terrain_ms:.1},{areas} roads {roads_ms:.1},{bridges} composite {composite_ms:.1} ms"
             ),
         ));
     }

@@ -11,8 +11,10 @@ from typing import Any
 
 from distributed import Client, Future
 
+from corniche.errors import CornicheError, ProgramError, TargetExists, UsageError
+
 from .drive import Drive, Slots, lost, workers_of
-from .errors import CornicheError, PackageExists, PartFailed, PartRefused, ProgramError, UsageError
+from .errors import PartFailed, PartRefused
 from .flow import Flow
 from .jobs import Job, parse_jobs
 from .program import generator_of
@@ -188,7 +190,7 @@ class _Build:
         if self._setting.overwrite or is_object_storage(output):
             return
         if any(self._client.run(is_there, output, workers=[min(wrong)]).values()):
-            raise PackageExists(f"{output} exists; -O replaces it")
+            raise TargetExists(f"{output} exists; -O replaces it")
 
 
 def _read(plan: str | os.PathLike[str]) -> str:

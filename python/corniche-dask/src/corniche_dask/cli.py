@@ -18,12 +18,15 @@ from typing import Any, NoReturn
 
 from distributed import Client
 
+from corniche.errors import FAILED, INTERRUPTED, CornicheError, TargetExists, UsageError
+from corniche.program import find_program
+
 from . import cost
 from .build import build
-from .errors import FAILED, INTERRUPTED, CornicheError, PackageExists, SchedulerLost, UsageError
+from .errors import SchedulerLost
 from .limits import parse_bytes
 from .local import local_cluster
-from .program import find_program, make_plan
+from .program import make_plan
 from .progress import Progress
 from .tasks import absolute, is_object_storage
 
@@ -86,7 +89,11 @@ def _add_build(commands: Any) -> None:
     add("--threads", metavar="N", type=_count, help="threads of each process [default: the worker's, divided by its slots]")
     add("--memory", metavar="BYTES", type=_bytes, help="the most memory of each process [default: the worker's, divided by its slots]")
     add("--tmp", metavar="FOLDER", help="where parts are made before they are uploaded to a store in object storage")
-    add("--corniche", metavar="PROGRAM", help="the program corniche, on this machine and all workers [default: $CORNICHE, or the one on PATH]")
+    add(
+        "--corniche",
+        metavar="PROGRAM",
+        help="the program corniche, on this machine and all workers [default: $CORNICHE, that of the package corniche, or the one on PATH]",
+    )
     add("--report", metavar="JSON", help="write what each part took, for corniche-dask cost; an existing file is replaced")
     add("-q", "--quiet", action="store_true", help="print only errors and warnings")
 
@@ -153,7 +160,7 @@ def _check(given: argparse.Namespace, plan_options: list[str]) -> None:
     output = absolute(given.output)
     # What this machine can see is told before anything is planned; the workers look again.
     if not is_object_storage(output) and not given.overwrite and os.path.lexists(output):
-        raise PackageExists(f"{given.output} exists; -O replaces it")
+        raise TargetExists(f"{given.output} exists; -O replaces it")
 
 
 def _end(_: int, __: FrameType | None) -> NoReturn:

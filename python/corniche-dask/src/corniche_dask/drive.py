@@ -12,7 +12,9 @@ from typing import Any, Generic, TypeVar
 
 from distributed import Client, Future, KilledWorker, as_completed
 
-from .errors import CornicheError, PartsLost, SchedulerLost
+from corniche.errors import CornicheError
+
+from .errors import PartsLost, SchedulerLost
 from .flow import Flow
 from .jobs import Job
 from .limits import slots_of

@@ -1,39 +1,8 @@
-"""Why a build on a cluster ends early. Each error has the exit code that the command ends with, the same as those of ``corniche``."""
+"""Why a build on a cluster ends early, besides the errors of ``corniche`` itself."""
 
 from __future__ import annotations
 
-#: Processing failed.
-FAILED = 1
-#: Wrong usage or unusable input: trying again gives the same.
-UNUSABLE = 2
-#: The target exists.
-EXISTS = 3
-#: Interrupted.
-INTERRUPTED = 4
-
-
-class CornicheError(Exception):
-    """The base of all errors of this package. Its text is for the user."""
-
-    exit_code = FAILED
-
-
-class UsageError(CornicheError):
-    """What was asked for cannot be done."""
-
-    exit_code = UNUSABLE
-
-
-class ProgramError(CornicheError):
-    """The program ``corniche`` is not there, or is of another version than the plan."""
-
-    exit_code = UNUSABLE
-
-
-class PackageExists(CornicheError):
-    """The package is there already, and it was not asked to replace it."""
-
-    exit_code = EXISTS
+from corniche.errors import UNUSABLE, CornicheError
 
 
 class PartRefused(CornicheError):

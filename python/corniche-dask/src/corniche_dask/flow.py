@@ -5,7 +5,8 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Sequence
 
-from .errors import CornicheError
+from corniche.errors import CornicheError
+
 from .jobs import Job, after_of_steps, order_of_steps
 
 #: Gives the parts of a step anew when it can begin; ``None``: they stay as they are.

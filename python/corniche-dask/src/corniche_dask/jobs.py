@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .errors import CornicheError
+from corniche.errors import CornicheError
 
 #: The last part: it writes the package.
 MERGE = "merge"

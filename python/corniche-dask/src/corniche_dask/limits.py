@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .errors import UsageError
+from corniche.errors import UsageError
 
 #: The resource that a cluster declares to say how many parts a worker makes at once.
 SLOT = "slot"

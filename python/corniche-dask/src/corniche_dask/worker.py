@@ -17,10 +17,13 @@ from pathlib import Path
 
 from distributed import Reschedule, Worker, WorkerPlugin, get_worker
 
-from .child import Child, Ended
-from .errors import EXISTS, FAILED, INTERRUPTED, UNUSABLE, CornicheError, PartFailed, ProgramError
+from corniche.child import Child, Ended
+from corniche.errors import EXISTS, FAILED, INTERRUPTED, UNUSABLE, CornicheError, ProgramError
+from corniche.program import find_program, version_of
+
+from .errors import PartFailed
 from .limits import Limits, limits_of
-from .program import environment_of_child, find_program, version_of
+from .program import environment_of_child
 from .tasks import PartResult, PartTask, Setting, is_object_storage, part_of_name
 
 #: The processes that a worker waits for, by the worker's address.

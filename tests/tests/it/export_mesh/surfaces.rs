@@ -131,7 +131,7 @@ fn pieces_on_ground(package: &Path, level: u8, all: &Model) -> Vec<([[f64; 3]; 2
 }
 
 /// Tiles of a level with ground, in the order in which [`expected`] reads them.
-fn tiles(package: &Path, level: u8) -> Vec<String> {
+pub(crate) fn tiles(package: &Path, level: u8) -> Vec<String> {
     let ids = (0..1_u32 << level)
         .flat_map(|y| (0..1_u32 << level).map(move |x| format!("{level}/{x}/{y}")));
     ids.filter(|id| {
@@ -236,7 +236,7 @@ fn by_class(model: &Model) -> BTreeMap<u8, Vec<[[f64; 3]; 3]>> {
 fn surfaces_divide_the_packages_ground_on_every_level() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
-    copy_pass(&package, &["--max-error", "20"]);
+    copy_pass(&package, &["--max-error", "20", "--structures", "ground"]);
     let finest = manifest(&package)["frame"]["max_level"].as_u64().unwrap() as u8;
     for level in 1..=finest {
         let model = checked(&package, level);
@@ -250,7 +250,7 @@ fn surfaces_divide_the_packages_ground_on_every_level() {
 fn all_formats_have_the_same_surfaces() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
-    copy_pass(&package, &["--max-error", "20"]);
+    copy_pass(&package, &["--max-error", "20", "--structures", "ground"]);
     let options = ["--roads", "surfaces", "--style", "dark"];
     let ply = read_ply(&export(&package, "m.ply", &options));
     let models = [
@@ -312,6 +312,8 @@ fn surfaces_of_a_real_town_have_no_gap() {
     let package = folder.path().join("town.pmtiles");
     let inputs = ["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&package)];
     let ran = corniche(inputs.iter().chain(&[
+        "--structures",
+        "ground",
         "--bounds",
         "9.48,47.11,9.55,47.16",
         "--max-error",
@@ -329,7 +331,7 @@ fn surfaces_of_a_real_town_have_no_gap() {
 fn materials_are_not_written_over_another_file() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
-    copy_pass(&package, &["--max-error", "20"]);
+    copy_pass(&package, &["--max-error", "20", "--structures", "ground"]);
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     fs::write(at("m.mtl"), "mine").unwrap();
     let words = ["export", "mesh", text(&package), "--roads", "surfaces", "-o"];

@@ -215,7 +215,7 @@ pub(crate) fn check_borders(terrain: &Terrain) -> Check {
             borders += 1;
         }
     }
-    ensure(borders > 10, || format!("only {borders} borders"))
+    ensure(borders > 5, || format!("only {borders} borders"))
 }
 
 /// How far the tiles of a level are from the package's finest ground.

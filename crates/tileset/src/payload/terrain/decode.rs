@@ -3,8 +3,8 @@
 use corniche_tin::{Tin, TinVertex};
 
 use crate::limits::{MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Answer, Edges, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::{Corner, Nodes};
+use crate::payload::connectivity::{Answer, Edges, Guesses, Guide, NAMED, NONE, walk};
+use crate::payload::corner_guess::Nodes;
 use crate::payload::damage::Damage;
 use crate::payload::envelope::{self, StoredSection};
 use crate::payload::number_codes::Cursor;
@@ -90,24 +90,20 @@ impl Guide for Player<'_, '_> {
         Ok([a, a + 1 + self.vertex()?, a + 1 + self.vertex()?])
     }
 
-    fn corner(
-        &mut self,
-        gate: [u32; 3],
-        nodes: &Nodes<'_>,
-        guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Answer, Damage> {
-        let Some(first) = guess(&[]) else { return Ok(Answer::Nothing) };
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage> {
+        let Some(first) = guesses.first() else { return Ok(Answer::Nothing) };
         if self.bits.is_past_end() {
             return Err(Damage::Invalid { what: "the length of the coded bits" });
         }
-        match self.symbols.code(self.bits, nodes, gate, first, NONE) {
+        match self.symbols.code(self.bits, guesses, first, NONE) {
             NONE => Ok(Answer::Nothing),
             1 => Ok(Answer::Guessed(first.vertex)),
             NAMED => self.vertex().map(Answer::Named),
             rank => {
                 let mut no = vec![first.vertex];
                 loop {
-                    let next = guess(&no)
+                    let next = guesses
+                        .best_but(&no)
                         .ok_or(Damage::Invalid { what: "a guess that does not exist" })?;
                     no.push(next.vertex);
                     if no.len() == usize::from(rank) {

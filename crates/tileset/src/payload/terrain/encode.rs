@@ -4,7 +4,7 @@ use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Answer, Edges, GUESSES, Guide, NAMED, NONE, walk};
+use crate::payload::connectivity::{Answer, Edges, GUESSES, Guesses, Guide, NAMED, NONE, walk};
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
 use crate::payload::range_coder::Writer;
@@ -81,9 +81,7 @@ fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4])
     // The same limit as a reader's: the writer takes at least as many steps as a reader.
     let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
     let nodes = Nodes::new(at.iter().copied(), &work);
-    let lookups = Work::new(u64::MAX);
-    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups, &mut bits)
-        .map_err(|_| "an edge with several triangles on one side")?;
+    let mut recorder = Recorder::new(vertices.len(), triangles, &mut bits);
     let (found, order) =
         walk(&nodes, triangles.len(), &mut recorder).map_err(|damage| match damage {
             Damage::TooMuchWork { .. } => "triangles that take readers too many steps to find",
@@ -113,36 +111,84 @@ fn common_factors(vertices: &[TinVertex], normals: &[[i8; 2]]) -> (u8, u8) {
     )
 }
 
+/// The corners of the triangles to the left of edges, by the edge's origin.
+struct Corners {
+    /// Where the edges of each origin begin, and where the last ones end.
+    starts: Vec<u32>,
+    /// Target, corner.
+    edges: Vec<[u32; 2]>,
+}
+
+/// Lists with more edges are sorted, so that a vertex with a thousand triangles is not slow.
+const LONG_LIST: usize = 32;
+
+impl Corners {
+    /// The triangles name no vertex beyond.
+    fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
+        // Counted two places ahead, so that filling moves each start to its place.
+        let mut starts = vec![0_u32; vertices + 2];
+        for &vertex in triangles.iter().flatten() {
+            starts[vertex as usize + 2] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut edges = vec![[0; 2]; 3 * triangles.len()];
+        for &[a, b, c] in triangles {
+            for [origin, target, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
+                let end = &mut starts[origin as usize + 1];
+                edges[*end as usize] = [target, corner];
+                *end += 1;
+            }
+        }
+        for ends in starts.windows(2) {
+            let edges = &mut edges[ends[0] as usize..ends[1] as usize];
+            if edges.len() > LONG_LIST {
+                edges.sort_unstable();
+            }
+        }
+        Self { starts, edges }
+    }
+
+    /// The corner to the left of a ► b.
+    fn of(&self, a: u32, b: u32) -> Option<u32> {
+        let a = a as usize;
+        let edges = &self.edges[self.starts[a] as usize..self.starts[a + 1] as usize];
+        let found = if edges.len() > LONG_LIST {
+            edges.binary_search_by_key(&b, |&[target, _]| target).ok()
+        } else {
+            edges.iter().position(|&[target, _]| target == b)
+        };
+        found.map(|place| edges[place][1])
+    }
+}
+
 /// Finds triangles by looking them up, and writes the symbols.
+///
+/// Where two triangles lie on the same side of an edge, it finds only one of them, and the walk fails.
 pub(crate) struct Recorder<'a> {
     triangles: &'a [[u32; 3]],
     /// Triangles before this one have been found.
     next: usize,
-    edges: Edges<'a>,
+    corners: Corners,
     symbols: Symbols,
     bits: &'a mut Writer,
     last: u32,
 }
 
 impl<'a> Recorder<'a> {
-    pub(crate) fn new(
-        vertices: usize,
-        triangles: &'a [[u32; 3]],
-        work: &'a Work,
-        bits: &'a mut Writer,
-    ) -> Result<Self, Damage> {
-        let mut edges = Edges::new(vertices, work);
-        for &triangle in triangles {
-            edges.add(triangle)?;
-        }
-        Ok(Self { triangles, next: 0, edges, symbols: Symbols::new(vertices), bits, last: 0 })
+    pub(crate) fn new(vertices: usize, triangles: &'a [[u32; 3]], bits: &'a mut Writer) -> Self {
+        let corners = Corners::new(vertices, triangles);
+        Self { triangles, next: 0, corners, symbols: Symbols::new(vertices), bits, last: 0 }
     }
 }
 
 impl Guide for Recorder<'_> {
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let rest = &self.triangles[self.next..];
-        let skip = rest.iter().position(|&[a, b, _]| found.corner(a, b).is_none());
+        let skip = rest.iter().position(|&[a, b, _]| !found.has(a, b));
         self.next += skip.ok_or(Damage::Invalid { what: "number of triangles" })?;
         let [a, b, c] = self.triangles[self.next];
         // Canonical order: each triangle starts with its smallest vertex, and they are sorted.
@@ -153,14 +199,10 @@ impl Guide for Recorder<'_> {
         Ok([a, b, c])
     }
 
-    fn corner(
-        &mut self,
-        gate: [u32; 3],
-        nodes: &Nodes<'_>,
-        guess: &dyn Fn(&[u32]) -> Option<Corner>,
-    ) -> Result<Answer, Damage> {
-        let corner = self.edges.corner(gate[0], gate[1]);
-        let Some(first) = guess(&[]) else {
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage> {
+        let [a, b, _] = guesses.gate;
+        let corner = self.corners.of(a, b);
+        let Some(first) = guesses.first() else {
             // Without a candidate there is no triangle, or it is not counter-clockwise.
             return if corner.is_none() {
                 Ok(Answer::Nothing)
@@ -168,8 +210,8 @@ impl Guide for Recorder<'_> {
                 Err(Damage::Invalid { what: "a triangle's vertex" })
             };
         };
-        let symbol = corner.map_or(NONE, |actual| rank(actual, first, guess));
-        self.symbols.code(self.bits, nodes, gate, first, symbol);
+        let symbol = corner.map_or(NONE, |actual| rank(actual, first, guesses));
+        self.symbols.code(self.bits, guesses, first, symbol);
         match (corner, symbol) {
             (None, _) => Ok(Answer::Nothing),
             (Some(actual), NAMED) => {
@@ -182,13 +224,13 @@ impl Guide for Recorder<'_> {
 }
 
 /// Which guess the vertex is; [`NAMED`] if it is none of those with a symbol.
-fn rank(actual: u32, first: Corner, guess: &dyn Fn(&[u32]) -> Option<Corner>) -> u8 {
+fn rank(actual: u32, first: Corner, guesses: &Guesses<'_, '_>) -> u8 {
     if first.vertex == actual {
         return 1;
     }
     let mut no = vec![first.vertex];
     for rank in 2..=GUESSES {
-        match guess(&no) {
+        match guesses.best_but(&no) {
             Some(corner) if corner.vertex == actual => return rank,
             Some(corner) => no.push(corner.vertex),
             None => break,

@@ -1,6 +1,6 @@
 //! What the walk says at a gate, as bits in contexts under which "guess 1" is nearly free.
 
-use crate::payload::connectivity::{GUESSES, NAMED, NONE};
+use crate::payload::connectivity::{GUESSES, Guesses, NAMED, NONE};
 use crate::payload::corner_guess::{Corner, Nodes};
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::{Magnitudes, half_octave};
@@ -56,8 +56,7 @@ impl Symbols {
     pub(crate) fn code<B: Bits>(
         &mut self,
         bits: &mut B,
-        nodes: &Nodes<'_>,
-        gate: [u32; 3],
+        &Guesses { gate, nodes, .. }: &Guesses<'_, '_>,
         first: Corner,
         symbol: u8,
     ) -> u8 {

@@ -28,7 +28,7 @@ use super::super::{
 };
 use crate::frame_view::FrameView;
 
-pub(crate) const SHADER: Shader = shader!("areas": "common", "drawn_ground", "areas");
+pub(crate) const SHADER: Shader = shader!("areas": "common", "tile", "drawn_ground", "areas");
 
 /// The bit that says that a sample is painted.
 const PAINTED: u32 = 0x80;
@@ -105,7 +105,7 @@ impl StencilAreas {
         let rows = rows(view);
         let colors = gpu.buffer("area colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         shared.set_frame(pass);
-        shared.set_ground(pass);
+        pass.set_bind_group(2, shared.ground(), &[]);
         pass.set_bind_group(3, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
         for class in AreaStyle::TOP_FIRST {
             if view.style.area(class).is_drawn() {
@@ -224,7 +224,16 @@ fn stencil(stencil: StencilState) -> DepthStencilState {
     }
 }
 
-/// The block `colors` of `shaders/areas.wgsl`.
+/// A slope that no ground has, where all ground is painted; tangent of the angle.
+const ANY_SLOPE: f64 = 1e9;
+
+/// The block `looks` of `shaders/areas.wgsl`.
 pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
-    view.style.areas.iter().map(|area| color(area.color, area.opacity)).collect()
+    let areas = &view.style.areas;
+    let steepest = areas.iter().map(|area| {
+        let slope =
+            area.steepest_deg.map_or(ANY_SLOPE, |deg| libm::tan(f64::from(deg).to_radians()));
+        [slope as f32, (slope * AreaStyle::STEEP_SHARE) as f32, 0.0, 0.0]
+    });
+    areas.iter().map(|area| color(area.color, area.opacity)).chain(steepest).collect()
 }

@@ -3,8 +3,8 @@
 use corniche_styles::{RoadBands, RoadStyle};
 use glam::DVec4;
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, Device, RenderPass,
-    RenderPipeline, ShaderStages,
+    BindGroupLayout, BindGroupLayoutEntry, BindingResource, Buffer, BufferUsages, Device,
+    RenderPass, RenderPipeline, ShaderStages,
 };
 
 use super::super::{
@@ -18,7 +18,8 @@ use super::super::{
 use super::label_blocks::{BLOCK_CORNERS, block_constant};
 use crate::{frame_view::FrameView, options::RoadMethod};
 
-pub(crate) const SHADER: Shader = shader!("composite": "common", "screen", "labelled", "composite");
+pub(crate) const SHADER: Shader =
+    shader!("composite": "common", "screen", "labelled", "road_colors", "composite");
 
 /// Draws ground and sky everywhere, then the blocks with roads again, with their roads.
 ///
@@ -60,9 +61,7 @@ impl Composite {
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
-        let rows = rows(view);
-        let colors =
-            gpu.buffer("picture colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        let colors = colors_of(gpu, view);
         let Targets { ground, depth, roads: LabelTargets { labels, blocks }, .. } = targets;
         let [ground, depth, labels, blocks] = [ground, depth, labels, blocks]
             .map(|texture| BindingResource::TextureView(&texture.view));
@@ -78,6 +77,11 @@ impl Composite {
     }
 }
 
+/// The colours of a picture on the graphics card.
+pub(crate) fn colors_of(gpu: &Gpu, view: &FrameView<'_>) -> Buffer {
+    gpu.buffer("picture colors", bytemuck::cast_slice(&rows(view)), BufferUsages::UNIFORM)
+}
+
 /// The plane that is seen where there is no ground, beneath all ground and its walls: the eye's place on it in plan, modulo
 /// the last value; the eye's height above it; the widest spacing of lines on it. World metres.
 fn void_plane(view: &FrameView<'_>) -> DVec4 {
@@ -88,7 +92,7 @@ fn void_plane(view: &FrameView<'_>) -> DVec4 {
     DVec4::new(eye.x.rem_euclid(widest), eye.y.rem_euclid(widest), eye.z - lowest, widest)
 }
 
-/// The block `struct PictureColors` of `shaders/composite.wgsl`.
+/// The block `struct PictureColors` of `shaders/road_colors.wgsl`.
 pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     let style = view.style;
     let mut rows = vec![
@@ -109,5 +113,6 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     rows.extend(roads.iter().map(|road| color(road.bands.main_color(), 1.0)));
     let thin = |road: &RoadStyle| road.thin.unwrap_or(road.bands.main_color());
     rows.extend(roads.iter().map(|road| color(thin(road), 1.0)));
+    rows.push(color(style.wall, 1.0));
     rows
 }

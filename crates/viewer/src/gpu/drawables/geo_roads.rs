@@ -6,13 +6,14 @@ use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
     Gpu,
-    pipeline::{Shader, shader},
+    pipeline::{ENTRIES, Shader, shader},
     road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
     shared_bindings::SharedLayouts,
 };
 use crate::tiles::{Bed, RoadSegment, RoadSegments};
 
-pub(crate) const SHADER: Shader = shader!("roads": "common", "drawn_ground", "coverage", "roads");
+pub(crate) const SHADER: Shader =
+    shader!("roads": "common", "tile", "drawn_ground", "coverage", "roads");
 
 /// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
 /// class, flags and look as u32, eight bounds as f16, own width, two numbers for dashes and length of
@@ -33,6 +34,10 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         // A quad may face any direction, so none is culled.
         cull: None,
         corners: CORNERS,
+        drawn: &layouts.ground,
+        entries: ENTRIES,
+        depth: None,
+        has_labels: true,
     };
     RoadPipeline::new(device, layouts, &recipe)
 }
@@ -61,7 +66,7 @@ fn instance(segment: &RoadSegment) -> Instance {
     let flags = [at_start, at_end].into_iter().chain(leaves_tile);
     let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
     let [start, end] = segment.flat_ends.map(u32::from);
-    let flags = flags | segment.look.number() << 9 | start << 11 | end << 12;
+    let flags = flags | segment.look.number() << 9 | start << 12 | end << 13;
     let bounds = |pair: [f32; 2]| bytemuck::cast::<[u16; 2], u32>(pair.map(f16_above));
     let [[a, b], [c, d], [e, f], [g, h]] =
         [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes].map(numbers);

@@ -1,17 +1,19 @@
-//! Pieces of road over the steps between tiles of different levels. They are drawn as shadow volumes by both methods.
+//! Pieces of road over the steps between tiles of different levels: on the ground, where both methods draw them as shadow volumes, and of decks.
 
 use std::ops::Range;
 
-use wgpu::{Buffer, BufferUsages, RenderPass};
+use bytemuck::Pod;
+use corniche_roads::slab_thickness_m;
+use wgpu::{BindGroup, Buffer, BufferUsages, RenderPass};
 
 use super::{
     super::{Gpu, road_instances::RoadPipeline, shared_bindings::SharedBindings},
-    sv_roads,
+    decks, sv_roads,
 };
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{DashPlace, NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
+    tiles::{DashPlace, DeckPiece, NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -21,23 +23,43 @@ pub(crate) struct LevelConnectors {
 }
 
 impl LevelConnectors {
-    /// Finds the connectors between `tiles` and uploads their volumes, each relative to the reference point of its finer
+    /// Finds the connectors between roads on the ground of `tiles` and uploads their volumes, each relative to the reference point of its finer
     /// tile. `reference_of` gives that point for an index of `tiles`; `shown` says which classes are shown on each of them.
-    pub(crate) fn new(
+    pub(crate) fn on_ground(
         gpu: &Gpu,
         tiles: &[BorderTile<'_>],
         reference_of: impl Fn(usize) -> [f64; 3],
         shown: &[ClassSet],
     ) -> Self {
+        Self::new(gpu, tiles, shown, |connector| {
+            let volume = volume(connector, reference_of(connector.fine));
+            sv_roads::instance(&volume, connector.coarse as u32 + 1)
+        })
+    }
+
+    /// The same between decks.
+    pub(crate) fn of_decks(
+        gpu: &Gpu,
+        tiles: &[BorderTile<'_>],
+        reference_of: impl Fn(usize) -> [f64; 3],
+        shown: &[ClassSet],
+    ) -> Self {
+        Self::new(gpu, tiles, shown, |connector| {
+            decks::instance(&piece(connector, reference_of(connector.fine)))
+        })
+    }
+
+    fn new<I: Pod>(
+        gpu: &Gpu,
+        tiles: &[BorderTile<'_>],
+        shown: &[ClassSet],
+        instance: impl Fn(&LevelConnector) -> I,
+    ) -> Self {
         let mut list = level_connectors(tiles);
         list.retain(|connector| {
             shown[connector.fine].or(shown[connector.coarse]).contains(connector.class)
         });
-        let volumes = list.iter().map(|connector| {
-            let reference_m = reference_of(connector.fine);
-            (volume(connector, reference_m), connector.coarse as u32 + 1)
-        });
-        let all = sv_roads::instances(volumes);
+        let all: Vec<I> = list.iter().map(instance).collect();
         let buffer = || gpu.buffer("connectors", bytemuck::cast_slice(&all), BufferUsages::VERTEX);
         let instances = (!all.is_empty()).then(buffer);
         Self { list, instances }
@@ -48,15 +70,16 @@ impl LevelConnectors {
         self.list.is_empty()
     }
 
-    /// Draws the connectors with the pipeline of shadow volumes.
+    /// Draws the connectors with the pipeline that draws such instances.
     pub(crate) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
-        volumes: &RoadPipeline,
+        drawn: &BindGroup,
+        pipeline: &RoadPipeline,
     ) {
         if let Some(instances) = &self.instances {
-            volumes.draw_instances(pass, shared, instances, self.runs());
+            pipeline.draw_instances(pass, shared, drawn, instances, self.runs());
         }
     }
 
@@ -90,5 +113,27 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         part_m: OPEN_M,
         dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
         flat_ends: [false; 2],
+    }
+}
+
+/// The piece of a deck that a connector is: from the end in the finer tile to that in the coarser one, and so thick that it closes the step.
+fn piece(connector: &LevelConnector, reference_m: [f64; 3]) -> DeckPiece {
+    let [first_m, second_m] = connector.heights_m;
+    let place = |[x, y]: [f64; 2], height_m: f64| {
+        [x - reference_m[0], y - reference_m[1], height_m - reference_m[2]].map(|part| part as f32)
+    };
+    DeckPiece {
+        start_in_tile: place(connector.ends_m[0], first_m),
+        end_in_tile: place(connector.ends_m[1], second_m),
+        mitres: [[0.0; 2]; 2],
+        lands: [false; 2],
+        deck_m: OPEN_M,
+        slab_m: (slab_thickness_m(connector.class) + (second_m - first_m).abs()) as f32,
+        width_factor: connector.width_factor,
+        class: connector.class,
+        own_width: connector.own_width,
+        look: connector.look,
+        part_m: OPEN_M,
+        dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
     }
 }

@@ -95,7 +95,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
     let blocks = [
         ("Frame", crate::gpu::uniforms::frame_rows(&view, 1), "common"),
         ("GroundColors", terrain::rows(&view), "ground_look"),
-        ("PictureColors", composite::rows(&view), "composite"),
+        ("PictureColors", composite::rows(&view), "road_colors"),
     ];
     for (block, rows, file) in blocks {
         for shader in found_shaders().iter().filter(|shader| shader.files.iter().any(|f| f == file))

@@ -6,14 +6,14 @@ use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
     Gpu,
-    pipeline::{Shader, shader},
+    pipeline::{ENTRIES, Shader, shader},
     road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
     shared_bindings::SharedLayouts,
 };
 use crate::tiles::{RoadVolume, RoadVolumes};
 
 pub(crate) const SHADER: Shader =
-    shader!("volumes": "common", "drawn_ground", "coverage", "volumes");
+    shader!("volumes": "common", "tile", "drawn_ground", "coverage", "boxes", "volumes");
 
 /// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look,
 /// flat ends and other tile as u32, own width, two numbers for dashes and length of the network's part as f32.
@@ -33,14 +33,18 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
         cull: Some(wgpu::Face::Front),
         corners: CORNERS,
+        drawn: &layouts.ground,
+        entries: ENTRIES,
+        depth: None,
+        has_labels: true,
     };
     RoadPipeline::new(device, layouts, &recipe)
 }
 
 /// Uploads the volumes of a tile.
 pub(crate) fn upload(gpu: &Gpu, roads: &RoadVolumes) -> RoadBuffers {
-    let volumes = roads.all().iter().map(|volume| (*volume, 0));
-    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances(volumes)))
+    let instances: Vec<Instance> = roads.all().iter().map(|volume| instance(volume, 0)).collect();
+    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances))
 }
 
 /// Bytes of the buffer that [`upload`] makes.
@@ -51,12 +55,8 @@ pub(crate) fn bytes_of(roads: &RoadVolumes) -> u64 {
 /// An instance, as words.
 pub(crate) type Instance = [u32; INSTANCE_BYTES as usize / 4];
 
-/// Instances of volumes. With each is the number of the other tile that it belongs to if it connects two levels, else 0.
-pub(crate) fn instances(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<Instance> {
-    volumes.map(|(volume, other)| instance(&volume, other)).collect()
-}
-
-fn instance(volume: &RoadVolume, other: u32) -> Instance {
+/// The instance of a volume. `other` is the number of the other tile that it belongs to if it connects two levels, else 0.
+pub(crate) fn instance(volume: &RoadVolume, other: u32) -> Instance {
     let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
     let [[a, b], [c, d], [low, high], [near_low, near_high]] = [
         volume.start_in_tile,
@@ -67,8 +67,8 @@ fn instance(volume: &RoadVolume, other: u32) -> Instance {
     .map(numbers);
     let [rise, width] = numbers([volume.near.rise, volume.width_factor]);
     let [start, end] = volume.flat_ends.map(u32::from);
-    let flags = volume.look.number() << 4 | start << 6 | end << 7;
-    let class = u32::from(volume.class.number()) | flags | other << 8;
+    let flags = volume.look.number() << 4 | start << 7 | end << 8;
+    let class = u32::from(volume.class.number()) | flags | other << 9;
     let [dash_start, dash_rate] = numbers(volume.dash.numbers());
     let [own_width, part] = numbers([own_width_value(volume.own_width), volume.part_m]);
     [

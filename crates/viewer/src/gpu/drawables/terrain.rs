@@ -21,7 +21,7 @@ use corniche_styles::{Light, MOST_TINT_STOPS, Style};
 use crate::frame_view::{FrameView, Wireframe};
 
 pub(crate) const SHADER: Shader =
-    shader!("terrain": "common", "ground_look", "relief", "photo", "terrain");
+    shader!("terrain": "common", "tile", "ground_look", "relief", "photo", "terrain");
 
 /// The angle by which the direction of the second light is turned, clockwise.
 const SECOND_LIGHT_DEG: f64 = -60.0;

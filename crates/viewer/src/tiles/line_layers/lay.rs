@@ -10,8 +10,8 @@ use super::{
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
-    DashPlace, GroundLine, PlanScale, RoadLook, RoadSegments, RoadVolumes, relief::Relief,
-    roads::PlanLine, shares_in,
+    DashPlace, GroundLine, InNet, OffGround, PlanScale, RoadLook, RoadSegments, RoadVolumes,
+    TileLines, relief::Relief, roads::PlanLine, shares_in,
 };
 
 /// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
@@ -57,13 +57,15 @@ pub(crate) fn lay(
     let bounds = on.frame.tile_bounds(on.id);
     let relief = Relief::new(on.id, Some(on.surface), on.frame, on.width_margin_m, work);
     let wide = relief.wide(&ground);
-    let segments = RoadSegments::of_lines(&ground, bounds, on.reference_m, on.scale, |piece| {
+    let none = TileLines::default();
+    let decks = OffGround::new(&none, bounds, work);
+    let (on_ground, _) = InNet::<GroundLine>::all_of(&ground, &decks);
+    let (in_plan, _) = InNet::<PlanLine>::all_of(&plan, &decks, on.width_margin_m);
+    let segments = RoadSegments::of_lines(&on_ground, &decks, on.reference_m, on.scale, |piece| {
         relief.bed(piece, wide.as_ref())
     });
     let volumes =
-        RoadVolumes::new(&plan, (bounds, on.width_margin_m), on.reference_m, on.scale, |ends_m| {
-            relief.near(ends_m)
-        });
+        RoadVolumes::new(&in_plan, &decks, on.reference_m, on.scale, |ends_m| relief.near(ends_m));
     work.check()?;
     Ok(TileLayer { segments, volumes })
 }

@@ -26,6 +26,11 @@ impl DashPlace {
         Self::new(start_m, 1.0)
     }
 
+    /// The place that is so far along the line from this one, in plan.
+    pub(crate) fn moved(self, by_m: f64) -> Self {
+        Self::new(f64::from(self.start_m) + f64::from(self.rate) * by_m, f64::from(self.rate))
+    }
+
     /// The numbers that shaders take: start and rate.
     pub(crate) const fn numbers(self) -> [f32; 2] {
         [self.start_m, self.rate]

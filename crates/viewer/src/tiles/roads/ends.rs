@@ -74,7 +74,11 @@ impl Side {
 }
 
 /// Where lines on the ground end on the tile's border.
-pub(crate) fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
+pub(crate) fn ground_ends<'a>(
+    lines: impl Iterator<Item = &'a GroundLine>,
+    tile: Bounds,
+    scale: &PlanScale,
+) -> Vec<RoadEnd> {
     let mut ends = Vec::new();
     for line in lines {
         let points = [
@@ -101,7 +105,11 @@ pub(crate) fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale)
 }
 
 /// Where lines in plan cross the tile's border.
-pub(crate) fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
+pub(crate) fn plan_ends<'a>(
+    lines: impl Iterator<Item = &'a PlanLine>,
+    tile: Bounds,
+    scale: &PlanScale,
+) -> Vec<RoadEnd> {
     let mut ends = Vec::new();
     for line in lines {
         for (pair, height_range_m) in line.points_m.windows(2).zip(&line.ground_range_m) {

@@ -17,10 +17,44 @@ const LEAST_COSINE: f64 = 0.866;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LineEnds {
-    pub(crate) class: FunctionalRoadClass,
-    pub(crate) look: RoadLook,
+    /// What is larger is drawn above: as the labels are (`gpu/labels.rs`); and what is narrower below the rest of
+    /// its class.
+    height: [u8; 3],
     pub(crate) first: Option<[[f64; 2]; 2]>,
     pub(crate) last: Option<[[f64; 2]; 2]>,
+}
+
+impl LineEnds {
+    /// The ends of a road on the ground.
+    pub(crate) fn of_road(
+        class: FunctionalRoadClass,
+        look: RoadLook,
+        [first, last]: [Option<[[f64; 2]; 2]>; 2],
+    ) -> Self {
+        let layer = match look {
+            tunnel if tunnel.is_tunnel() => 0,
+            RoadLook::Service => 1,
+            _ => 2,
+        };
+        let rank = FunctionalRoadClass::COUNT as u8 - class.number();
+        let narrow = match look {
+            RoadLook::Link => 0,
+            RoadLook::Carriageway | RoadLook::CarriagewayTunnel | RoadLook::CarriagewayBore => 1,
+            _ => 2,
+        };
+        Self { height: [layer, rank, narrow], first, last }
+    }
+
+    /// The ends of a deck. No road on the ground has a cap beneath it, so it counts as below all of them.
+    pub(crate) fn of_deck([first, last]: [[[f64; 2]; 2]; 2]) -> Self {
+        Self { height: [0; 3], first: Some(first), last: Some(last) }
+    }
+
+    /// The points where it ends and the directions beyond them.
+    pub(crate) fn outward(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+        let ends = [self.first, self.last].into_iter().flatten();
+        ends.filter_map(|[from, to]| Some((to, direction([from, to])?)))
+    }
 }
 
 /// Tells for each line whether it is flat at its first and at its last point.
@@ -37,7 +71,7 @@ pub(crate) struct LineEnds {
 pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
     let mut at_point: BTreeMap<[u64; 2], Vec<End>> = BTreeMap::new();
     let ends = lines.iter().enumerate().flat_map(|(number, line)| {
-        let height = height(line.class, line.look);
+        let height = line.height;
         [line.first, line.last].into_iter().enumerate().filter_map(move |(which, segment_m)| {
             let [from, to] = segment_m?;
             let inside = tile.min_x < to[0]
@@ -80,19 +114,8 @@ impl End {
     }
 }
 
-/// What is larger is drawn above: as the labels are (`gpu/labels.rs`); and slip roads, which are narrower, below the rest of their
-/// class.
-fn height(class: FunctionalRoadClass, look: RoadLook) -> [u8; 3] {
-    let layer = match look {
-        RoadLook::Tunnel => 0,
-        RoadLook::Service => 1,
-        RoadLook::Plain | RoadLook::Link => 2,
-    };
-    [layer, FunctionalRoadClass::COUNT as u8 - class.number(), u8::from(look != RoadLook::Link)]
-}
-
 /// The direction of a segment, of length 1; `None` if it has no length.
-fn direction([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+pub(crate) fn direction([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (dx, dy) = (to_x - x, to_y - y);
     let length_m = libm::hypot(dx, dy);
     (length_m > 0.0).then_some([dx / length_m, dy / length_m])

@@ -7,12 +7,9 @@ const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0
 /// A line by class, look and its points, whole.
 fn line((class, look, points_m): &(u8, RoadLook, Vec<[f64; 2]>)) -> LineEnds {
     let end = |a: Option<&[f64; 2]>, b: Option<&[f64; 2]>| Some([*a?, *b?]);
-    LineEnds {
-        class: FunctionalRoadClass::new(*class).unwrap(),
-        look: *look,
-        first: end(points_m.get(1), points_m.first()),
-        last: end(points_m.iter().rev().nth(1), points_m.last()),
-    }
+    let first = end(points_m.get(1), points_m.first());
+    let last = end(points_m.iter().rev().nth(1), points_m.last());
+    LineEnds::of_road(FunctionalRoadClass::new(*class).unwrap(), *look, [first, last])
 }
 
 fn check(lines: &[(u8, RoadLook, Vec<[f64; 2]>)], expected: &[[bool; 2]]) {

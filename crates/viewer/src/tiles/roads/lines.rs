@@ -2,11 +2,11 @@
 
 use corniche_drape::BadLine;
 use corniche_geom::{GridFrame, TooMuchWork};
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
-use corniche_tileset::TilePayload;
+use corniche_roads::{FunctionalRoadClass, OwnWidth, Structure};
+use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
-use super::{super::PlanScale, DashPlace, RoadLook};
+use super::{super::PlanScale, DashPlace, DeckLine, RoadLook, deck_line::deck_lines, look::tagged};
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +72,12 @@ pub struct TileLines {
     pub ground: Vec<GroundLine>,
     /// Roads in plan; empty if that section was not read.
     pub plan: Vec<PlanLine>,
+    /// Bridges above the ground; empty if the package has none, or that section was not read.
+    pub decks: Vec<DeckLine>,
+    /// Where tunnels come out of the ground, in plan.
+    pub portals: Vec<[f64; 2]>,
+    /// The ways of bridges, in order of their ids; empty if the package does not tell where they are above the ground.
+    pub bridges: Vec<i64>,
     /// How far the plan lines reach beyond the tile; roads are not drawn beyond this half width.
     pub width_margin_m: f64,
     /// How many working metres there are to a true metre; 1 by default.
@@ -102,19 +108,58 @@ pub enum BadRoads {
 }
 
 impl TileLines {
-    /// The roads of a payload, as far as their sections were read, placed on its `surface`. `width_margin_m` is that of the
+    /// The roads of a payload with these spans, as far as their sections were read, placed on its `surface`. `width_margin_m` is that of the
     /// tile's level.
     pub(crate) fn of_payload(
         payload: &TilePayload,
+        spans: Option<&[SpanRun]>,
         surface: Option<&Surface>,
-        frame: &GridFrame,
+        (frame, quantum_m): (&GridFrame, f64),
         width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
         let ground =
             surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
         let scale = PlanScale::default();
-        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m, scale })
+        let plan = plan_lines(payload, frame);
+        let lines = Self { ground, plan, width_margin_m, scale, ..Self::default() };
+        let Some(spans) = spans else { return Ok(lines) };
+        let decks = surface.map_or_else(Vec::new, |surface| {
+            deck_lines(spans, payload, surface, (frame, quantum_m))
+        });
+        let bridges = payload.attributes.iter();
+        let bridges = bridges.filter(|record| record.attributes.structure == Structure::Bridge);
+        let bridges = bridges.map(|record| record.way_id).collect();
+        let lines = Self { decks, portals: portals(spans, frame), bridges, ..lines };
+        Ok(lines.with_bores())
     }
+
+    /// The same with bores for tunnels.
+    fn with_bores(mut self) -> Self {
+        let ground = self.ground.iter_mut().map(|line| &mut line.look);
+        for look in ground.chain(self.plan.iter_mut().map(|line| &mut line.look)) {
+            *look = look.with_portals();
+        }
+        self
+    }
+}
+
+/// Shorter tunnels are underpasses, and have no portals, working metres.
+const SHORTEST_TUNNEL_M: f64 = 80.0;
+
+/// Where tunnels come out of the ground.
+fn portals(spans: &[SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
+    let is_on_ground = |point: &SpanPoint| matches!(point.height, SpanHeight::Ground { .. });
+    let is_long = |run: &&SpanRun| {
+        let steps = run.points.windows(2).map(|pair| pair[0].at.distance_steps(pair[1].at));
+        let length_m = steps.sum::<f64>() * frame.lattice_step_m();
+        // Another tile may have more of it.
+        let is_whole =
+            [run.points.first(), run.points.last()].into_iter().flatten().all(is_on_ground);
+        !is_whole || length_m >= SHORTEST_TUNNEL_M
+    };
+    let tunnels = spans.iter().filter(|run| run.structure == Structure::Tunnel).filter(is_long);
+    let on_ground = tunnels.flat_map(|run| &run.points).filter(|point| is_on_ground(point));
+    on_ground.map(|point| frame.position_m(point.at)).collect()
 }
 
 /// Recomputes the positions of a tile's clipped roads from its ground.
@@ -146,15 +191,6 @@ fn ground_lines(
         });
     }
     Ok(lines)
-}
-
-/// What the tags of a way say of its width and of what it is; nothing if the attributes were not read.
-fn tagged(payload: &TilePayload, way_id: i64) -> (OwnWidth, RoadLook) {
-    let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
-    let record = found.ok().and_then(|at| payload.attributes.get(at));
-    record
-        .map(|record| (record.attributes.own_width(), RoadLook::of(&record.attributes)))
-        .unwrap_or_default()
 }
 
 fn plan_lines(payload: &TilePayload, frame: &GridFrame) -> Vec<PlanLine> {

@@ -10,11 +10,27 @@ fn tunnels_count_before_slip_roads() {
         (Form::default(), Structure::default(), RoadLook::Plain),
         (Form::Link, Structure::default(), RoadLook::Link),
         (Form::Link, Structure::Bridge, RoadLook::Link),
+        (Form::DualCarriageway, Structure::Bridge, RoadLook::Carriageway),
+        (Form::DualCarriageway, Structure::Tunnel, RoadLook::CarriagewayTunnel),
+        (Form::Roundabout, Structure::default(), RoadLook::Plain),
         (Form::default(), Structure::Tunnel, RoadLook::Tunnel),
         (Form::Link, Structure::Tunnel, RoadLook::Tunnel),
     ] {
         assert_eq!(RoadLook::of(&attributes(form, structure)), look, "{form:?} {structure:?}");
     }
+}
+
+#[test]
+fn looks_have_their_numbers_in_shaders() {
+    let shader = include_str!("../../shaders/common.wgsl");
+    for look in RoadLook::ALL {
+        assert_eq!(RoadLook::of_number(look.number()), Some(look));
+        let name = format!("{look:?}").replace("Carriageway", "CARRIAGEWAY_").to_uppercase();
+        let constant = format!("const {} = {}u;", name.trim_end_matches('_'), look.number());
+        assert!(shader.contains(&constant), "{constant}");
+    }
+    let tunnels = RoadLook::ALL.into_iter().filter(|look| look.is_tunnel());
+    assert!(tunnels.map(RoadLook::with_portals).all(RoadLook::is_bore));
 }
 
 #[test]

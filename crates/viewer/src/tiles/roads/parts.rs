@@ -1,6 +1,6 @@
 //! How long the part of the road network is that a road belongs to, so that short parts that stand alone can be left out.
 
-use std::collections::BTreeMap;
+use std::{borrow::Cow, collections::BTreeMap};
 
 use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
@@ -21,6 +21,13 @@ pub(crate) struct NetLine {
     pub(crate) look: RoadLook,
     /// Its vertices in plan.
     pub(crate) vertices_m: Vec<[f64; 2]>,
+}
+
+/// What is drawn of a line on the ground, and how long the part of the network is to which the line belongs, working metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct InNet<'a, L: Clone> {
+    pub(crate) line: Cow<'a, L>,
+    pub(crate) part_m: f32,
 }
 
 /// What a tile knows of the network: its own rectangle and that of its lines, and how near lines are that belong together.

@@ -5,7 +5,8 @@ use std::num::{NonZeroU8, NonZeroU32};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
-    super::blocks::Recorded, Bed, NearHeights, RoadLook, RoadSegment, RoadVolume, dashes::DashPlace,
+    super::blocks::Recorded, Bed, DeckPiece, NearHeights, RoadLook, RoadSegment, RoadVolume,
+    dashes::DashPlace,
 };
 
 /// Collects words.
@@ -159,6 +160,45 @@ impl Recorded for RoadVolume {
             part_m,
             dash,
             flat_ends,
+        })
+    }
+}
+
+impl Recorded for DeckPiece {
+    type Words = [u32; 19];
+
+    fn words(&self) -> Self::Words {
+        let mut words = Written::new();
+        words.numbers(&self.start_in_tile);
+        words.numbers(&self.end_in_tile);
+        words.numbers(self.mitres.as_flattened());
+        words.numbers(&[self.slab_m, self.width_factor, self.part_m]);
+        words.numbers(&self.dash.numbers());
+        words.numbers(&[self.deck_m]);
+        let flags = self.lands.into_iter();
+        described(&mut words, (self.class, self.own_width, self.look), flags);
+        words.words
+    }
+
+    fn of_words(words: &Self::Words) -> Option<Self> {
+        let (numbers, described) = words.split_at(16);
+        let number = |at: usize| f32::from_bits(numbers[at]);
+        let place = |at: usize| [number(at), number(at + 1), number(at + 2)];
+        let pair = |at: usize| [number(at), number(at + 1)];
+        let (class, own_width, look, lands) = description(described.try_into().ok()?)?;
+        Some(Self {
+            start_in_tile: place(0),
+            end_in_tile: place(3),
+            mitres: [pair(6), pair(8)],
+            slab_m: number(10),
+            width_factor: number(11),
+            class,
+            own_width,
+            look,
+            part_m: number(12),
+            dash: DashPlace::of_numbers(pair(13)),
+            lands,
+            deck_m: number(15),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Segments and volumes of roads come from a worker as they were sent.
+//! Segments and volumes of roads, and pieces of decks, come from a worker as they were sent.
 
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ fn described() -> impl Strategy<Value = (FunctionalRoadClass, OwnWidth, RoadLook
         (1..=u32::MAX).prop_map(|mm| OwnWidth::Millimetres(NonZeroU32::new(mm).expect("above 0"))),
         (1..=u8::MAX).prop_map(|lanes| OwnWidth::Lanes(NonZeroU8::new(lanes).expect("above 0"))),
     ];
-    let look = (0..4_u32).prop_map(|number| RoadLook::of_number(number).expect("a look"));
+    let look = (0..5_u32).prop_map(|number| RoadLook::of_number(number).expect("a look"));
     (class, own_width, look)
 }
 
@@ -62,6 +62,27 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    fn piece()(
+        pairs in [pair(), pair(), pair(), pair(), pair(), pair(), pair()],
+        [part_m, deck_m] in [0.0_f32..1e6, 0.0_f32..1e6],
+        lands in any::<[bool; 2]>(),
+        (class, own_width, look) in described(),
+    ) -> DeckPiece {
+        let [[a, b], [c, d], [e, f], start, end, numbers, dash] = pairs;
+        DeckPiece {
+            start_in_tile: [a, b, c],
+            end_in_tile: [d, e, f],
+            mitres: [start, end],
+            lands, deck_m,
+            slab_m: numbers[0],
+            width_factor: numbers[1],
+            class, own_width, look, part_m,
+            dash: DashPlace::of_numbers(dash),
+        }
+    }
+}
+
 fn sent<T: Recorded>(list: &RoadList<T>) -> RoadList<T> {
     let config = bincode::config::legacy();
     let bytes = bincode::serde::encode_to_vec(list, config).expect("there is memory");
@@ -82,12 +103,20 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn pieces_of_decks_come_as_they_were_sent(pieces in prop::collection::vec(piece(), 0..20)) {
+        let list: RoadList<DeckPiece> = RoadList::sorted(pieces, |piece| piece.class, Vec::new());
+        prop_assert_eq!(sent(&list), list);
+    }
+}
+
 #[test]
 fn words_of_no_road_are_refused() {
     let words = [0_u32; 24];
     assert!(RoadSegment::of_words(&words).is_some());
     // A class, a kind of width, a width of nothing, a look.
-    for (at, word) in [(21, 9), (21, 3 << 8), (21, 1 << 8), (23, 4)] {
+    for (at, word) in [(21, 9), (21, 3 << 8), (21, 1 << 8), (23, 8)] {
         let mut others = words;
         others[at] = word;
         assert!(RoadSegment::of_words(&others).is_none(), "word {at} is {word}");

@@ -1,16 +1,17 @@
 //! Straight pieces of roads on the ground, as the GEO method draws them.
 
-use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
     Bed, GroundLine, RoadList, RoadLook,
+    cut::OffGround,
     dashes::{DashPlace, dash_starts},
+    decks::GroundNet,
     ends::ground_ends,
     flat_ends::{LineEnds, flat_ends},
     list::Classed,
-    parts::{KnownNet, NetLine, part_lengths_m},
+    parts::{InNet, KnownNet, NetLine, part_lengths_m},
 };
 
 /// A straight piece of a road's centre-line on the ground.
@@ -113,12 +114,9 @@ fn line_ends(line: &GroundLine) -> LineEnds {
         |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| libm::hypot(to_x - x, to_y - y) < 1e-6;
     let first = line.sources_m.first().zip(line.points_m.first());
     let last = line.sources_m.last().zip(line.points_m.last());
-    LineEnds {
-        class: line.class,
-        look: line.look,
-        first: first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]),
-        last: last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source),
-    }
+    let first = first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]);
+    let last = last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source);
+    LineEnds::of_road(line.class, line.look, [first, last])
 }
 
 /// The vertices of the source line, from the start of the first segment that has a piece to the end of the last one.
@@ -133,12 +131,34 @@ fn net_line(line: &GroundLine) -> NetLine {
     NetLine { class: line.class, look: line.look, vertices_m: source_vertices(line) }
 }
 
+impl<'a> InNet<'a, GroundLine> {
+    /// What of the lines of a tile is on no deck. Parts of the network are those of whole lines: bridges join them.
+    pub(crate) fn all_of(lines: &'a [GroundLine], decks: &OffGround<'_>) -> (Vec<Self>, GroundNet) {
+        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
+        let parts_m = part_lengths_m(&net, KnownNet::within(decks.tile()));
+        let lines = lines.iter().zip(parts_m);
+        let parts_m = lines.clone().map(|(line, part_m)| (line.way_id, part_m)).collect();
+        let on_ground: Vec<Self> = lines
+            .flat_map(|(line, part_m)| {
+                decks.without_ground(line).into_iter().map(move |line| InNet { line, part_m })
+            })
+            .collect();
+        let ends = on_ground.iter().map(InNet::<GroundLine>::ends).collect();
+        (on_ground, GroundNet { ends, parts_m })
+    }
+
+    /// The ends of the line, where it was not cut at the border or beside a void.
+    pub(crate) fn ends(&self) -> LineEnds {
+        line_ends(&self.line)
+    }
+}
+
 impl RoadList<RoadSegment> {
-    /// Cuts lines of the tile with these bounds into segments. `bed` gives the ground beside a piece.
+    /// Cuts lines of a tile into segments. `bed` gives the ground beside a piece.
     #[must_use]
     pub(crate) fn of_lines(
-        lines: &[GroundLine],
-        tile: Bounds,
+        lines: &[InNet<'_, GroundLine>],
+        decks: &OffGround<'_>,
         reference_m: [f64; 3],
         scale: &PlanScale,
         bed: impl Fn(&Piece) -> Bed,
@@ -148,41 +168,45 @@ impl RoadList<RoadSegment> {
             [x, y]
         };
         let (place, bed) = (&place, &bed);
-        let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
-        let flat = flat_ends(&ends, tile);
-        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
-        let parts_m = part_lengths_m(&net, KnownNet::within(tile));
-        let lines_parts = lines.iter().zip(parts_m);
-        let segments =
-            lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
-                let sources = source_vertices(line);
-                let segments = sources.len().saturating_sub(1);
-                let dashes = match &line.dashes {
-                    Some(given) => given.clone(),
-                    None => dash_starts(&sources, tile),
-                };
-                Piece::all_of(line).map(move |piece| {
-                    let [start_in_tile, end_in_tile] = piece.source_m.map(place);
-                    RoadSegment {
-                        start_in_tile,
-                        end_in_tile,
-                        shares: piece.ends_m.map(|end| piece.share(end)),
-                        height_in_tile: relative(piece.ends_m[0], reference_m)[2],
-                        has_caps: piece.has_caps,
-                        width_factor: scale.across(piece.source_m) as f32,
-                        bed: bed(&piece),
-                        class: line.class,
-                        own_width: line.own_width,
-                        look: line.look,
-                        part_m,
-                        dash: dashes[piece.source_number],
-                        flat_ends: [
-                            piece.source_number == 0 && first_flat,
-                            piece.source_number + 1 == segments && last_flat,
-                        ],
-                    }
-                })
-            });
+        let tile = decks.tile();
+        let ends: Vec<LineEnds> =
+            lines.iter().map(InNet::<GroundLine>::ends).chain(decks.ends()).collect();
+        let flat = flat_ends(&ends, tile).into_iter().zip(&ends);
+        let segments = lines.iter().zip(flat).flat_map(|(in_net, (flat, ends))| {
+            let InNet { line, part_m } = in_net;
+            let line = line.as_ref();
+            // A bore ends flat where it comes out of the ground, and its tick is there.
+            let [first_flat, last_flat] =
+                if line.look.is_bore() { decks.portals(ends) } else { flat };
+            let sources = source_vertices(line);
+            let segments = sources.len().saturating_sub(1);
+            let dashes = match &line.dashes {
+                Some(given) => given.clone(),
+                None => dash_starts(&sources, tile),
+            };
+            Piece::all_of(line).map(move |piece| {
+                let [start_in_tile, end_in_tile] = piece.source_m.map(place);
+                RoadSegment {
+                    start_in_tile,
+                    end_in_tile,
+                    shares: piece.ends_m.map(|end| piece.share(end)),
+                    height_in_tile: relative(piece.ends_m[0], reference_m)[2],
+                    has_caps: piece.has_caps,
+                    width_factor: scale.across(piece.source_m) as f32,
+                    bed: bed(&piece),
+                    class: line.class,
+                    own_width: line.own_width,
+                    look: line.look,
+                    part_m: *part_m,
+                    dash: dashes[piece.source_number],
+                    flat_ends: [
+                        piece.source_number == 0 && first_flat,
+                        piece.source_number + 1 == segments && last_flat,
+                    ],
+                }
+            })
+        });
+        let lines = lines.iter().map(|in_net| in_net.line.as_ref());
         Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile, scale))
     }
 }

@@ -1,16 +1,17 @@
 //! Straight pieces of roads with a range of heights, as the SV method draws them.
 
-use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
     NearHeights, PlanLine, RoadList, RoadLook,
+    cut::OffGround,
     dashes::{DashPlace, dash_starts},
+    decks::GroundNet,
     ends::plan_ends,
     flat_ends::{LineEnds, flat_ends},
     list::Classed,
-    parts::{KnownNet, NetLine, part_lengths_m},
+    parts::{InNet, KnownNet, NetLine, part_lengths_m},
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
@@ -53,26 +54,49 @@ pub type RoadVolumes = RoadList<RoadVolume>;
 fn line_ends(line: &PlanLine) -> LineEnds {
     let pair =
         |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
-    LineEnds {
-        class: line.class,
-        look: line.look,
-        first: pair(line.points_m.get(..2)).map(|[a, b]| [b, a]),
-        last: pair(line.points_m.get(line.points_m.len().saturating_sub(2)..)),
-    }
+    let first = pair(line.points_m.get(..2)).map(|[a, b]| [b, a]);
+    let last = pair(line.points_m.get(line.points_m.len().saturating_sub(2)..));
+    LineEnds::of_road(line.class, line.look, [first, last])
 }
 
 fn net_line(line: &PlanLine) -> NetLine {
     NetLine { class: line.class, look: line.look, vertices_m: line.points_m.clone() }
 }
 
+impl<'a> InNet<'a, PlanLine> {
+    /// What of the lines of a tile and of a margin around it is on no deck. Parts of the network are those of whole lines: bridges join them.
+    pub(crate) fn all_of(
+        lines: &'a [PlanLine],
+        decks: &OffGround<'_>,
+        margin_m: f64,
+    ) -> (Vec<Self>, GroundNet) {
+        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
+        let known = KnownNet { margin_m, ..KnownNet::within(decks.tile()) };
+        let lines = lines.iter().zip(part_lengths_m(&net, known));
+        let parts_m = lines.clone().map(|(line, part_m)| (line.way_id, part_m)).collect();
+        let on_ground: Vec<Self> = lines
+            .flat_map(|(line, part_m)| {
+                decks.without_plan(line).into_iter().map(move |line| InNet { line, part_m })
+            })
+            .collect();
+        let ends = on_ground.iter().map(InNet::<PlanLine>::ends).collect();
+        (on_ground, GroundNet { ends, parts_m })
+    }
+
+    /// The ends of the line. Where it was cut, at the margin, that is outside the tile.
+    pub(crate) fn ends(&self) -> LineEnds {
+        line_ends(&self.line)
+    }
+}
+
 impl RoadList<RoadVolume> {
-    /// Cuts lines of the tile with these bounds, and of a margin around it, into volumes.
+    /// Cuts lines of a tile and of a margin around it into volumes.
     ///
     /// `near` gives, for the ends of a segment in the working CRS, the range of true heights of the ground beneath it and
     /// how many metres that range grows per metre away from it; `None` if no ground is within [`NearHeights::reach_m`].
     pub(crate) fn new(
-        lines: &[PlanLine],
-        (tile, margin_m): (Bounds, f64),
+        lines: &[InNet<'_, PlanLine>],
+        decks: &OffGround<'_>,
         reference_m: [f64; 3],
         scale: &PlanScale,
         near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
@@ -85,42 +109,46 @@ impl RoadList<RoadVolume> {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
-        let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
-        let flat = flat_ends(&ends, tile);
-        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
-        let parts_m = part_lengths_m(&net, KnownNet { margin_m, ..KnownNet::within(tile) });
+        let tile = decks.tile();
+        let ends: Vec<LineEnds> =
+            lines.iter().map(InNet::<PlanLine>::ends).chain(decks.ends()).collect();
+        let flat = flat_ends(&ends, tile).into_iter().zip(&ends);
         let (place, near) = (&place, &near);
-        let lines_parts = lines.iter().zip(parts_m);
-        let volumes =
-            lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
-                let last = line.points_m.len().saturating_sub(2);
-                let dashes = match &line.dashes {
-                    Some(given) => given.clone(),
-                    None => dash_starts(&line.points_m, tile),
-                };
-                let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes);
-                segments.enumerate().map(move |(number, ((pair, range_m), dash))| {
-                    // Without ground near, the box is almost flat.
-                    let (near_m, rise) = near([pair[0], pair[1]])
-                        .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
-                    RoadVolume {
-                        start_in_tile: place(pair[0]),
-                        end_in_tile: place(pair[1]),
-                        height_range_in_tile: above(*range_m),
-                        near: NearHeights {
-                            range_in_tile: above(near_m),
-                            rise: (rise as f32).next_up(),
-                        },
-                        width_factor: scale.across([pair[0], pair[1]]) as f32,
-                        class: line.class,
-                        own_width: line.own_width,
-                        look: line.look,
-                        part_m,
-                        dash,
-                        flat_ends: [number == 0 && first_flat, number == last && last_flat],
-                    }
-                })
-            });
+        let volumes = lines.iter().zip(flat).flat_map(|(in_net, (flat, ends))| {
+            let InNet { line, part_m } = in_net;
+            let line = line.as_ref();
+            // A bore ends flat where it comes out of the ground, and its tick is there.
+            let [first_flat, last_flat] =
+                if line.look.is_bore() { decks.portals(ends) } else { flat };
+            let last = line.points_m.len().saturating_sub(2);
+            let dashes = match &line.dashes {
+                Some(given) => given.clone(),
+                None => dash_starts(&line.points_m, tile),
+            };
+            let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes);
+            segments.enumerate().map(move |(number, ((pair, range_m), dash))| {
+                // Without ground near, the box is almost flat.
+                let (near_m, rise) = near([pair[0], pair[1]])
+                    .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
+                RoadVolume {
+                    start_in_tile: place(pair[0]),
+                    end_in_tile: place(pair[1]),
+                    height_range_in_tile: above(*range_m),
+                    near: NearHeights {
+                        range_in_tile: above(near_m),
+                        rise: (rise as f32).next_up(),
+                    },
+                    width_factor: scale.across([pair[0], pair[1]]) as f32,
+                    class: line.class,
+                    own_width: line.own_width,
+                    look: line.look,
+                    part_m: *part_m,
+                    dash,
+                    flat_ends: [number == 0 && first_flat, number == last && last_flat],
+                }
+            })
+        });
+        let lines = lines.iter().map(|in_net| in_net.line.as_ref());
         Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
     }
 }

@@ -40,7 +40,7 @@ fn tile(
     TilePayload {
         id,
         terrain: Some(terrain(id, step, height_m)),
-        relief: Some(Relief::of_heights(&raster, cell, QUANTUM_M).unwrap()),
+        relief: Some(Relief::of_heights(&raster, &raster, cell, QUANTUM_M).unwrap()),
         roads_geo: vec![],
         roads_sv: vec![],
         attributes: vec![],
@@ -96,7 +96,8 @@ fn draw_beneath(
     style.light.gentle = look.gentle;
     let scale = PlanScale::uniform([1.0; 2]);
     let geometry = |payload: &TilePayload| {
-        TileGeometry::from_payload(payload, &frame(), QUANTUM_M, WIDTH_MARGIN_M, scale).unwrap()
+        TileGeometry::from_payload(payload, None, &frame(), QUANTUM_M, (WIDTH_MARGIN_M, scale))
+            .unwrap()
     };
     let above = parent.map(|parent| SlopeChain::new(gpu, &geometry(parent), None));
     let buffers: Vec<TileBuffers> = payloads
@@ -245,7 +246,8 @@ fn near_the_eye_tiles_have_their_own_slopes() {
     assert!(draw_beneath(&gpu, Some(&bare), &children, far).ground == own(far));
 }
 
-/// Two levels alone differ by no more than a grey level on smooth ground, but for one pixel in two hundred, where it is two.
+/// Two levels alone differ by no more than a grey level on smooth ground, but for one pixel in two hundred, where it is three: light on slopes that face it tells them apart
+/// by more than a clamped cosine would.
 #[test]
 fn levels_by_themselves_differ_by_a_grey_level_on_smooth_ground() {
     let Some(gpu) = gpu() else { return };
@@ -254,12 +256,12 @@ fn levels_by_themselves_differ_by_a_grey_level_on_smooth_ground() {
         differences(&draw(&gpu, &root, PLAIN), &draw(&gpu, &finest(64, &hills), PLAIN), 440.0);
     let most_of = all[all.len() * 199 / 200];
     println!("levels differ by {most_of} and {} grey levels at most", all[all.len() - 1]);
-    assert!(most_of <= 1 && all[all.len() - 1] <= 2, "{most_of}, {}", all[all.len() - 1]);
+    assert!(most_of <= 1 && all[all.len() - 1] <= 3, "{most_of}, {}", all[all.len() - 1]);
     // Without reliefs they differ by what their triangles leave out.
     let [root, finest] = [vec![tile(TileId::ROOT, 32, &hills, None)], finest(128, &hills)];
     let bare = [root, finest].map(without_relief);
     let all = differences(&draw(&gpu, &bare[0], PLAIN), &draw(&gpu, &bare[1], PLAIN), 440.0);
-    assert!(all[all.len() - 1] > 2, "the measure sees nothing");
+    assert!(all[all.len() - 1] > 3, "the measure sees nothing");
 }
 
 #[test]

@@ -508,3 +508,39 @@ fn areas_that_are_not_drawn_change_no_byte_and_all_bytes_are_counted() {
     let triangles = areas.triangles.len() as u64 * 4;
     assert_eq!(with_bytes - plain_bytes, walls * 24 + corners * 16 + triangles + boxes);
 }
+
+/// Water is painted where the triangle that a ray meets is gentle, and not where it is steep. Slopes between the two, and pixels with
+/// another triangle near them, are not asked.
+#[test]
+fn steep_ground_is_not_painted() {
+    let mut scene = on_hills();
+    let water = usize::from(AreaClass::Water.number());
+    scene.style.areas[water].steepest_deg = Some(14.0);
+    let (areas, steepest) = (areas(), 14_f64.to_radians().tan());
+    let outlines = Outlines::new(&areas);
+    for camera in [two_cameras()[0], Camera::from_above(center(), 4.0, 0.0, [-3e3, 3e3], SIZE)] {
+        let Some(gpu) = gpu() else { return };
+        let drawing = scene.draw(&gpu, &camera, RoadOptions::of(RoadMethod::None));
+        let caster = Caster::new(&scene, &camera);
+        let (mut found, mut wrong) = ([0; 2], 0);
+        for (index, pixel) in some_of(drawing.pixels(), [2, 2, 1]) {
+            let is_steep = |at: DVec2| {
+                let hit = caster.hit(at)?;
+                let is_water = outlines.topmost(hit.at.truncate()) == Some(AreaClass::Water);
+                let slope = hit.normal.truncate().length() / hit.normal.z.abs();
+                let is_clear = !(0.69..1.01).contains(&(slope / steepest));
+                (is_water && is_clear).then_some((slope > steepest, hit.normal.to_array()))
+            };
+            let around = (0..9).map(|k| DVec2::new(f64::from(k % 3 - 1), f64::from(k / 3 - 1)));
+            let Some((steep, normal)) = is_steep(pixel) else { continue };
+            if around.into_iter().all(|by| is_steep(pixel + by) == Some((steep, normal))) {
+                found[usize::from(steep)] += 1;
+                let blue = drawing.ground[4 * index + 2];
+                wrong += usize::from(blue != if steep { 0 } else { 255 });
+            }
+        }
+        println!("water on gentle and on steep ground: {found:?}, {wrong} wrong");
+        assert!(found.iter().all(|count| *count > 100), "{found:?}");
+        assert_eq!(wrong, 0);
+    }
+}

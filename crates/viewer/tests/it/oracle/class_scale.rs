@@ -163,12 +163,16 @@ fn dashes_go_on_at_bends_in_both_methods() {
         road.min_width_px = 3.0;
     }
     style.roads[4].bands = bands(&[1.0, 0.6, 0.3]);
+    for road in &mut style.roads {
+        road.carriageway_width_m = 12.0;
+    }
     let scene = one_tile(16, hills, &roads, style);
-    let looks = [RoadLook::Tunnel, RoadLook::Tunnel, RoadLook::Link, RoadLook::Plain];
+    let looks =
+        [RoadLook::Tunnel, RoadLook::CarriagewayTunnel, RoadLook::Link, RoadLook::Carriageway];
     let of_way = |way_id: i64| looks[way_id as usize - 1];
     let tiles = scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect();
     check(&Named {
-        name: "tunnels with bends, slip roads",
+        name: "tunnels with bends, slip roads, carriageways",
         scene: Scene { tiles, ..scene },
         cameras: vec![camera(400.0, 1100.0, 15.0, 20.0), camera(400.0, 1700.0, 250.0, 55.0)],
     });

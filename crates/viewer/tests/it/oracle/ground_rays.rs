@@ -29,6 +29,8 @@ pub(crate) struct Hit {
     pub(crate) tile: usize,
     pub(crate) at: DVec3,
     pub(crate) depth_m: f64,
+    /// Normal of the triangle, of any length.
+    pub(crate) normal: DVec3,
 }
 
 impl<'a> Caster<'a> {
@@ -77,7 +79,9 @@ impl<'a> Caster<'a> {
             if let Some(depth_m) = cast(eye, ray, std::slice::from_ref(triangle))
                 && nearest.as_ref().is_none_or(|hit| depth_m < hit.depth_m)
             {
-                nearest = Some(Hit { tile: *tile, at: eye + ray * depth_m, depth_m });
+                let [a, b, c] = *triangle;
+                let normal = (b - a).cross(c - a);
+                nearest = Some(Hit { tile: *tile, at: eye + ray * depth_m, depth_m, normal });
             }
         }
         nearest
@@ -106,7 +110,8 @@ pub(crate) fn compare(
                 let part = road.part_m.map(|part_m| part_share(look, part_m, distance_m));
                 let is_clear = (part[1] - part[0]).abs() < 1e-9;
                 assert!(is_clear, "scenes for this reference have clear parts");
-                let (half_m, _) = half_width(look, (road.class, road.own), road.factor, distance_m);
+                let (half_m, _) =
+                    half_width(look, (road.class, road.own, road.look), road.factor, distance_m);
                 shows(&scene.style, camera, road.class, distance_m) == Tri::Yes
                     && distance(at, road.ends, without_cap) <= part[0] * half_m
                     && part[0] > 0.0

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     ground_rays::Caster,
-    reference::{Look, Tri, distance, half_width, lateness, narrowing, shows},
+    reference::{Look, Tri, distance, half_width, lateness, shows},
     support::{
         Drawing,
         scene::{Scene, Tile},
@@ -73,7 +73,7 @@ pub(crate) fn walk(
     let scale_m = |depth_m| camera.pixel_at_depth_m(depth_m) / camera.pixel_at_unit_depth_m();
     let half_px = |(class, own, kind): (u8, OwnWidth, RoadLook), depth_m: f64| {
         let look = Look { style: &scene.style, options, camera };
-        let (half_m, least_px) = half_width(look, (class, own), narrowing(kind), scale_m(depth_m));
+        let (half_m, least_px) = half_width(look, (class, own, kind), 1.0, scale_m(depth_m));
         (half_m / camera.pixel_at_depth_m(depth_m)).max(least_px)
     };
     let mut sum = CenterLines::default();

@@ -1,7 +1,7 @@
 //! O1: the label of each pixel from the card's own depth and owner, in f64.
 
 use corniche_roads::OwnWidth;
-use corniche_styles::{OwnWidths, Style};
+use corniche_styles::{OwnWidths, RoadStyle, Style};
 use corniche_viewer::{
     Caps, RoadOptions, WidthGrowth,
     camera::{Camera, Projection},
@@ -129,9 +129,9 @@ impl PixelOracle<'_> {
         let distance_m = self.camera.seeing_distance_m(ground);
         // What is on the ground hides what is beneath it, and service roads are hidden by all others.
         let layers: [fn(RoadLook) -> bool; 3] = [
-            |look| matches!(look, RoadLook::Plain | RoadLook::Link),
+            |look| matches!(look, RoadLook::Plain | RoadLook::Link | RoadLook::Carriageway),
             |look| look == RoadLook::Service,
-            |look| look == RoadLook::Tunnel,
+            |look| matches!(look, RoadLook::Tunnel | RoadLook::CarriagewayTunnel),
         ];
         for (layer, class) in layers.into_iter().flat_map(|layer| (0..9).map(move |k| (layer, k))) {
             let roads: Vec<&PlanSegment> =
@@ -195,8 +195,7 @@ impl PixelOracle<'_> {
         let share = share * parts[1];
         let without_cap = without_caps(self.options.caps, flat);
         let plan_m = distance(ground.truncate(), ends, without_cap);
-        let (half_m, least_px) =
-            half_width(look, (class, own), factor * narrowing(kind), distance_m);
+        let (half_m, least_px) = half_width(look, (class, own, kind), factor, distance_m);
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let slant = match self.camera.projection() {
             Projection::Perspective => from_eye.length() / from_eye.z.abs(),
@@ -346,9 +345,19 @@ pub(crate) fn near_end(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2], ba
     ends[0].and(ends[1])
 }
 
-/// Slip roads and service roads are narrower than their class.
-pub(crate) fn narrowing(look: RoadLook) -> f64 {
-    if matches!(look, RoadLook::Link | RoadLook::Service) { 0.6 } else { 1.0 }
+/// Slip roads, service roads, carriageways and tunnels of which portals are known are narrower than their class: on the ground, and in pixels.
+fn narrowing(road: &RoadStyle, look: RoadLook, is_tagged: bool) -> (f64, f64) {
+    let carriageway = f64::from(road.carriageway_width_m) / f64::from(road.width_m);
+    match look {
+        RoadLook::Plain | RoadLook::Tunnel => (1.0, 1.0),
+        RoadLook::Link if is_tagged => (0.6, 0.6 * carriageway),
+        RoadLook::Link => (0.6 * carriageway, 0.6 * carriageway),
+        RoadLook::Service => (0.6, 1.0),
+        RoadLook::Bore => (0.5, 0.5),
+        RoadLook::Carriageway | RoadLook::CarriagewayTunnel if is_tagged => (1.0, carriageway),
+        RoadLook::Carriageway | RoadLook::CarriagewayTunnel => (carriageway, carriageway),
+        RoadLook::CarriagewayBore => panic!("scenes of the reference have no portals"),
+    }
 }
 
 /// How many times nearer than the rest of its class a road must be to be shown: service roads come one zoom step later.
@@ -359,9 +368,9 @@ pub(crate) fn lateness(look: RoadLook) -> f64 {
 /// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels and service roads have one colour.
 fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
     match look {
-        RoadLook::Plain => true,
+        RoadLook::Plain | RoadLook::Carriageway => true,
         RoadLook::Link => share >= 0.5,
-        RoadLook::Tunnel | RoadLook::Service => number == 0,
+        _ => number == 0,
     }
 }
 
@@ -392,16 +401,16 @@ pub(crate) struct Look<'a> {
     pub(crate) camera: &'a Camera,
 }
 
-/// Half width of a road, by its class and what its tags say of its width, in metres at a distance from the eye, and the least
+/// Half width of a road, by its class, what its tags say of its width, and what it is, in metres at a distance from the eye, and the least
 /// one in pixels. `factor` is working metres across the road for each true one.
 pub(crate) fn half_width(
     Look { style, options, camera }: Look<'_>,
-    (class, own): (u8, OwnWidth),
+    (class, own, kind): (u8, OwnWidth, RoadLook),
     factor: f64,
     distance_m: f64,
 ) -> (f64, f64) {
     let road = &style.roads[usize::from(class)];
-    let scaling = options.width_scaling(style);
+    let scaling = options.width_scaling(style, road);
     let tagged_m = match (style.own_widths, own) {
         (Some(_), OwnWidth::Millimetres(mm)) => Some((f64::from(mm.get()) / 1000.0).min(60.0)),
         (Some(OwnWidths { lane_m: Some(lane_m) }), OwnWidth::Lanes(lanes)) => {
@@ -409,15 +418,16 @@ pub(crate) fn half_width(
         }
         _ => None,
     };
-    let width_m = tagged_m.unwrap_or(f64::from(road.width_m)) * factor;
+    let (narrow, narrow_px) = narrowing(road, kind, tagged_m.is_some());
+    let width_m = tagged_m.unwrap_or(f64::from(road.width_m)) * narrow * factor;
     let near_m = width_m * f64::from(scaling.constant);
     let mut drawn_m = width_m * scaling.factor(distance_m);
     if let (Some(most_px), WidthGrowth::ByDistance) = (road.max_width_px, options.width_growth) {
         // It grows up to so many pixels, and never shrinks for that.
-        let most_m = f64::from(most_px) * camera.pixel_at_unit_depth_m() * distance_m;
+        let most_m = narrow_px * f64::from(most_px) * camera.pixel_at_unit_depth_m() * distance_m;
         drawn_m = drawn_m.min(most_m.max(near_m));
     }
-    (drawn_m / 2.0, f64::from(road.min_width_px) / 2.0)
+    (drawn_m / 2.0, narrow_px * f64::from(road.min_width_px) / 2.0)
 }
 
 /// Distance from a point to a segment; infinite far beyond an end without a cap. How near such an end is asked for with a band of

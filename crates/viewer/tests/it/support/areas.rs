@@ -80,6 +80,7 @@ pub(crate) fn flat_style(style: &Style) -> Style {
         style.areas[usize::from(class.number())] = AreaStyle {
             color: flat_color(class).map(|part| f32::from(part) / 255.0),
             opacity: 1.0,
+            steepest_deg: None,
         };
     }
     style.tint.stops.iter_mut().for_each(|(_, color)| color[2] = 0.0);

@@ -172,10 +172,10 @@ impl TileSource for Country {
         let margin_m = width_margin_m(&self.frame, id.z());
         TileGeometry::from_payload(
             &self.payload(id),
+            None,
             &self.frame,
             QUANTUM_M,
-            margin_m,
-            PlanScale::default(),
+            (margin_m, PlanScale::default()),
         )
         .map_err(|error| LoadTileError { id, source: error.into() })
     }

@@ -43,6 +43,7 @@ fn manifest(country: &Country) -> Manifest {
         wgs84_bounds: Bounds { min_x, min_y, max_x, max_y },
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
+            height_step_m: 0.0,
             range_m: [90.0, 1910.0],
             ..sound.vertical
         },

@@ -12,7 +12,7 @@ use corniche_viewer::{
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
-    tiles::{RoadLook, TileGeometry, TileLines},
+    tiles::{DeckLine, RoadLook, TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 
@@ -195,7 +195,13 @@ impl Tile {
             })
             .collect();
         let Widths { margin_m, scale } = widths;
-        let lines = TileLines { ground: centers, plan, width_margin_m: margin_m, scale };
+        let lines = TileLines {
+            ground: centers,
+            plan,
+            width_margin_m: margin_m,
+            scale,
+            ..TileLines::default()
+        };
         let corner = |vertex: u32| {
             let [x, y] = frame.position_m(surface.points()[vertex as usize]);
             DVec3::new(x, y, surface.heights_m()[vertex as usize])
@@ -226,6 +232,11 @@ impl Tile {
         lines.ground.iter_mut().for_each(|line| line.look = of_way(line.way_id));
         lines.plan.iter_mut().for_each(|line| line.look = of_way(line.way_id));
         self.with_lines(lines)
+    }
+
+    /// The same tile with these bridges; its roads on the ground end where they begin.
+    pub(crate) fn with_decks(&self, decks: Vec<DeckLine>) -> Self {
+        self.with_lines(TileLines { decks, ..self.lines.clone() })
     }
 
     fn with_lines(&self, lines: TileLines) -> Self {
@@ -372,11 +383,16 @@ fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool 
     let above = |line: &PlanLine| {
         let layer = ["Tunnel", "Service", "Ground"].len()
             - match line.look {
-                RoadLook::Tunnel => 3,
+                RoadLook::Plain | RoadLook::Link | RoadLook::Carriageway => 1,
                 RoadLook::Service => 2,
-                RoadLook::Plain | RoadLook::Link => 1,
+                _ => 3,
             };
-        (layer, 9 - line.class.number(), line.look != RoadLook::Link)
+        let narrow = match line.look {
+            RoadLook::Link => 0,
+            RoadLook::Carriageway | RoadLook::CarriagewayTunnel => 1,
+            _ => 2,
+        };
+        (layer, 9 - line.class.number(), narrow)
     };
     let (at, outward) = end_of(line, end);
     let inside = at.x > tile.min_x && at.x < tile.max_x && at.y > tile.min_y && at.y < tile.max_y;

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..errors import UsageError
+from corniche.errors import UsageError
+
 from ..progress import duration
 from ..summary import bytes_text
 from .model import MEASURES, STEPS, Model, Shape, check, fit_model, forecast, shape_of

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import UsageError
+from corniche.errors import UsageError
+
 from ..summary import VERSION
 
 

@@ -7,7 +7,6 @@ A signal at the parent's death is no help: it comes when the *thread* ends that 
 
 from __future__ import annotations
 
-import json
 import os
 import select
 import signal
@@ -18,6 +17,8 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+from .records import costs_of, error_of, record_of, warning_of
 
 #: How often it is looked at memory, and whether the part is still wanted, in seconds.
 LOOK_EVERY = 0.5
@@ -65,6 +66,8 @@ class Child:
         self._stopped_at: float | None = None
         self._peak_bytes: int | None = None
         self._lock = threading.Lock()
+        #: How much of its standard error was heard.
+        self._heard_bytes = 0
         # Without a name: gone when the last process that has them open is.
         self._stdout = tempfile.TemporaryFile()
         self._stderr = tempfile.TemporaryFile()
@@ -105,23 +108,56 @@ class Child:
                 except ProcessLookupError:
                     pass
 
-    def wait(self, is_wanted: Callable[[], bool]) -> Ended:
-        """Waits for its end. When ``is_wanted`` says no, it is stopped, and killed if that does not help."""
+    def wait(self, is_wanted: Callable[[], bool] = lambda: True, heard: Callable[[str], None] | None = None) -> Ended:
+        """Waits for its end. When ``is_wanted`` says no, it is stopped, and killed if that does not help.
+
+        ``heard`` is given each line of its standard error, soon after it was written.
+        """
         try:
             while not self._is_over(LOOK_EVERY):
                 self._look_at_memory()
+                self._hear(heard)
                 if self._stopped_at is None:
                     if not is_wanted():
                         self.stop()
                 elif time.monotonic() - self._stopped_at > ENDS_WITHIN:
                     self.kill()
+            self._hear(heard, is_over=True)
             return self._ended()
         except BaseException:
-            self.kill()
+            # Ctrl-C, for example. Asked to end, it leaves no part of a target, and a build its work, to go on from.
+            self.stop()
+            if not self._is_over(ENDS_WITHIN):
+                self.kill()
             self._process.wait()
             raise
         finally:
             self._close()
+
+    def first_line(self) -> str | None:
+        """Waits for the first line that it prints on standard output; ``None``: it ended before."""
+        is_over = False
+        while True:
+            # Not by the file's own position, which the child has, too.
+            line, end, _ = os.pread(self._stdout.fileno(), LOG_BYTES, 0).partition(b"\n")
+            if end:
+                return line.decode(errors="replace")
+            if is_over:
+                return None
+            is_over = self._is_over(0.02)
+
+    def _hear(self, heard: Callable[[str], None] | None, is_over: bool = False) -> None:
+        """Passes on the lines that are new; what comes behind the last line only when it is over."""
+        while heard is not None and (new := os.pread(self._stderr.fileno(), LOG_BYTES, self._heard_bytes)):
+            end = new.rfind(b"\n") + 1
+            # A line longer than all that is read at once is passed on in pieces.
+            if end == 0 and (is_over or len(new) == LOG_BYTES):
+                end = len(new)
+            if end == 0:
+                return
+            self._heard_bytes += end
+            for line in new[:end].decode(errors="replace").splitlines():
+                heard(line)
 
     def _is_over(self, seconds: float) -> bool:
         """Waits for so long, or to its end."""
@@ -188,19 +224,15 @@ def read_log(text: str) -> tuple[dict[str, Any], list[str]]:
     told: dict[str, Any] = {}
     log: list[str] = []
     for line in text.splitlines():
-        try:
-            value = json.loads(line)
-        except ValueError:
-            value = None
-        if not isinstance(value, dict):
+        record = record_of(line)
+        if record is None:
             log.append(line)
-        elif "warning" in value:
-            log.append(f"warning: {value['warning']}")
-        elif isinstance(value.get("end"), dict):
-            if value["end"].get("error") is not None:
-                log.append(f"corniche: {value['end']['error']}")
-        elif isinstance(value.get("all"), dict):
-            told = value["all"]
+        elif (warning := warning_of(record)) is not None:
+            log.append(f"warning: {warning}")
+        elif (error := error_of(record)) is not None:
+            log.append(f"corniche: {error}")
+        else:
+            told = costs_of(record) or told
     return told, log[-LAST_LINES:]
 
 

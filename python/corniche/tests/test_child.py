@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from corniche_dask import child as children
-from corniche_dask.child import Child, read_log
+from corniche import child as children
+from corniche.child import Child, read_log
 
 #: Ends when its standard input does, as ``--die-with-parent`` does.
 DIES_WITH_PARENT = "import sys; sys.stdin.read(); sys.exit(1)"
@@ -88,7 +88,7 @@ def test_it_ends_when_its_parent_is_killed(number: signal.Signals, tmp_path: Pat
         textwrap.dedent(
             f"""
             import os, sys, time
-            from corniche_dask.child import Child
+            from corniche.child import Child
             children = [Child([sys.executable, "-c", {DIES_WITH_PARENT!r}], os.environ) for _ in range(2)]
             print(*(child.pid for child in children), flush=True)
             time.sleep(600)

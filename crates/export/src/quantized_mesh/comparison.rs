@@ -1,0 +1,330 @@
+//! A tile's triangles beside the ground: where they are too far from it, and how far they are at last.
+
+use std::collections::BTreeSet;
+
+use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
+
+use super::{
+    facets::{Facets, OUTSIDE},
+    ground::Bends,
+    mesh::{Deviation, Mesh},
+    raster::{Sample, nearest_steps},
+    tiling::{LAST_STEP, Square, is_in_tile},
+};
+use crate::globe::{between, dot, geocentric_m, unit};
+
+/// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Point {
+    /// In steps; beyond the tile below 0 or above [`LAST_STEP`].
+    uv: [f32; 2],
+    /// The position from the middle of the tile, in axes parallel to the earth's.
+    from_middle_m: [f32; 3],
+}
+
+/// Where a tile lies, for points in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointFrame {
+    square: Square,
+    /// The middle of the tile, from the earth's centre.
+    pub(crate) middle_m: [f64; 3],
+}
+
+impl PointFrame {
+    pub(crate) fn new(square: Square) -> Self {
+        let [lon, lat] = square.place_deg([f64::from(LAST_STEP) / 2.0; 2]);
+        Self { square, middle_m: geocentric_m([lon, lat, 0.0]) }
+    }
+
+    /// The point at a longitude and latitude, with its height.
+    pub(crate) fn point(&self, place: [f64; 3]) -> Point {
+        let [lon, lat, _] = place;
+        Point {
+            uv: self.square.uv_of([lon, lat]).map(|step| step as f32),
+            from_middle_m: self.position_m(place).map(|axis| axis as f32),
+        }
+    }
+
+    /// The position of a longitude, latitude and height, from the middle.
+    fn position_m(&self, place: [f64; 3]) -> [f64; 3] {
+        between(self.middle_m, geocentric_m(place))
+    }
+}
+
+impl Point {
+    fn uv(&self) -> [f64; 2] {
+        self.uv.map(f64::from)
+    }
+
+    pub(crate) fn is_in_tile(&self) -> bool {
+        is_in_tile(self.uv())
+    }
+}
+
+/// A place where the triangles are too far from the ground.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TooFar {
+    off_m: f64,
+    /// In steps.
+    pub(crate) uv: [f64; 2],
+    /// The point, if it is one; otherwise an edge of the ground crosses one of the triangles there.
+    pub(crate) point: Option<usize>,
+}
+
+/// The ground of a tile, and the triangles that it was last compared with.
+///
+/// Between vertices and edges both are flat, so they are farthest from each other at a vertex of either, or where edges of both cross:
+///
+/// ```text
+///         ●──────────────●        ● vertex of the triangles, which lies on the ground
+///        / \    ┆       /         ○ vertex of the ground
+///       /   \ ┆        /          ┆ edge of the ground; it is looked at where it crosses an edge of the triangles, too
+///      /  ○┄┄┄╳       /
+///     /        \     /
+///    ●──────────────●
+/// ```
+///
+/// What the globe's curvature adds between them is seen at the nodes of the raster, which are points, too.
+pub(crate) struct Comparison {
+    frame: PointFrame,
+    points: Vec<Point>,
+    /// Edges between points.
+    edges: Vec<[u32; 2]>,
+    /// The triangle that holds each point; [`OUTSIDE`] for those that are not to be looked at.
+    faces: Vec<u32>,
+    facets: Facets,
+    /// Whether the points of a triangle are to be looked at again.
+    is_due: Vec<bool>,
+    /// Steps of places where edges cross that were vertices or off the ground when they were asked for.
+    settled: BTreeSet<[u16; 2]>,
+}
+
+impl Comparison {
+    pub(crate) fn new(frame: PointFrame, bends: Bends<Point>, mesh: &Mesh) -> Self {
+        Self::with_facets(frame, bends, mesh.facets(frame.middle_m))
+    }
+
+    fn with_facets(frame: PointFrame, bends: Bends<Point>, facets: Facets) -> Self {
+        let Bends { points, edges } = bends;
+        let mut hint = OUTSIDE;
+        let faces = points
+            .iter()
+            .map(|point| {
+                if !point.is_in_tile() {
+                    return OUTSIDE;
+                }
+                hint = facets.locate(hint, point.uv());
+                hint
+            })
+            .collect();
+        let is_due = vec![true; facets.len()];
+        Self { frame, points, edges, faces, facets, is_due, settled: BTreeSet::new() }
+    }
+
+    /// Takes the triangles after vertices were added.
+    pub(crate) fn update(&mut self, mesh: &Mesh) {
+        let facets = mesh.facets(self.frame.middle_m);
+        let has_changed: Vec<bool> =
+            (0..facets.len()).map(|face| !facets.is_as_in(&self.facets, face)).collect();
+        for (face, point) in self.faces.iter_mut().zip(&self.points) {
+            if *face != OUTSIDE && has_changed[*face as usize] {
+                *face = facets.locate(*face, point.uv());
+            }
+        }
+        self.is_due.resize(facets.len(), true);
+        for (is_due, has_changed) in self.is_due.iter_mut().zip(has_changed) {
+            *is_due |= has_changed;
+        }
+        self.facets = facets;
+    }
+
+    /// The point of each triangle that is farthest from it, and farther than `limit_m`. Triangles without one are not looked at again before they change.
+    pub(crate) fn far_points(&mut self, limit_m: f64) -> Vec<TooFar> {
+        let mut worst = vec![None; self.facets.len()];
+        for (k, (&face, point)) in self.faces.iter().zip(&self.points).enumerate() {
+            if face != OUTSIDE && self.is_due[face as usize] && is_inside(point.uv()) {
+                let off_m = self.off_m(face, point.uv(), point.from_middle_m.map(f64::from));
+                note(&mut worst[face as usize], limit_m, off_m, point.uv(), Some(k));
+            }
+        }
+        self.is_due = worst.iter().map(Option::is_some).collect();
+        worst.into_iter().flatten().collect()
+    }
+
+    /// Where an edge of the ground leaves a triangle the farthest from it, and farther than `limit_m`, for each triangle. No steps are told of twice: a vertex
+    /// is there then, or can be none.
+    pub(crate) fn far_crossings(&mut self, limit_m: f64) -> Vec<TooFar> {
+        let mut worst = vec![None; self.facets.len()];
+        self.for_each_crossing(|face, uv, from_middle_m| {
+            if is_inside(uv) {
+                let off_m = self.off_m(face, uv, from_middle_m);
+                if off_m > limit_m && !self.settled.contains(&nearest_steps(uv)) {
+                    note(&mut worst[face as usize], limit_m, off_m, uv, None);
+                }
+            }
+        });
+        // Triangles that meet at a place tell of it, each of them.
+        let far = worst.into_iter().flatten();
+        far.filter(|far| self.settled.insert(nearest_steps(far.uv))).collect()
+    }
+
+    /// Takes another place for a point: that of the steps to which it is rounded; where there is no ground at any, it is left out from now on. Where the ground is
+    /// steep or ends, that makes a difference.
+    pub(crate) fn round(&mut self, point: usize, place: Option<[f64; 3]>) {
+        if let Some(place) = place {
+            self.points[point] = self.frame.point(place);
+            self.faces[point] = self.facets.locate(self.faces[point], self.points[point].uv());
+        } else {
+            self.faces[point] = OUTSIDE;
+        }
+    }
+
+    /// How far the triangles are from the ground at all points, where edges cross, and at samples on borders. What is farther than `limit_m` is looked at again
+    /// at the steps to which it is rounded, as `at_steps` tells it. Without `is_finest` edges are not the finest ground's own, so all of it is.
+    pub(crate) fn deviation<'s, E>(
+        &self,
+        on_borders: impl Iterator<Item = &'s Sample>,
+        limit_m: f64,
+        is_finest: bool,
+        at_steps: impl FnOnce(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, E>,
+    ) -> Result<Deviation, E> {
+        let mut found = Deviation::default();
+        let mut again: Vec<(u32, [f64; 2])> = Vec::new();
+        for (&face, point) in self.faces.iter().zip(&self.points) {
+            if face != OUTSIDE {
+                let off_m = self.off_m(face, point.uv(), point.from_middle_m.map(f64::from));
+                if off_m > limit_m {
+                    again.push((face, point.uv()));
+                } else {
+                    found.note(off_m);
+                }
+            }
+        }
+        let mut hint = OUTSIDE;
+        for sample in on_borders {
+            let uv = sample.steps.map(f64::from);
+            hint = self.facets.locate(hint, uv);
+            if hint != OUTSIDE {
+                found.note(self.off_m(hint, uv, between(self.frame.middle_m, sample.at_m)));
+            }
+        }
+        self.for_each_crossing(|face, uv, from_middle_m| {
+            let off_m = self.off_m(face, uv, from_middle_m);
+            if !is_finest || off_m > limit_m {
+                again.push((face, uv));
+            } else {
+                found.note(off_m);
+            }
+        });
+        let uv: Vec<[f64; 2]> = again.iter().map(|(_, uv)| *uv).collect();
+        for ((face, _), place) in again.into_iter().zip(at_steps(&uv)?) {
+            let Some(place) = place else { continue };
+            let [lon, lat, _] = place;
+            let uv = self.frame.square.uv_of([lon, lat]);
+            let face = self.facets.locate(face, uv);
+            if face != OUTSIDE {
+                found.note(self.off_m(face, uv, self.frame.position_m(place)));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Tells of each place where an edge of the ground leaves a triangle: the triangle, u and v, and the position from the middle. An edge is bent like the
+    /// globe: over its chord, as far from the ends as shares a and b of its length, it is by length² · a · b / (2 · radius).
+    fn for_each_crossing(&self, mut tell: impl FnMut(u32, [f64; 2], [f64; 3])) {
+        let mut hint = OUTSIDE;
+        for &edge in &self.edges {
+            let mut ends = edge.map(|point| point as usize);
+            let mut faces = ends.map(|end| self.faces[end]);
+            if faces[0] == OUTSIDE {
+                ends.reverse();
+                faces.reverse();
+            }
+            if faces[0] == faces[1] && faces[0] != OUTSIDE {
+                continue;
+            }
+            let points = ends.map(|end| &self.points[end]);
+            let [from, to] = points.map(Point::uv);
+            let ends_m = points.map(|point| point.from_middle_m.map(f64::from));
+            let chord_m = between(ends_m[0], ends_m[1]);
+            let bulge_m = dot(chord_m, chord_m) / (2.0 * SEMI_MAJOR_M);
+            let up = self.up_at(ends_m[0]);
+            let mut begin = 0.0;
+            if faces[0] == OUTSIDE {
+                let Some(share) = share_at_entry([from, to]) else { continue };
+                begin = share;
+                faces[0] = self.facets.locate(hint, along(from, to, begin));
+                if faces[0] == OUTSIDE {
+                    continue;
+                }
+            }
+            hint = faces[0];
+            let line = [along(from, to, begin), to];
+            self.facets.for_each_crossing(faces[0], line, |face, share| {
+                let share = begin + (1.0 - begin) * share;
+                let over_m = bulge_m * share * (1.0 - share);
+                let on_chord_m = along(ends_m[0], ends_m[1], share);
+                let position_m = [0, 1, 2].map(|axis| on_chord_m[axis] + over_m * up[axis]);
+                tell(face, along(from, to, share), position_m);
+            });
+        }
+    }
+
+    /// How far a triangle is from a place of the ground.
+    fn off_m(&self, face: u32, uv: [f64; 2], from_middle_m: [f64; 3]) -> f64 {
+        let up = self.up_at(from_middle_m);
+        self.facets.above_m(face, uv, from_middle_m, up).abs()
+    }
+
+    fn up_at(&self, from_middle_m: [f64; 3]) -> [f64; 3] {
+        let middle_m = self.frame.middle_m;
+        up_from([0, 1, 2].map(|axis| middle_m[axis] + from_middle_m[axis]))
+    }
+}
+
+/// Keeps the place that is farther from its triangle than any before it.
+fn note(worst: &mut Option<TooFar>, limit_m: f64, off_m: f64, uv: [f64; 2], point: Option<usize>) {
+    if off_m > worst.as_ref().map_or(limit_m, |known| known.off_m) {
+        *worst = Some(TooFar { off_m, uv, point });
+    }
+}
+
+/// Whether a place is not on a border, once it is rounded to steps.
+fn is_inside(uv: [f64; 2]) -> bool {
+    uv.iter().all(|step| (0.5..f64::from(LAST_STEP) - 0.5).contains(step))
+}
+
+fn along<const N: usize>(from: [f64; N], to: [f64; N], share: f64) -> [f64; N] {
+    std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share)
+}
+
+/// Where a line comes into the tile, as a share of the way.
+///
+/// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
+fn share_at_entry([from, to]: [[f64; 2]; 2]) -> Option<f64> {
+    let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let way = to[axis] - from[axis];
+        let shares = [0.0, f64::from(LAST_STEP)].map(|border| (border - from[axis]) / way);
+        if way.abs() < f64::MIN_POSITIVE {
+            if !(0.0..=f64::from(LAST_STEP)).contains(&from[axis]) {
+                return None;
+            }
+        } else {
+            begin = begin.max(shares[0].min(shares[1]));
+            end = end.min(shares[0].max(shares[1]));
+        }
+    }
+    (begin < end).then_some(begin)
+}
+
+/// The direction upwards at a position near the ellipsoid.
+///
+/// On it the direction is that of (x, y, z / (1 − e²)). At a height h it is off by h · e² / (2 · radius) at most: by 10⁻⁵ at 9 km.
+fn up_from([x, y, z]: [f64; 3]) -> [f64; 3] {
+    unit([x, y, z / (1.0 - ECCENTRICITY_2)])
+}
+
+#[cfg(test)]
+#[path = "comparison_tests.rs"]
+mod tests;

@@ -1,0 +1,142 @@
+//! A mesh's triangles as flat lists: which of them holds a place, through which a line goes, and how high they are.
+
+use spade::{DelaunayTriangulation, Triangulation as _};
+
+use super::mesh_vertex::MeshVertex;
+use crate::globe::{between, dot};
+
+/// In place of a triangle: what is beyond the border of the tile.
+pub(crate) const OUTSIDE: u32 = 0;
+
+/// A place that is so little beyond a side is taken to be on it, in square steps of u and v: more than rounding makes of products below 2³⁰.
+const ROUNDING: f64 = 1e-5;
+
+/// The triangles, numbered as in the mesh. Number 0 is [`OUTSIDE`].
+#[derive(Debug, Default)]
+pub(crate) struct Facets {
+    /// u and v of each vertex.
+    uv: Vec<[f64; 2]>,
+    /// Counter-clockwise from above.
+    corners: Vec<[u32; 3]>,
+    /// What is beyond the side from corner k to the next.
+    beyond: Vec<[u32; 3]>,
+    /// The position of each vertex, from the origin.
+    from_origin_m: Vec<[f64; 3]>,
+}
+
+impl Facets {
+    /// Positions are told from `origin_m`, so that small numbers tell one near it.
+    pub(crate) fn new(triangles: &DelaunayTriangulation<MeshVertex>, origin_m: [f64; 3]) -> Self {
+        let count = triangles.num_all_faces();
+        let mut facets = Self {
+            uv: triangles
+                .vertices()
+                .map(|vertex| [vertex.data().u, vertex.data().v].map(f64::from))
+                .collect(),
+            corners: vec![[0; 3]; count],
+            beyond: vec![[OUTSIDE; 3]; count],
+            from_origin_m: triangles
+                .vertices()
+                .map(|vertex| between(origin_m, vertex.data().at_m))
+                .collect(),
+        };
+        for face in triangles.inner_faces() {
+            let index = face.fix().index();
+            let sides = face.adjacent_edges();
+            facets.corners[index] = sides.map(|side| side.from().fix().index() as u32);
+            facets.beyond[index] = sides.map(|side| side.rev().face().fix().index() as u32);
+        }
+        facets
+    }
+
+    /// How many triangles there are, what is outside counted, too.
+    pub(crate) fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether a triangle has the same corners as in an earlier state of the mesh.
+    pub(crate) fn is_as_in(&self, earlier: &Self, face: usize) -> bool {
+        earlier.corners.get(face) == Some(&self.corners[face])
+    }
+
+    /// How far a place is to the left of a side, times the length of the side.
+    fn beside(&self, face: u32, side: usize, [u, v]: [f64; 2]) -> f64 {
+        let corners = self.corners[face as usize];
+        let [a, b] = [side, (side + 1) % 3].map(|k| self.uv[corners[k] as usize]);
+        (b[0] - a[0]) * (v - a[1]) - (b[1] - a[1]) * (u - a[0])
+    }
+
+    /// The triangle that holds a place of the tile, found by going there from another; [`OUTSIDE`] for a place beyond the tile.
+    ///
+    /// Source: Devillers, Pion & Teillaud 2002, *Walking in a Triangulation*: it ends in any Delaunay triangulation. Rounding could send it back and forth
+    /// between two triangles, so it never goes back where it came from.
+    pub(crate) fn locate(&self, from: u32, at: [f64; 2]) -> u32 {
+        let mut face = from.max(1);
+        let mut before = OUTSIDE;
+        for _ in 0..self.len() {
+            let is_beyond = |side: &usize| self.beside(face, *side, at) < -ROUNDING;
+            let ways = (0..3).filter(is_beyond).map(|side| self.beyond[face as usize][side]);
+            let Some(next) = ways.into_iter().find(|&next| next != before || next == OUTSIDE)
+            else {
+                return face;
+            };
+            if next == OUTSIDE {
+                return OUTSIDE;
+            }
+            (before, face) = (face, next);
+        }
+        face
+    }
+
+    /// Tells where a line that begins in a triangle leaves it and those after it: the triangle, and the share of the way. Along a side, rounding could make of
+    /// the share any number; it never becomes smaller.
+    pub(crate) fn for_each_crossing(
+        &self,
+        first: u32,
+        [from, to]: [[f64; 2]; 2],
+        mut tell: impl FnMut(u32, f64),
+    ) {
+        let (mut face, mut before) = (first, OUTSIDE);
+        let mut reached = 0.0;
+        for _ in 0..self.len() {
+            let beyond = self.beyond[face as usize];
+            let mut exit: Option<(f64, usize)> = None;
+            for side in (0..3).filter(|&side| beyond[side] != before || before == OUTSIDE) {
+                let last = self.beside(face, side, to);
+                if last < -ROUNDING {
+                    let begin = self.beside(face, side, from).max(0.0);
+                    let share = begin / (begin - last);
+                    if exit.is_none_or(|(known, _)| share < known) {
+                        exit = Some((share, side));
+                    }
+                }
+            }
+            let Some((share, side)) = exit else { return };
+            reached = share.max(reached);
+            tell(face, reached);
+            if beyond[side] == OUTSIDE {
+                return;
+            }
+            (before, face) = (face, beyond[side]);
+        }
+    }
+
+    /// How far the ground at u and v, its position told from the origin, is above a triangle, along the vertical: above the place of the flat triangle that is at
+    /// u and v between its corners. On a side that place depends on the side alone, so that also long narrow triangles beside a border, whose sides bend in
+    /// degrees by more than the triangles' width, are near the ground.
+    pub(crate) fn above_m(
+        &self,
+        face: u32,
+        uv: [f64; 2],
+        from_origin_m: [f64; 3],
+        up: [f64; 3],
+    ) -> f64 {
+        let corners = self.corners[face as usize];
+        // The part of each corner is the area of the triangle over the side across from it.
+        let parts = [1, 2, 0].map(|side| self.beside(face, side, uv));
+        let whole: f64 = parts.iter().sum();
+        let above = corners
+            .map(|vertex| dot(between(self.from_origin_m[vertex as usize], from_origin_m), up));
+        (0..3).map(|k| parts[k] / whole * above[k]).sum()
+    }
+}

@@ -1,0 +1,35 @@
+//! At a fork off the ground each bridge goes on in the straightest other one.
+
+use corniche_geom::LatticePoint;
+
+use super::{super::stretches::Stretch, DeckEnds};
+
+fn deck(points: &[(i64, i64)]) -> Stretch {
+    Stretch {
+        points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect(),
+        deck_m: Some(vec![9.0; points.len()]),
+        goes_on: [false; 2],
+    }
+}
+
+#[test]
+fn the_straightest_goes_on() {
+    let trunk = deck(&[(-100, 0), (0, 0)]);
+    let straight = deck(&[(0, 0), (100, 5)]);
+    let bent = deck(&[(60, 60), (0, 0)]);
+    let ground = Stretch { deck_m: None, ..deck(&[(0, 0), (100, 0)]) };
+    let ends = DeckEnds::of([&trunk, &straight, &bent, &ground].into_iter());
+    let point = |u, v| Some(LatticePoint::new(u, v));
+    assert_eq!(ends.beyond(&trunk, 1), point(100, 5));
+    assert_eq!(ends.beyond(&straight, 0), point(-100, 0));
+    assert_eq!(ends.beyond(&bent, 1), point(-100, 0));
+    assert_eq!(ends.beyond(&trunk, 0), None, "nothing is there");
+}
+
+#[test]
+fn nothing_goes_on_in_a_hairpin() {
+    let there = deck(&[(0, 0), (100, 0)]);
+    let back = deck(&[(0, 0), (100, 10)]);
+    let ends = DeckEnds::of([&there, &back].into_iter());
+    assert_eq!(ends.beyond(&there, 0), None);
+}

@@ -1,0 +1,71 @@
+//! Which points a wide line is drawn through: inside of turns, sides of short segments would cross.
+//!
+//! ```text
+//!   ─────────────◦
+//!          back  │╲        The inner sides end `back` before the turn and begin `back` after it: half the width
+//!   ─────◇╌╌╌╌╌╌╌◦ ╲       times the tangent of half the turn. A segment has room for the backs of both its ends,
+//!         ╲                or one of them is left out.
+//! ```
+
+use corniche_geom::LatticePoint;
+
+/// A point is left out only if that moves the line by no more than this share of half its width.
+const MOST_MOVED: f64 = 0.25;
+
+/// The numbers of the points that are taken, in order: always the first and the last, and all others that the line cannot do without.
+pub(crate) fn wide_points(points: &[LatticePoint], half_width: f64) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::with_capacity(points.len());
+    for next in 0..points.len() {
+        kept.push(next);
+        while let Some(left_out) = too_many(points, &kept, half_width) {
+            kept.remove(left_out);
+        }
+    }
+    kept
+}
+
+/// The place among the kept points of one of the last that has too little room, and that the line can do without.
+fn too_many(points: &[LatticePoint], kept: &[usize], half_width: f64) -> Option<usize> {
+    let last = kept.len();
+    let at = |place: usize| points[kept[place]];
+    let back = |place: usize| half_width * half_turn(at(place - 1), at(place), at(place + 1));
+    let length = |place: usize| at(place).distance_steps(at(place + 1));
+    let moved = |place: usize| beside([at(place - 1), at(place + 1)], at(place));
+    let is_free = |place: &usize| moved(*place) <= MOST_MOVED * half_width;
+    let turn = last.checked_sub(2).filter(|turn| *turn > 0)?;
+    if back(turn).abs() > length(turn - 1).min(length(turn)) && is_free(&turn) {
+        return Some(turn);
+    }
+    let before = Some(turn - 1).filter(|before| *before > 0)?;
+    let [one, other] = [before, turn].map(back);
+    let have_room = one * other <= 0.0 || (one + other).abs() <= length(before);
+    let mut either = [before, turn].into_iter().filter(is_free);
+    if have_room {
+        return None;
+    }
+    let first = either.next()?;
+    Some(either.next().filter(|second| moved(*second) < moved(first)).unwrap_or(first))
+}
+
+/// The tangent of half the turn at a point; below 0 to the right.
+fn half_turn(from: LatticePoint, at: LatticePoint, to: LatticePoint) -> f64 {
+    let [a, b] = [[from, at], [at, to]]
+        .map(|[one, other]| [(other.u - one.u) as f64, (other.v - one.v) as f64]);
+    let cross = a[0] * b[1] - a[1] * b[0];
+    let tangent = cross / (a[0].hypot(a[1]) * b[0].hypot(b[1]) + a[0] * b[0] + a[1] * b[1]);
+    // A way back along itself.
+    if tangent.is_nan() { f64::INFINITY } else { tangent }
+}
+
+/// How far a point is beside a segment.
+fn beside([from, to]: [LatticePoint; 2], at: LatticePoint) -> f64 {
+    let vector = |end: LatticePoint| [(end.u - from.u) as f64, (end.v - from.v) as f64];
+    let ([du, dv], [pu, pv]) = (vector(to), vector(at));
+    let share = ((pu * du + pv * dv) / (du * du + dv * dv)).clamp(0.0, 1.0);
+    let share = if share.is_finite() { share } else { 0.0 };
+    (pu - share * du).hypot(pv - share * dv)
+}
+
+#[cfg(test)]
+#[path = "wide_line_tests.rs"]
+mod tests;

@@ -1,0 +1,132 @@
+//! How long the ways are that are left out, where all nodes that are sought fit in memory.
+//!
+//! Such a way is asked for its length alone. So its nodes need no numbers, and their places need not be put in the order of the ways: each is
+//! looked up. This takes a third to a half less time than to treat them as those of roads.
+
+use std::{collections::BTreeMap, io, ops::Range};
+
+use corniche_store::Sorter;
+use rayon::prelude::*;
+
+use crate::{
+    LeftOutReason, LeftOutWays, ReadOsmError,
+    assemble::length_um,
+    id_index::IdIndex,
+    nodes::{NodeIds, NodePlaces},
+    reading::Reading,
+    records::SoughtId,
+    spool::{Spool, damaged},
+    way_bytes::{take_left_out, take_node_ids},
+    wire::{push_varint, varint},
+};
+
+/// How many ways there are and how long they are, by reason and `highway` value.
+pub(crate) type Lengths = BTreeMap<(LeftOutReason, String), LeftOutWays>;
+
+/// Ways that are left out, and the nodes that they name.
+pub(crate) struct LeftOutNodes<'a> {
+    /// The length of a way's bytes, and these; see [`crate::way_bytes`].
+    ways: Spool<'a>,
+    pub(crate) ids: Sorter<'a, SoughtId>,
+    pub(crate) ids_count: u64,
+}
+
+impl<'a> LeftOutNodes<'a> {
+    pub(crate) fn new(reading: &Reading<'a>) -> Self {
+        let shares = reading.shares();
+        // What lists where ways name nodes has nothing to list for these.
+        let ways = Spool::new(reading.request.scratch, shares.visits);
+        Self { ways, ids: reading.sorter(shares.mentions), ids_count: 0 }
+    }
+
+    pub(crate) fn push(&mut self, way: &[u8], node_ids: &[i64]) -> io::Result<()> {
+        let mut last = None;
+        for &id in node_ids {
+            if last.replace(id) != Some(id) {
+                self.ids.push(SoughtId(id))?;
+                self.ids_count += 1;
+            }
+        }
+        self.ways.push(|bytes| {
+            push_varint(bytes, way.len() as u64);
+            bytes.extend(way);
+        })
+    }
+
+    /// The ways, and the ids of their nodes.
+    pub(crate) fn into_parts(self) -> (Spool<'a>, Sorter<'a, SoughtId>, u64) {
+        (self.ways, self.ids, self.ids_count)
+    }
+}
+
+/// Adds up the lengths of ways by the places of their nodes.
+pub(crate) fn left_out_lengths(
+    reading: &Reading<'_>,
+    ways: Spool<'_>,
+    ids: &NodeIds,
+    places: &NodePlaces,
+) -> Result<Lengths, ReadOsmError> {
+    const WAYS_PER_TASK: usize = 256;
+    const BATCH_BYTES: usize = 1 << 20;
+    let failed = |error| reading.scratch_failed(error);
+    let mut ways = ways.read();
+    let mut lengths = Lengths::new();
+    let index = IdIndex::new(ids.ids());
+    let (mut bytes, mut own): (Vec<u8>, Vec<Range<usize>>) = Default::default();
+    loop {
+        reading.check_stop()?;
+        bytes.clear();
+        own.clear();
+        while bytes.len() < BATCH_BYTES {
+            let take = |page: &mut &[u8]| {
+                let length = varint(page).ok()?.try_into().ok()?;
+                let (way, rest) = page.split_at_checked(length)?;
+                *page = rest;
+                bytes.extend(way);
+                Some(bytes.len() - length..bytes.len())
+            };
+            let Some(way) = ways.next(take).map_err(failed)? else { break };
+            own.push(way);
+        }
+        if own.is_empty() {
+            return Ok(lengths);
+        }
+        let found: Vec<Option<BTreeMap<_, _>>> = reading.request.pool.install(|| {
+            let tasks = own.par_chunks(WAYS_PER_TASK);
+            tasks.map(|some| add_up(some, &bytes, &index, places)).collect()
+        });
+        for found in found {
+            for ((reason, highway), found) in found.ok_or_else(damaged).map_err(failed)? {
+                let all = lengths.entry((reason, highway.to_owned())).or_default();
+                all.ways += found.ways;
+                all.length_um += found.length_um;
+            }
+        }
+    }
+}
+
+/// The same for some ways; `None` if their bytes are damaged.
+fn add_up<'b>(
+    some: &[Range<usize>],
+    bytes: &'b [u8],
+    ids: &IdIndex<'_>,
+    places: &NodePlaces,
+) -> Option<BTreeMap<(LeftOutReason, &'b str), LeftOutWays>> {
+    let mut lengths: BTreeMap<_, LeftOutWays> = BTreeMap::new();
+    let mut number = 0;
+    let mut locations = Vec::new();
+    for way in some {
+        let mut way = &bytes[way.clone()];
+        locations.clear();
+        take_node_ids(&mut way, |id| {
+            number = ids.find(id, number).ok_or_else(damaged)?;
+            locations.push(places.location(number));
+            Ok(())
+        })
+        .ok()?;
+        let own = lengths.entry(take_left_out(&mut way)?).or_default();
+        own.ways += 1;
+        own.length_um += length_um(locations.iter().copied());
+    }
+    Some(lengths)
+}

@@ -1,0 +1,33 @@
+//! Reasons to look at a span are listed, named and explained, each once.
+
+use std::collections::BTreeSet;
+
+use super::SpanReason;
+
+/// The place of a reason in the list; a new one must be added here, or this does not compile.
+fn place(reason: SpanReason) -> usize {
+    match reason {
+        SpanReason::NoSupport => 0,
+        SpanReason::OneSupport => 1,
+        SpanReason::OpenEnd => 2,
+        SpanReason::GroundWayOnDeck => 3,
+        SpanReason::KindChange => 4,
+        SpanReason::LayerTie => 5,
+        SpanReason::OrderUnreachable => 6,
+        SpanReason::OrderReversed => 7,
+        SpanReason::NoGround => 8,
+        SpanReason::TooIntricate => 9,
+        SpanReason::GradeOverLimit => 10,
+        SpanReason::DeckInGround => 11,
+        SpanReason::TunnelAboveGround => 12,
+    }
+}
+
+#[test]
+fn every_reason_is_listed_and_has_a_name_and_words_of_its_own() {
+    let all = SpanReason::ALL;
+    assert!(all.iter().enumerate().all(|(at, reason)| place(*reason) == at));
+    let ids: BTreeSet<&str> = all.iter().map(|reason| reason.id()).collect();
+    let words: BTreeSet<&str> = all.iter().map(|reason| reason.words()).collect();
+    assert_eq!([ids.len(), words.len()], [13, 13]);
+}

@@ -1,0 +1,199 @@
+//! A row of a legend: what something is called, and a sample of how it is drawn.
+
+use image::RgbaImage;
+
+use super::letters::{fill, of_255};
+use corniche_styles::{LineStyle, Rgb, RoadBand};
+
+/// Colours of lines that differ by no more than this in each channel are taken for the same one: on lines of some pixels the eye does not
+/// tell them apart.
+const ALIKE_ON_LINES: f32 = 0.09;
+/// The same for edges of roads, which are a pixel or two wide.
+const ALIKE_ON_EDGES: f32 = 0.15;
+/// The same for areas, of which more is seen.
+const ALIKE_ON_AREAS: f32 = 0.03;
+/// Lines whose widths differ by less are taken for equally wide.
+const ALIKE_PX: f32 = 1.0;
+/// A dash of the edge of a tunnel and the gap after it have this length together.
+const TUNNEL_DASH_PX: u32 = 12;
+
+/// A row of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendRow {
+    /// What people call it.
+    pub label: String,
+    /// How it is drawn.
+    pub sample: LegendSample,
+}
+
+/// How something is drawn, with its colours as over the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LegendSample {
+    /// A road.
+    Road(LegendRoad),
+    /// A road under the ground, whose edge is dashed.
+    Tunnel(LegendRoad),
+    /// A line beside the roads, such as a boundary.
+    Line(LineStyle),
+    /// An area.
+    Area(Rgb),
+}
+
+/// How a road is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendRoad {
+    /// Its width in the picture, without its edge.
+    pub width_px: f32,
+    /// The colours of its surface, from its edges to its middle.
+    pub bands: Vec<RoadBand>,
+    /// Its edge, if it has one.
+    pub edge: Option<LegendEdge>,
+}
+
+/// The edge of a road.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegendEdge {
+    /// Its colour.
+    pub color: Rgb,
+    /// Its width.
+    pub width_px: u32,
+}
+
+impl LegendRow {
+    /// Rows of which none looks like another: those that are drawn alike stand in the row of the first of them, with all their labels.
+    #[must_use]
+    pub fn joined(rows: Vec<Self>) -> Vec<Self> {
+        let mut joined: Vec<Self> = Vec::new();
+        for row in rows {
+            match joined.iter_mut().find(|known| known.sample.looks_like(&row.sample)) {
+                Some(known) if known.label == row.label => {}
+                Some(known) => known.label = format!("{}, {}", known.label, row.label),
+                None => joined.push(row),
+            }
+        }
+        joined
+    }
+}
+
+impl LegendSample {
+    /// Whether nobody could tell both apart in a picture.
+    fn looks_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Road(one), Self::Road(other)) | (Self::Tunnel(one), Self::Tunnel(other)) => {
+                one.looks_like(other)
+            }
+            (Self::Line(one), Self::Line(other)) => {
+                let casings = match (one.casing, other.casing) {
+                    (Some(one), Some(other)) => are_alike(one, other, ALIKE_ON_LINES),
+                    (one, other) => one == other,
+                };
+                casings
+                    && one.dash == other.dash
+                    && (one.width_px - other.width_px).abs() < ALIKE_PX
+                    && are_alike(one.color, other.color, ALIKE_ON_LINES)
+            }
+            (Self::Area(one), Self::Area(other)) => are_alike(*one, *other, ALIKE_ON_AREAS),
+            _ => false,
+        }
+    }
+
+    /// Draws it into a cell of a legend, of which the upper left corner and the size are given.
+    pub(crate) fn draw(&self, picture: &mut RgbaImage, corner: [u32; 2], size: [u32; 2]) {
+        let [[left, top], [width, height]] = [corner, size];
+        match self {
+            Self::Road(road) => road.draw(picture, corner, size, None),
+            Self::Tunnel(road) => road.draw(picture, corner, size, Some(TUNNEL_DASH_PX)),
+            Self::Line(style) => draw_line(picture, style, corner, size),
+            Self::Area(color) => {
+                let rows = top + height / 8..top + height - height / 8;
+                fill(picture, left..left + width, rows, of_255(*color), 1.0);
+            }
+        }
+    }
+}
+
+impl LegendRoad {
+    fn looks_like(&self, other: &Self) -> bool {
+        let is_like = |one: &RoadBand, other: &RoadBand| {
+            (one.width_share - other.width_share).abs() * self.width_px < ALIKE_PX
+                && are_alike(one.color, other.color, ALIKE_ON_LINES)
+        };
+        let edges = match (self.edge, other.edge) {
+            (Some(one), Some(other)) => {
+                one.width_px == other.width_px && are_alike(one.color, other.color, ALIKE_ON_EDGES)
+            }
+            (one, other) => one == other,
+        };
+        edges
+            && (self.width_px - other.width_px).abs() < ALIKE_PX
+            && self.bands.len() == other.bands.len()
+            && self.bands.iter().zip(&other.bands).all(|(one, other)| is_like(one, other))
+    }
+
+    /// Draws it. `dash_px` is the length of a dash of its edge and the gap after it, which are equally long; `None`: the edge is solid.
+    fn draw(
+        &self,
+        picture: &mut RgbaImage,
+        [left, top]: [u32; 2],
+        [width, height]: [u32; 2],
+        dash_px: Option<u32>,
+    ) {
+        let edge_px = self.edge.map_or(0, |edge| edge.width_px);
+        // With more bands a sample is thicker, so that each of them is seen, as far as a line has room.
+        let least = (2 * self.bands.len() as u32).saturating_sub(1).max(1);
+        let most = (height * 3 / 4).saturating_sub(2 * edge_px).max(1);
+        let thick = (self.width_px.round() as u32).max(least).min(most);
+        let start = top + (height - thick) / 2;
+        let columns = left..left + width;
+        if let Some(LegendEdge { color, .. }) = self.edge {
+            for column in columns.clone() {
+                if dash_px.is_none_or(|px| (column - left) % px < px / 2) {
+                    let rows = start.saturating_sub(edge_px)..start + thick + edge_px;
+                    fill(picture, column..column + 1, rows, of_255(color), 1.0);
+                }
+            }
+        }
+        for band in &self.bands {
+            let beside = beside_px(thick, band.width_share);
+            let rows = start + beside..start + thick - beside;
+            fill(picture, columns.clone(), rows, of_255(band.color), 1.0);
+        }
+    }
+}
+
+/// How many of the `thick` pixels across a road lie on each side of a band that takes this share of its width. One or two at least are the band's.
+fn beside_px(thick: u32, width_share: f32) -> u32 {
+    let exact = 0.5 * thick as f32 * (1.0 - width_share);
+    (exact.round() as u32).min(thick.saturating_sub(1) / 2)
+}
+
+fn draw_line(
+    picture: &mut RgbaImage,
+    style: &LineStyle,
+    [left, top]: [u32; 2],
+    [width, height]: [u32; 2],
+) {
+    let thick = (style.width_px.round() as u32).clamp(1, height.saturating_sub(2).max(1));
+    let start = top + (height - thick) / 2;
+    for column in 0..width {
+        let share = style.dash.width_at(column as f32 + 0.5);
+        let beside = (0.5 * (1.0 - share) * thick as f32).round() as u32;
+        if share > 0.0 && 2 * beside < thick {
+            let rows = start + beside..start + thick - beside;
+            let columns = left + column..left + column + 1;
+            if let Some(casing) = style.casing {
+                let rows = rows.start.saturating_sub(1)..rows.end + 1;
+                fill(picture, columns.clone(), rows, of_255(casing), 1.0);
+            }
+            fill(picture, columns, rows, of_255(style.color), 1.0);
+        }
+    }
+}
+
+fn are_alike(one: Rgb, other: Rgb, most: f32) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= most)
+}
+
+#[cfg(test)]
+#[path = "legend_row_tests.rs"]
+mod tests;

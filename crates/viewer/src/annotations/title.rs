@@ -1,0 +1,55 @@
+//! A title is written into the upper left corner of a picture.
+
+use image::RgbaImage;
+
+use super::letters::{Letters, draw_opaque_box, line_px};
+
+/// Letters of a title are so many times as high as others.
+const SIZE: u32 = 2;
+
+/// What of a title is not seen as it was written.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct TitleFlaws {
+    /// Letters that the font lacks; a box stands in their places.
+    pub lacking: String,
+    /// Whether the picture is too small for it, so that a part is cut off.
+    pub is_cut: bool,
+}
+
+/// A title as it was written.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct WrittenTitle {
+    /// How high its box is.
+    pub height_px: u32,
+    /// What is not seen of it.
+    pub flaws: TitleFlaws,
+}
+
+/// Writes a title into the upper left corner, on an opaque box. A title without letters changes nothing.
+///
+/// A title that is too long for the picture is broken between words.
+pub fn draw_title(picture: &mut RgbaImage, title: &str) -> WrittenTitle {
+    let (width, height) = picture.dimensions();
+    let line_px = SIZE * line_px(height);
+    let pad_px = line_px / 4;
+    let Some(letters) = Letters::new(line_px) else { return WrittenTitle::default() };
+    let room_px = width.saturating_sub(2 * pad_px) as f32;
+    let lines = letters.wrap(title, room_px);
+    if lines.is_empty() {
+        return WrittenTitle::default();
+    }
+    let widest_px = letters.widest_px(lines.iter().map(String::as_str));
+    let right = widest_px + 2 * pad_px;
+    let bottom = lines.len() as u32 * line_px + pad_px;
+    draw_opaque_box(picture, 0..right.min(width), 0..bottom.min(height));
+    for (line, row) in lines.iter().zip(0_u32..) {
+        letters.draw(picture, line, pad_px as f32, (pad_px / 2 + row * line_px) as f32);
+    }
+    let is_cut = right > width || bottom > height;
+    let flaws = TitleFlaws { lacking: letters.lacking(title), is_cut };
+    WrittenTitle { height_px: bottom.min(height), flaws }
+}
+
+#[cfg(test)]
+#[path = "title_tests.rs"]
+mod tests;

@@ -1,0 +1,32 @@
+//! Depths as numbers of an ordinary texture: only a whole depth texture can be copied, and the largest have more bytes than a buffer may have.
+
+use wgpu::ColorWrites;
+
+use super::super::{
+    Gpu,
+    bindings::{UNFILTERED, layout, texture, textures},
+    formats::NUMBER,
+    passes::full_screen,
+    pipeline::{PipelineRecipe, Shader, shader},
+    target_texture::TargetTexture,
+};
+
+pub(crate) const SHADER: Shader = shader!("depth numbers": "screen", "depth_numbers");
+
+/// The values of a depth texture, in a texture that can be copied in parts.
+pub(crate) fn depth_numbers(gpu: &Gpu, depth: &TargetTexture) -> TargetTexture {
+    let size_px = [depth.texture().width(), depth.texture().height()];
+    let numbers = TargetTexture::new(gpu, "depth numbers", NUMBER, size_px);
+    let layout = layout(&gpu.device, "depth numbers", &[texture(0, UNFILTERED)]);
+    let bound = textures(gpu, &layout, &[&depth.view]);
+    let pipeline = PipelineRecipe {
+        targets: &[(NUMBER, ColorWrites::ALL)],
+        ..PipelineRecipe::full_screen(SHADER, &[Some(&layout)], &[])
+    }
+    .build(&gpu.device);
+    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("depth numbers") };
+    let mut encoder = gpu.device.create_command_encoder(&descriptor);
+    full_screen(&mut encoder, "depth numbers", &numbers.view, &pipeline, &[&bound]);
+    gpu.queue.submit([encoder.finish()]);
+    numbers
+}

@@ -1,0 +1,134 @@
+//! What a finished drawing shows, sample by sample: classes of roads, boundaries and areas, and heights.
+//!
+//! Labels of roads are still there after a picture is drawn. Those of boundaries are drawn again, because all layers of lines take turns in one target; and
+//! areas leave a mixture of colours on the ground, so they are drawn once more into a texture of their own, in a style whose colours are numbers of classes.
+
+use corniche_areas::AreaClass;
+use corniche_styles::{AreaStyle, Style};
+
+use super::{
+    super::{
+        Gpu, ReadBackError,
+        formats::COLOR,
+        inspection::{Owner, owners},
+        seen::{Seen, SeenSamples, heights_m},
+        shared_bindings::SharedBindings,
+        target_texture::TargetTexture,
+        targets::Targets,
+        tile_buffers::{DrawTile, TileBuffers},
+    },
+    LabelledLines, Renderer, areas_of,
+};
+use crate::{frame_view::FrameView, layer_view::view_of_lines, tiles::LineLayer};
+
+/// Bytes of a sample of [`COLOR`].
+const COLOR_BYTES: usize = 4;
+
+impl Renderer {
+    /// What a drawing shows that [`Renderer::draw`] has just made of the same view and tiles.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub(crate) fn seen(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+    ) -> Result<Seen, ReadBackError> {
+        let boundaries = self.boundary_labels(gpu, view, tiles, targets)?;
+        let areas = self.area_classes(gpu, view, tiles, targets)?;
+        let samples_per_side = targets.samples_per_side();
+        let seen = SeenSamples {
+            per_side: samples_per_side,
+            columns: targets.size_px()[0] * samples_per_side,
+            roads: &targets.read_labels(gpu)?,
+            decks: targets.read_deck_labels(gpu)?.as_deref(),
+            boundaries: boundaries.as_deref(),
+            areas: areas.as_deref(),
+        }
+        .seen();
+        drop(boundaries);
+        let is_ground: Vec<bool> = owners(&targets.owners.read(gpu)?)
+            .map(|owner| matches!(owner, Owner::Ground(_)))
+            .collect();
+        let depth = targets.read_depth(gpu)?;
+        let depths =
+            depth.iter().enumerate().filter(|(place, _)| is_ground.get(*place) == Some(&true));
+        let camera = view.camera.supersampled(samples_per_side);
+        let depths = depths.map(|(place, depth)| (place, f64::from(*depth)));
+        let heights_m = heights_m(&camera, view.vertical_scale(), depths);
+        Ok(seen.with_heights(heights_m, areas.as_deref()))
+    }
+
+    /// The labels of boundaries; `None` if no tile has any that are drawn.
+    fn boundary_labels(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+    ) -> Result<Option<Vec<u8>>, ReadBackError> {
+        let layer = LineLayer::Boundaries;
+        let style = layer.style_of(view.style);
+        let view = view_of_lines(view, &style);
+        let method = view.roads.method;
+        let lines =
+            LabelledLines::new(gpu, tiles, &view, |tile: &TileBuffers| tile.lines(layer, method));
+        if lines.is_empty() {
+            return Ok(None);
+        }
+        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
+        let shared = SharedBindings::new(gpu, &self.layouts, &view, tile_uniforms, targets);
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("boundary labels") };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let labels = targets.lines(gpu);
+        self.labels_pass(gpu, &mut encoder, &shared, &lines, &view, labels);
+        gpu.queue.submit([encoder.finish()]);
+        labels.labels.read(gpu).map(Some)
+    }
+
+    /// The number of the class of the area at each sample plus 1, 0 where there is none; `None` if no tile has areas that are drawn.
+    fn area_classes(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+    ) -> Result<Option<Vec<u8>>, ReadBackError> {
+        let style = with_numbers_as_colors(view.style);
+        let view = FrameView { style: &style, ..*view };
+        let areas = areas_of(tiles, &view, DrawTile::areas);
+        if areas.is_empty() {
+            return Ok(None);
+        }
+        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
+        let shared = SharedBindings::new(gpu, &self.layouts, &view, tile_uniforms, targets);
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("area classes") };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        // A new texture is all 0.
+        let sampled_px = targets.size_px().map(|side| side * targets.samples_per_side());
+        let classes = TargetTexture::new(gpu, "area classes", COLOR, sampled_px);
+        self.areas_pass(gpu, &mut encoder, &shared, &areas, &view, (&classes, targets));
+        gpu.queue.submit([encoder.finish()]);
+        let texels = classes.read(gpu)?;
+        let numbers = texels.chunks_exact(COLOR_BYTES).map(|texel| texel[0] / CLASS_STEP);
+        Ok(Some(numbers.collect()))
+    }
+}
+
+/// Numbers of classes are so far apart in the red of a texel.
+const CLASS_STEP: u8 = u8::MAX / (AreaClass::COUNT as u8 + 1);
+
+/// A style in which the colour of each class of areas that is drawn is its number plus 1, and hides what is beneath it.
+fn with_numbers_as_colors(style: &Style) -> Style {
+    let mut style = style.clone();
+    for (area, number) in style.areas.iter_mut().zip(1_u8..) {
+        let opacity = if area.is_drawn() { 1.0 } else { 0.0 };
+        // Half a step more, so that rounding does no harm.
+        let red = f32::from(number * CLASS_STEP + CLASS_STEP / 2) / 255.0;
+        // Half a number would be another one: cliffs count as what lies on them.
+        *area = AreaStyle { color: [red, 0.0, 0.0], opacity, steepest_deg: None };
+    }
+    style
+}

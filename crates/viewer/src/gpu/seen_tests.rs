@@ -1,0 +1,141 @@
+//! A class is in a picture if as much as some pixels shows it, and heights are those of the ground that is seen.
+
+use corniche_geom::Bounds;
+
+use super::*;
+use crate::{
+    camera::{Orientation, WorldBox},
+    gpu::labels::{road_label, service_label, tunnel_label},
+};
+
+fn numbers(classes: ClassSet) -> Vec<u8> {
+    classes.iter().map(FunctionalRoadClass::number).collect()
+}
+
+fn samples(roads: &[u8]) -> SeenSamples<'_> {
+    SeenSamples { per_side: 1, columns: 8, roads, decks: None, boundaries: None, areas: None }
+}
+
+#[test]
+fn bands_service_roads_and_tunnels_count_for_their_class() {
+    let roads = [
+        [road_label(2, 0), road_label(2, 0), road_label(2, 1), road_label(2, 3)],
+        [service_label(5); 4],
+        [tunnel_label(0, true), tunnel_label(0, false), tunnel_label(0, true), 0],
+        [
+            tunnel_label(4, true),
+            tunnel_label(4, false),
+            tunnel_label(4, true),
+            tunnel_label(4, true),
+        ],
+    ]
+    .concat();
+    let seen = samples(&roads).seen();
+    assert_eq!(numbers(seen.roads), [2, 4, 5]);
+    assert_eq!(numbers(seen.tunnels), [4]);
+    // With four samples a pixel, four of them are one pixel.
+    let seen = SeenSamples { per_side: 2, ..samples(&roads) }.seen();
+    assert!(numbers(seen.roads).is_empty());
+}
+
+/// Sides and undersides of bridges hide roads and are none themselves.
+#[test]
+fn decks_hide_what_is_beneath_them() {
+    let roads = [road_label(3, 0); 12];
+    let decks = [[1; 4], [2; 4], [road_label(1, 0); 4]].concat();
+    let seen = SeenSamples { decks: Some(&decks), ..samples(&roads) }.seen();
+    assert_eq!(numbers(seen.roads), [1]);
+}
+
+#[test]
+fn areas_beneath_roads_are_not_seen() {
+    let roads = [[0; 4], [road_label(3, 0); 4]].concat();
+    let [forest, water] = [AreaClass::Forest, AreaClass::Water];
+    let areas = [[forest.number() + 1; 4], [water.number() + 1; 4]].concat();
+    let seen = SeenSamples { areas: Some(&areas), ..samples(&roads) }.seen();
+    assert_eq!(seen.areas, [SeenArea { class: forest, height_m: None }]);
+}
+
+/// Three rows of eight samples: those of a boundary on a road or within two pixels of it are not drawn.
+#[test]
+fn boundaries_make_room_for_roads() {
+    let country = road_label(0, 0);
+    let county = road_label(4, 0);
+    let boundaries = [[country; 8], [0; 8], [county; 8]].concat();
+    let nothing = [0; 24];
+    let of = |roads: &[u8]| {
+        let all = SeenSamples { boundaries: Some(&boundaries), ..samples(roads) };
+        numbers(all.seen().boundaries)
+    };
+    assert_eq!(of(&nothing), [0, 4]);
+    let below = [[0; 8], [0; 8], [road_label(5, 0); 8]].concat();
+    assert!(of(&below).is_empty());
+    // Paths and tunnels are no such roads.
+    assert_eq!(of(&[[0; 8], [0; 8], [road_label(8, 0); 8]].concat()), [0, 4]);
+    assert_eq!(of(&[[0; 8], [0; 8], [tunnel_label(5, true); 8]].concat()), [0, 4]);
+}
+
+/// The depth of each sample is computed from a place on the ground, and the heights come back.
+#[test]
+fn heights_come_back_from_depths() {
+    let from_above = Camera::from_above(glam::DVec2::ZERO, 2.0, 30.0, [200.0, 3000.0], [4, 4]);
+    let orientation = Orientation { heading_deg: 20.0, pitch_deg: 55.0 };
+    let place = WorldBox::new(
+        Bounds { min_x: -50.0, min_y: -50.0, max_x: 50.0, max_y: 50.0 },
+        [900.0, 1000.0],
+    );
+    let oblique = Camera::framing(place, orientation, [4, 4]);
+    for camera in [from_above, oblique] {
+        let depth_of = |pixel: usize, height_m: f64| {
+            let middle = DVec2::new((pixel % 4) as f64, (pixel / 4) as f64) + 0.5;
+            let (start, ray) = (camera.ray_start_in_world(middle), camera.ray_in_world(middle));
+            let depth_m = (height_m * 2.0 - start.z) / ray.z;
+            let (_, seen_m) = camera.project(start + ray * depth_m).unwrap();
+            assert!((seen_m - depth_m).abs() < 1e-6, "{seen_m} {depth_m}");
+            // The depth buffer's value, found by bisection, since the camera has it the other way around.
+            let (mut low, mut high) = (1e-12, 1.0);
+            for _ in 0..200 {
+                let middle = f64::midpoint(low, high);
+                if camera.depth_m(middle) > depth_m { low = middle } else { high = middle }
+            }
+            (pixel, low)
+        };
+        let depths = [depth_of(15, 480.0), depth_of(10, 400.5), depth_of(13, 455.0), (3, 0.0)];
+        let heights: Vec<(usize, f64)> = heights_m(&camera, 2.0, depths.into_iter()).collect();
+        let expected = [(15, 480.0), (10, 400.5), (13, 455.0)];
+        assert_eq!(heights.len(), 3);
+        for ((place, height_m), (expected_place, expected_m)) in heights.iter().zip(expected) {
+            assert!(*place == expected_place && (height_m - expected_m).abs() < 1e-6);
+        }
+    }
+}
+
+/// The lowest and the highest are those of all samples, means those of each class.
+#[test]
+fn areas_have_their_mean_heights() {
+    let [forest, water] = [AreaClass::Forest, AreaClass::Water];
+    let numbers = [forest, forest, forest, forest, water, water, water, water];
+    let numbers = numbers.map(|class| class.number() + 1);
+    let seen = SeenSamples { areas: Some(&numbers), ..samples(&[0; 8]) }.seen();
+    let heights = [(0, 100.0), (1, 300.0), (9, 1000.0), (4, 50.0)].into_iter();
+    let seen = seen.with_heights(heights, Some(&numbers));
+    assert_eq!(seen.heights_m, Some([50.0, 1000.0]));
+    let area = |class, height_m| SeenArea { class, height_m: Some(height_m) };
+    assert_eq!(seen.areas, [area(water, 50.0), area(forest, 200.0)]);
+    let none = samples(&[0; 8]).seen().with_heights([].into_iter(), None);
+    assert_eq!(none.heights_m, None);
+}
+
+/// The first sample of a row does not lie beside the last ones of the row before it, and bridges hide boundaries.
+#[test]
+fn boundaries_at_the_rim_and_beneath_bridges() {
+    let column = |of: usize, label: u8| {
+        (0..64).map(|place| if place % 8 == of { label } else { 0 }).collect::<Vec<u8>>()
+    };
+    let (roads, lines) = (column(6, road_label(3, 0)), column(0, road_label(0, 0)));
+    let all = SeenSamples { boundaries: Some(&lines), ..samples(&roads) };
+    assert_eq!(numbers(all.seen().boundaries), [0]);
+    let decks = [road_label(2, 0); 64];
+    let all = SeenSamples { decks: Some(&decks), ..all };
+    assert!(numbers(all.seen().boundaries).is_empty());
+}

@@ -1,0 +1,204 @@
+//! What the legend of a picture tells: that which the picture shows, as it is drawn in its middle.
+
+use corniche_areas::BoundaryClass;
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::{AreaStyle, LineStyle, Rgb, RoadBand, RoadStyle};
+
+use crate::{
+    annotations::{Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample},
+    class_scale,
+    frame_view::FrameView,
+    gpu::seen::{Seen, SeenArea},
+    layer_view::view_of_lines,
+    tiles::LineLayer,
+};
+
+/// What is left of the colours of a tunnel's surface and of its edge, as in `shaders/road_colors.wgsl`.
+const TUNNEL_FILL: f32 = 0.35;
+const TUNNEL_EDGE: f32 = 0.75;
+/// Edges of which less is left are not seen.
+const LEAST_EDGE: f32 = 0.1;
+/// At least so much of the dashes of a tunnel is seen in a legend.
+const LEAST_DASH: f32 = 0.5;
+/// So many colours make a ramp of heights.
+const RAMP_COLORS: usize = 64;
+/// Colours of heights that differ by no more tell nothing.
+const LEAST_TINT: f32 = 0.03;
+
+/// What a legend is to tell beside that which the picture shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendRequest {
+    /// What the classes of roads are called, 0 first.
+    pub road_labels: [String; FunctionalRoadClass::COUNT],
+    /// The picture in print is so many times smaller than the ground, if that is known.
+    pub scale: Option<u32>,
+}
+
+/// The legend of a picture that shows this. `has_tint` says whether the ground of some tile has colours by its height.
+pub(crate) fn legend(
+    view: &FrameView<'_>,
+    request: &LegendRequest,
+    seen: &Seen,
+    has_tint: bool,
+) -> Legend {
+    let axes = view.camera.world_from_view();
+    let road = |class: FunctionalRoadClass| {
+        let label = request.road_labels[usize::from(class.number())].clone();
+        LegendRow { label, sample: LegendSample::Road(road(view, class)) }
+    };
+    let tunnel = seen.tunnels.iter().next().map(|class| {
+        let label = "tunnel".to_owned();
+        LegendRow { label, sample: LegendSample::Tunnel(tunnel(view, class)) }
+    });
+    let rows = seen.roads.iter().map(road).chain(tunnel);
+    let rows = rows.chain(boundaries(view, seen)).chain(areas(view, seen)).collect();
+    Legend {
+        pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
+        // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
+        north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
+        scale: request.scale,
+        ground: tint(view, middle_m(view)),
+        rows: LegendRow::joined(rows),
+        heights: seen.heights_m.filter(|_| has_tint).and_then(|range_m| heights(view, range_m)),
+    }
+}
+
+/// How wide a road of a class is in the middle of the picture, pixels, before its least width is applied.
+fn seen_px(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
+    let (distance_m, scaling) = (view.camera.focus_m(), view.roads.width_scaling(view.style, road));
+    let near_m = f64::from(road.width_m) * view.point_scale;
+    let grown_m = near_m * scaling.factor(distance_m / view.point_scale);
+    let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
+    let width_m = grown_m.min((2.0 * distance_m * limit).max(near_m));
+    (width_m / (view.camera.pixel_at_unit_depth_m() * distance_m)) as f32
+}
+
+/// How a road of a class is drawn in the middle of the picture: as `shaders/road_colors.wgsl` does it.
+fn road(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
+    let road = view.style.road(class);
+    let seen_px = seen_px(view, road);
+    let least_px = road.min_width_px;
+    let presence = (seen_px / least_px.max(f32::MIN_POSITIVE)).clamp(0.5, 1.0) * road.opacity;
+    let thin = road.thin.unwrap_or(road.bands.main_color());
+    let is_wide = smoothstep(1.0, 2.2, seen_px) * edge_share(view, road);
+    let band = |band: &RoadBand| {
+        let color = mix(thin, band.color, is_wide);
+        RoadBand { color: over_ground(view, color, presence), ..*band }
+    };
+    let bands: Vec<RoadBand> = road.bands.all().iter().map(band).collect();
+    // What is drawn in one colour has one band.
+    let count = if is_wide > 0.0 { bands.len() } else { 1 };
+    let edge = edge(view, road.outline, edge_presence(view, road, seen_px));
+    LegendRoad { width_px: seen_px.max(least_px), bands: bands[..count].to_vec(), edge }
+}
+
+/// How much of the edge of such roads is drawn in the middle of the picture: it goes within a zoom step.
+fn edge_share(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
+    let pixel_m = view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale;
+    road.edge_max_pixel_m.map_or(1.0, |max_pixel_m| {
+        (1.0 - libm::log2(pixel_m / f64::from(max_pixel_m))).clamp(0.0, 1.0) as f32
+    })
+}
+
+/// How much of what is beneath the edge of a road of this width is hidden.
+fn edge_presence(view: &FrameView<'_>, road: &RoadStyle, seen_px: f32) -> f32 {
+    smoothstep(1.2, 4.0, seen_px) * edge_share(view, road) * road.opacity
+}
+
+/// An edge; `None` where it is not seen.
+fn edge(view: &FrameView<'_>, color: Rgb, presence: f32) -> Option<LegendEdge> {
+    let width_px = view.roads.outline_px(view.style);
+    let is_seen = presence >= LEAST_EDGE && width_px > 0;
+    is_seen.then(|| LegendEdge { color: over_ground(view, color, presence), width_px })
+}
+
+/// How a tunnel of a class is drawn: paler than a road above the ground, in one colour. Where its edge is as dark as the ground, its dashes have the colour
+/// of the road.
+fn tunnel(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
+    let road = view.style.road(class);
+    let (seen_px, main_color) = (seen_px(view, road), road.bands.main_color());
+    let luma = |color: Rgb| 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    let ground = luma(tint(view, middle_m(view)));
+    let is_lost = (luma(main_color) - ground).abs() > (luma(road.outline) - ground).abs();
+    let dashes = if is_lost { main_color } else { road.outline };
+    // In a legend a tunnel without its dashes would be told from nothing.
+    let presence = (edge_presence(view, road, seen_px) * TUNNEL_EDGE).max(LEAST_DASH);
+    LegendRoad {
+        width_px: seen_px.max(road.min_width_px),
+        bands: vec![RoadBand {
+            width_share: 1.0,
+            color: over_ground(view, main_color, TUNNEL_FILL * road.opacity),
+        }],
+        edge: edge(view, dashes, presence),
+    }
+}
+
+/// The colour of the ground in the middle of the picture, as far as something of this colour and opacity lets it be seen.
+fn over_ground(view: &FrameView<'_>, color: Rgb, opacity: f32) -> Rgb {
+    mix(tint(view, middle_m(view)), color, opacity)
+}
+
+/// The height of what the camera looks at.
+fn middle_m(view: &FrameView<'_>) -> f64 {
+    view.camera.target_in_world().z / view.vertical_scale()
+}
+
+/// The colour of the ground at a height.
+fn tint(view: &FrameView<'_>, height_m: f64) -> Rgb {
+    view.style.tint.color_at(height_m, view.height_range_m, view.latitude_deg)
+}
+
+/// Classes of boundaries, the most important first.
+fn boundaries(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
+    let layer = LineLayer::Boundaries;
+    let style = layer.style_of(view.style);
+    let lines_view = view_of_lines(view, &style);
+    let row = |class: FunctionalRoadClass| {
+        let label = BoundaryClass::from_number(class.number())?.label().to_owned();
+        let style = layer.lines_of(view.style)[usize::from(class.number())];
+        let color = over_ground(&lines_view, style.color, style.opacity);
+        Some(LegendRow { label, sample: LegendSample::Line(LineStyle { color, ..style }) })
+    };
+    seen.boundaries.iter().filter_map(row).collect()
+}
+
+/// Classes of areas, the topmost first, each in its colour over the ground on which it is seen.
+fn areas(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
+    let find = |class| seen.areas.iter().find(|area| area.class == class);
+    let row = |area: &SeenArea| {
+        let AreaStyle { color, opacity, .. } = *view.style.area(area.class);
+        let ground = tint(view, area.height_m.unwrap_or_else(|| middle_m(view)));
+        let sample = LegendSample::Area(mix(ground, color, opacity));
+        LegendRow { label: area.class.to_string(), sample }
+    };
+    AreaStyle::TOP_FIRST.into_iter().filter_map(find).map(row).collect()
+}
+
+/// The colours of the ground between two heights; `None` where they tell nothing of heights.
+fn heights(view: &FrameView<'_>, range_m: [f64; 2]) -> Option<LegendHeights> {
+    let [low, high] = range_m;
+    let color = |place: usize| {
+        let share = (place as f64 + 0.5) / RAMP_COLORS as f64;
+        tint(view, low + (high - low) * share)
+    };
+    let colors: Vec<Rgb> = (0..RAMP_COLORS).map(color).collect();
+    let differ = |color: &Rgb| {
+        color.iter().zip(colors[0]).any(|(here, first)| (here - first).abs() > LEAST_TINT)
+    };
+    colors.iter().any(differ).then(|| LegendHeights { range_m, colors: colors.clone() })
+}
+
+fn mix(from: Rgb, to: Rgb, share: f32) -> Rgb {
+    [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * share)
+}
+
+/// The function of the same name in WGSL.
+fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
+    let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
+#[path = "picture_legend_tests.rs"]
+mod tests;

@@ -1,0 +1,163 @@
+//! A legend lists what is seen, in the order of its importance, as it is drawn.
+
+use corniche_areas::AreaClass;
+use corniche_styles::Style;
+use glam::DVec2;
+
+use super::*;
+use crate::{
+    camera::Camera,
+    frame_view::Wireframe,
+    options::{ClassSet, RoadMethod, RoadOptions},
+};
+
+fn camera(pixel_m: f64) -> Camera {
+    Camera::from_above(DVec2::ZERO, pixel_m, 0.0, [0.0, 1000.0], [200, 100])
+}
+
+fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
+    FrameView {
+        camera,
+        style,
+        roads: RoadOptions::of(RoadMethod::ShadowVolumes),
+        exaggeration: 1.0,
+        point_scale: 1.0,
+        height_range_m: [0.0, 1000.0],
+        wall_m: 0.0,
+        cell_px: 2.0,
+        latitude_deg: 47.0,
+        wireframe: Wireframe::Hidden,
+    }
+}
+
+fn classes(numbers: &[u8]) -> ClassSet {
+    FunctionalRoadClass::all().filter(|class| numbers.contains(&class.number())).collect()
+}
+
+fn labels() -> LegendRequest {
+    let names = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight"];
+    LegendRequest { road_labels: names.map(str::to_owned), scale: Some(10_000) }
+}
+
+fn is_near(one: Rgb, other: Rgb) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
+}
+
+fn seen() -> Seen {
+    Seen {
+        roads: classes(&[3, 0]),
+        tunnels: classes(&[3]),
+        boundaries: classes(&[7, 0]),
+        areas: [AreaClass::Water, AreaClass::Forest, AreaClass::Sea]
+            .map(|class| SeenArea { class, height_m: Some(500.0) })
+            .to_vec(),
+        heights_m: Some([100.0, 900.0]),
+    }
+}
+
+#[test]
+fn roads_come_first_then_tunnels_boundaries_and_areas() {
+    let (camera, style) = (camera(1.0), Style::road_atlas());
+    let told = legend(&view(&camera, &style), &labels(), &seen(), true);
+    let names: Vec<&str> = told.rows.iter().map(|row| row.label.as_str()).collect();
+    // Sea and water have one colour.
+    let expected =
+        ["zero", "three", "tunnel", "country border", "protected area", "sea, water", "forest"];
+    assert_eq!(names, expected);
+    assert_eq!(told.scale, Some(10_000));
+    assert!((told.pixel_m - 1.0).abs() < 1e-9 && told.north_deg.abs() < 1e-9);
+}
+
+#[test]
+fn nothing_is_listed_of_a_picture_that_shows_nothing() {
+    let (camera, style) = (camera(1.0), Style::road_atlas());
+    let none = Seen {
+        roads: ClassSet::NONE,
+        tunnels: ClassSet::NONE,
+        boundaries: ClassSet::NONE,
+        areas: Vec::new(),
+        heights_m: None,
+    };
+    let told = legend(&view(&camera, &style), &labels(), &none, true);
+    assert!(told.rows.is_empty() && told.heights.is_none());
+}
+
+/// At a metre to the pixel a motorway of 24 m has 24 pixels, both its bands and its edge.
+#[test]
+fn near_roads_have_their_true_width() {
+    let (camera, mut style) = (camera(1.0), Style::road_atlas());
+    (style.roads[0].width_m, style.roads[0].edge_max_pixel_m) = (24.0, None);
+    let road = road(&view(&camera, &style), FunctionalRoadClass::new(0).unwrap());
+    assert!((road.width_px - 24.0).abs() < 1e-3, "{}", road.width_px);
+    let of_style = &style.roads[0];
+    assert_eq!(road.bands.len(), of_style.bands.all().len());
+    for (band, known) in road.bands.iter().zip(of_style.bands.all()) {
+        assert!(band.width_share == known.width_share && is_near(band.color, known.color));
+    }
+    let edge = road.edge.unwrap();
+    assert!(edge.width_px == 1 && is_near(edge.color, of_style.outline), "{edge:?}");
+}
+
+/// Where a road is thinner than a pixel, it has one colour and no edge.
+#[test]
+fn thin_roads_look_as_they_are_drawn() {
+    let (camera, mut style) = (camera(1.0), Style::road_atlas());
+    let class = FunctionalRoadClass::new(6).unwrap();
+    let thin = [0.3, 0.2, 0.1];
+    let mut of_class = style.roads[6];
+    (of_class.width_m, of_class.min_width_px, of_class.thin) = (0.9, 0.9, Some(thin));
+    style.roads[6] = of_class;
+    let road = road(&view(&camera, &style), class);
+    assert_eq!(road.edge, None);
+    assert_eq!(road.bands.len(), 1);
+    assert!(is_near(road.bands[0].color, thin));
+}
+
+#[test]
+fn heights_are_told_where_colours_tell_them() {
+    let (camera, mut style) = (camera(1.0), Style::road_atlas());
+    let heights_of = |style: &Style, has_tint| {
+        legend(&view(&camera, style), &labels(), &seen(), has_tint).heights
+    };
+    let told = heights_of(&style, true).unwrap();
+    assert_eq!(told.range_m, [100.0, 900.0]);
+    assert_eq!(told.colors.len(), RAMP_COLORS);
+    let at = |height_m| tint(&view(&camera, &style), height_m);
+    // The colours of the middles of 64 steps of 12.5 m.
+    assert_eq!([told.colors[0], told.colors[63]], [at(106.25), at(893.75)]);
+    assert_eq!(heights_of(&style, false), None);
+    for stop in &mut style.tint.stops {
+        stop.1 = [0.5; 3];
+    }
+    assert_eq!(heights_of(&style, true), None);
+}
+
+/// A colour through which the ground shows is that over the ground on which the area is seen.
+#[test]
+fn areas_have_the_colour_over_their_own_ground() {
+    let (camera, style) = (camera(1.0), Style::road_atlas());
+    let view = view(&camera, &style);
+    for height_m in [0.0, 900.0] {
+        let area = SeenArea { class: AreaClass::Meadow, height_m: Some(height_m) };
+        let row = &areas(&view, &Seen { areas: vec![area], ..seen() })[0];
+        let AreaStyle { color, opacity, .. } = *style.area(AreaClass::Meadow);
+        let expected = mix(tint(&view, height_m), color, opacity);
+        assert_eq!(row.sample, LegendSample::Area(expected));
+    }
+}
+
+/// At the limit all of the edge is drawn, at twice as many metres to the pixel nothing, and between both half of it.
+#[test]
+fn edges_go_within_a_zoom_step() {
+    let style = Style::road_atlas();
+    let road = RoadStyle { edge_max_pixel_m: Some(10.0), ..style.roads[5] };
+    for (pixel_m, expected) in
+        [(1.0, 1.0), (10.0, 1.0), (10.0 * 2.0_f64.sqrt(), 0.5), (20.0, 0.0), (50.0, 0.0)]
+    {
+        let camera = camera(pixel_m);
+        let share = edge_share(&view(&camera, &style), &road);
+        assert!((share - expected).abs() < 1e-5, "{pixel_m}: {share}");
+    }
+    let always = RoadStyle { edge_max_pixel_m: None, ..road };
+    assert_eq!(edge_share(&view(&camera(1000.0), &style), &always), 1.0);
+}

@@ -1,0 +1,106 @@
+// The colours of roads at a pixel: on the ground and on decks of bridges.
+
+// The same fields as in gpu/drawables/composite.rs, in the same order.
+struct PictureColors {
+    // rgb; w: distance at which haze hides two thirds of a colour.
+    haze: vec4<f32>,
+    sky: vec4<f32>,
+    background: vec4<f32>,
+    // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
+    // above it; w: the widest spacing of its lines. World metres.
+    void_plane: vec4<f32>,
+    road_bands: array<vec4<f32>, BANDS * CLASSES>,
+    road_outlines: array<vec4<f32>, CLASSES>,
+    // Tunnels and service roads.
+    road_mains: array<vec4<f32>, CLASSES>,
+    // Roads that are too thin for an edge.
+    road_thins: array<vec4<f32>, CLASSES>,
+    // Sides of bridges.
+    slab: vec4<f32>,
+}
+
+@group(1) @binding(3) var<uniform> colors: PictureColors;
+
+// Ground that is this many times farther away than its neighbour in the picture lies behind it. From above none does.
+const FARTHER = 1.1;
+
+// Width of a road at a place in pixels of the final picture, before the least width is applied.
+fn width_px(road_class: u32, look: u32, distance_m: f32, depth: f32) -> f32 {
+    // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
+    // package, and its width that of its class.
+    let road = road_with(road_class, look, 0.0, frame.road_options.z);
+    return 2.0 * scaled_half_width_m(road, distance_m) / pixel_m_at(depth);
+}
+
+// The ground or the sky at a pixel.
+struct Sight {
+    color: vec3<f32>,
+    // Share of the ground's colour that is lost on the way.
+    haze: f32,
+    // 0 in the sky, where the fields that follow have no meaning.
+    depth_buffer: f32,
+    depth: f32,
+    distance_m: f32,
+}
+
+// How much of the ground roads of a class hide at a distance from the eye.
+fn opacity_at(road_class: u32, look: u32, distance_m: f32) -> f32 {
+    return frame.road_limits[road_class].z * shown_share(road_class, look, distance_m);
+}
+
+// What is left of the colours of a tunnel's surface and of its edge.
+const TUNNEL_FILL = 0.35;
+const TUNNEL_EDGE = 0.75;
+
+const LEAST_FACING = 0.3;
+
+// The colour of a road at a pixel with this label, and how much of what is beneath it hides.
+fn fill_of(label: u32, sight: Sight) -> vec4<f32> {
+    let road_class = class_of(label);
+    let look = look_of(label);
+    let seen_px = width_px(road_class, look, sight.distance_m, sight.depth);
+    let wide = select(colors.road_mains[road_class].rgb, colors.road_bands[road_class * BANDS + label % BANDS].rgb,
+        look == PLAIN);
+    let has_edge = smoothstep(1.0, 2.2, seen_px) * edge_share(road_class, sight.distance_m);
+    let fill = mix(colors.road_thins[road_class].rgb, wide, has_edge);
+    // A road that is drawn wider than it is, because of its least width, is made paler.
+    let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
+    let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, look, sight.distance_m)
+        * select(1.0, TUNNEL_FILL, is_tunnel(label));
+    return vec4(mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
+}
+
+// The colour of the edge around a road with this label. The dashes of a tunnel are all that is seen of it: where the edge is as dark as the ground
+// they have the colour of the road.
+fn edge_color(label: u32, sight: Sight) -> vec3<f32> {
+    let road_class = class_of(label);
+    let outline = colors.road_outlines[road_class].rgb;
+    let main_color = colors.road_mains[road_class].rgb;
+    let luma = vec3(0.2126, 0.7152, 0.0722);
+    let is_lost = abs(dot(main_color - sight.color, luma)) > abs(dot(outline - sight.color, luma));
+    return select(outline, main_color, is_tunnel(label) && is_lost);
+}
+
+// The same of the edge around a road with this label.
+fn edge_of(label: u32, sight: Sight, facing: f32) -> vec4<f32> {
+    let road_class = class_of(label);
+    // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
+    // the edge would break into dashes.
+    let look = look_of(label);
+    let seen_px = width_px(road_class, look, sight.distance_m, sight.depth) * facing;
+    let presence = smoothstep(1.2, 4.0, seen_px) * edge_share(road_class, sight.distance_m) * opacity_at(road_class, look, sight.distance_m)
+        * select(1.0, TUNNEL_EDGE, is_tunnel(label));
+    return vec4(mix(edge_color(label, sight), colors.haze.rgb, 0.5 * sight.haze), presence);
+}
+
+// How much of the width of a road is seen, if the road runs across the view: 1, and less where the ground at a pixel is
+// seen at less than 19 degrees. At a silhouette, where this cannot be told, it is at least LEAST_FACING, so that a wide road
+// keeps its edge there. It must be asked for every pixel, in the sky too.
+fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
+    let ray = ray_at(position);
+    let depth = select(sight.depth, view_depth_of(sight.depth_buffer), is_from_above());
+    let ground = ray_start_at(position) + ray * depth;
+    let normal = cross(dpdx(ground), dpdy(ground));
+    let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
+    return clamp(3.0 * sine, LEAST_FACING, 1.0);
+}

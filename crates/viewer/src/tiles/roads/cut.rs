@@ -1,0 +1,407 @@
+//! Roads on the ground without what of them is on decks of bridges.
+//!
+//! ```text
+//!   the way, as both methods have it:   ●────●──────────●───────●      on the ground along its whole length
+//!   a run of it, off the ground:             ○────●───○                same points in plan
+//!   what is drawn on the ground:        ●────●          ○────────●     it ends flat where the deck begins
+//! ```
+
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+};
+
+use corniche_geom::{Bounds, Work};
+
+use super::{super::shares_in, DeckLine, GroundLine, PlanLine, TileLines, flat_ends::LineEnds};
+
+/// A point of a run lies this near to its way: a few steps of the lattice.
+const NEAR_M: f64 = 0.005;
+
+/// A place on a line: a segment, and which part of it comes before.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+struct LinePlace {
+    segment: usize,
+    share: f64,
+}
+
+/// What is taken out of a line: from one place to another, and where these are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stretch {
+    from: (LinePlace, [f64; 2]),
+    to: (LinePlace, [f64; 2]),
+}
+
+/// A run in plan.
+struct Run {
+    ends_m: [[f64; 2]; 2],
+    length_m: f64,
+    points: usize,
+}
+
+impl Run {
+    fn new(deck: &DeckLine) -> Option<Self> {
+        let plan = |[x, y, _]: &[f64; 3]| [*x, *y];
+        let ends_m = [plan(deck.points_m.first()?), plan(deck.points_m.last()?)];
+        let pairs = deck.points_m.windows(2);
+        let length_m = pairs.map(|pair| distance(plan(&pair[0]), plan(&pair[1]))).sum();
+        (length_m > NEAR_M).then_some(Self { ends_m, length_m, points: deck.points_m.len() })
+    }
+}
+
+/// What of the roads of a tile is off the ground.
+pub(crate) struct OffGround<'a> {
+    by_way: BTreeMap<i64, Vec<Run>>,
+    lines: &'a [DeckLine],
+    /// Where tunnels come out of the ground.
+    portals: BTreeSet<[u64; 2]>,
+    /// The ways of bridges, in order of their ids.
+    bridges: &'a [i64],
+    tile: Bounds,
+    work: &'a Work,
+}
+
+impl<'a> OffGround<'a> {
+    /// What of these lines of the tile with these bounds is off the ground.
+    pub(crate) fn new(lines: &'a TileLines, tile: Bounds, work: &'a Work) -> Self {
+        let TileLines { decks, portals, bridges, .. } = lines;
+        let mut by_way: BTreeMap<i64, Vec<Run>> = BTreeMap::new();
+        for deck in decks {
+            work.add(deck.points_m.len());
+            by_way.entry(deck.way_id).or_default().extend(Run::new(deck));
+        }
+        let portals = portals.iter().map(|at| at.map(f64::to_bits)).collect();
+        Self { by_way, lines: decks, portals, bridges, tile, work }
+    }
+
+    /// The tile that they are in.
+    pub(crate) fn tile(&self) -> Bounds {
+        self.tile
+    }
+
+    /// Where they begin and end.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = LineEnds> {
+        self.lines.iter().filter_map(DeckLine::ends)
+    }
+
+    /// Whether a line has a portal at its ends. Only bores have.
+    pub(crate) fn portals(&self, ends: &LineEnds) -> [bool; 2] {
+        [ends.first, ends.last]
+            .map(|end| end.is_some_and(|[_, at]| self.portals.contains(&at.map(f64::to_bits))))
+    }
+
+    /// What of a line on the ground is on no deck: the line itself where none is of its way.
+    pub(crate) fn without_ground<'l>(&self, line: &'l GroundLine) -> Vec<Cow<'l, GroundLine>> {
+        if !self.by_way.contains_key(&line.way_id) {
+            return vec![Cow::Borrowed(line)];
+        }
+        let plan: Vec<[f64; 2]> = line.points_m.iter().map(|[x, y, _]| [*x, *y]).collect();
+        let stretches = self.stretches(line.way_id, &plan);
+        if stretches.is_empty() {
+            return vec![Cow::Borrowed(line)];
+        }
+        let kept = kept(&stretches, &plan);
+        kept.iter().filter_map(|kept| kept.of_ground(line, &plan)).map(Cow::Owned).collect()
+    }
+
+    /// What of a line in plan is on no deck. Of a bridge nothing is left outside the tile: where it is on the ground there, only the tile that it is
+    /// in knows.
+    pub(crate) fn without_plan<'l>(&self, line: &'l PlanLine) -> Vec<Cow<'l, PlanLine>> {
+        let mut stretches = self.stretches(line.way_id, &line.points_m);
+        if self.bridges.binary_search(&line.way_id).is_ok() {
+            stretches = self.with_outside(&stretches, &line.points_m);
+        }
+        if stretches.is_empty() {
+            return vec![Cow::Borrowed(line)];
+        }
+        let kept = kept(&stretches, &line.points_m);
+        kept.iter().filter_map(|kept| kept.of_plan(line)).map(Cow::Owned).collect()
+    }
+
+    /// The same stretches with those that are outside the tile, in their order, apart from one another.
+    fn with_outside(&self, stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<Stretch> {
+        let Bounds { min_x, min_y, max_x, max_y } = self.tile;
+        let around = [[min_x, max_x], [min_y, max_y]];
+        let mut all = stretches.to_vec();
+        for (number, pair) in points_m.windows(2).enumerate() {
+            self.work.add(1);
+            let [a, b] = [pair[0], pair[1]];
+            let place = |share: f64| (LinePlace { segment: number, share }, between([a, b], share));
+            let [enters, leaves] = shares_in(a, [b[0] - a[0], b[1] - a[1]], around);
+            if enters > leaves {
+                all.push(Stretch { from: place(0.0), to: place(1.0) });
+                continue;
+            }
+            if enters > 0.0 {
+                all.push(Stretch { from: place(0.0), to: place(enters) });
+            }
+            if leaves < 1.0 {
+                all.push(Stretch { from: place(leaves), to: place(1.0) });
+            }
+        }
+        all.sort_by(|a, b| {
+            a.from.0.segment.cmp(&b.from.0.segment).then(a.from.0.share.total_cmp(&b.from.0.share))
+        });
+        let mut apart: Vec<Stretch> = Vec::new();
+        for next in all {
+            // The end of a segment is the beginning of the next one.
+            let goes_on = |last: &Stretch| {
+                let (reached, begins) = (last.to.0, next.from.0);
+                begins <= reached
+                    || (begins.segment == reached.segment + 1
+                        && begins.share <= 0.0
+                        && reached.share >= 1.0)
+            };
+            match apart.last_mut().filter(|last| goes_on(last)) {
+                Some(last) if last.to.0 < next.to.0 => last.to = next.to,
+                Some(_) => {}
+                None => apart.push(next),
+            }
+        }
+        apart
+    }
+
+    /// The stretches of a line that are on decks, in their order along it, apart from one another.
+    fn stretches(&self, way_id: i64, points_m: &[[f64; 2]]) -> Vec<Stretch> {
+        let mut found: Vec<Stretch> = Vec::new();
+        let mut begin = LinePlace { segment: 0, share: 0.0 };
+        for run in self.by_way.get(&way_id).into_iter().flatten() {
+            self.work.add(1);
+            if self.work.check().is_err() {
+                break;
+            }
+            let Some(stretch) = self.stretch(points_m, run, begin) else { continue };
+            begin = stretch.to.0;
+            found.push(stretch);
+        }
+        found
+    }
+
+    /// Where a line goes along a run from its first to its last point.
+    fn stretch(&self, points_m: &[[f64; 2]], run: &Run, begin: LinePlace) -> Option<Stretch> {
+        let Run { ends_m: [first, last], length_m, points } = *run;
+        // Both are rounded to the lattice at each of their points.
+        let slack_m = NEAR_M * (2.0 + points as f64);
+        let mut from_segment = begin.segment;
+        while let Some(from) = self.next_at(points_m, first, from_segment, f64::INFINITY) {
+            if (from.segment, from.share + 1e-9) >= (begin.segment, begin.share) {
+                let [start, end] = segment(points_m, from.segment);
+                let before_m = from.share * distance(start, end);
+                let mut reached_m = -before_m;
+                let mut at = from.segment;
+                while let Some(to) =
+                    self.next_at(points_m, last, at, length_m + slack_m - reached_m)
+                {
+                    let lengths =
+                        (at..to.segment).map(|k| segment(points_m, k)).map(|[a, b]| distance(a, b));
+                    reached_m += lengths.sum::<f64>();
+                    let [a, b] = segment(points_m, to.segment);
+                    let along_m = reached_m + to.share * distance(a, b);
+                    if (along_m - length_m).abs() <= slack_m + 1e-6 * length_m {
+                        return Some(Stretch { from: (from, first), to: (to, last) });
+                    }
+                    reached_m += distance(a, b);
+                    at = to.segment + 1;
+                }
+            }
+            from_segment = from.segment + 1;
+        }
+        None
+    }
+
+    /// The first segment from this number on that comes through a point, no farther than `most_m` along the line; `None` if none does, or it is
+    /// too much work to look.
+    fn next_at(
+        &self,
+        points_m: &[[f64; 2]],
+        point: [f64; 2],
+        from_segment: usize,
+        most_m: f64,
+    ) -> Option<LinePlace> {
+        let mut along_m = 0.0;
+        for number in from_segment..points_m.len().saturating_sub(1) {
+            self.work.add(1);
+            self.work.check().ok()?;
+            let [a, b] = segment(points_m, number);
+            let share = share_of(point, [a, b]);
+            let at = between([a, b], share);
+            if distance(at, point) <= NEAR_M {
+                return Some(LinePlace { segment: number, share });
+            }
+            along_m += distance(a, b);
+            if along_m > most_m {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+/// A part of a line that stays: from its beginning or from the end of a stretch, to its end or to the next stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Kept {
+    from: Option<(LinePlace, [f64; 2])>,
+    to: Option<(LinePlace, [f64; 2])>,
+}
+
+/// What is left of a line without these stretches.
+fn kept(stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<Kept> {
+    let mut kept = Vec::new();
+    let mut from = None;
+    for stretch in stretches {
+        kept.push(Kept { from, to: Some(stretch.from) });
+        from = Some(stretch.to);
+    }
+    kept.push(Kept { from, to: None });
+    kept.retain(|part| part.length_m(points_m) > NEAR_M);
+    kept
+}
+
+impl Kept {
+    /// The segments that it has some of.
+    fn segments(&self, points_m: &[[f64; 2]]) -> std::ops::RangeInclusive<usize> {
+        let last = points_m.len().saturating_sub(2);
+        self.from.map_or(0, |(at, _)| at.segment)..=self.to.map_or(last, |(at, _)| at.segment)
+    }
+
+    fn length_m(&self, points_m: &[[f64; 2]]) -> f64 {
+        self.pieces(points_m).map(|(_, ends)| distance(ends[0], ends[1])).sum()
+    }
+
+    /// Its pieces, each of one segment: the number of the segment, and both ends.
+    fn pieces(
+        &self,
+        points_m: &[[f64; 2]],
+    ) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> + use<'_> {
+        let cut = *self;
+        let all: Vec<_> = self
+            .segments(points_m)
+            .filter_map(|number| {
+                let [mut a, mut b] = [*points_m.get(number)?, *points_m.get(number + 1)?];
+                if let Some((_, at)) = cut.from.filter(|(at, _)| at.segment == number) {
+                    a = at;
+                }
+                if let Some((_, at)) = cut.to.filter(|(at, _)| at.segment == number) {
+                    b = at;
+                }
+                Some((number, [a, b]))
+            })
+            .collect();
+        all.into_iter()
+    }
+
+    /// The points and segments of this part of a line in plan, without what is left of a segment that is cut off by less than a step.
+    fn walked(&self, points_m: &[[f64; 2]]) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
+        let cut = *self;
+        self.pieces(points_m).filter(move |(number, ends)| {
+            distance(ends[0], ends[1]) > NEAR_M || !cut.is_cut_in(*number)
+        })
+    }
+
+    /// This part of a line on the ground, whose points in plan are given.
+    fn of_ground(&self, line: &GroundLine, plan: &[[f64; 2]]) -> Option<GroundLine> {
+        let mut points_m: Vec<[f64; 3]> = Vec::new();
+        let mut sources_m = Vec::new();
+        for (number, ends) in self.walked(plan) {
+            let [low, high] = [line.points_m[number], line.points_m[number + 1]];
+            let raised = |at: [f64; 2]| {
+                let share = share_of(at, [plan[number], plan[number + 1]]);
+                [at[0], at[1], low[2] + share * (high[2] - low[2])]
+            };
+            if points_m.is_empty() {
+                points_m.push(raised(ends[0]));
+            }
+            points_m.push(raised(ends[1]));
+            sources_m.push(*line.sources_m.get(number)?);
+        }
+        // A segment that is cut ends where the deck begins.
+        let trim = |sources: &mut [[[f64; 2]; 2]], end: usize, at: [f64; 2]| {
+            let whole = sources.first().copied();
+            for source in sources.iter_mut().take_while(|source| Some(**source) == whole) {
+                source[end] = at;
+            }
+        };
+        if let (Some((_, at)), Some(first)) = (self.from, points_m.first_mut()) {
+            [first[0], first[1]] = at;
+            trim(&mut sources_m, 0, at);
+        }
+        if let (Some((_, at)), Some(last)) = (self.to, points_m.last_mut()) {
+            [last[0], last[1]] = at;
+            sources_m.reverse();
+            trim(&mut sources_m, 1, at);
+            sources_m.reverse();
+        }
+        let GroundLine { way_id, class, own_width, look, .. } = *line;
+        let dashes = None;
+        (points_m.len() >= 2).then_some(GroundLine {
+            way_id,
+            class,
+            own_width,
+            look,
+            points_m,
+            sources_m,
+            dashes,
+        })
+    }
+
+    /// This part of a line in plan.
+    fn of_plan(&self, line: &PlanLine) -> Option<PlanLine> {
+        let mut points_m: Vec<[f64; 2]> = Vec::new();
+        let mut ground_range_m = Vec::new();
+        for (number, ends) in self.walked(&line.points_m) {
+            if points_m.is_empty() {
+                points_m.push(ends[0]);
+            }
+            points_m.push(ends[1]);
+            ground_range_m.push(*line.ground_range_m.get(number)?);
+        }
+        if let (Some((_, at)), Some(first)) = (self.from, points_m.first_mut()) {
+            *first = at;
+        }
+        if let (Some((_, at)), Some(last)) = (self.to, points_m.last_mut()) {
+            *last = at;
+        }
+        let PlanLine { way_id, class, own_width, look, .. } = *line;
+        let dashes = None;
+        (points_m.len() >= 2).then_some(PlanLine {
+            way_id,
+            class,
+            own_width,
+            look,
+            points_m,
+            ground_range_m,
+            dashes,
+        })
+    }
+
+    /// Whether a deck begins or ends in a segment.
+    fn is_cut_in(&self, number: usize) -> bool {
+        [self.from, self.to].into_iter().flatten().any(|(at, _)| at.segment == number)
+    }
+}
+
+fn segment(points_m: &[[f64; 2]], number: usize) -> [[f64; 2]; 2] {
+    [points_m[number], points_m[number + 1]]
+}
+
+/// Which part of a segment comes before the point of it that is nearest to another.
+fn share_of([x, y]: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let squared = dx * dx + dy * dy;
+    if squared == 0.0 {
+        return 0.0;
+    }
+    (((x - a[0]) * dx + (y - a[1]) * dy) / squared).clamp(0.0, 1.0)
+}
+
+fn between([a, b]: [[f64; 2]; 2], share: f64) -> [f64; 2] {
+    [0, 1].map(|k| a[k] + share * (b[k] - a[k]))
+}
+
+fn distance([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
+    libm::hypot(to_x - x, to_y - y)
+}
+
+#[cfg(test)]
+#[path = "cut_tests.rs"]
+mod tests;

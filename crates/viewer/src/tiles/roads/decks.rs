@@ -1,0 +1,233 @@
+//! Decks of bridges as the straight pieces that are drawn.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{Bounds, Work};
+use corniche_roads::{FunctionalRoadClass, OwnWidth, slab_thickness_m};
+
+use super::{
+    super::{PlanScale, ground_mesh::relative},
+    DeckLine, RoadEnd, RoadList, RoadLook,
+    dashes::{DashPlace, dash_starts},
+    ends::Side,
+    flat_ends::{LineEnds, direction},
+    list::Classed,
+    parts::OPEN_M,
+};
+
+/// A deck is drawn in pieces of at most this length, working metres, because its width is straight between the ends of a piece.
+const LONGEST_M: f64 = 200.0;
+/// So many pieces at most are made of a segment as long as the tile.
+const MOST_PIECES: f64 = 64.0;
+/// What a piece costs beside a step of laying a road.
+const STEPS_OF_PIECE: usize = 32;
+/// Where a line turns by more, it has no mitre.
+const LEAST_COSINE: f64 = -0.5;
+
+/// A straight piece of a deck: a slab, with the road on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeckPiece {
+    /// Metres from the tile's reference point: east, north, and up to the road, true.
+    pub start_in_tile: [f32; 3],
+    /// The other end.
+    pub end_in_tile: [f32; 3],
+    /// Where it ends in plan, at its start and at its end: it has nothing in the direction of this vector from there, of length 1. Of length 0
+    /// where it has a round cap.
+    pub mitres: [[f32; 2]; 2],
+    /// Whether the deck comes down to the ground at its start and at its end, and one road goes on there.
+    pub lands: [bool; 2],
+    /// How long its deck is, working metres.
+    pub(crate) deck_m: f32,
+    /// How thick it is, true metres.
+    pub slab_m: f32,
+    /// Working metres across it for each true metre across it.
+    pub width_factor: f32,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// What the road's tags say of its width.
+    pub own_width: OwnWidth,
+    /// What it is.
+    pub look: RoadLook,
+    /// How long the part of the network is that it belongs to, working metres.
+    pub(crate) part_m: f32,
+    /// Where dashes are, for its start.
+    pub(crate) dash: DashPlace,
+}
+
+impl Classed for DeckPiece {
+    fn class(&self) -> FunctionalRoadClass {
+        self.class
+    }
+}
+
+/// All pieces of decks of a tile.
+pub type DeckPieces = RoadList<DeckPiece>;
+
+/// What decks need to know of the roads on the ground of their tile.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct GroundNet {
+    /// Where they end.
+    pub(crate) ends: Vec<LineEnds>,
+    /// How long the part of the network is to which a way belongs.
+    pub(crate) parts_m: BTreeMap<i64, f32>,
+}
+
+/// How the decks of a tile go on: by point, the directions beyond all ends of lines there.
+struct Joints(BTreeMap<[u64; 2], Vec<[f64; 2]>>);
+
+impl Joints {
+    /// A third end at a point is enough to know that there is no mitre.
+    fn new<'a>(ends: impl Iterator<Item = &'a LineEnds>) -> Self {
+        let mut at_point: BTreeMap<[u64; 2], Vec<[f64; 2]>> = BTreeMap::new();
+        for (at, outward) in ends.flat_map(LineEnds::outward) {
+            let known = at_point.entry(at.map(f64::to_bits)).or_default();
+            if known.len() < 3 {
+                known.push(outward);
+            }
+        }
+        Self(at_point)
+    }
+
+    /// The mitre of an end, which is one of those in the list: half-way to the only line that goes on there.
+    fn mitre(&self, at: [f64; 2], outward: [f64; 2]) -> Option<[f64; 2]> {
+        let [first, second] = self.0.get(&at.map(f64::to_bits))?.as_slice() else { return None };
+        let is_own = first.map(f64::to_bits) == outward.map(f64::to_bits);
+        let other = if is_own { second } else { first };
+        mitre(outward, other.map(|part| -part))
+    }
+}
+
+/// The mitre between a direction and the one in which a line goes on; `None` where it turns back.
+fn mitre(from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
+    let cosine = from[0] * to[0] + from[1] * to[1];
+    let sum = [from[0] + to[0], from[1] + to[1]];
+    let length = libm::hypot(sum[0], sum[1]);
+    (cosine > LEAST_COSINE).then(|| sum.map(|part| part / length))
+}
+
+/// A line in plan without points that lie on the ones before, with heights.
+fn distinct(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut points_m = points_m.to_vec();
+    points_m.dedup_by_key(|[x, y, _]| [x.to_bits(), y.to_bits()]);
+    points_m
+}
+
+impl RoadList<DeckPiece> {
+    /// Cuts decks in the tile with these bounds into pieces; none when that is too much work, which the caller looks at in the end.
+    pub(crate) fn of_decks(
+        decks: &[DeckLine],
+        ground: &GroundNet,
+        (tile, reference_m): (Bounds, [f64; 3]),
+        scale: &PlanScale,
+        work: &Work,
+    ) -> Self {
+        let longest_m = LONGEST_M.max(tile.width().max(tile.height()) / MOST_PIECES);
+        let own_ends: Vec<LineEnds> = decks.iter().filter_map(DeckLine::ends).collect();
+        let joints = Joints::new(ground.ends.iter().chain(&own_ends));
+        let mut pieces = Vec::new();
+        for deck in decks {
+            let points_m = distinct(&deck.points_m);
+            let plan: Vec<[f64; 2]> = points_m.iter().map(|[x, y, _]| [*x, *y]).collect();
+            let ways: Vec<[f64; 2]> =
+                plan.windows(2).filter_map(|pair| direction([pair[0], pair[1]])).collect();
+            let dashes = dash_starts(&plan, tile);
+            let goes_on = [plan.first(), plan.last()]
+                .map(|end| end.is_some_and(|at| Side::of(*at, tile).is_some()));
+            let lands = [0, 1].map(|end| deck.on_ground[end] && !goes_on[end]);
+            // How long it is beyond the tile is not known.
+            let length_m = plan.windows(2).map(|pair| distance([pair[0], pair[1]])).sum::<f64>();
+            let deck_m = if goes_on == [false; 2] { length_m as f32 } else { OPEN_M };
+            let at_end = |at: [f64; 2], outward: [f64; 2]| match Side::of(at, tile) {
+                // It goes on in the next tile.
+                Some(_) => Some(outward),
+                None => joints.mitre(at, outward),
+            };
+            for (number, (pair, way)) in points_m.windows(2).zip(&ways).enumerate() {
+                let back = way.map(|part| -part);
+                let before = number.checked_sub(1).map(|number| ways[number]);
+                let start = match before {
+                    Some(before) => mitre(before, *way).map(|at| at.map(|part| -part)),
+                    None => at_end(plan[number], back),
+                };
+                let end = match ways.get(number + 1) {
+                    Some(after) => mitre(*way, *after),
+                    None => at_end(plan[number + 1], *way),
+                };
+                let dash = dashes[number];
+                let width_factor = scale.across([plan[number], plan[number + 1]]) as f32;
+                let length_m = distance([plan[number], plan[number + 1]]);
+                let count = (length_m / longest_m).ceil().clamp(1.0, 2.0 * MOST_PIECES);
+                work.add(STEPS_OF_PIECE * count as usize);
+                if work.check().is_err() {
+                    return Self::default();
+                }
+                let at = |part: f64| {
+                    [0, 1, 2].map(|k| pair[0][k] + part / count * (pair[1][k] - pair[0][k]))
+                };
+                for part in 0..count as usize {
+                    let [first, last] = [part as f64, part as f64 + 1.0];
+                    let is_last = last >= count;
+                    pieces.push(DeckPiece {
+                        start_in_tile: relative(at(first), reference_m),
+                        end_in_tile: relative(
+                            if is_last { pair[1] } else { at(last) },
+                            reference_m,
+                        ),
+                        mitres: [
+                            if part == 0 { start.unwrap_or_default() } else { back },
+                            if is_last { end.unwrap_or_default() } else { *way },
+                        ]
+                        .map(|mitre| mitre.map(|part| part as f32)),
+                        lands: [
+                            lands[0] && number == 0 && part == 0 && start.is_some(),
+                            lands[1] && number + 1 == ways.len() && is_last && end.is_some(),
+                        ],
+                        deck_m,
+                        slab_m: slab_thickness_m(deck.class) as f32,
+                        width_factor,
+                        class: deck.class,
+                        own_width: deck.own_width,
+                        look: deck.look,
+                        part_m: ground.parts_m.get(&deck.way_id).copied().unwrap_or(OPEN_M),
+                        dash: dash.moved(first / count * length_m),
+                    });
+                }
+            }
+        }
+        Self::sorted(pieces, |piece| piece.class, deck_ends(decks, tile, scale))
+    }
+}
+
+fn distance([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> f64 {
+    libm::hypot(to_x - x, to_y - y)
+}
+
+/// Where decks end on the tile's border.
+fn deck_ends(decks: &[DeckLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
+    let mut ends = Vec::new();
+    for deck in decks {
+        let points_m = distinct(&deck.points_m);
+        let Some(last) = points_m.len().checked_sub(2) else { continue };
+        let plan = |number: usize| [points_m[number][0], points_m[number][1]];
+        for (point, source_m) in [(0, [plan(0), plan(1)]), (last + 1, [plan(last), plan(last + 1)])]
+        {
+            if let Some(side) = Side::of(plan(point), tile) {
+                ends.push(RoadEnd {
+                    way_id: deck.way_id,
+                    class: deck.class,
+                    own_width: deck.own_width,
+                    look: deck.look,
+                    side,
+                    at_m: plan(point),
+                    height_range_m: [points_m[point][2]; 2],
+                    width_factor: scale.across(source_m) as f32,
+                });
+            }
+        }
+    }
+    ends
+}
+
+#[cfg(test)]
+#[path = "decks_tests.rs"]
+mod tests;

@@ -1,0 +1,106 @@
+//! What was made last, within a budget of memory: made by whoever asks first, and shared by all threads.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+/// What an entry takes beside what it holds, about.
+const ENTRY_BYTES: u64 = 64;
+
+/// Things by key: those that were used last, within a budget.
+///
+/// One that is asked for by several threads at once is made by the first of them, and the others wait for it. A thing of which something
+/// is still in use stays in memory until that ends, and no longer counts.
+#[derive(Debug)]
+pub struct Recent<K, V> {
+    budget_bytes: u64,
+    kept: Mutex<Kept<K, V>>,
+}
+
+/// Where a thing is, once it was made.
+type Slot<V> = Arc<Mutex<Option<Arc<V>>>>;
+
+#[derive(Debug)]
+struct Entry<V> {
+    slot: Slot<V>,
+    /// When it was used last.
+    used: u64,
+    bytes: u64,
+}
+
+#[derive(Debug)]
+struct Kept<K, V> {
+    by_key: BTreeMap<K, Entry<V>>,
+    bytes: u64,
+    clock: u64,
+}
+
+impl<K: Copy + Ord, V> Recent<K, V> {
+    /// Keeps nothing yet, and never more than `budget_bytes`; but what was asked for last is always kept.
+    #[must_use]
+    pub fn new(budget_bytes: u64) -> Self {
+        let kept = Kept { by_key: BTreeMap::new(), bytes: 0, clock: 0 };
+        Self { budget_bytes, kept: Mutex::new(kept) }
+    }
+
+    /// The thing of this key. `make` makes it where it is not kept; `bytes_of` tells what it takes.
+    ///
+    /// # Errors
+    /// Those of `make`; then whoever asks next tries again.
+    pub fn get<E>(
+        &self,
+        key: K,
+        make: impl FnOnce() -> Result<V, E>,
+        bytes_of: impl FnOnce(&V) -> u64,
+    ) -> Result<Arc<V>, E> {
+        let slot = locked(&self.kept).slot(key);
+        let mut made = locked(&slot);
+        if let Some(known) = &*made {
+            return Ok(Arc::clone(known));
+        }
+        let new = Arc::new(make()?);
+        *made = Some(Arc::clone(&new));
+        drop(made);
+        locked(&self.kept).count(key, &slot, bytes_of(&new), self.budget_bytes);
+        Ok(new)
+    }
+}
+
+impl<K: Copy + Ord, V> Kept<K, V> {
+    fn slot(&mut self, key: K) -> Slot<V> {
+        self.clock += 1;
+        let Self { by_key, bytes, clock } = self;
+        let entry = by_key.entry(key).or_insert_with(|| {
+            *bytes += ENTRY_BYTES;
+            Entry { slot: Slot::default(), used: 0, bytes: ENTRY_BYTES }
+        });
+        entry.used = *clock;
+        Arc::clone(&entry.slot)
+    }
+
+    /// Counts what was put in a slot, and gives away what was used longest ago where it is too much.
+    fn count(&mut self, key: K, slot: &Slot<V>, bytes: u64, budget_bytes: u64) {
+        // Others may have given the entry away meanwhile.
+        let own = self.by_key.get_mut(&key).filter(|entry| Arc::ptr_eq(&entry.slot, slot));
+        if let Some(entry) = own {
+            entry.bytes += bytes;
+            self.bytes += bytes;
+        }
+        while self.bytes > budget_bytes {
+            let others = self.by_key.iter().filter(|&(&other, _)| other != key);
+            let oldest = others.min_by_key(|(_, entry)| entry.used).map(|(&oldest, _)| oldest);
+            let Some(gone) = oldest.and_then(|oldest| self.by_key.remove(&oldest)) else { return };
+            self.bytes -= gone.bytes;
+        }
+    }
+}
+
+/// What is behind a lock is whole also after a thread ended in the middle of its work: it is set at once.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+#[path = "recent_tests.rs"]
+mod tests;

@@ -1,0 +1,39 @@
+"""The program ``corniche``: where it is, and which version it is."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from .errors import ProgramError
+
+#: Names the program where the caller does not.
+VARIABLE = "CORNICHE"
+#: Where platform wheels have it, with all that it needs.
+PACKED = Path(__file__).with_name("released") / "bin" / "corniche"
+
+
+def find_program(asked: str | os.PathLike[str] | None = None) -> str:
+    """The path of the program on this machine: the one asked for, else ``$CORNICHE``, the one of this package, or the first on ``PATH``."""
+    wanted = asked or os.environ.get(VARIABLE) or (PACKED if PACKED.is_file() else "corniche")
+    found = shutil.which(wanted)
+    if found is None:
+        raise ProgramError(
+            f"there is no program {wanted}; install a wheel of corniche that has it, put it on PATH, or name it in ${VARIABLE}"
+            + (" or with --corniche" if asked else "")
+        )
+    return os.path.abspath(found)
+
+
+def version_of(program: str) -> str:
+    """What the program calls itself, as plans name it: ``corniche 1.2.3``."""
+    try:
+        told = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise ProgramError(f"{program} does not tell its version: {error}") from error
+    if told.returncode != 0:
+        raise ProgramError(f"{program} does not tell its version: exit code {told.returncode}: {told.stderr.strip()}")
+    # Further lines name libraries.
+    return told.stdout.partition("\n")[0].strip()

@@ -1,0 +1,74 @@
+"""Packages in a browser, or in a notebook."""
+
+from __future__ import annotations
+
+import atexit
+import os
+from types import TracebackType
+from typing import Any
+
+from .child import Child
+from .errors import CornicheError
+from .options import word_of_path, words_of
+from .program import find_program
+from .running import Listener, refuse, reserved_of, voice_of
+
+#: Those that run. What a notebook shows must stay when nothing names its server any more.
+_running: set[Serving] = set()
+
+
+class Serving:
+    """A web server with a page that shows packages. It ends with :meth:`close`, with a ``with`` block, or with this process."""
+
+    def __init__(self, child: Child, url: str) -> None:
+        self._child = child
+        #: The address of the page.
+        self.url = url
+        _running.add(self)
+
+    def close(self) -> None:
+        """Ends the server."""
+        if self in _running:
+            _running.remove(self)
+            self._child.stop()
+            self._child.wait()
+
+    def __enter__(self) -> Serving:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<corniche serve at {self.url}>"
+
+    def _repr_html_(self) -> str:
+        """The map itself, in a notebook."""
+        return (
+            f'<iframe src="{self.url}" width="100%" height="480" style="border: 0" allowfullscreen></iframe>'
+            f'<p><a href="{self.url}" target="_blank">{self.url}</a></p>'
+        )
+
+
+def serve(*packages: str | os.PathLike[str], port: int = 0, corniche: str | os.PathLike[str] | None = None, **options: Any) -> Serving:
+    """Shows packages in a browser of this computer. As the last line of a cell of a notebook it shows the map there.
+
+    :param port: 0 takes one that is free
+    :param options: the options of ``corniche serve``: ``open=True`` opens a browser
+    :raises CornicheError: with the program's own words
+    """
+    command = ["serve", *(word_of_path(package) for package in packages)]
+    refuse(options, reserved_of(command))
+    child = Child([find_program(corniche), *command, *voice_of(command), *words_of({"port": port, **options})], os.environ)
+    url = child.first_line()
+    if url is None:
+        listener = Listener()
+        ended = child.wait(heard=listener.hear)
+        raise listener.error_of(command, ended) or CornicheError("corniche serve ended at once")
+    return Serving(child, url)
+
+
+@atexit.register
+def _close_all() -> None:
+    for serving in list(_running):
+        serving.close()

@@ -1,0 +1,56 @@
+"""The notebook of examples/ runs from its first cell to its last, and shows what it says."""
+
+from __future__ import annotations
+
+import base64
+import os
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from corniche.program import VARIABLE
+
+NOTEBOOK = Path(__file__).resolve().parents[3] / "examples" / "notebook" / "pass.ipynb"
+nbclient = pytest.importorskip("nbclient")
+pytest.importorskip("geopandas")
+pytest.importorskip("matplotlib")
+pytestmark = pytest.mark.skipif(not NOTEBOOK.is_file(), reason="only in the repository")
+
+
+@pytest.fixture
+def with_page(program: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The program with a page: that of a released one, or a stand-in for one that was built without it."""
+    page = tmp_path / "page"
+    page.mkdir()
+    (page / "index.html").write_text("<!doctype html><title>Maps</title>")
+    stand_in = tmp_path / "corniche"
+    stand_in.write_text(f'#!/bin/sh\ncase "$1" in serve) exec "{program}" "$@" --page="{page}" ;; *) exec "{program}" "$@" ;; esac\n')
+    stand_in.chmod(0o755)
+    if os.environ.get(VARIABLE):
+        monkeypatch.setenv(VARIABLE, str(stand_in))
+
+
+@pytest.mark.usefixtures("with_page")
+def test_the_notebook_runs_and_shows_tables_pictures_and_a_map(tmp_path: Path) -> None:
+    import nbformat
+
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "what it printed is not kept"
+    folder = tmp_path / "run"
+    folder.mkdir()
+    client = nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}})
+    with client.setup_kernel():
+        for number, cell in enumerate(notebook.cells):
+            client.execute_cell(cell, number)
+        shown = [output for cell in notebook.cells for output in cell.get("outputs", []) if "data" in output]
+        pages = [output.data["text/html"] for output in shown if "text/html" in output.data]
+        assert sum("<table" in page for page in pages) == 2, "levels and steepest roads"
+        assert any("steepest_pct" in page and "LINESTRING Z" in page for page in pages)
+        pictures = [base64.b64decode(output.data["image/png"]) for output in shown if "image/png" in output.data]
+        assert len(pictures) == 2 and all(len(picture) > 5000 for picture in pictures)
+        (frame,) = [page for page in pages if "<iframe" in page]
+        url = frame.split('src="')[1].split('"')[0]
+        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(url, timeout=20) as answer:
+            assert b"<title>" in answer.read()
+    assert {"pass.pmtiles", "edges.gpkg", "profile.csv"} <= {path.name for path in folder.iterdir()}
