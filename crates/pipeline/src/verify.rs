@@ -99,7 +99,7 @@ fn look_at_all(
     for layer in ClassedLayer::ALL {
         lines::verify(package, layer, settings.threads, &mut findings, observer)?;
     }
-    spans::verify(package, settings.threads, &mut findings, observer)?;
+    spans::verify(&tiles, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;

@@ -116,6 +116,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         areas: None,
         boundaries: None,
         spans: None,
+        sv_tails: Vec::new(),
     }
 }
 

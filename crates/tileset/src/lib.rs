@@ -32,19 +32,21 @@ pub mod limits;
 mod manifest;
 mod package;
 mod payload;
+mod tile_order;
 
 pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
     DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord,
     LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord,
     PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord,
-    SampleSums, ScaleRecord, SettingsRecord, SpanCounts, SpansRecord, VerticalRecord,
+    SampleSums, ScaleRecord, SettingsRecord, SpanCounts, SpansRecord, SvTail, SvTails,
+    VerticalRecord,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
-    ToolRecord, pmtiles_order, telling_ranges, tile_of_order,
+    ToolRecord, telling_ranges,
 };
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
@@ -61,3 +63,4 @@ pub use payload::{
     encode_with_ground_of, photo_section, terrain_part_sizes, with_areas, with_lines, with_photo,
     with_spans,
 };
+pub use tile_order::{pmtiles_order, tile_of_order};

@@ -5,6 +5,7 @@ mod counts;
 mod levels;
 mod relief_levels;
 mod sample_sums;
+mod sv_tails;
 
 pub(crate) mod check;
 
@@ -18,3 +19,4 @@ pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
 pub use relief_levels::ReliefLevels;
 pub use sample_sums::SampleSums;
+pub use sv_tails::{SvTail, SvTails};

@@ -10,7 +10,6 @@ mod header;
 mod metadata;
 mod reader;
 mod source;
-mod tile_order;
 mod tool_record;
 #[cfg(feature = "write")]
 mod writer;
@@ -24,7 +23,6 @@ pub use reader::Package;
 #[cfg(not(target_arch = "wasm32"))]
 pub use source::{AnySource, BlockingSource, FileSource};
 pub use source::{ByteSource, MemorySource, SourceError};
-pub use tile_order::{pmtiles_order, tile_of_order};
 pub use tool_record::ToolRecord;
 #[cfg(feature = "write")]
 pub use writer::{WriteError, Writer};

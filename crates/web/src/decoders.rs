@@ -3,12 +3,13 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use corniche_geom::TileId;
-use corniche_viewer::tiles::{LoadTileError, TileGeometry};
+use corniche_tileset::Sections;
+use corniche_viewer::tiles::{LoadTileError, TileDecoder, TileGeometry};
 use futures_channel::oneshot;
 use js_sys::{Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
 
-use crate::{host::Host, problem::thrown};
+use crate::{host::Host, problem::thrown, report::json};
 
 /// Jobs that workers have.
 #[derive(Default)]
@@ -30,6 +31,22 @@ thread_local! {
     static JOBS: RefCell<Jobs> = RefCell::default();
 }
 
+/// What is read of tiles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Reading {
+    /// As workers are told: a [`TileDecoder`] as JSON.
+    decoder: String,
+    /// The sections that it needs.
+    pub(crate) sections: Sections,
+}
+
+impl Reading {
+    /// What a decoder reads.
+    pub(crate) fn of(decoder: &TileDecoder) -> Self {
+        Self { decoder: json(decoder), sections: decoder.sections() }
+    }
+}
+
 /// The workers of one map.
 pub(crate) struct Decoders {
     host: Host,
@@ -48,7 +65,7 @@ impl Decoders {
         Self { host, loads: Rc::new(RefCell::new(vec![0; workers as usize])) }
     }
 
-    /// Has a tile decoded. `decoder` is what is read of it, as JSON of a [`TileDecoder`](corniche_viewer::tiles::TileDecoder).
+    /// Has a tile decoded.
     ///
     /// # Errors
     /// When it is damaged, or its worker failed.
@@ -56,7 +73,7 @@ impl Decoders {
         &self,
         payload: Option<Vec<u8>>,
         id: TileId,
-        decoder: &str,
+        reading: &Reading,
     ) -> Result<TileGeometry, LoadTileError> {
         let failed = |reason: String| LoadTileError { id, source: reason.into() };
         let (answer, got) = oneshot::channel();
@@ -77,7 +94,7 @@ impl Decoders {
         let (z, x, y) = id.into();
         let message = object(&[
             ("job", job.into()),
-            ("decoder", decoder.into()),
+            ("decoder", reading.decoder.as_str().into()),
             ("z", z.into()),
             ("x", x.into()),
             ("y", y.into()),

@@ -12,7 +12,7 @@ use corniche_viewer::{
 };
 use futures_util::future::join_all;
 
-use crate::{loader::Tileset, problem::Problem};
+use crate::{decoders::Reading, loader::Tileset, problem::Problem};
 
 /// Tiles that are there. It notes those that are not, for a loader that must not wait.
 struct Noting<'a> {
@@ -65,7 +65,7 @@ pub(crate) struct FirstTiles {
 pub(crate) async fn first_tiles(
     tileset: &Tileset,
     camera: CameraRequest,
-    decoder: &str,
+    reading: &Reading,
 ) -> Result<FirstTiles, Problem> {
     let manifest = tileset.package.manifest();
     let place = camera.place(manifest).map_err(|error| off_ground(&error))?;
@@ -73,7 +73,7 @@ pub(crate) async fn first_tiles(
     // All tiles above the place are needed, and asked for at once; else each would wait for the one above it.
     let mut wanted = place.map_or_else(|| vec![TileId::ROOT], |at| tileset.package.tiles_at(at));
     loop {
-        let loads = wanted.iter().map(|id| tileset.load(*id, decoder));
+        let loads = wanted.iter().map(|id| tileset.load(*id, reading));
         for tile in join_all(loads).await {
             let tile = tile.map_err(|error| {
                 tileset.package.package().source().take_problem().unwrap_or_else(|| {

@@ -14,7 +14,13 @@ use corniche_viewer::tiles::{LoadTileError, PackageTiles, TileGeometry};
 use futures_util::future::{AbortHandle, abortable};
 use wasm_bindgen_futures::spawn_local;
 
-use crate::{decoders::Decoders, host::Host, problem::Problem, source::WebSource, timer::pause};
+use crate::{
+    decoders::{Decoders, Reading},
+    host::Host,
+    problem::Problem,
+    source::WebSource,
+    timer::pause,
+};
 
 /// A tile that the server did not give is asked for again after this time, and then after twice as long each time …
 const FIRST_REST_MS: f64 = 2000.0;
@@ -35,10 +41,10 @@ impl Tileset {
     pub(crate) async fn load(
         &self,
         id: TileId,
-        decoder: &str,
+        reading: &Reading,
     ) -> Result<TileGeometry, LoadTileError> {
-        let payload = self.package.payload(id).await?;
-        self.decoders.decode(payload, id, decoder).await
+        let payload = self.package.payload_for(id, reading.sections).await?;
+        self.decoders.decode(payload, id, reading).await
     }
 }
 
@@ -67,33 +73,32 @@ struct Load {
 pub(crate) struct PageLoader {
     tiles: Rc<Tileset>,
     host: Host,
-    /// What is read of tiles, as JSON.
-    decoder: Rc<RefCell<String>>,
+    reading: Rc<RefCell<Reading>>,
     state: Rc<RefCell<State>>,
 }
 
 impl PageLoader {
-    /// Loads what `decoder` says. `ready` are tiles that were decoded already.
+    /// Loads what `reading` says. `ready` are tiles that were decoded already.
     pub(crate) fn new(
         tiles: Rc<Tileset>,
         host: Host,
-        decoder: String,
+        reading: Reading,
         ready: BTreeMap<TileId, TileGeometry>,
     ) -> Self {
         let state = State { ready, ..State::default() };
         Self {
             tiles,
             host,
-            decoder: Rc::new(RefCell::new(decoder)),
+            reading: Rc::new(RefCell::new(reading)),
             state: Rc::new(RefCell::new(state)),
         }
     }
 
     /// From now on other parts of tiles are read; returns whether they are others.
-    pub(crate) fn read_otherwise(&self, decoder: String) -> bool {
-        let is_other = *self.decoder.borrow() != decoder;
+    pub(crate) fn read_otherwise(&self, reading: Reading) -> bool {
+        let is_other = *self.reading.borrow() != reading;
         if is_other {
-            self.decoder.replace(decoder);
+            self.reading.replace(reading);
             let mut state = self.state.borrow_mut();
             state.ready.clear();
             state.stop();
@@ -140,12 +145,12 @@ impl PageLoader {
         if state.ready.contains_key(&id) {
             return;
         }
-        let (tiles, decoder) = (Rc::clone(&self.tiles), self.decoder.borrow().clone());
+        let (tiles, reading) = (Rc::clone(&self.tiles), self.reading.borrow().clone());
         let (for_load, host) = (Rc::clone(&self.state), self.host.clone());
         let (load, handle) = abortable(async move {
             let mut rest_ms = FIRST_REST_MS;
             loop {
-                let tile = tiles.load(id, &decoder).await;
+                let tile = tiles.load(id, &reading).await;
                 let is_asked = for_load.borrow().is_asked(id);
                 let Some(why) = of_server(&tile).filter(|_| is_asked) else { return tile };
                 let told = tiles.package.package().source().take_problem();

@@ -21,6 +21,7 @@ use glam::DVec2;
 
 use crate::{
     canvas::PageCanvas,
+    decoders::Reading,
     flights::Flights,
     loader::{PageLoader, Tileset},
     report::{About, ClassEntry, GroundPlace, Has, Notice},
@@ -119,7 +120,7 @@ impl Map {
             self.camera.rescale_heights(factor, &ground);
         }
         self.camera.set_inertia(if changed.inertia { Inertia::On } else { Inertia::Off });
-        if self.loader.read_otherwise(decoder_of(&changed, &style)) {
+        if self.loader.read_otherwise(reading_of(&changed, &style)) {
             self.tiles.begin_again();
             self.canvas.clear();
             self.anew_s = Some(self.last_s);
@@ -248,13 +249,13 @@ pub(crate) fn ground<'a>(
     tiles.ground(settings.exaggeration * manifest.point_scale, height_range_m)
 }
 
-/// What is read of tiles for these settings, as JSON.
-pub(crate) fn decoder_of(settings: &Settings, style: &Style) -> String {
+/// What is read of tiles for these settings.
+pub(crate) fn reading_of(settings: &Settings, style: &Style) -> Reading {
     let decoder = match settings.compare {
         Compare::Off => TileDecoder::default().for_look(settings.road_options().method, style),
         Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(style),
     };
-    json(&decoder)
+    Reading::of(&decoder)
 }
 
 /// How fine the ground is to be.
@@ -273,10 +274,4 @@ pub(crate) fn clamped(size_px: [u32; 2], most_px: u32) -> [u32; 2] {
 pub(crate) fn css(color: Rgb) -> String {
     let [r, g, b] = color.map(|part| (part * 255.0).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-/// A value of this crate as JSON.
-pub(crate) fn json(value: &impl serde::Serialize) -> String {
-    // These values have text keys and finite numbers only, so there is always a text.
-    serde_json::to_string(value).unwrap_or_default()
 }

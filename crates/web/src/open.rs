@@ -20,7 +20,7 @@ use corniche_viewer::{
 use futures_util::future::try_join;
 use web_sys::HtmlCanvasElement;
 
-use crate::map::{Map, clamped, decoder_of, fineness_of};
+use crate::map::{Map, clamped, fineness_of, reading_of};
 use crate::{
     canvas::PageCanvas,
     decoders::Decoders,
@@ -126,14 +126,14 @@ impl Opened {
         let manifest = package.manifest();
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
-        let decoder = decoder_of(look.settings, look.style);
-        let first = first_tiles(&tileset, look.request, &decoder).await?;
+        let reading = reading_of(look.settings, look.style);
+        let first = first_tiles(&tileset, look.request, &reading).await?;
         let home = look.view(manifest, first.ground, size_px)?;
         let settings = look.settings;
         let (fineness, roads) = (fineness_of(settings), settings.road_options());
         let quality =
             Quality::of_package(manifest, fineness, look.style, roads, settings.exaggeration);
-        let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), decoder, first.tiles);
+        let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, first.tiles);
         let camera = home.camera(size_px);
         let heights_m = first.ground.heights_m;
         loader.foresee(&foreseen(package.as_ref(), manifest, heights_m, &camera, quality));

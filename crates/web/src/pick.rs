@@ -19,10 +19,10 @@ pub(crate) async fn road_at(
     half_width_m: &dyn Fn(FunctionalRoadClass, &RoadAttributes) -> Option<f64>,
     labels: &[String],
 ) -> Option<PickedRoad> {
-    let bytes = tiles.package.payload(tile).await.ok()??;
     let manifest = tiles.package.manifest();
     let Manifest { frame, vertical, .. } = manifest;
     let wanted = Sections::ROADS_SV | Sections::ATTRIBUTES;
+    let bytes = tiles.package.payload_for(tile, wanted).await.ok()??;
     let payload = decode(&bytes, tile, frame, vertical.quantum_m, wanted).ok()?;
     let position = |point: &LatticePoint| frame.position_m(*point);
     let record_of = |way_id: i64| {

@@ -144,3 +144,9 @@ pub(crate) struct Pick {
     pub(crate) at: GroundPlace,
     pub(crate) road: Option<PickedRoad>,
 }
+
+/// A value of this crate as JSON.
+pub(crate) fn json(value: &impl serde::Serialize) -> String {
+    // These values have text keys and finite numbers only, so there is always a text.
+    serde_json::to_string(value).unwrap_or_default()
+}

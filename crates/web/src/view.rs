@@ -16,11 +16,11 @@ use web_sys::HtmlCanvasElement;
 
 use crate::{
     host::Host,
-    map::{Map, clamped, ground, json},
+    map::{Map, clamped, ground},
     open::open,
     pick::road_at,
     problem::Problem,
-    report::{Notice, Pick},
+    report::{Notice, Pick, json},
     settings::Settings,
     tables,
     timer::pause,

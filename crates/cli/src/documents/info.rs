@@ -101,6 +101,9 @@ pub(crate) struct ManifestDocument {
     /// Bridges and tunnels off the ground, whose heights are estimates; left out in packages made without.
     #[serde(skip_serializing_if = "Option::is_none")]
     spans: Option<SpansDocument>,
+    /// The tiles that end with most SV roads, each as level, column, row and how many bytes these are; left out where none has many.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sv_tails: Vec<[u32; 4]>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -310,6 +313,7 @@ impl From<&Manifest> for ManifestDocument {
             areas: manifest.areas.map(Into::into),
             boundaries,
             spans: manifest.spans.map(Into::into),
+            sv_tails: manifest.sv_tails.into_iter().map(Into::into).collect(),
         }
     }
 }

@@ -95,6 +95,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         areas: areas(outcome),
         boundaries: lines(outcome, ClassedLayer::Boundaries),
         spans: spans(outcome),
+        sv_tails: outcome.tiles.sv_tails.list(),
     }
 }
 

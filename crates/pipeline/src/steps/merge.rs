@@ -68,7 +68,7 @@ pub(crate) fn make(
             if record.ground.is_some() && !context.store.has(Kind::Payload.item(item)) {
                 return Err(BuildError::Missing { what: format!("the tile {id}"), step: "tiles" });
             }
-            tiles.add(id.z(), &record);
+            tiles.add(id, &record);
             if context.store.has(Kind::SpanSection.item(item)) {
                 let (_, own) = spans::added(context, id, payload(context, id)?)?;
                 tiles.add_spans(id.z(), own);

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use corniche_tileset::{SampleSums, VerticalRecord};
+use corniche_geom::TileId;
+use corniche_tileset::{SampleSums, SvTails, VerticalRecord};
 
 use crate::{
     context::Context,
@@ -23,6 +24,7 @@ pub(crate) struct TileSums {
     pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
     /// Per level, root first: distances to samples.
     pub(crate) samples: Vec<SampleSums>,
+    pub(crate) sv_tails: SvTails,
     least_measured_m: f64,
 }
 
@@ -54,6 +56,7 @@ impl TileSums {
             levels: BTreeMap::new(),
             classes: BTreeMap::new(),
             samples: vec![SampleSums::new(quantum_m); context.levels.numbers().count()],
+            sv_tails: SvTails::new(),
             least_measured_m: VerticalRecord::least_measured_error_m(quantum_m),
         }
     }
@@ -63,8 +66,9 @@ impl TileSums {
         self.levels.entry(level).or_default().sections[SectionLayer::Spans].add(own);
     }
 
-    /// Adds the tile of a level.
-    pub(crate) fn add(&mut self, level: u8, record: &TileRecord) {
+    /// Adds a tile.
+    pub(crate) fn add(&mut self, id: TileId, record: &TileRecord) {
+        let level = id.z();
         for ((above, share), samples) in (0..).zip(&record.levels).zip(&mut self.samples) {
             let LevelShare { has_ground, seen, sums } = share;
             samples.merge(sums);
@@ -90,6 +94,7 @@ impl TileSums {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);
         }
         sums.uncovered_nodes += deviation.uncovered_nodes;
+        self.sv_tails.add(id, record.classes.values().map(|class| class.sv_stored_bytes).sum());
         for (&class, counted) in &record.classes {
             self.classes.entry((level, class)).or_default().merge(counted);
         }

@@ -81,6 +81,7 @@ checks! {
     SampleSums "P6.samples" Package "the nodes are those with data, those that were filled and those that are void, together"
     LevelSums "levels.sums" Package "tiles, triangles, vertices, bytes and errors of each level are those of its tiles"
     Growth "growth.sums" Package "the rows of the growth table are sums over the tiles"
+    SvTails "sv.tails" Package "the manifest lists the tiles that end with most SV roads, with their bytes there"
     LevelRecords "levels.derived" Package "cells, tolerances, margins and classes of the levels follow from grid and settings"
     PhotoWhole "photo.whole" Package "every photo can be decoded and has the size that level and settings give it"
     PhotoSeams "photo.seams" Package "neighbours of one level agree, within the loss of their coding, on the texels that they share"

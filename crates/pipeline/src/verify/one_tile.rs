@@ -24,6 +24,7 @@ pub(crate) struct Found {
     pub(crate) length_m: f64,
     pub(crate) ways: Vec<(i64, WayFacts)>,
     pub(crate) sums: TileSums,
+    pub(crate) sv_tail_bytes: u64,
     pub(crate) damage: Option<String>,
 }
 
@@ -36,6 +37,7 @@ impl Found {
             length_m: 0.0,
             ways: Vec::new(),
             sums: TileSums::default(),
+            sv_tail_bytes: 0,
             damage: None,
         }
     }
@@ -58,7 +60,8 @@ pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Leve
     let ways = attributes::of_tile(payload, least_class, &mut findings);
     roads_on_tin::verify_order(payload, &mut findings);
     let bounds = manifest.frame.tile_lattice_bounds(id);
-    let mut found = Found { ways, sums: TileSums::of(payload, sizes, bounds), ..Found::empty(id) };
+    let sums = TileSums::of(payload, sizes, bounds);
+    let mut found = Found { ways, sums, sv_tail_bytes: sizes.sv_tail, ..Found::empty(id) };
     let Some(terrain) = &payload.terrain else {
         let bare = payload.roads_geo.is_empty() && payload.roads_sv.is_empty();
         findings.look(CheckId::OnTin, bare, || format!("tile {id} has roads but no ground"));

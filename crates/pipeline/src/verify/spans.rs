@@ -9,13 +9,13 @@ use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
 use corniche_tileset::{
-    FilePackage, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode,
-    decode_spans, payload_sizes,
+    Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode, decode_spans,
 };
 use corniche_tin::{Placement, Surface};
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     error::VerifyError,
     layer_sums::{Counts, OfTile, look_at_layer},
     span_order::{self, OrderedCrossing, Piece},
@@ -40,11 +40,12 @@ type BorderEnd = (u8, i64, LatticePoint);
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
 
 pub(crate) fn verify(
-    package: &FilePackage,
+    tiles: &DecodedTiles<'_>,
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let package = tiles.package;
     let manifest = package.manifest();
     let record = manifest.spans.as_ref();
     let has_extract = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
@@ -56,7 +57,7 @@ pub(crate) fn verify(
     let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
-    let look_at = |id| look_at(package, id, (&ends, &crossings));
+    let look_at = |id| look_at(tiles, id, (&ends, &crossings));
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
     let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
     // Heights of both are rounded away from the ground.
@@ -104,27 +105,27 @@ fn told(manifest: &Manifest, wanted: SpanReason) -> u64 {
 /// What is collected of all tiles: what lies on borders, and where spans cross on the finest level.
 type Collected<'a> = (&'a Mutex<EndsByPlace>, &'a Mutex<Vec<(TileId, OrderedCrossing)>>);
 
-fn look_at(package: &FilePackage, id: TileId, (ends, crossings): Collected<'_>) -> OfTile {
+fn look_at(tiles: &DecodedTiles<'_>, id: TileId, (ends, crossings): Collected<'_>) -> OfTile {
     let mut found = OfTile::default();
     // Tiles that cannot be read are told elsewhere.
-    let Some(bytes) = package.tile(id).ok().flatten() else { return found };
-    let manifest = package.manifest();
+    let Some(bytes) = tiles.package.tile(id).ok().flatten() else { return found };
+    let manifest = tiles.package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
     let Ok(runs) = decode_spans(&bytes, id, &manifest.frame, quantum_m) else { return found };
     let of_structures = structures(&bytes, id, manifest);
     if runs.is_empty() && of_structures.is_empty() {
         return found;
     }
-    let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
-    let Ok(payload) = decode(&bytes, id, &manifest.frame, quantum_m, wanted) else { return found };
+    let whole = tiles.of(id);
+    let Ok((payload, sizes)) = &whole.whole else { return found };
     let Some(terrain) = &payload.terrain else { return found };
     let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
-    let lines = lines_of_structures(&payload, &of_structures, &surface);
+    let lines = lines_of_structures(payload, &of_structures, &surface);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     put_ends((id, &bounds), &lines, &runs, ends);
     let place = TilePlace::of(&manifest.frame, id);
-    let ground = TriangleSoup::new(&terrain.tin, quantum_m, place.steps);
+    let ground = tiles.ground(id);
     let work = Work::new(MOST_STEPS);
     let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
@@ -154,8 +155,7 @@ fn look_at(package: &FilePackage, id: TileId, (ends, crossings): Collected<'_>) 
         }
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
-    let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
-    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
+    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes: sizes.spans.stored };
     found
 }
 

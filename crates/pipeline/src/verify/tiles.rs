@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_tileset::SvTails;
 
 use super::{
     attributes::Ways,
@@ -37,6 +38,7 @@ pub(crate) fn verify(
     let mut finest_length_m = 0.0;
     let mut ways = Ways::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
+    let mut sv_tails = SvTails::new();
     workers::in_order_unless_cancelled(
         observer,
         threads,
@@ -65,6 +67,7 @@ pub(crate) fn verify(
             }
             ways.add(id, found.ways, &mut findings);
             sums.entry(id.z()).or_default().add(found.sums);
+            sv_tails.add(id, found.sv_tail_bytes);
             kept.extend(found.kept.map(|tile| (id, tile)));
             observer.advance(Stage::Verify, 1);
             Ok(())
@@ -77,6 +80,10 @@ pub(crate) fn verify(
     check_length(finest_length_m, manifest.counts.roads_kept_um, &mut findings);
     check_levels(package, &ids, &kept, &sums, &mut findings);
     check_growth(&manifest.growth, &sums, &mut findings);
+    let sv_tails = sv_tails.list();
+    findings.look(CheckId::SvTails, sv_tails == manifest.sv_tails, || {
+        format!("{sv_tails:?} in the tiles, {:?} are recorded", manifest.sv_tails)
+    });
     let report = VerifyReport {
         tiles: ids.len() as u64,
         checks: Vec::new(),

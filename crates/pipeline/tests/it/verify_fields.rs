@@ -223,6 +223,7 @@ const LEFT_OUT: &[Change] = &[
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:4326"), By(C::Crs)),
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:32632"), By(C::DemPlan)),
     change("/settings/dem_band", |_| json!(2), Unseen(NO_OTHER_BAND)),
+    change("/sv_tails", |_| json!([[0, 0, 0, 5000]]), By(C::SvTails)),
 ];
 
 fn operation_of(from: &str, to: &str) -> Value {

@@ -11,6 +11,8 @@ use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest, SpansRecord};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
+use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
+use crate::tile_order::pmtiles_order;
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;
@@ -109,6 +111,7 @@ impl Manifest {
         self.check_areas()?;
         ClassedLayer::ALL.into_iter().try_for_each(|layer| self.check_lines(layer))?;
         self.check_spans()?;
+        self.check_sv_tails()?;
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
         all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
@@ -153,6 +156,17 @@ impl Manifest {
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
         let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
+    }
+
+    fn check_sv_tails(&self) -> Result<(), String> {
+        that(self.sv_tails.len() <= MOST_TAILS, "the number of sv_tails", self.sv_tails.len())?;
+        let places: Vec<u64> = self.sv_tails.iter().map(|tail| pmtiles_order(tail.tile)).collect();
+        that(places.is_sorted_by(|one, next| one < next), "sv_tails", places)?;
+        for SvTail { tile, bytes } in &self.sv_tails {
+            that(tile.z() <= self.frame.max_level(), "sv_tails.z", tile.z())?;
+            that(*bytes >= LEAST_TAIL_BYTES, "sv_tails.bytes", *bytes)?;
+        }
+        Ok(())
     }
 
     fn check_areas(&self) -> Result<(), String> {

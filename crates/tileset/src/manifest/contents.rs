@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::LevelRecord;
 use crate::manifest::relief_levels::ReliefLevels;
+use crate::manifest::sv_tails::SvTail;
 
 /// The table of contents of a package: its JSON metadata.
 ///
@@ -77,6 +78,9 @@ pub struct Manifest {
     /// Bridges and tunnels off the ground; left out in packages made without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spans: Option<SpansRecord>,
+    /// The tiles that end with most SV roads, in the order of tiles in the package; left out where none has many, and in packages of before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sv_tails: Vec<SvTail>,
 }
 
 /// The part of the elevation files that a package is of.

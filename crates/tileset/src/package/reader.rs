@@ -13,8 +13,8 @@ use crate::package::error::{OpenError, ReadError};
 use crate::package::header::{HEADER_BYTES, Header, INITIAL_BYTES, Span};
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
 use crate::package::source::{ByteSource, SourceError};
-use crate::package::tile_order::{pmtiles_order, tile_of_order};
 use crate::package::tool_record::ToolRecord;
+use crate::tile_order::{pmtiles_order, tile_of_order};
 use crate::{
     Manifest, Sections, TilePayload, decode,
     limits::{
@@ -162,6 +162,19 @@ impl<S: ByteSource> Package<S> {
     /// # Errors
     /// When it cannot be read, or the directory is damaged.
     pub async fn tile(&self, id: TileId) -> Result<Option<Vec<u8>>, ReadError> {
+        self.tile_for(id, Sections::ALL).await
+    }
+
+    /// The same, without SV roads at its end where they are not wanted and the manifest tells how many bytes they are. [`decode`] takes it for these
+    /// sections.
+    ///
+    /// # Errors
+    /// As [`Package::tile`].
+    pub async fn tile_for(
+        &self,
+        id: TileId,
+        wanted: Sections,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         let damaged = |what| ReadError::Directory { tile: id, source: OpenError::Damaged { what } };
         let order = pmtiles_order(id);
         let mut found = self.root.find(order);
@@ -173,7 +186,10 @@ impl<S: ByteSource> Package<S> {
                 if end.is_none_or(|end| end > length) || entry.length > MAX_PAYLOAD_BYTES {
                     return Err(damaged("a directory points outside the tiles"));
                 }
-                let bytes = self.source.read(offset + entry.offset, entry.length as usize).await;
+                let left_out =
+                    if wanted.contains(Sections::ROADS_SV) { 0 } else { self.sv_tail_bytes(order) };
+                let length = entry.length.saturating_sub(left_out) as usize;
+                let bytes = self.source.read(offset + entry.offset, length).await;
                 return bytes.map(Some).map_err(|source| ReadError::Source { tile: id, source });
             }
             let leaf = self
@@ -194,9 +210,16 @@ impl<S: ByteSource> Package<S> {
         id: TileId,
         wanted: Sections,
     ) -> Result<Option<TilePayload>, ReadError> {
-        let Some(bytes) = self.tile(id).await? else { return Ok(None) };
+        let Some(bytes) = self.tile_for(id, wanted).await? else { return Ok(None) };
         let Manifest { frame, vertical, .. } = &self.manifest;
         Ok(Some(decode(&bytes, id, frame, vertical.quantum_m, wanted)?))
+    }
+
+    /// How many bytes the SV roads at the end of the tile at a place take, where the manifest tells.
+    fn sv_tail_bytes(&self, order: u64) -> u32 {
+        let tails = &self.manifest.sv_tails;
+        let place = tails.binary_search_by_key(&order, |tail| pmtiles_order(tail.tile));
+        place.map_or(0, |place| tails[place].bytes)
     }
 
     /// A leaf directory, read once and kept for a while.

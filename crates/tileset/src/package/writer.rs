@@ -12,8 +12,8 @@ use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoo
 
 use crate::package::close_up::CloseUp;
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
-use crate::package::tile_order::pmtiles_order;
 use crate::package::tool_record::header_bounds;
+use crate::tile_order::pmtiles_order;
 use crate::{
     Manifest,
     limits::{MAX_METADATA_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES},

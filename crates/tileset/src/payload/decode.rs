@@ -17,7 +17,8 @@ use crate::payload::{
 ///
 /// `frame` and `quantum_m` are those of the package's manifest. Memory and work are bounded by the
 /// [`limits`](crate::limits), whatever the bytes say. Sections that are not wanted are not looked into, so damage in
-/// them goes unnoticed; [`Sections::ALL`] also checks those that this version cannot decode.
+/// them goes unnoticed; [`Sections::ALL`] also checks those that this version cannot decode. Without SV roads, `bytes` may be what
+/// [`Package::tile_for`](crate::Package::tile_for) reads.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or a wanted section is damaged; the error names both.
@@ -30,7 +31,7 @@ pub fn decode(
 ) -> Result<TilePayload, DecodeError> {
     let header = |damage| DecodeError { tile: id, part: "header", damage };
     let context = Context::new(id, frame, quantum_m).map_err(header)?;
-    let sections = envelope::open(bytes, id).map_err(header)?;
+    let sections = envelope::open_read(bytes, id).map_err(header)?;
     if wanted == Sections::ALL {
         envelope::check_unknown(&sections).map_err(|damage| DecodeError {
             tile: id,

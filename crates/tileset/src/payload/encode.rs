@@ -162,10 +162,12 @@ fn encode_sections(
             .find(|((of, _), _)| *of == kind)
             .map_or_else(SectionSize::default, |(_, size)| *size)
     };
+    let roads_sv = size(Kind::RoadsSv).or(size(Kind::CodedSv));
     let sizes = PayloadSizes {
         terrain: size(Kind::Terrain),
         roads_geo: size(Kind::RoadsGeo).or(size(Kind::CodedGeo)),
-        roads_sv: size(Kind::RoadsSv).or(size(Kind::CodedSv)),
+        roads_sv,
+        sv_tail: roads_sv.stored,
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),

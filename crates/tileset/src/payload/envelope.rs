@@ -34,20 +34,33 @@ pub(crate) struct StoredSection<'a> {
     compression: u8,
     raw_length: u32,
     checksum: u32,
+    /// How many bytes it has in a whole payload.
+    stored_length: usize,
+    /// Those bytes; none where the payload was read without its last section.
     bytes: &'a [u8],
 }
 
-#[cfg(feature = "write")]
 impl StoredSection<'_> {
     /// Its kind, if this version knows it.
     pub(crate) fn known_kind(&self) -> Option<Kind> {
         Kind::ALL.iter().copied().find(|&kind| kind as u16 == self.kind)
     }
+
+    /// Whether its bytes are there.
+    fn is_read(&self) -> bool {
+        self.bytes.len() == self.stored_length
+    }
 }
 
-/// Takes a payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
+/// Takes a whole payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
 /// that each byte is covered by one checksum.
 pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
+    let sections = open_read(bytes, id)?;
+    if sections.iter().all(StoredSection::is_read) { Ok(sections) } else { Err(Damage::TooShort) }
+}
+
+/// The same of a payload that may have been read without SV roads at its end.
+pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.array::<4>()? != MAGIC {
         return Err(Damage::Magic);
@@ -65,19 +78,26 @@ pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
         let [compression, reserved] = cursor.array()?;
         let [offset, length, raw_length, checksum] =
             [(); 4].map(|()| cursor.array().map(u32::from_le_bytes));
-        let (offset, length) = (offset? as usize, length? as usize);
-        let stored = offset.checked_add(length).and_then(|end| bytes.get(offset..end));
+        let (offset, stored_length) = (offset? as usize, length? as usize);
+        let stored = offset.checked_add(stored_length).and_then(|end| bytes.get(offset..end));
         if reserved != 0 {
             return Err(Damage::Invalid { what: "a reserved byte of the section table is not 0" });
         }
-        sections.push(StoredSection {
+        let section = StoredSection {
             kind,
             compression,
             raw_length: raw_length?,
             checksum: checksum?,
-            bytes: stored.ok_or(Damage::TooShort)?,
-        });
-        ends.push([offset, offset + length]);
+            stored_length,
+            bytes: stored.unwrap_or_default(),
+        };
+        let is_last = sections.len() + 1 == usize::from(count);
+        let may_be_missing = is_last && section.known_kind().is_some_and(Kind::is_sv);
+        if stored.is_none() && !(may_be_missing && offset == bytes.len()) {
+            return Err(Damage::TooShort);
+        }
+        ends.push([offset, offset + section.bytes.len()]);
+        sections.push(section);
     }
     let table = &bytes[..bytes.len() - cursor.left()];
     if u32::from_le_bytes(cursor.array()?) != crc32fast::hash(table) {
@@ -113,6 +133,9 @@ pub(crate) fn section(
     let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
         return Ok(None);
     };
+    if !section.is_read() {
+        return Err(Damage::TooShort);
+    }
     let raw_length = section.raw_length as usize;
     if raw_length > MAX_SECTION_BYTES {
         return Err(Damage::TooLarge {
@@ -142,7 +165,7 @@ pub(crate) fn read_part<T>(
     read: impl FnOnce(&[StoredSection<'_>]) -> Result<T, Damage>,
 ) -> Result<T, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile, part, damage };
-    let sections = open(bytes, tile).map_err(failed("header"))?;
+    let sections = open_read(bytes, tile).map_err(failed("header"))?;
     read(&sections).map_err(failed(part))
 }
 
@@ -169,8 +192,14 @@ pub(crate) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
     let of_kind = sections.iter().find(|section| section.kind == kind as u16);
     of_kind.map_or_else(SectionSize::default, |section| SectionSize {
         raw: u64::from(section.raw_length),
-        stored: section.bytes.len() as u64,
+        stored: section.stored_length as u64,
     })
+}
+
+/// How many bytes SV roads take at the end of the payload; 0 where another section is the last.
+pub(crate) fn sv_tail_bytes(sections: &[StoredSection<'_>]) -> u64 {
+    let last = sections.last().filter(|last| last.known_kind().is_some_and(Kind::is_sv));
+    last.map_or(0, |last| last.stored_length as u64)
 }
 
 /// Checks sections of kinds that this version does not know, as far as it can.
@@ -269,7 +298,7 @@ pub(crate) fn with_section(
     seal(tile, &contents)
 }
 
-/// Puts header, table and sections together; compresses each section where that makes it smaller.
+/// Puts header, table and sections together, SV roads last; compresses each section where that makes it smaller. The sizes are in the order of `sections`.
 #[cfg(feature = "write")]
 pub(crate) fn seal(
     id: TileId,
@@ -284,9 +313,11 @@ pub(crate) fn seal(
     table.extend(id.x().to_le_bytes());
     table.extend(id.y().to_le_bytes());
     let mut body: Vec<u8> = Vec::new();
-    let mut sizes = Vec::with_capacity(sections.len());
+    let mut sizes = vec![SectionSize::default(); sections.len()];
+    let (last, first): (Vec<_>, Vec<_>) =
+        sections.iter().enumerate().partition(|(_, (kind, _))| kind.is_sv());
     let start = HEADER_BYTES + sections.len() * ENTRY_BYTES + 4;
-    for (kind, content) in sections {
+    for (place, (kind, content)) in first.into_iter().chain(last) {
         let section = kind.name();
         let compressed;
         let (compression, stored, raw_length, checksum) = match content {
@@ -314,7 +345,7 @@ pub(crate) fn seal(
         }
         table.extend(checksum.to_le_bytes());
         body.extend(stored);
-        sizes.push(SectionSize { raw: raw_length as u64, stored: stored.len() as u64 });
+        sizes[place] = SectionSize { raw: raw_length as u64, stored: stored.len() as u64 };
     }
     table.extend(crc32fast::hash(&table).to_le_bytes());
     table.extend(body);

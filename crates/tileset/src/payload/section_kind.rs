@@ -46,6 +46,11 @@ kinds! {
 }
 
 impl Kind {
+    /// Whether it has SV roads. They are written last, so that those who draw by GEO can read a payload without them.
+    pub(crate) const fn is_sv(self) -> bool {
+        matches!(self, Self::RoadsSv | Self::CodedSv)
+    }
+
     /// The kind of the sections of a layer of lines.
     pub(crate) const fn of_lines(layer: ClassedLayer) -> Self {
         match layer {

@@ -20,6 +20,8 @@ pub struct PayloadSizes {
     pub roads_geo: SectionSize,
     /// The SV roads section.
     pub roads_sv: SectionSize,
+    /// Bytes of the SV roads that the payload ends with; 0 where another section is the last, as in packages of before.
+    pub sv_tail: u64,
     /// The road attributes section.
     pub attributes: SectionSize,
     /// The road tags section.
@@ -64,6 +66,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         terrain: size(Kind::Terrain),
         roads_geo: size(Kind::RoadsGeo).or(size(Kind::CodedGeo)),
         roads_sv: size(Kind::RoadsSv).or(size(Kind::CodedSv)),
+        sv_tail: envelope::sv_tail_bytes(&sections),
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),

@@ -23,7 +23,7 @@ pub fn terrain_summary(
 ) -> Result<Option<TerrainSummary>, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let sections = envelope::open_read(bytes, id).map_err(failed("header"))?;
     let record = terrain::record_in(&sections, context.scale);
     let record = record.map_err(failed(Kind::Terrain.name()))?;
     Ok(record.map(|record| TerrainSummary {

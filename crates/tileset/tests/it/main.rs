@@ -3,4 +3,5 @@
 mod damage;
 mod package;
 mod sizes;
+mod sv_tails;
 mod version_1;

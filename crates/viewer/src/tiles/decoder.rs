@@ -105,6 +105,20 @@ impl TileDecoder {
         Self { overlays, ..self }
     }
 
+    /// The sections that it reads.
+    #[must_use]
+    pub fn sections(&self) -> Sections {
+        let of_layer = |layer: Layer, sections| match layer {
+            Layer::Read => sections,
+            Layer::LeftOut => Sections::NONE,
+        };
+        self.sections
+            | Sections::SPANS
+            | of_layer(self.photos, Sections::PHOTO)
+            | of_layer(self.areas, Sections::AREAS)
+            | of_layer(self.boundaries, Sections::lines(ClassedLayer::Boundaries))
+    }
+
     /// The methods for which lines are prepared: those of the roads that are read.
     fn line_methods(&self) -> LineMethods {
         match [Sections::ROADS_GEO, Sections::ROADS_SV].map(|of| self.sections.contains(of)) {

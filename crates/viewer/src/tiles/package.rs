@@ -14,6 +14,9 @@ use super::{
 };
 use crate::{lod::GroundSummary, options::RoadMethod};
 
+/// What summaries and slopes are read from.
+const GROUND_ALONE: Sections = Sections::TERRAIN.and(Sections::RELIEF).and(Sections::SPANS);
+
 /// The tiles of a package, from any source of bytes. Loading a tile is asynchronous and blocks no thread.
 /// [`PackageSource`](super::PackageSource) is a package in a file, for threads that may wait.
 #[derive(Debug)]
@@ -63,8 +66,7 @@ impl<S: ByteSource> PackageTiles<S> {
     /// # Errors
     /// When it cannot be read or is damaged.
     pub async fn summary(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
-        let failed = |source| LoadTileError { id, source };
-        let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
+        let bytes = self.payload_for(id, GROUND_ALONE).await?;
         let Some(bytes) = bytes else { return Ok(None) };
         self.summary_in(&bytes, id)
     }
@@ -95,7 +97,7 @@ impl<S: ByteSource> PackageTiles<S> {
     pub async fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let failed = |source| LoadTileError { id, source };
         let quantum_m = self.manifest().vertical.quantum_m;
-        let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
+        let bytes = self.payload_for(id, GROUND_ALONE).await?;
         let none = TileLines::default();
         let tile = TileGeometry::assemble(id, None, &none, self.frame(), quantum_m);
         let Some(bytes) = bytes else { return Ok(tile) };
@@ -115,16 +117,21 @@ impl<S: ByteSource> PackageTiles<S> {
     /// # Errors
     /// When it cannot be read or is damaged.
     pub async fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
-        let bytes = self.payload(id).await?;
+        let bytes = self.payload_for(id, self.decoder.sections()).await?;
         self.decoder.tile(bytes.as_deref(), id, self.manifest())
     }
 
-    /// The bytes of a tile that exists, for those who decode it elsewhere; `None` if only tiles beneath it are stored.
+    /// The bytes of a tile that exists, as far as these sections need them, for those who decode it elsewhere; `None` if only tiles beneath it are
+    /// stored.
     ///
     /// # Errors
     /// When they cannot be read.
-    pub async fn payload(&self, id: TileId) -> Result<Option<Vec<u8>>, LoadTileError> {
-        let bytes = self.package.tile(id).await;
+    pub async fn payload_for(
+        &self,
+        id: TileId,
+        wanted: Sections,
+    ) -> Result<Option<Vec<u8>>, LoadTileError> {
+        let bytes = self.package.tile_for(id, wanted).await;
         bytes.map_err(|error| LoadTileError { id, source: error.into() })
     }
 
