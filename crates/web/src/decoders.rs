@@ -34,7 +34,7 @@ thread_local! {
 /// What is read of tiles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Reading {
-    /// As workers are told: a [`TileDecoder`] as JSON.
+    /// The [`TileDecoder`] as JSON, as workers are told.
     decoder: String,
     /// The sections that it needs.
     pub(crate) sections: Sections,

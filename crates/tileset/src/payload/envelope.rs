@@ -36,7 +36,7 @@ pub(crate) struct StoredSection<'a> {
     checksum: u32,
     /// How many bytes it has in a whole payload.
     stored_length: usize,
-    /// Those bytes; none where the payload was read without its last section.
+    /// The bytes themselves; none where the payload was read without its last section.
     bytes: &'a [u8],
 }
 
