@@ -50,7 +50,7 @@ pub fn decode_spans(
 ) -> Result<Vec<SpanRun>, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let sections = envelope::open_read(bytes, id).map_err(failed("header"))?;
     let inside = failed(Kind::Spans.name());
     let Some(section) = envelope::section(&sections, Kind::Spans).map_err(inside)? else {
         return Ok(Vec::new());

@@ -3,14 +3,16 @@
 
 use std::sync::Mutex;
 
+use corniche_areas::ClassedLayer;
 use corniche_drape::SvLine;
 use corniche_geom::{GridFrame, LatticePoint, NodeIndex, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_testing::package;
 use corniche_tileset::{
     ByteSource, Damage, Manifest, MemorySource, Package, PayloadContext, Photo, RoadRecord,
-    Sections, SourceError, SvRoad, SvTail, SvTails, Terrain, TilePayload, decode, decode_photo,
-    encode, encode_photo, payload_sizes, with_photo,
+    Sections, SourceError, SvRoad, SvTail, SvTails, Terrain, TilePayload, decode, decode_areas,
+    decode_lines, decode_photo, decode_spans, encode, encode_photo, payload_sizes, terrain_summary,
+    with_photo,
 };
 use corniche_tin::{Tin, TinVertex};
 
@@ -108,7 +110,17 @@ fn a_tile_is_read_without_sv_roads_at_its_end() {
         assert_eq!(sv.unwrap().unwrap().roads_sv.len(), 2000);
         let part = pollster::block_on(package.tile_for(TileId::ROOT, wanted)).unwrap().unwrap();
         assert_eq!(part, bytes[..length - left_out]);
-        assert!(decode_photo(&part, TileId::ROOT).is_ok());
+        // All that reads a payload takes it.
+        let id = TileId::ROOT;
+        assert_eq!(decode_photo(&part, id), decode_photo(&bytes, id));
+        assert_eq!(decode_areas(&part, id, frame), decode_areas(&bytes, id, frame));
+        let lines = |bytes: &[u8]| decode_lines(bytes, id, ClassedLayer::Boundaries);
+        assert_eq!(lines(&part), lines(&bytes));
+        let spans = |bytes: &[u8]| decode_spans(bytes, id, frame, quantum_m);
+        assert_eq!(spans(&part), spans(&bytes));
+        let summary = |bytes: &[u8]| terrain_summary(bytes, id, frame, quantum_m);
+        assert_eq!(summary(&part), summary(&bytes));
+        assert!(summary(&part).is_ok_and(|ground| ground.is_some()));
         let lengths = package.source().lengths.lock().unwrap().clone();
         assert_eq!(lengths, [length - left_out, length, length - left_out]);
     }
