@@ -24,7 +24,8 @@ use crate::{
     wire::{push_varint, varint},
 };
 
-/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version; for each further layer a mark.
+/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version; for each further layer a mark. Where lengths of ways that are
+/// left out are looked up, the index of ids takes up to a byte more.
 pub(crate) fn bytes_per_node(precedence: Precedence, layers: u64) -> u64 {
     match precedence {
         Precedence::First => 8 + 8 + 1 + layers,

@@ -177,7 +177,7 @@ async fn open(headers: &HeaderMap, route: &Route) -> io::Result<Opened> {
                 Some(way) => {
                     let bytes = bytes.clone();
                     let packed = tokio::task::spawn_blocking(move || way.of(&bytes));
-                    packed.await.map_err(io::Error::other)??
+                    packed.await.map_err(io::Error::other)?
                 }
                 None => None,
             };

@@ -22,18 +22,14 @@ const BUFFER_BYTES: usize = 1 << 16;
 
 /// A file in memory, packed once, when it is asked for first.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Packed(Arc<OnceLock<Bytes>>);
+pub(crate) struct Packed(Arc<OnceLock<Option<Bytes>>>);
 
 impl Packed {
     /// The packed file, or `None` where that is not shorter. It takes a tenth of a second for a megabyte.
-    pub(crate) fn of(&self, bytes: &Bytes) -> io::Result<Option<Bytes>> {
-        let packed = if let Some(packed) = self.0.get() {
-            packed.clone()
-        } else {
-            let packed = pack(bytes)?;
-            self.0.get_or_init(|| packed).clone()
-        };
-        Ok((packed.len() < bytes.len()).then_some(packed))
+    pub(crate) fn of(&self, bytes: &Bytes) -> Option<Bytes> {
+        let shorter = |packed: &Bytes| packed.len() < bytes.len();
+        // Of those who ask at once, one packs, and the others wait. Packing into memory does not fail.
+        self.0.get_or_init(|| pack(bytes).ok().filter(shorter)).clone()
     }
 }
 

@@ -9,7 +9,7 @@ use crate::tile_raster::TileRaster;
 ///
 /// The mesh holds border and boundaries, which insertion never touches. After an insertion, the changed faces
 /// are those around the new vertex, its star. Only they are scanned again, each once. All are scanned before the first result
-/// is looked at, because whether a node is too far cannot be predicted.
+/// is looked at, so that the mesh is borrowed once.
 pub(crate) fn refine(
     mesh: &mut HalfEdges,
     tile: &TileRaster<'_>,

@@ -10,8 +10,9 @@ const ENTRY_BYTES: u64 = 64;
 
 /// Things by key: those that were used last, within a budget.
 ///
-/// One that is asked for by several threads at once is made by the first of them, and the others wait for it. A thing of which something
-/// is still in use stays in memory until that ends, and no longer counts.
+/// One that is asked for by several threads at once is made by the first of them, and the others wait for it. To make one, others of the same store may
+/// be asked for, as long as none comes to need itself; it is kept meanwhile. A thing of which something is still in use after it was given away stays
+/// in memory until that ends, and no longer counts.
 #[derive(Debug)]
 pub struct Recent<K, V> {
     budget_bytes: u64,
@@ -32,15 +33,17 @@ struct Entry<V> {
 #[derive(Debug)]
 struct Kept<K, V> {
     by_key: BTreeMap<K, Entry<V>>,
+    /// The keys by when they were used last.
+    by_use: BTreeMap<u64, K>,
     bytes: u64,
     clock: u64,
 }
 
 impl<K: Copy + Ord, V> Recent<K, V> {
-    /// Keeps nothing yet, and never more than `budget_bytes`; but what was asked for last is always kept.
+    /// Keeps nothing yet, and never more than `budget_bytes`; but what was asked for last is always kept, and what is being made.
     #[must_use]
     pub fn new(budget_bytes: u64) -> Self {
-        let kept = Kept { by_key: BTreeMap::new(), bytes: 0, clock: 0 };
+        let kept = Kept { by_key: BTreeMap::new(), by_use: BTreeMap::new(), bytes: 0, clock: 0 };
         Self { budget_bytes, kept: Mutex::new(kept) }
     }
 
@@ -62,7 +65,7 @@ impl<K: Copy + Ord, V> Recent<K, V> {
         let new = Arc::new(make()?);
         *made = Some(Arc::clone(&new));
         drop(made);
-        locked(&self.kept).count(key, &slot, bytes_of(&new), self.budget_bytes);
+        locked(&self.kept).count(key, bytes_of(&new), self.budget_bytes);
         Ok(new)
     }
 }
@@ -70,28 +73,39 @@ impl<K: Copy + Ord, V> Recent<K, V> {
 impl<K: Copy + Ord, V> Kept<K, V> {
     fn slot(&mut self, key: K) -> Slot<V> {
         self.clock += 1;
-        let Self { by_key, bytes, clock } = self;
+        let Self { by_key, by_use, bytes, clock } = self;
         let entry = by_key.entry(key).or_insert_with(|| {
             *bytes += ENTRY_BYTES;
             Entry { slot: Slot::default(), used: 0, bytes: ENTRY_BYTES }
         });
+        by_use.remove(&entry.used);
+        by_use.insert(*clock, key);
         entry.used = *clock;
         Arc::clone(&entry.slot)
     }
 
     /// Counts what was put in a slot, and gives away what was used longest ago where it is too much.
-    fn count(&mut self, key: K, slot: &Slot<V>, bytes: u64, budget_bytes: u64) {
-        // Others may have given the entry away meanwhile.
-        let own = self.by_key.get_mut(&key).filter(|entry| Arc::ptr_eq(&entry.slot, slot));
-        if let Some(entry) = own {
+    fn count(&mut self, key: K, bytes: u64, budget_bytes: u64) {
+        // It was in use while it was made, so it is still there.
+        if let Some(entry) = self.by_key.get_mut(&key) {
             entry.bytes += bytes;
             self.bytes += bytes;
         }
-        while self.bytes > budget_bytes {
-            let others = self.by_key.iter().filter(|&(&other, _)| other != key);
-            let oldest = others.min_by_key(|(_, entry)| entry.used).map(|(&oldest, _)| oldest);
-            let Some(gone) = oldest.and_then(|oldest| self.by_key.remove(&oldest)) else { return };
-            self.bytes -= gone.bytes;
+        let mut gone = Vec::new();
+        for (&used, &other) in &self.by_use {
+            if self.bytes <= budget_bytes {
+                break;
+            }
+            // Who makes a thing, or waits for it, holds its slot. Slots are handed out under the lock only.
+            let idle = |entry: &&Entry<V>| other != key && Arc::strong_count(&entry.slot) == 1;
+            if let Some(entry) = self.by_key.get(&other).filter(idle) {
+                self.bytes -= entry.bytes;
+                gone.push((used, other));
+            }
+        }
+        for (used, other) in gone {
+            self.by_use.remove(&used);
+            self.by_key.remove(&other);
         }
     }
 }

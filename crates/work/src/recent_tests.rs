@@ -48,6 +48,22 @@ fn one_that_cannot_be_made_is_tried_again() {
 }
 
 #[test]
+fn what_is_being_made_is_kept_while_others_are_made_for_it() {
+    let recent = Recent::new(10);
+    let make = || {
+        for key in 1..5 {
+            assert!(ask(&recent, key, 1000));
+        }
+        Ok::<_, Infallible>(0)
+    };
+    let Ok(made) = recent.get(0, make, |_| 1000);
+    assert_eq!(*made, 0);
+    assert!(!ask(&recent, 0, 1000));
+    assert_eq!(locked(&recent.kept).bytes, 1000 + ENTRY_BYTES);
+    assert_eq!(locked(&recent.kept).by_use.len(), 1);
+}
+
+#[test]
 fn threads_make_a_thing_once() {
     let recent: Recent<u32, u32> = Recent::new(1 << 20);
     let made = AtomicUsize::new(0);

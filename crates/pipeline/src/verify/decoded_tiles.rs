@@ -9,7 +9,7 @@ use std::{
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_tileset::{
-    FilePackage, PayloadSizes, Sections, Terrain, TilePayload, decode, payload_sizes,
+    FilePackage, PayloadSizes, Relief, Sections, Terrain, TilePayload, decode, payload_sizes,
 };
 use corniche_tin::{Tin, TinVertex};
 use corniche_work::Recent;
@@ -90,10 +90,14 @@ impl DecodedTile {
         let others = self.payload().map_or(0, |payload| {
             let geo: usize = payload.roads_geo.iter().map(|road| road.line.vertices.len()).sum();
             let sv: usize = payload.roads_sv.iter().map(|road| road.line.points.len()).sum();
-            let relief = payload.relief.as_ref().map_or(0, |relief| relief.heights().raw().len());
-            geo * size_of::<DrapedVertex>()
+            let texts = payload.attributes.iter().map(|road| road.attributes.text_bytes());
+            size_of_val(&payload.roads_geo[..])
+                + geo * size_of::<DrapedVertex>()
+                + size_of_val(&payload.roads_sv[..])
                 + sv * size_of::<(LatticePoint, [f64; 2])>()
-                + relief * size_of::<f32>()
+                + size_of_val(&payload.attributes[..])
+                + texts.sum::<usize>()
+                + payload.relief.as_ref().map_or(0, Relief::memory_bytes)
         });
         (ground + others) as u64
     }

@@ -3,6 +3,9 @@
 use corniche_geom::{LatticePoint, TooMuchWork, Work};
 use corniche_spans::SpanKind;
 
+/// A crossing that is kept counts for so many steps of work: it takes memory, too.
+const STEPS_OF_A_CROSSING: usize = 64;
+
 /// A straight piece of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Piece {
@@ -43,8 +46,12 @@ pub(crate) fn crossings(
         for other in near {
             work.add(1);
             work.check()?;
-            if one.kind == other.kind && one.layer != other.layer {
-                found.extend(one.crossing(other));
+            if one.kind == other.kind
+                && one.layer != other.layer
+                && let Some(crossing) = one.crossing(other)
+            {
+                work.add(STEPS_OF_A_CROSSING);
+                found.push(crossing);
             }
         }
     }

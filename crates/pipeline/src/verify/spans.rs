@@ -57,12 +57,12 @@ pub(crate) fn verify(
     let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
-    let look_at = |id| look_at(tiles, id, (&ends, &crossings));
-    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
-    let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
     // Heights of both are rounded away from the ground.
     let least_m = LEVEL_M.max(2.0 * manifest.vertical.quantum_m);
-    look_at_order(told(manifest, SpanReason::OrderReversed), crossings, least_m, findings);
+    let look_at = |id| look_at(tiles, id, least_m, (&ends, &crossings));
+    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
+    look_at_reversed(told(manifest, SpanReason::OrderReversed), crossings, findings);
     let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
     for ((level, way_id, at), of_tiles) in ends {
         let [(first, height), others @ ..] = &of_tiles[..] else { continue };
@@ -74,20 +74,30 @@ pub(crate) fn verify(
     Ok(())
 }
 
-/// Bridges are in the order of their layers where they cross, but as often as the manifest tells that they are not.
-fn look_at_order(
+/// The crossings against the order of layers: only these are kept. The others are counted.
+fn reversed(
+    all: Vec<OrderedCrossing>,
+    least_m: f64,
+    findings: &mut Findings,
+) -> Vec<OrderedCrossing> {
+    let (reversed, ordered): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|crossing| crossing.free_m < -least_m);
+    for _ in ordered {
+        findings.look(CheckId::SpanOrder, true, String::new);
+    }
+    reversed
+}
+
+/// Bridges cross against the order of their layers as often as the manifest tells.
+fn look_at_reversed(
     told: u64,
     mut crossings: Vec<(TileId, OrderedCrossing)>,
-    least_m: f64,
     findings: &mut Findings,
 ) {
     crossings.sort_by_key(|&(id, crossing)| (id, crossing.way_ids));
-    let mut reversed = 0;
-    for (id, crossing) in crossings {
+    for (number, (id, crossing)) in (1..).zip(crossings) {
         let OrderedCrossing { way_ids: [upper, lower], free_m } = crossing;
-        let is_reversed = free_m < -least_m;
-        reversed += u64::from(is_reversed);
-        findings.look(CheckId::SpanOrder, !is_reversed || reversed <= told, || {
+        findings.look(CheckId::SpanOrder, number <= told, || {
             let below_m = -free_m;
             format!(
                 "in tile {id} way {upper} is {below_m:.3} m below way {lower}, whose layer is lower"
@@ -102,10 +112,16 @@ fn told(manifest: &Manifest, wanted: SpanReason) -> u64 {
     reasons.filter(|(reason, _)| reason == wanted.id()).map(|(_, count)| count).sum()
 }
 
-/// What is collected of all tiles: what lies on borders, and where spans cross on the finest level.
+/// What is collected of all tiles: what lies on borders, and where spans cross on the finest level against the order of their layers.
 type Collected<'a> = (&'a Mutex<EndsByPlace>, &'a Mutex<Vec<(TileId, OrderedCrossing)>>);
 
-fn look_at(tiles: &DecodedTiles<'_>, id: TileId, (ends, crossings): Collected<'_>) -> OfTile {
+/// The upper one of two spans that cross may be below the other by `least_m`.
+fn look_at(
+    tiles: &DecodedTiles<'_>,
+    id: TileId,
+    least_m: f64,
+    (ends, crossings): Collected<'_>,
+) -> OfTile {
     let mut found = OfTile::default();
     // Tiles that cannot be read are told elsewhere.
     let Some(bytes) = tiles.package.tile(id).ok().flatten() else { return found };
@@ -146,8 +162,9 @@ fn look_at(tiles: &DecodedTiles<'_>, id: TileId, (ends, crossings): Collected<'_
     if id.z() == manifest.frame.max_level() {
         match span_order::crossings(tile.pieces(&runs, &of_structures), &work) {
             Ok(all) => {
-                let all = all.into_iter().map(|crossing| (id, crossing));
-                crossings.lock().unwrap_or_else(PoisonError::into_inner).extend(all);
+                let reversed = reversed(all, least_m, &mut found.findings);
+                let reversed = reversed.into_iter().map(|crossing| (id, crossing));
+                crossings.lock().unwrap_or_else(PoisonError::into_inner).extend(reversed);
             }
             Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
                 format!("tile {id}: more of its runs lie over each other than any writer has made: {error}")

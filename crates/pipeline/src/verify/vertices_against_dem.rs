@@ -93,8 +93,7 @@ fn look_at(
     let mut findings = Findings::default();
     let manifest = tiles.package.manifest();
     let tile = tiles.of(id);
-    let Some(payload) = tile.payload() else { return Ok(findings) };
-    let Some(Terrain { tin, normals, .. }) = &payload.terrain else { return Ok(findings) };
+    let Some(Terrain { tin, normals, .. }) = tile.terrain() else { return Ok(findings) };
     let Some(heights) = pyramid.tile(id)? else {
         findings.look(CheckId::Nodes, false, || {
             format!("tile {id} has ground, the DEM no height there")
@@ -108,7 +107,7 @@ fn look_at(
         .get(usize::from(id.z()))
         .map_or(1.0, |level| f64::from(1_u8 << normal_shift(level.max_error_m, cell)));
     let farthest = (STEPS / step).floor() * step;
-    if let Some(relief) = &payload.relief {
+    if let Some(relief) = tile.payload().and_then(|payload| payload.relief.as_ref()) {
         let step_m = manifest.vertical.height_step_m;
         let may_move = relief::may_move(step_m, cell);
         let slope_at = |at| gradient(&heights, at, cell_m);

@@ -149,8 +149,8 @@ impl<'w> Nodes<'w> {
             }
         }
         let Some((number, vertex)) = found else {
+            self.work.add(1 + near.len() / NODES_OF_A_STEP);
             if is_on_rim(ends) {
-                self.work.add(1);
                 return None;
             }
             return self.far_corner(ends, allowed);

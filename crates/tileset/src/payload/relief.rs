@@ -97,6 +97,13 @@ impl Relief {
         })
     }
 
+    /// How many bytes it takes in memory.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        let (heights, border) = (self.heights.raw(), &self.border[..]);
+        self.coded.len() + size_of_val(heights) + size_of_val(border) + self.water.len()
+    }
+
     /// Its bytes in a payload.
     #[cfg(feature = "write")]
     pub(crate) fn coded(&self) -> &[u8] {
