@@ -27,12 +27,12 @@ struct Planned {
 }
 
 impl Planned {
-    fn new(max_error_m: &str) -> Self {
+    fn new(options: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let plan = folder.path().join("plan.json");
         let [dem, osm] = ["pass/pass-dem.tif", "pass/pass.osm.pbf"].map(sample);
-        let inputs = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", max_error_m];
-        succeed(&corniche(["plan", "-o", text(&plan)].iter().chain(&inputs)));
+        let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+        succeed(&corniche(["plan", "-o", text(&plan)].iter().chain(&inputs).chain(options)));
         Self { folder, plan }
     }
 
@@ -93,7 +93,7 @@ fn wait_for_work(store: &Path, child: &mut Child) {
 #[ignore = "slow: waits for processes that end"]
 fn a_part_ends_when_its_pipe_closes_and_is_gone_on_with() {
     // So long that work becomes durable, every two seconds, before it is done.
-    let planned = Planned::new("0.25");
+    let planned = Planned::new(&["--max-error", "0.1", "--cell", "4"]);
     let [store, aside] = ["store", "aside"].map(|name| planned.path(name));
     let before = ["hashes", "roads", "heights", "top"];
     planned.make(&store, &before);
@@ -124,7 +124,7 @@ fn a_part_ends_when_its_pipe_closes_and_is_gone_on_with() {
 
 #[test]
 fn without_the_option_the_end_of_standard_input_means_nothing() {
-    let planned = Planned::new("10");
+    let planned = Planned::new(&["--max-error", "10"]);
     let store = planned.path("store");
     let mut child = start(&mut planned.part(&store, "roads", &[]));
     drop(child.stdin.take());
@@ -134,7 +134,7 @@ fn without_the_option_the_end_of_standard_input_means_nothing() {
 
 #[test]
 fn a_merge_ends_when_its_pipe_closes_and_leaves_nothing() {
-    let planned = Planned::new("10");
+    let planned = Planned::new(&["--max-error", "10"]);
     let [store, package] = ["store", "out.pmtiles"].map(|name| planned.path(name));
     planned.make(&store, &["hashes", "roads", "heights", "top", "tiles"]);
     let before = named(&store, "");
