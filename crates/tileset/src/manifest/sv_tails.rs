@@ -9,7 +9,7 @@ use crate::tile_order::{pmtiles_order, tile_of_order};
 
 /// SV roads of fewer bytes are not worth a list: neighbouring tiles are fetched as one range over gaps of this size.
 pub(crate) const LEAST_TAIL_BYTES: u32 = 4096;
-/// The list is read before the first tile, so it stays small: some 5 kB compressed.
+/// The list is read before the first tile, so it stays small: some 6 kB compressed.
 pub(crate) const MOST_TAILS: usize = 1000;
 
 /// A tile whose payload ends with many SV roads.
