@@ -10,6 +10,7 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
 use corniche_tileset::{
     Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode, decode_spans,
+    payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -133,7 +134,17 @@ fn look_at(
         return found;
     }
     let whole = tiles.of(id);
-    let Ok((payload, sizes)) = &whole.whole else { return found };
+    let alone;
+    let payload = if let Some(payload) = whole.payload() {
+        payload
+    } else {
+        // Damage of other sections is told elsewhere.
+        let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
+        let read = decode(&bytes, id, &manifest.frame, quantum_m, wanted);
+        let Ok(read) = read else { return found };
+        alone = read;
+        &alone
+    };
     let Some(terrain) = &payload.terrain else { return found };
     let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
@@ -172,7 +183,8 @@ fn look_at(
         }
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
-    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes: sizes.spans.stored };
+    let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
+    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
     found
 }
 
