@@ -188,4 +188,31 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     await page.end();
     server.behave();
   });
+
+  test("a road that cannot be fetched is told in words, not taken for no road", async () => {
+    server.behave();
+    const page = await openMap(browser, server, { "look-at": "9.51,46.91,9000,30,50" }, { width: 500, height: 400 });
+    await settled(page);
+    server.state.replaced.set("/packages/pass.pmtiles", { bytes: null, status: 404 });
+    // Somewhere in the view is a tile whose SV roads were left out; they are asked for when a road is picked.
+    const failed = await ask(page, async (map) => {
+      for (let y = 50; y < 400; y += 50) {
+        for (let x = 50; x < 500; x += 50) {
+          try {
+            await map.pick(x, y);
+          } catch (error) {
+            return { at: [x, y], kind: error.kind };
+          }
+        }
+      }
+      return null;
+    });
+    assert.equal(failed?.kind, "not-found");
+    assert.equal(await page.locator("corniche-map .notice.warn").count(), 0);
+    await page.locator("corniche-map canvas").click({ position: { x: failed.at[0], y: failed.at[1] } });
+    await page.locator("corniche-map .notice.warn").first().waitFor();
+    assert.match(await page.locator("corniche-map .notice.warn").first().textContent(), /no such file|404/);
+    await page.end();
+    server.behave();
+  });
 }

@@ -5,12 +5,15 @@ use std::collections::BTreeMap;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{Manifest, Sections, decode};
-use corniche_viewer::tiles::MapPackage as _;
+use corniche_viewer::tiles::{LoadTileError, MapPackage as _};
 
 use crate::{loader::Tileset, report::PickedRoad};
 
 /// The road that lies nearest to a place in plan, if it is no farther away than `reach_m`, working metres, beside half its width. `tile` is the tile
 /// that is drawn there, `half_width_m` that of a road by its class and attributes, and classes that are hidden do not count.
+///
+/// # Errors
+/// When the tile's roads cannot be read or are damaged.
 pub(crate) async fn road_at(
     tiles: &Tileset,
     tile: TileId,
@@ -18,12 +21,13 @@ pub(crate) async fn road_at(
     reach_m: f64,
     half_width_m: &dyn Fn(FunctionalRoadClass, &RoadAttributes) -> Option<f64>,
     labels: &[String],
-) -> Option<PickedRoad> {
+) -> Result<Option<PickedRoad>, LoadTileError> {
     let manifest = tiles.package.manifest();
     let Manifest { frame, vertical, .. } = manifest;
     let wanted = Sections::ROADS_SV | Sections::ATTRIBUTES;
-    let bytes = tiles.package.payload_for(tile, wanted).await.ok()??;
-    let payload = decode(&bytes, tile, frame, vertical.quantum_m, wanted).ok()?;
+    let Some(bytes) = tiles.package.payload_for(tile, wanted).await? else { return Ok(None) };
+    let payload = decode(&bytes, tile, frame, vertical.quantum_m, wanted)
+        .map_err(|error| LoadTileError { id: tile, source: error.into() })?;
     let position = |point: &LatticePoint| frame.position_m(*point);
     let record_of = |way_id: i64| {
         let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
@@ -44,15 +48,15 @@ pub(crate) async fn road_at(
             (beside_m <= reach_m).then_some((beside_m, road))
         })
         .min_by(|(a, one), (b, other)| a.total_cmp(b).then(one.class.cmp(&other.class)));
-    let (_, road) = nearest?;
+    let Some((_, road)) = nearest else { return Ok(None) };
     let record = record_of(road.way_id);
     let class = road.class.number();
-    Some(PickedRoad {
+    Ok(Some(PickedRoad {
         way: road.way_id,
         class,
         label: labels.get(usize::from(class)).cloned().unwrap_or_default(),
         attributes: record.map(|record| texts(&record.attributes)).unwrap_or_default(),
-    })
+    }))
 }
 
 /// Distance of a point from a segment.

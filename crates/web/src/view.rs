@@ -254,8 +254,14 @@ impl MapView {
             };
             let road = match tile {
                 Some(tile) => road_at(&tileset, tile, at_m, reach_m, &half_width_m, &labels).await,
-                None => None,
+                None => Ok(None),
             };
+            // The server's own trouble has better words.
+            let told = |error| {
+                let of_server = tileset.package.package().source().take_problem();
+                JsValue::from(of_server.unwrap_or_else(|| Problem::other(&error)))
+            };
+            let road = road.map_err(told)?;
             Ok(json(&Pick { at, road }).into())
         })
     }

@@ -1,14 +1,12 @@
 //! Centre-lines of roads in and around a tile.
 
-use std::{
-    collections::{HashMap, VecDeque},
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::{collections::HashMap, sync::Arc};
 
 use corniche_geom::{LatticePoint, Polyline, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_work::Recent;
 
 use super::{
     deck_ends::DeckEnds,
@@ -19,8 +17,10 @@ use crate::{error::ExportError, read};
 
 /// The error that clients allow: Cesium's for ground, which the example asks for.
 const ALLOWED_ERROR_PX: f64 = 2.0;
-/// Tiles whose lines are kept: some rows of neighbours along a Hilbert curve.
-const KEPT_TILES: usize = 256;
+/// What is kept of the lines of tiles: several rows of neighbours along a Hilbert curve in a town.
+const KEPT_BYTES: u64 = 32 << 20;
+/// What a point of a line takes, with the height of a deck.
+const POINT_BYTES: usize = size_of::<LatticePoint>() + size_of::<f64>();
 /// Steps that finding the runs of a tile on its lines may take: a vertex that a point is compared with is one. Real tiles take some thousand.
 const MOST_STEPS: u64 = 1 << 28;
 
@@ -51,13 +51,20 @@ struct TileLine {
     stretch: Stretch,
 }
 
+impl TileLine {
+    /// What it takes in memory, about.
+    fn bytes(&self) -> u64 {
+        (size_of::<Self>() + self.stretch.points.len() * POINT_BYTES) as u64
+    }
+}
+
 /// The lines of tiles, read once for a tile and its neighbours.
 pub(crate) struct TileLines<'a> {
     package: &'a FilePackage,
     look: RoadLook<'a>,
     /// What is drawn on each level.
     details: Vec<Detail>,
-    kept: Mutex<VecDeque<(TileId, Arc<Vec<TileLine>>)>>,
+    recent: Recent<TileId, Vec<TileLine>>,
 }
 
 /// How much of roads is seen on a level.
@@ -97,24 +104,19 @@ impl<'a> TileLines<'a> {
     /// Lines of the levels down to `finest`.
     pub(crate) fn new(package: &'a FilePackage, look: RoadLook<'a>, finest: u8) -> Self {
         let detail = |level| Detail::of_level(look, package.manifest(), level, finest);
-        Self { package, look, details: (0..=finest).map(detail).collect(), kept: Mutex::default() }
+        let details = (0..=finest).map(detail).collect();
+        Self { package, look, details, recent: Recent::new(KEPT_BYTES) }
     }
 
     fn of_tile(&self, id: TileId) -> Result<Arc<Vec<TileLine>>, ExportError> {
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = lock().iter().find(|(known, _)| *known == id) {
-            return Ok(Arc::clone(known));
-        }
         let detail = &self.details[usize::from(id.z())];
-        let mut lines = self.read(id, &detail.classes)?;
-        simplify(&mut lines, detail.tolerance_steps);
-        let lines = Arc::new(lines);
-        let mut kept = lock();
-        kept.push_back((id, Arc::clone(&lines)));
-        if kept.len() > KEPT_TILES {
-            kept.pop_front();
-        }
-        Ok(lines)
+        let make = || {
+            let mut lines = self.read(id, &detail.classes)?;
+            simplify(&mut lines, detail.tolerance_steps);
+            Ok(lines)
+        };
+        let bytes_of = |lines: &Vec<TileLine>| lines.iter().map(TileLine::bytes).sum();
+        self.recent.get(id, make, bytes_of)
     }
 
     /// The lines of a tile; none of a tunnel, which is not on the ground.

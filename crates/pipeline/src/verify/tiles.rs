@@ -82,7 +82,13 @@ pub(crate) fn verify(
     check_growth(&manifest.growth, &sums, &mut findings);
     let sv_tails = sv_tails.list();
     findings.look(CheckId::SvTails, sv_tails == manifest.sv_tails, || {
-        format!("{sv_tails:?} in the tiles, {:?} are recorded", manifest.sv_tails)
+        let recorded = &manifest.sv_tails;
+        let counts = format!("{} in the tiles, {} are recorded", sv_tails.len(), recorded.len());
+        let others = sv_tails.iter().zip(recorded).find(|(found, told)| found != told);
+        match others {
+            Some((found, told)) => format!("{counts}; the first that differ: {found:?}, {told:?}"),
+            None => counts,
+        }
     });
     let report = VerifyReport {
         tiles: ids.len() as u64,

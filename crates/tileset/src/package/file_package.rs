@@ -116,14 +116,6 @@ impl FilePackage {
         pollster::block_on(self.package.tile(id))
     }
 
-    /// See [`Package::tile_for`].
-    ///
-    /// # Errors
-    /// As [`Package::tile_for`].
-    pub fn tile_for(&self, id: TileId, wanted: Sections) -> Result<Option<Vec<u8>>, ReadError> {
-        pollster::block_on(self.package.tile_for(id, wanted))
-    }
-
     /// See [`Package::payload`].
     ///
     /// # Errors
