@@ -2,6 +2,7 @@
 
 usage: release-licences.py archive FOLDER    of an archive: a list, share/corniche/licences/THIRD-PARTY.md, and the texts beside it
        release-licences.py npm FOLDER        of the package of npm: THIRD-PARTY.md, with the texts in it
+       release-licences.py crates            writes nothing: whether each crate of the program has a text
 """
 
 import hashlib
@@ -76,6 +77,8 @@ OF_CRATES = "A crate without a text of its own has that of the licence that it n
 # Which crates are in what.
 PROGRAM = ("x86_64-unknown-linux-gnu", ["corniche-cli"])
 PAGE = ("wasm32-unknown-unknown", ["corniche-web", "corniche-web-styles"])
+# Crates without a text of their own: the crate of the same authors and licence that has it.
+TEXT_OF = {"alloc-stdlib": "alloc-no-stdlib"}
 # Crates that compile C: files with its licence, or a header that ends with it. "" is for C of the crate's own authors.
 COMPILED = {
     "meshopt": "vendor/src/meshoptimizer.h",
@@ -99,8 +102,11 @@ def ran(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
 
 
-def texts_of(package):
-    """Title and text of each licence of a crate: of its files, of those of what it has from others, or, where it has none, of the licence that it names."""
+def texts_of(package, others):
+    """
+    Title and text of each licence of a crate: of its files, of those of what it has from others, or, where it has none, of the licence that it names.
+    `others` are the folders of all crates beside it.
+    """
     folder = pathlib.Path(package["manifest_path"]).parent
     # Also fonts have some, and C libraries. Pictures and what tests use are not in the program.
     named = re.compile(r"(licen[cs]e|copying|notice|unlicense|ofl|ufl)", re.IGNORECASE)
@@ -109,7 +115,7 @@ def texts_of(package):
     found = [file for file in found if not left_out & set(file.relative_to(folder).parts[:-1])]
     texts = [(str(file.relative_to(folder)), file.read_text(errors="replace")) for file in found]
     if not any(file.parent == folder for file in found):
-        texts.insert(0, stand_in(package))
+        texts.insert(0, stand_in(package, others))
     compiles = any(dependency["kind"] == "build" and dependency["name"] in {"cc", "cmake"} for dependency in package["dependencies"])
     if compiles:
         name = COMPILED.get(package["name"])
@@ -122,9 +128,12 @@ def texts_of(package):
     return texts
 
 
-def stand_in(package):
+def stand_in(package, others):
     """The text of the licence that a crate names, with its authors, where it has no file with it."""
     names = package["license"] or ""
+    if package["name"] in TEXT_OF:
+        beside = TEXT_OF[package["name"]]
+        return beside, (others[beside] / "LICENSE").read_text()
     if re.search(r"\bMIT\b", names):
         authors = ", ".join(author.partition(" <")[0] for author in package["authors"]) or f"the authors of {package['name']}"
         text = (TEXTS / "MIT.txt").read_text()
@@ -170,10 +179,11 @@ def table_of_crates(places, texts, link):
     for place, of in places.items():
         for package in crates(*of):
             found.setdefault((package["name"], package["version"]), (package, []))[1].append(place)
+    others = {name: pathlib.Path(package["manifest_path"]).parent for (name, _), (package, _) in found.items()}
     rows = ["| crate | licence | in | texts |", "|---|---|---|---|"]
     for key in sorted(found):
         package, where = found[key]
-        told = [f"[{title}]({link(texts.add(title, text))})" for title, text in texts_of(package)]
+        told = [f"[{title}]({link(texts.add(title, text))})" for title, text in texts_of(package, others)]
         licence = package["license"] or "see its text"
         rows.append(f"| [{package['name']}]({package['repository']}) {package['version']} | {licence} | {', '.join(where)} | {', '.join(told)} |")
     return rows
@@ -232,6 +242,9 @@ def of_npm(folder):
 
 
 KINDS = {"archive": of_archive, "npm": of_npm}
-if len(sys.argv) != 3 or sys.argv[1] not in KINDS:
+if sys.argv[1:] == ["crates"]:
+    table_of_crates({"program": PROGRAM}, Texts(), str)
+elif len(sys.argv) == 3 and sys.argv[1] in KINDS:
+    KINDS[sys.argv[1]](pathlib.Path(sys.argv[2]))
+else:
     sys.exit(__doc__)
-KINDS[sys.argv[1]](pathlib.Path(sys.argv[2]))
