@@ -20,6 +20,7 @@ mod horizon;
 mod layer;
 mod mesh;
 mod mesh_vertex;
+mod node_heights;
 mod quantized_mesh_request;
 mod raster;
 mod summary;

@@ -6,7 +6,11 @@ use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 use corniche_tin::{Placement, Surface};
 
-use super::surfaces::{SurfaceTile, Surfaces};
+use super::{
+    node_heights::NodeHeights,
+    surfaces::{SurfaceTile, Surfaces},
+    tiling::Nodes,
+};
 use crate::{error::ExportError, places::Places};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
@@ -16,6 +20,7 @@ const ROOM_BESIDE_LINES: f64 = 0.01;
 pub(crate) struct Ground<'a> {
     package: &'a FilePackage,
     surfaces: &'a Surfaces,
+    node_heights: &'a NodeHeights,
     places: Places<'a>,
     /// Degrees outside of which there is no ground.
     around_deg: Bounds,
@@ -24,7 +29,7 @@ pub(crate) struct Ground<'a> {
 impl<'a> Ground<'a> {
     pub(crate) fn new(
         package: &'a FilePackage,
-        surfaces: &'a Surfaces,
+        (surfaces, node_heights): (&'a Surfaces, &'a NodeHeights),
         places: Places<'a>,
     ) -> Self {
         let data = package.manifest().wgs84_bounds;
@@ -36,7 +41,7 @@ impl<'a> Ground<'a> {
             max_x: data.max_x + margin,
             max_y: data.max_y + margin,
         };
-        Self { package, surfaces, places, around_deg }
+        Self { package, surfaces, node_heights, places, around_deg }
     }
 
     /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
@@ -62,6 +67,16 @@ impl<'a> Ground<'a> {
             heights_m[of_place(k)] = height_m;
         }
         Ok(heights_m)
+    }
+
+    /// The same at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south; for few nodes that many tiles
+    /// look at.
+    pub(crate) fn heights_at_nodes_m(
+        &self,
+        nodes: Nodes,
+        [from, to]: [[i64; 2]; 2],
+    ) -> Result<Vec<f64>, ExportError> {
+        self.node_heights.of_nodes(nodes, from, to, self)
     }
 
     fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {

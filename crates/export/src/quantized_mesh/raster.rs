@@ -57,7 +57,9 @@ impl Window {
         let Some(nodes) = self.nodes.above() else { return Ok(None) };
         let from = self.from.map(|index| index.div_euclid(2));
         let to = self.to.map(|index| (index + 1).div_euclid(2));
-        Self::sample(nodes, from, to, ground).map(Some)
+        let around = [from.map(|index| index - 1), to.map(|index| index + 1)];
+        let heights_m = ground.heights_at_nodes_m(nodes, around)?;
+        Ok(Some(Self { nodes, from, to, heights_m }))
     }
 
     /// The nodes, without those around, row by row from the south.

@@ -21,6 +21,7 @@ use super::{
     ground::Ground,
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
+    node_heights::NodeHeights,
     quantized_mesh_request::QuantizedMeshRequest,
     raster::{Looked, TileRaster},
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
@@ -55,8 +56,9 @@ pub fn export_quantized_mesh(
     let finest = finest_level(manifest, request);
     let heights = heights_in_words(manifest, request.coordinates)?;
     let candidates = candidates(package, request, finest)?;
-    let surfaces = Surfaces::new(KEPT_BYTES);
-    let job = Job { package, surfaces: &surfaces, request, folder, observer };
+    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
+    let stores = (&surfaces, &node_heights);
+    let job = Job { package, stores, request, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
     // Which tiles have ground is told by those of the finest level.
@@ -214,7 +216,7 @@ struct Made {
 
 struct Job<'a> {
     package: &'a FilePackage,
-    surfaces: &'a Surfaces,
+    stores: (&'a Surfaces, &'a NodeHeights),
     request: &'a QuantizedMeshRequest,
     folder: &'a Path,
     observer: &'a dyn Observer,
@@ -227,7 +229,7 @@ impl<'a> Job<'a> {
         emptiness: Emptiness,
         available: &[Vec<Block>],
     ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
-        let (package, surfaces) = (self.package, self.surfaces);
+        let (package, stores) = (self.package, self.stores);
         let coordinates = self.request.coordinates;
         let wide = tiles.partition_point(|tile| !self.is_wide(tile.z));
         let mut made = Vec::with_capacity(tiles.len());
@@ -236,13 +238,7 @@ impl<'a> Job<'a> {
                 (self.observer, Stage::ExportTiles),
                 threads,
                 part,
-                || {
-                    Ok(Ground::new(
-                        package,
-                        surfaces,
-                        Places::new(package.manifest(), coordinates)?,
-                    ))
-                },
+                || Ok(Ground::new(package, stores, Places::new(package.manifest(), coordinates)?)),
                 |ground, tile| self.tile(*tile, ground, emptiness, available),
             )?);
         }
