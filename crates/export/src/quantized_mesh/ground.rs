@@ -76,7 +76,7 @@ impl<'a> Ground<'a> {
         nodes: Nodes,
         [from, to]: [[i64; 2]; 2],
     ) -> Result<Vec<f64>, ExportError> {
-        self.node_heights.of_nodes(nodes, from, to, self)
+        self.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
     }
 
     fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {

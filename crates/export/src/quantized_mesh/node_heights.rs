@@ -2,7 +2,7 @@
 
 use corniche_work::Recent;
 
-use super::{ground::Ground, tiling::Nodes};
+use super::tiling::Nodes;
 use crate::error::ExportError;
 
 /// Nodes along each side of a block, which is sampled at once.
@@ -21,16 +21,17 @@ impl NodeHeights {
         Self(Recent::new(KEPT_BYTES))
     }
 
-    /// Heights at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south; NaN where there is no ground.
+    /// Heights at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south. `sample` tells those at longitudes
+    /// and latitudes, the same for a place each time.
     ///
     /// # Errors
-    /// When the package cannot be read.
+    /// Those of `sample`.
     pub(crate) fn of_nodes(
         &self,
         nodes: Nodes,
         [west, south]: [i64; 2],
         [east, north]: [i64; 2],
-        ground: &Ground<'_>,
+        sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, ExportError>,
     ) -> Result<Vec<f64>, ExportError> {
         let columns = (east - west + 1) as usize;
         let mut heights_m = vec![f64::NAN; columns * (north - south + 1) as usize];
@@ -39,7 +40,7 @@ impl NodeHeights {
             for block_column in blocks(west, east) {
                 let corner = [block_column * BLOCK, block_row * BLOCK];
                 let key = (nodes.level, nodes.per_tile, [block_column, block_row]);
-                let make = || ground.heights_m(&places_of(nodes, corner));
+                let make = || sample(&places_of(nodes, corner));
                 let block = self.0.get(key, make, |block| size_of_val(&block[..]) as u64)?;
                 let [i0, j0] = corner;
                 for j in south.max(j0)..=north.min(j0 + BLOCK - 1) {
@@ -62,3 +63,7 @@ fn places_of(nodes: Nodes, [west, south]: [i64; 2]) -> Vec<[f64; 2]> {
     let columns: Vec<f64> = (west..west + BLOCK).map(|i| nodes.lon_deg(i)).collect();
     rows.flat_map(|lat| columns.iter().map(move |&lon| [lon, lat])).collect()
 }
+
+#[cfg(test)]
+#[path = "node_heights_tests.rs"]
+mod tests;

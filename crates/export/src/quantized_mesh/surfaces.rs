@@ -4,10 +4,11 @@ use corniche_geom::{LatticeBounds, TileId};
 use corniche_tin::{NO_TWIN, Surface};
 use corniche_work::Recent;
 
-/// What is kept of the package's tiles, about: tiles of the globe lie on few of them, and neighbours come one after the other.
-pub(crate) const KEPT_BYTES: u64 = 48 << 20;
-/// What a triangle takes with its half of a vertex, about.
-const TRIANGLE_BYTES: u64 = 132;
+/// What is kept of the package's tiles, about: a square degree of SRTM at its default bound, which the coarse levels look at again and again. Where less
+/// than that is kept, tiles are decoded so often that it takes more time, and, for what is made meanwhile, not less memory.
+pub(crate) const KEPT_BYTES: u64 = 112 << 20;
+/// What a triangle takes with its half of a vertex, about: corners and twins 24 bytes, lists by vertex and by square some 30, of the vertex some 24.
+const TRIANGLE_BYTES: u64 = 96;
 
 /// The tiles that were read last; `None` for those without ground.
 pub(crate) type Surfaces = Recent<TileId, Option<SurfaceTile>>;
