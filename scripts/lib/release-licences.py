@@ -2,7 +2,7 @@
 
 usage: release-licences.py archive FOLDER    of an archive: a list, share/corniche/licences/THIRD-PARTY.md, and the texts beside it
        release-licences.py npm FOLDER        of the package of npm: THIRD-PARTY.md, with the texts in it
-       release-licences.py crates            writes nothing: whether each crate of the program has a text
+       release-licences.py crates            writes nothing: whether each crate of the program and of the page has a text
 """
 
 import hashlib
@@ -73,7 +73,7 @@ RUNTIME_OF_PROGRAM = {
 }
 # Packages of npm in the page's scripts: licence, text.
 SCRIPTS = {"smol-toml": ("BSD-3-Clause", "smol-toml")}
-OF_CRATES = "A crate without a text of its own has that of the licence that it names, with its authors."
+OF_CRATES = "A crate without a text of its own has that of a crate of the same authors, or of the licence that it names, with its authors."
 # Which crates are in what.
 PROGRAM = ("x86_64-unknown-linux-gnu", ["corniche-cli"])
 PAGE = ("wasm32-unknown-unknown", ["corniche-web", "corniche-web-styles"])
@@ -104,7 +104,7 @@ def ran(*command):
 
 def texts_of(package, others):
     """
-    Title and text of each licence of a crate: of its files, of those of what it has from others, or, where it has none, of the licence that it names.
+    Title and text of each licence of a crate: of its files, of those of what it has from others, or, where it has none, that of a sister or of the licence that it names.
     `others` are the folders of all crates beside it.
     """
     folder = pathlib.Path(package["manifest_path"]).parent
@@ -133,6 +133,8 @@ def stand_in(package, others):
     names = package["license"] or ""
     if package["name"] in TEXT_OF:
         beside = TEXT_OF[package["name"]]
+        if not (beside in others and (others[beside] / "LICENSE").is_file()):
+            sys.exit(f"{package['name']} has the text of {beside}, by TEXT_OF of scripts/lib/release-licences.py, and that has no LICENSE")
         return beside, (others[beside] / "LICENSE").read_text()
     if re.search(r"\bMIT\b", names):
         authors = ", ".join(author.partition(" <")[0] for author in package["authors"]) or f"the authors of {package['name']}"
@@ -243,7 +245,7 @@ def of_npm(folder):
 
 KINDS = {"archive": of_archive, "npm": of_npm}
 if sys.argv[1:] == ["crates"]:
-    table_of_crates({"program": PROGRAM}, Texts(), str)
+    table_of_crates({"program": PROGRAM, "page": PAGE}, Texts(), str)
 elif len(sys.argv) == 3 and sys.argv[1] in KINDS:
     KINDS[sys.argv[1]](pathlib.Path(sys.argv[2]))
 else:

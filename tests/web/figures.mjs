@@ -53,6 +53,10 @@ function mainTasks(events, of) {
   return events
     .filter(({ ts }) => ts > begins && ts < ends)
     .filter(({ name, ph, pid, tid }) => name === "RunTask" && ph === "X" && main.has(`${pid} ${tid}`))
+    .map((event) => {
+      if (!(of in event)) throw new Error(`the trace does not tell ${of} of tasks`);
+      return event;
+    })
     .map((event) => event[of] / 1000)
     .filter((task) => task >= 1)
     .sort((a, b) => b - a);

@@ -130,9 +130,6 @@ async fn send<B>(
     };
     set(ETAG, &tag);
     set(ACCEPT_RANGES, "bytes");
-    if is_packed {
-        set(CONTENT_ENCODING, "br");
-    }
     let (status, range) = match wanted {
         Wanted::Changed => return Err(Refusal::Changed),
         Wanted::NoSuchBytes => return Err(Refusal::NoSuchBytes { length_bytes }),
@@ -144,6 +141,9 @@ async fn send<B>(
         }
     };
     if status != StatusCode::NOT_MODIFIED {
+        if is_packed {
+            set(CONTENT_ENCODING, "br");
+        }
         set(CONTENT_TYPE, media_type(path));
         if let Some(policy) = &route.policy {
             set(CONTENT_SECURITY_POLICY, policy);

@@ -59,7 +59,10 @@ pub(crate) fn is_wanted(headers: &HeaderMap) -> bool {
 fn names_brotli(way: &str) -> bool {
     let mut parts = way.split(';').map(str::trim);
     let is_brotli = parts.next().is_some_and(|name| name.eq_ignore_ascii_case("br"));
-    let weight = |part: &str| part.strip_prefix("q=")?.parse::<f64>().ok();
+    let weight = |part: &str| {
+        let (name, weight) = part.split_once('=')?;
+        name.eq_ignore_ascii_case("q").then(|| weight.parse::<f64>().ok())?
+    };
     is_brotli && parts.all(|part| weight(part).is_none_or(|weight| weight > 0.0))
 }
 

@@ -178,7 +178,7 @@ export class CornicheMap extends HTMLElement {
   /** Moves to "lon,lat". */
   goTo(text: string): void;
   command(name: "north-up" | "reset" | "toggle-fly" | "toggle-above"): void;
-  /** What is at a position, in CSS pixels from the corner of the element; `null` over the sky. */
+  /** What is at a position, in CSS pixels from the corner of the element; `null` over the sky. Rejects, with `kind` and `message`, where the roads there cannot be fetched. */
   pick(x: number, y: number): Promise<Pick | null>;
   startRecording(): void;
   /** Ends the recording and returns the flight as TOML. */

@@ -284,7 +284,9 @@ export async function openSession(from) {
     try {
       found = await pick(x, y);
     } catch (error) {
-      if (!isOver) tell("warn", failureOf(error).message);
+      if (isOver || turn !== picks) return;
+      layout.place.hide();
+      tell("warn", failureOf(error).message);
       return;
     }
     if (isOver || turn !== picks) return;

@@ -75,15 +75,7 @@ pub(crate) async fn first_tiles(
     loop {
         let loads = wanted.iter().map(|id| tileset.load(*id, reading));
         for tile in join_all(loads).await {
-            let tile = tile.map_err(|error| {
-                tileset.package.package().source().take_problem().unwrap_or_else(|| {
-                    Problem::new(
-                        "damaged",
-                        crate::problem::with_causes(&error),
-                        "Fetch or build the package again.",
-                    )
-                })
-            })?;
+            let tile = tile.map_err(|error| tileset.problem_of(&error))?;
             there.insert(tile.id, tile);
         }
         let noting = Noting { tiles: tileset, there: &there, missing: RefCell::default() };

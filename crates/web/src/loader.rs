@@ -17,7 +17,7 @@ use wasm_bindgen_futures::spawn_local;
 use crate::{
     decoders::{Decoders, Reading},
     host::Host,
-    problem::Problem,
+    problem::{Problem, with_causes},
     source::WebSource,
     timer::pause,
 };
@@ -45,6 +45,20 @@ impl Tileset {
     ) -> Result<TileGeometry, LoadTileError> {
         let payload = self.package.payload_for(id, reading.sections).await?;
         self.decoders.decode(payload, id, reading).await
+    }
+
+    /// What is wrong where a tile did not come: its server, in the words of the source of its bytes where it has some, or its bytes.
+    pub(crate) fn problem_of(&self, error: &LoadTileError) -> Problem {
+        match of_server(error) {
+            Some(why) => {
+                let told = self.package.package().source().take_problem();
+                told.unwrap_or_else(|| Problem::new("network", why, ""))
+            }
+            None => {
+                let advice = "Fetch or build the package again.";
+                Problem::new("damaged", with_causes(error), advice)
+            }
+        }
     }
 }
 
@@ -152,9 +166,9 @@ impl PageLoader {
             loop {
                 let tile = tiles.load(id, &reading).await;
                 let is_asked = for_load.borrow().is_asked(id);
-                let Some(why) = of_server(&tile).filter(|_| is_asked) else { return tile };
-                let told = tiles.package.package().source().take_problem();
-                let problem = told.unwrap_or_else(|| Problem::new("network", why, ""));
+                let of_server = |error: &&LoadTileError| is_asked && of_server(error).is_some();
+                let Some(error) = tile.as_ref().err().filter(of_server) else { return tile };
+                let problem = tiles.problem_of(error);
                 for_load.borrow_mut().meet(id, problem);
                 host.wake();
                 pause(rest_ms).await;
@@ -185,8 +199,8 @@ impl PageLoader {
 }
 
 /// Why a tile did not come, where its server is to blame and not its bytes.
-fn of_server(tile: &Result<TileGeometry, LoadTileError>) -> Option<String> {
-    match tile.as_ref().err()?.source.downcast_ref::<ReadError>()? {
+fn of_server(error: &LoadTileError) -> Option<String> {
+    match error.source.downcast_ref::<ReadError>()? {
         ReadError::Source { source, .. } => Some(source.reason.clone()),
         ReadError::Directory { source: OpenError::Source(source), .. } => {
             Some(source.reason.clone())

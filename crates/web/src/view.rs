@@ -256,12 +256,7 @@ impl MapView {
                 Some(tile) => road_at(&tileset, tile, at_m, reach_m, &half_width_m, &labels).await,
                 None => Ok(None),
             };
-            // The server's own trouble has better words.
-            let told = |error| {
-                let of_server = tileset.package.package().source().take_problem();
-                JsValue::from(of_server.unwrap_or_else(|| Problem::other(&error)))
-            };
-            let road = road.map_err(told)?;
+            let road = road.map_err(|error| JsValue::from(tileset.problem_of(&error)))?;
             Ok(json(&Pick { at, road }).into())
         })
     }

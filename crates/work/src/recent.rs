@@ -40,7 +40,8 @@ struct Kept<K, V> {
 }
 
 impl<K: Copy + Ord, V> Recent<K, V> {
-    /// Keeps nothing yet, and never more than `budget_bytes`; but what was asked for last is always kept, and what is being made.
+    /// Keeps nothing yet. Whenever a thing was made, as much goes as `budget_bytes` ask for; but what was asked for last is kept, and what is in use by those
+    /// who ask for it or make it.
     #[must_use]
     pub fn new(budget_bytes: u64) -> Self {
         let kept = Kept { by_key: BTreeMap::new(), by_use: BTreeMap::new(), bytes: 0, clock: 0 };
@@ -65,7 +66,9 @@ impl<K: Copy + Ord, V> Recent<K, V> {
         let new = Arc::new(make()?);
         *made = Some(Arc::clone(&new));
         drop(made);
-        locked(&self.kept).count(key, bytes_of(&new), self.budget_bytes);
+        let gone = locked(&self.kept).count(key, bytes_of(&new), self.budget_bytes);
+        // Large things are freed while others may ask.
+        drop(gone);
         Ok(new)
     }
 }
@@ -85,7 +88,7 @@ impl<K: Copy + Ord, V> Kept<K, V> {
     }
 
     /// Counts what was put in a slot, and gives away what was used longest ago where it is too much.
-    fn count(&mut self, key: K, bytes: u64, budget_bytes: u64) {
+    fn count(&mut self, key: K, bytes: u64, budget_bytes: u64) -> Vec<Entry<V>> {
         // It was in use while it was made, so it is still there.
         if let Some(entry) = self.by_key.get_mut(&key) {
             entry.bytes += bytes;
@@ -103,10 +106,11 @@ impl<K: Copy + Ord, V> Kept<K, V> {
                 gone.push((used, other));
             }
         }
-        for (used, other) in gone {
+        let given = |(used, other)| {
             self.by_use.remove(&used);
-            self.by_key.remove(&other);
-        }
+            self.by_key.remove(&other)
+        };
+        gone.into_iter().filter_map(given).collect()
     }
 }
 

@@ -52,9 +52,11 @@ struct TileLine {
 }
 
 impl TileLine {
-    /// What it takes in memory, about.
+    /// What it takes in memory, about; attributes as if no other stretch had the same.
     fn bytes(&self) -> u64 {
-        (size_of::<Self>() + self.stretch.points.len() * POINT_BYTES) as u64
+        let points = self.stretch.points.len() * POINT_BYTES;
+        let attributes = size_of::<RoadAttributes>() + self.attributes.text_bytes();
+        (size_of::<Self>() + points + attributes) as u64
     }
 }
 

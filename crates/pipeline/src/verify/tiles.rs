@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::SvTails;
+use corniche_tileset::{SvTail, SvTails};
 
 use super::{
     attributes::Ways,
@@ -84,11 +84,17 @@ pub(crate) fn verify(
     findings.look(CheckId::SvTails, sv_tails == manifest.sv_tails, || {
         let recorded = &manifest.sv_tails;
         let counts = format!("{} in the tiles, {} are recorded", sv_tails.len(), recorded.len());
-        let others = sv_tails.iter().zip(recorded).find(|(found, told)| found != told);
-        match others {
-            Some((found, told)) => format!("{counts}; the first that differ: {found:?}, {told:?}"),
-            None => counts,
-        }
+        let in_words = |tail: Option<&SvTail>| {
+            tail.map_or("none".to_owned(), |tail| format!("{} bytes of {}", tail.bytes, tail.tile))
+        };
+        let longest = sv_tails.len().max(recorded.len());
+        let pairs = (0..longest).map(|k| [sv_tails.get(k), recorded.get(k)]);
+        let [found, told] = pairs
+            .filter(|[found, told]| found != told)
+            .map(|pair| pair.map(in_words))
+            .next()
+            .unwrap_or_default();
+        format!("{counts}; the first that differ: {found}, {told}")
     });
     let report = VerifyReport {
         tiles: ids.len() as u64,
