@@ -9,13 +9,13 @@
 //! A finished folder holds a marker. Only a folder with it is ever replaced.
 
 use std::{
-    fs::{self, File},
+    fs,
     io::{self, Read as _},
     path::Path,
 };
 
 use corniche_store::{
-    Claim, OpenMode, UnfinishedFolder, folder_of, is_same_file, open_own, sync_folder,
+    Claim, OpenMode, UnfinishedFolder, folder_of, is_same_file, open_own, sync_folder, sync_tree,
 };
 
 use crate::{
@@ -105,7 +105,7 @@ impl FolderOutput {
         let version = env!("CARGO_PKG_VERSION");
         let marker = format!("{what}{WRITTEN_BY}{version}. {IS_REPLACED}");
         fs::write(folder.join(MARKER), marker).map_err(not_written)?;
-        let bytes = sync(folder).map_err(not_written)?;
+        let bytes = sync_tree(folder).map_err(not_written)?;
         // What an early end removes while it takes its place would be half a new export, or the claim by which the old one is known.
         interrupt::spare(&[claim.path(), folder]);
         let replaced = claim.replaced();
@@ -172,23 +172,6 @@ fn put_back(target: &Path, replaced: &Path) -> io::Result<()> {
         fs::rename(replaced, target)?;
     }
     Ok(())
-}
-
-/// Writes all files below a folder to the disk; returns how many bytes they have.
-fn sync(folder: &Path) -> io::Result<u64> {
-    let mut bytes = 0;
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() {
-            bytes += sync(&entry.path())?;
-        } else {
-            let file = File::open(entry.path())?;
-            file.sync_all()?;
-            bytes += file.metadata()?.len();
-        }
-    }
-    sync_folder(folder)?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ pub use local::{
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 pub use memory::{MemoryScratch, MemoryStore};
-pub use own_files::{folder_of, make_own_folder, open_own, sync_folder};
+pub use own_files::{folder_of, make_own_folder, open_own, sync_folder, sync_tree};
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
