@@ -49,16 +49,12 @@ impl Tileset {
 
     /// What is wrong where a tile did not come: its server, in the words of the source of its bytes where it has some, or its bytes.
     pub(crate) fn problem_of(&self, error: &LoadTileError) -> Problem {
-        match of_server(error) {
-            Some(why) => {
-                let told = self.package.package().source().take_problem();
-                told.unwrap_or_else(|| Problem::new("network", why, ""))
-            }
-            None => {
-                let advice = "Fetch or build the package again.";
-                Problem::new("damaged", with_causes(error), advice)
-            }
-        }
+        let Some(why) = of_server(error) else {
+            let advice = "Fetch or build the package again.";
+            return Problem::new("damaged", with_causes(error), advice);
+        };
+        let told = self.package.package().source().take_problem();
+        told.unwrap_or_else(|| Problem::new("network", why, ""))
     }
 }
 
