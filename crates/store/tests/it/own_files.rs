@@ -13,7 +13,7 @@ use std::{
 
 use corniche_store::{
     Claim, Disk as _, Folder, LocalStore, OpenMode, PartsPlace as _, SYNC_INTERVAL, StoredPlan,
-    SystemDisk, make_own_folder,
+    SystemDisk, make_own_folder, sync_tree,
 };
 
 struct Prepared {
@@ -119,4 +119,15 @@ fn files_with_the_names_of_a_store_are_not_removed() {
             assert_eq!(fs::read(store.join(name)).unwrap(), b"mine");
         }
     }
+}
+
+#[test]
+fn a_tree_that_is_durable_tells_how_many_bytes_its_files_have() {
+    let folder = tempfile::TempDir::new().unwrap();
+    fs::create_dir_all(folder.path().join("a/b")).unwrap();
+    for (name, bytes) in [("one", 1), ("a/two", 20), ("a/b/three", 300)] {
+        fs::write(folder.path().join(name), vec![7; bytes]).unwrap();
+    }
+    assert_eq!(sync_tree(folder.path()).unwrap(), 321);
+    assert!(sync_tree(&folder.path().join("missing")).is_err());
 }
