@@ -80,36 +80,27 @@ pub fn sync_tree(folder: &Path) -> io::Result<u64> {
         Err(rustix::io::Errno::NOSYS) => {}
         synced => {
             synced?;
-            return bytes_below(folder, Durable::AsItIs);
+            return bytes_below(folder, &|_| Ok(()));
         }
     }
-    bytes_below(folder, Durable::FileByFile)
+    bytes_below(folder, &|path| {
+        if path.is_dir() { sync_folder(path) } else { File::open(path)?.sync_all() }
+    })
 }
 
-/// Whether files are made durable while their bytes are counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Durable {
-    #[cfg_attr(not(target_os = "linux"), expect(dead_code, reason = "only Linux does it at once"))]
-    AsItIs,
-    FileByFile,
-}
-
-fn bytes_below(folder: &Path, durable: Durable) -> io::Result<u64> {
+/// How many bytes the files below a folder have. `sync` is called for each file, and for each folder after what is in it.
+fn bytes_below(folder: &Path, sync: &impl Fn(&Path) -> io::Result<()>) -> io::Result<u64> {
     let mut bytes = 0;
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         if entry.file_type()?.is_dir() {
-            bytes += bytes_below(&entry.path(), durable)?;
+            bytes += bytes_below(&entry.path(), sync)?;
         } else {
             bytes += entry.metadata()?.len();
-            if durable == Durable::FileByFile {
-                File::open(entry.path())?.sync_all()?;
-            }
+            sync(&entry.path())?;
         }
     }
-    if durable == Durable::FileByFile {
-        sync_folder(folder)?;
-    }
+    sync(folder)?;
     Ok(bytes)
 }
 

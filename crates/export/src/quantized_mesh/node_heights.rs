@@ -40,7 +40,8 @@ impl NodeHeights {
             for block_column in blocks(west, east) {
                 let corner = [block_column * BLOCK, block_row * BLOCK];
                 let key = (nodes.level, nodes.per_tile, [block_column, block_row]);
-                let make = || sample(&places_of(nodes, corner));
+                let end = corner.map(|index| index + BLOCK - 1);
+                let make = || sample(&nodes.places_deg(corner, end));
                 let block = self.0.get(key, make, |block| size_of_val(&block[..]) as u64)?;
                 let [i0, j0] = corner;
                 for j in south.max(j0)..=north.min(j0 + BLOCK - 1) {
@@ -55,13 +56,6 @@ impl NodeHeights {
         }
         Ok(heights_m)
     }
-}
-
-/// Longitudes and latitudes of the nodes of a block, row by row from the south.
-fn places_of(nodes: Nodes, [west, south]: [i64; 2]) -> Vec<[f64; 2]> {
-    let rows = (south..south + BLOCK).map(|j| nodes.lat_deg(j));
-    let columns: Vec<f64> = (west..west + BLOCK).map(|i| nodes.lon_deg(i)).collect();
-    rows.flat_map(|lat| columns.iter().map(move |&lon| [lon, lat])).collect()
 }
 
 #[cfg(test)]

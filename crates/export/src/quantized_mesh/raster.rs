@@ -44,11 +44,8 @@ impl Window {
         to: [i64; 2],
         ground: &Ground<'_>,
     ) -> Result<Self, ExportError> {
-        let lats: Vec<f64> = (from[1] - 1..=to[1] + 1).map(|j| nodes.lat_deg(j)).collect();
-        let lons: Vec<f64> = (from[0] - 1..=to[0] + 1).map(|i| nodes.lon_deg(i)).collect();
-        let places: Vec<[f64; 2]> =
-            lats.iter().flat_map(|&lat| lons.iter().map(move |&lon| [lon, lat])).collect();
-        let heights_m = ground.heights_m(&places)?;
+        let [first, last] = around(from, to);
+        let heights_m = ground.heights_m(&nodes.places_deg(first, last))?;
         Ok(Self { nodes, from, to, heights_m })
     }
 
@@ -57,8 +54,7 @@ impl Window {
         let Some(nodes) = self.nodes.above() else { return Ok(None) };
         let from = self.from.map(|index| index.div_euclid(2));
         let to = self.to.map(|index| (index + 1).div_euclid(2));
-        let around = [from.map(|index| index - 1), to.map(|index| index + 1)];
-        let heights_m = ground.heights_at_nodes_m(nodes, around)?;
+        let heights_m = ground.heights_at_nodes_m(nodes, around(from, to))?;
         Ok(Some(Self { nodes, from, to, heights_m }))
     }
 
@@ -104,6 +100,11 @@ impl Window {
             self.heights_m[at] = height_m;
         }
     }
+}
+
+/// A rectangle of nodes with one more on each side.
+fn around(from: [i64; 2], to: [i64; 2]) -> [[i64; 2]; 2] {
+    [from.map(|index| index - 1), to.map(|index| index + 1)]
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -196,6 +196,17 @@ impl Nodes {
         south + (north - south) * self.share(j.rem_euclid(per_tile))
     }
 
+    /// Longitudes and latitudes of a rectangle of nodes, given by its south-western and north-eastern one, row by row from the south.
+    pub(crate) fn places_deg(
+        self,
+        [west, south]: [i64; 2],
+        [east, north]: [i64; 2],
+    ) -> Vec<[f64; 2]> {
+        let lons: Vec<f64> = (west..=east).map(|i| self.lon_deg(i)).collect();
+        let lats = (south..=north).map(|j| self.lat_deg(j));
+        lats.flat_map(|lat| lons.iter().map(move |&lon| [lon, lat])).collect()
+    }
+
     /// Longitude and latitude of a tile's south-western and north-eastern corner.
     pub(crate) fn corners_deg(self, tile: TerrainTile) -> [[f64; 2]; 2] {
         [0, 1].map(|beside| {

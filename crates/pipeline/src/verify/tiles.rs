@@ -88,12 +88,9 @@ pub(crate) fn verify(
             tail.map_or("none".to_owned(), |tail| format!("{} bytes of {}", tail.bytes, tail.tile))
         };
         let longest = sv_tails.len().max(recorded.len());
-        let pairs = (0..longest).map(|k| [sv_tails.get(k), recorded.get(k)]);
-        let [found, told] = pairs
-            .filter(|[found, told]| found != told)
-            .map(|pair| pair.map(in_words))
-            .next()
-            .unwrap_or_default();
+        let mut pairs = (0..longest).map(|k| [sv_tails.get(k), recorded.get(k)]);
+        let differ = pairs.find(|[found, told]| found != told).unwrap_or_default();
+        let [found, told] = differ.map(in_words);
         format!("{counts}; the first that differ: {found}, {told}")
     });
     let report = VerifyReport {
