@@ -10,10 +10,10 @@ use std::{
 
 use tempfile::TempDir;
 
-use crate::{Ran, binary, ended, sample, text};
+use crate::{Ran, binary, ended, sample, send_signal, text};
 
-/// Bytes at the beginning of a journal, before its first entry.
-const JOURNAL_HEADER_BYTES: u64 = 48;
+/// Bytes at the beginning of each file of a store, before its artifacts or entries.
+pub const STORE_HEADER_BYTES: u64 = 48;
 
 /// A build of the sample `pass`, with a list of its defects.
 pub struct Job {
@@ -141,13 +141,12 @@ impl Job {
         let begun = Instant::now();
         let is_time = || match when {
             When::After(time) => begun.elapsed() >= time,
-            When::Worked => self.journal_bytes() > before.max(JOURNAL_HEADER_BYTES),
+            When::Worked => self.journal_bytes() > before.max(STORE_HEADER_BYTES),
         };
         while !is_time() && matches!(child.try_wait(), Ok(None)) {
             thread::sleep(Duration::from_millis(2));
         }
-        let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).output();
-        assert!(sent.is_ok(), "there is no program named kill");
+        send_signal(&child, signal);
         ended(&mut child)
     }
 
@@ -182,7 +181,7 @@ impl Job {
     /// Whether the store holds durable work.
     #[must_use]
     pub fn has_work(&self) -> bool {
-        self.journal_bytes() > JOURNAL_HEADER_BYTES
+        self.journal_bytes() > STORE_HEADER_BYTES
     }
 
     /// The package and the list of defects, and nothing else is beside them.

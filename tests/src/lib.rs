@@ -27,7 +27,7 @@ pub use corniche_testing::{
 };
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
-pub use job::{Job, When};
+pub use job::{Job, STORE_HEADER_BYTES, When};
 pub use object_storage::{ObjectStorage, Proxy};
 use serde_json::Value;
 
@@ -83,6 +83,17 @@ pub fn shell(commands: &str, folder: &Path) -> Ran {
         Ok(output) => output.into(),
         Err(error) => panic!("bash does not start: {error}"),
     }
+}
+
+/// Sends a program a signal, named without `SIG`, or says nothing if it has ended.
+///
+/// # Panics
+/// When there is no shell.
+pub fn send_signal(child: &Child, name: &str) {
+    // The `kill` built into the shell: a minimal machine has no program of that name.
+    let command = format!("kill -s {name} {} 2>&1", child.id());
+    let sent = Command::new("sh").args(["-c", &command]).output();
+    assert!(sent.is_ok(), "there is no shell: {sent:?}");
 }
 
 /// Waits for the end of a program whose standard output is not read.

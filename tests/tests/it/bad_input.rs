@@ -203,10 +203,7 @@ fn goes_on_after_an_interruption() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     let meshing = lines.any(|line| line.unwrap().contains("\"coarse-tins\""));
     assert!(meshing, "the build ended before it meshed");
-    // The `kill` built into the shell: a minimal machine has no program of that name.
-    let signal = format!("kill -INT {}", child.id());
-    let killed = Command::new("sh").args(["-c", &signal]).status().unwrap();
-    assert!(killed.success());
+    e2e::send_signal(&child, "INT");
     let rest: Vec<String> = lines.map(Result::unwrap).collect();
     let code = child.wait().unwrap().code();
     assert_eq!(code, Some(4), "{rest:?}");

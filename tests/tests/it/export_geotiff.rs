@@ -508,8 +508,7 @@ fn an_interrupted_export_leaves_nothing() {
         }
         // A little later in every round.
         thread::sleep(Duration::from_millis(10 * round));
-        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        assert!(sent.is_ok());
+        e2e::send_signal(&child, "INT");
         let ran = ended(&mut child);
         match ran.code {
             0 => {

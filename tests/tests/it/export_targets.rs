@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, copy_pass, corniche, ended, names, sample, text, unfinished};
+use e2e::{Ran, copy_pass, corniche, ended, names, sample, send_signal, text, unfinished};
 use gdal::{Dataset, vector::LayerAccess as _};
 
 fn pass(folder: &Path) -> PathBuf {
@@ -119,12 +119,6 @@ fn start(package: &Path, target: &Path) -> Child {
         .unwrap()
 }
 
-#[cfg(unix)]
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
-    assert!(sent.is_ok());
-}
-
 /// Ctrl-C at any moment: either the file is there as a whole, or nothing is.
 #[test]
 #[cfg(unix)]
@@ -142,7 +136,7 @@ fn an_interrupted_export_leaves_nothing() {
             thread::sleep(Duration::from_millis(1));
         }
         thread::sleep(Duration::from_millis(8 * round));
-        signal(&child, "INT");
+        send_signal(&child, "INT");
         let ran = ended(&mut child);
         match ran.code {
             0 => {
@@ -175,7 +169,7 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
         assert!(child.try_wait().unwrap().is_none(), "it was faster than the signal");
         thread::sleep(Duration::from_millis(1));
     }
-    signal(&child, "KILL");
+    send_signal(&child, "KILL");
     assert_eq!(ended(&mut child).code, -1, "SIGKILL ended it");
     assert!(unfinished(folder.path()).is_some() && !target.exists(), "{:?}", names(folder.path()));
     let ran = export(&package, &target, &[]);

@@ -3,7 +3,7 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, copy_pass, draw, lacks_adapter, text, without_times};
+use e2e::{Ran, copy_pass, draw, lacks_adapter, send_signal, text, without_times};
 
 /// `fly` in a small size; `None` where there is no adapter.
 fn fly(package: &Path, csv: &Path, options: &[&str]) -> Option<Ran> {
@@ -273,8 +273,7 @@ fn a_flight_is_interrupted_while_it_is_being_checked_too() {
         }
     }
     let signalled = Instant::now();
-    let signal = format!("kill -INT {}", child.id());
-    assert!(Command::new("sh").args(["-c", &signal]).status().unwrap().success());
+    send_signal(&child, "INT");
     assert_eq!(child.wait().unwrap().code(), Some(4));
     assert!(signalled.elapsed() < Duration::from_secs(10), "{:?}", signalled.elapsed());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the package is there");
@@ -319,9 +318,7 @@ fn an_interrupted_flight_leaves_nothing() {
         assert!(begun.elapsed() < Duration::from_mins(2), "no picture");
         std::thread::sleep(Duration::from_millis(20));
     }
-    // The `kill` built into the shell: a minimal machine has no program of that name.
-    let signal = format!("kill -INT {}", child.id());
-    assert!(Command::new("sh").args(["-c", &signal]).status().unwrap().success());
+    send_signal(&child, "INT");
     let ran = Ran::from(child.wait_with_output().unwrap());
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(ran.err.contains("interrupted"), "{}", ran.err);

@@ -11,11 +11,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{ObjectStorage, Ran, corniche, ended, sample, text};
+use e2e::{ObjectStorage, Ran, STORE_HEADER_BYTES, corniche, ended, sample, send_signal, text};
 use tempfile::TempDir;
 
 const STORE: &str = "s3://maps/alps/build";
-/// So that tiles take some seconds.
+/// Longer than the time after which artifacts are made durable.
+const SYNC_INTERVAL: Duration = Duration::from_millis(2_500);
+/// So that tiles take about a second.
 const FINE: [&str; 2] = ["--max-error", "0.02"];
 const COARSE: [&str; 2] = ["--max-error", "10"];
 
@@ -118,13 +120,23 @@ impl Planned {
         command.spawn().unwrap()
     }
 
-    /// Bytes of the longest journal in `--tmp`.
-    fn journal_bytes(&self) -> u64 {
+    /// Whether a part that is being made in `--tmp` has artifacts: in its `data`, or in the `journal` of those that are durable.
+    fn has_artifacts(&self, file: &str) -> bool {
         let folders = fs::read_dir(&self.tmp).unwrap().flatten();
         let files = folders.filter_map(|folder| fs::read_dir(folder.path()).ok()).flatten();
-        let files = files.flatten().map(|file| file.path());
-        let journals = files.filter(|path| path.extension().is_some_and(|end| end == "journal"));
-        journals.filter_map(|path| Some(fs::metadata(path).ok()?.len())).max().unwrap_or(0)
+        let mut files = files.flatten().map(|file| file.path());
+        let is_long =
+            |path: &Path| fs::metadata(path).is_ok_and(|data| data.len() > STORE_HEADER_BYTES);
+        files.any(|path| path.extension().is_some_and(|end| end == file) && is_long(&path))
+    }
+
+    /// Waits until a part that is being made has artifacts in one of its files.
+    fn wait_for_artifacts(&self, child: &mut Child, file: &str) {
+        let begun = Instant::now();
+        while !self.has_artifacts(file) && matches!(child.try_wait(), Ok(None)) {
+            assert!(begun.elapsed() < Duration::from_mins(2), "no tile is made");
+            thread::sleep(Duration::from_millis(1));
+        }
     }
 }
 
@@ -259,13 +271,14 @@ fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
         planned.make(step, None);
     }
     let mut child = planned.start("tiles", None);
-    let begun = Instant::now();
-    while planned.journal_bytes() <= 48 && matches!(child.try_wait(), Ok(None)) {
-        assert!(begun.elapsed() < Duration::from_mins(2), "no tile is made");
-        thread::sleep(Duration::from_millis(5));
-    }
+    planned.wait_for_artifacts(&mut child, "data");
+    // All tiles may take less time than that after which they are made durable, so it passes while the process is suspended.
+    send_signal(&child, "STOP");
+    thread::sleep(SYNC_INTERVAL);
+    send_signal(&child, "CONT");
+    planned.wait_for_artifacts(&mut child, "journal");
     kill(child);
-    assert!(planned.journal_bytes() > 48, "it was faster than the kill");
+    assert!(planned.has_artifacts("journal"), "it was faster than the kill");
     assert_eq!(planned.count("tiles-0-0-0"), 0);
 
     planned.storage.proxy().close();

@@ -14,7 +14,7 @@ use std::{
 };
 
 use e2e::{
-    Ran, copy_pass, corniche, ended, lacks_adapter, names, sample, text,
+    Ran, copy_pass, corniche, ended, lacks_adapter, names, sample, send_signal, text,
     web_servers::{WebServer, certificate, direct},
 };
 use tempfile::TempDir;
@@ -267,8 +267,7 @@ fn waiting_for_a_server_can_be_interrupted() {
         .unwrap();
     assert!(told.recv_timeout(Duration::from_mins(1)).unwrap() > 0, "it asks");
     let begun = Instant::now();
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(sent.unwrap().success());
+    send_signal(&child, "INT");
     let ran = ended(&mut child);
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(begun.elapsed() < Duration::from_secs(20), "it waits for the server");

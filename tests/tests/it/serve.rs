@@ -12,7 +12,7 @@ use std::{
 };
 
 use e2e::{
-    Ran, build_pass, copy_pass, corniche, ended, names, skip, text,
+    Ran, build_pass, copy_pass, corniche, ended, names, send_signal, skip, text,
     web_servers::{WebServer, direct},
 };
 use tempfile::TempDir;
@@ -123,9 +123,7 @@ impl Serving {
     /// Sends a signal and waits for the end.
     #[cfg(unix)]
     fn signal(mut self, name: &str) -> Ran {
-        let sent =
-            Command::new("kill").args([&format!("-{name}"), &self.child.id().to_string()]).status();
-        assert!(sent.unwrap().success());
+        send_signal(&self.child, name);
         ended(&mut self.child)
     }
 }

@@ -11,7 +11,7 @@ use std::{
 };
 
 use e2e::{
-    Display, Ran, binary, copy_pass, ended, lacks_adapter,
+    Display, Ran, binary, copy_pass, ended, lacks_adapter, send_signal,
     web_servers::{WebServer, direct},
     without_display,
 };
@@ -138,9 +138,7 @@ impl Desk {
 
     /// Suspends the window's program, or resumes it.
     fn signal(&self, name: &str) {
-        let pid = self.window.id().to_string();
-        let sent = Command::new("kill").args(["-s", name, &pid]).status();
-        assert!(sent.is_ok_and(|status| status.success()), "kill -s {name}");
+        send_signal(&self.window, name);
     }
 
     fn point_at(&mut self, x: i32, y: i32) -> Line {

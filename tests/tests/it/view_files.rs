@@ -9,7 +9,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Display, Ran, binary, copy_pass, ended, lacks_adapter, text, without_display};
+use e2e::{
+    Display, Ran, binary, copy_pass, ended, lacks_adapter, send_signal, text, without_display,
+};
 
 /// A folder with a package.
 fn package() -> (tempfile::TempDir, PathBuf) {
@@ -118,11 +120,7 @@ fn a_recording_is_saved_however_the_window_ends() {
         let opened = recording(&display, &package, folder.path(), &trace);
         let Some((mut window, id)) = opened else { return };
         match end {
-            "signal" => {
-                let number = window.id().to_string();
-                let sent = Command::new("kill").args(["-TERM", &number]).status().unwrap();
-                assert!(sent.success());
-            }
+            "signal" => send_signal(&window, "TERM"),
             "windowclose" => {
                 display.xdotool(&format!("windowclose {id}"));
             }
