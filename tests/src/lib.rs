@@ -155,6 +155,8 @@ pub struct Costs {
     pub peak_bytes: u64,
     /// Seconds of computing, of all its threads.
     pub cpu_s: f64,
+    /// Bytes that it read, of files and all else; what it reads again counts again.
+    pub read_bytes: u64,
 }
 
 /// Waits for the end of a program, and tells what it took, as the kernel tells it while it runs.
@@ -178,6 +180,9 @@ pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
         let spent: f64 =
             numbers.skip(11).take(2).filter_map(|number| number.parse::<f64>().ok()).sum();
         costs.cpu_s = (spent / 100.0).max(costs.cpu_s);
+        let text = read("io").unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("rchar: "));
+        costs.read_bytes = line.and_then(|bytes| bytes.parse().ok()).unwrap_or(costs.read_bytes);
         thread::sleep(Duration::from_millis(2));
     }
     (ended(child), costs)

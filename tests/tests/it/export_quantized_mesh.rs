@@ -111,6 +111,27 @@ fn real_regions_are_the_package_s_ground() {
     }
 }
 
+/// Coarse levels look at the same tiles of the package again and again. Where not all of them were kept, an export of this square took eight times as long.
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "slow: a square degree"]
+fn a_square_degree_is_read_about_once() {
+    let Some(dem) = real_data("liechtenstein/N47E009.hgt") else { return };
+    let folder = TempDir::new().unwrap();
+    let package = built_of(&folder, &dem);
+    let output = folder.path().join("terrain");
+    let [from, to] = [&package, &output].map(|path| text(path));
+    let options = ["--max-level", "9", "--heights", "as-is"];
+    let command = [&["export", "quantized-mesh", from, "-o", to][..], &options].concat();
+    let mut child = e2e::start(&command);
+    let (ran, costs) = e2e::ended_with_costs(&mut child);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let package_bytes = fs::metadata(&package).unwrap().len();
+    // Twice is for what every program reads at its start.
+    let once = package_bytes..3 * package_bytes;
+    assert!(once.contains(&costs.read_bytes), "{} of {package_bytes}", costs.read_bytes);
+}
+
 /// Makes a terrain wrong, or what it is compared with.
 type Change = fn(&mut Terrain, &mut Region);
 

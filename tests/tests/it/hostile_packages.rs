@@ -84,7 +84,7 @@ fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) ->
                 let folder = tempfile::tempdir().unwrap();
                 let package = folder.path().join("hostile.pmtiles");
                 fs::write(&package, &case.bytes).unwrap();
-                let (ran, Costs { peak_bytes, cpu_s }) = run(folder.path(), &package, command);
+                let (ran, Costs { peak_bytes, cpu_s, .. }) = run(folder.path(), &package, command);
                 let said = ran.err.lines().last().unwrap_or_default();
                 let line = format!(
                     "{family}: {}: {}: code {}, {cpu_s:.2} s, {} MiB, {said}",
