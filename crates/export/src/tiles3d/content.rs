@@ -195,34 +195,39 @@ impl<'a> Builder<'a> {
 
     /// Adds the ground, the surfaces of roads and slabs.
     fn surfaces(&mut self, divided: &Divided) {
-        let mut labels: Vec<u32> = self.placed.labels.clone();
-        labels.sort_unstable();
-        labels.dedup();
+        let labels = &self.placed.labels;
+        let mut triangles: Vec<usize> = (0..labels.len()).collect();
+        triangles.sort_by_key(|&triangle| labels[triangle]);
         // Parts in the order of classes, ground first; roads come sorted by class.
-        let mut by_kind: BTreeMap<SurfaceKind, Vec<u32>> = BTreeMap::new();
-        for label in labels {
-            by_kind.entry(divided.kind_of(label)).or_default().push(label);
+        let mut by_kind: BTreeMap<SurfaceKind, Vec<(u32, &[usize])>> = BTreeMap::new();
+        for of_label in triangles.chunk_by(|&one, &next| labels[one] == labels[next]) {
+            let label = labels[of_label[0]];
+            by_kind.entry(divided.kind_of(label)).or_default().push((label, of_label));
         }
-        let mut of_label: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
-        for (triangle, label) in self.placed.triangles.iter().zip(&self.placed.labels) {
-            of_label.entry(*label).or_default().push(*triangle);
-        }
+        // What a vertex became last, and for which label: each has its own.
+        let mut places = vec![None; self.placed.vertices.len()];
         for (kind, labels) in by_kind {
             let (mut part, mut ways) = (Primitive::default(), Vec::new());
-            for label in labels {
+            for (label, of_label) in labels {
                 let road = divided.road_of(label);
-                let mut place = BTreeMap::new();
-                for corner in of_label[&label].as_flattened() {
-                    let vertex = &self.placed.vertices[*corner as usize];
-                    let index = *place.entry(*corner).or_insert_with(|| {
-                        part.positions.push(y_up(vertex.at_m));
-                        part.normals.push(y_up(vertex.normal));
-                        match road {
-                            Some(road) => ways.push(road.way_id),
-                            None => self.add_look(vertex, &mut part),
-                        }
-                        part.positions.len() as u32 - 1
-                    });
+                for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
+                {
+                    let corner = corner as usize;
+                    let known = places[corner].filter(|(of_label, _)| *of_label == label);
+                    let index = known.map_or_else(
+                        || {
+                            let vertex = &self.placed.vertices[corner];
+                            part.positions.push(y_up(vertex.at_m));
+                            part.normals.push(y_up(vertex.normal));
+                            match road {
+                                Some(road) => ways.push(road.way_id),
+                                None => self.add_look(vertex, &mut part),
+                            }
+                            part.positions.len() as u32 - 1
+                        },
+                        |(_, index)| index,
+                    );
+                    places[corner] = Some((label, index));
                     part.indices.push(index);
                 }
                 if let Some(road) = road {
