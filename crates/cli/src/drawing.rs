@@ -111,7 +111,7 @@ fn save(
     let old: BTreeMap<usize, (bool, Vec<[f64; 2]>)> = old
         .map(|(number, shape, points_deg)| (number, (shape == Shape::Area, points_deg)))
         .collect();
-    let mut store = TileStore::new(package);
+    let mut store: TileStore<'_> = TileStore::new(package);
     let mut saved = Vec::with_capacity(lines.len());
     for line in lines {
         // What has not changed stays as it is in the file.

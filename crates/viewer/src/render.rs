@@ -147,8 +147,8 @@ impl From<SettleError> for RenderError {
 /// `package` must be opened for the road method of the request: it then reads the sections that this method needs. The
 /// caller may check the request before opening it, with [`RenderRequest::check`].
 ///
-/// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked before each
-/// tile of the view is read, and once more at the end.
+/// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked with each
+/// tile of the view that is read, and once more at the end.
 ///
 /// # Errors
 /// When the request makes no sense, a tile cannot be read, there is no graphics adapter, or it was stopped.
@@ -158,7 +158,7 @@ pub fn render(
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Rendered, RenderError> {
     request.check()?;
-    let mut store = TileStore::new(package);
+    let mut store: TileStore<'_> = TileStore::new(package);
     let point_scale = package.manifest().point_scale;
     let fineness =
         Fineness { screen_space_error_px: request.screen_space_error_px, cell_px: request.cell_px };

@@ -12,7 +12,7 @@ use crate::{
     frame_view::FrameView,
     lod::{self, Drawn, Quality},
     options::RoadMethod,
-    tiles::{LoadTileError, TileGeometry, TileStore, WideWay},
+    tiles::{LoadTileError, TileGeometry, TileSource, TileStore, WideWay},
 };
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
@@ -22,8 +22,8 @@ pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connec
 ///
 /// # Errors
 /// When a tile cannot be read, or `is_stopped` returned true.
-pub fn settle(
-    store: &mut TileStore<'_>,
+pub fn settle<S: TileSource + Sync + ?Sized>(
+    store: &mut TileStore<'_, S>,
     camera: &Camera,
     quality: Quality,
     is_stopped: &dyn Fn() -> bool,
@@ -36,10 +36,7 @@ pub fn settle(
             store.pass(request.id)?;
         }
         if selection.requests.is_empty() {
-            for drawn in &selection.drawn {
-                check_stop()?;
-                store.load_drawn(drawn)?;
-            }
+            store.load_drawn(&selection.drawn, check_stop)?;
             return Ok(selection.drawn);
         }
     }
@@ -56,8 +53,8 @@ pub enum SettleError {
 }
 
 /// The tiles to draw with the depths of their skirts. Tiles that are not loaded are left out.
-pub fn draw_list<'a>(
-    store: &'a TileStore<'_>,
+pub fn draw_list<'a, S: TileSource + ?Sized>(
+    store: &'a TileStore<'_, S>,
     drawn: &'a [Drawn],
 ) -> impl Iterator<Item = (&'a TileGeometry, f64)> {
     drawn.iter().filter_map(|drawn| Some((store.get(drawn.id)?, drawn.skirt_depth_m)))

@@ -50,6 +50,10 @@ impl TileSource for Noting<'_> {
             LoadTileError { id, source: Box::new(NotYet) }
         })
     }
+
+    fn may_have_roads(&self) -> bool {
+        self.tiles.package.may_have_roads()
+    }
 }
 
 /// The tiles of the first view that had to be looked at, and the ground that its camera is set up by.
@@ -118,9 +122,7 @@ fn looked(
     let mut store = TileStore::new(source);
     let Some(coarsest) = store.coarsest_ground()? else { return Ok(None) };
     let heights_m = coarsest.height_range_m;
-    // Without roads nothing tells where they are, and all levels would be searched for them.
-    let has_roads = manifest.counts.roads_kept > 0;
-    let extent = if camera.is_overview() && has_roads { store.map_extent(data)? } else { None };
+    let extent = if camera.is_overview() { store.map_extent(data)? } else { None };
     let extent = extent.unwrap_or_else(|| MapExtent::of_data(data, heights_m));
     let at_place_m = match place {
         Some(at) => store.ground_height_m(at)?,

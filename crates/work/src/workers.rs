@@ -8,10 +8,10 @@ use std::{
 
 use crate::{Interrupted, Observer, Stage};
 
-/// Does the same as `in_order`, and asks `observer` before each item whether the run is cancelled.
+/// Does the same as [`in_order`], and asks `observer` before each item whether the run is cancelled.
 ///
 /// # Errors
-/// Those of `in_order`, or [`Interrupted`].
+/// Those of [`in_order`], or [`Interrupted`].
 pub fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     threads: usize,
@@ -114,7 +114,7 @@ struct Queue<R, E> {
 ///
 /// # Errors
 /// The first error, in the order of the items, of `start`, `work` or `write`.
-fn in_order<S, R: Send, E: Send>(
+pub fn in_order<S, R: Send, E: Send>(
     threads: usize,
     count: usize,
     start: impl Fn() -> Result<S, E> + Sync,

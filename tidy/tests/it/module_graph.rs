@@ -19,7 +19,7 @@ const MAY_USE: [(&str, &[&str]); 31] = [
     ("web", &["live", "presets"]),
     ("web-styles", &["styles"]),
     ("live", &["viewer"]),
-    ("viewer", &["tileset", "styles"]),
+    ("viewer", &["tileset", "styles", "work"]),
     ("pipeline", &["tileset", "osm", "spans", "photo", "store", "objects", "work"]),
     ("export", &["tileset", "spans", "dem", "store", "styles", "work"]),
     ("matching", &["tileset", "photo", "work"]),

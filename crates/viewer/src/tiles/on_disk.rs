@@ -79,6 +79,10 @@ impl TileSource for PackageSource {
     fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         pollster::block_on(self.0.load_slopes(id))
     }
+
+    fn may_have_roads(&self) -> bool {
+        self.0.may_have_roads()
+    }
 }
 
 impl MapPackage for PackageSource {

@@ -121,6 +121,12 @@ impl<S: ByteSource> PackageTiles<S> {
         self.decoder.tile(bytes.as_deref(), id, self.manifest())
     }
 
+    /// Whether it has roads, and they are read.
+    #[must_use]
+    pub fn may_have_roads(&self) -> bool {
+        self.decoder.reads_roads() && self.manifest().counts.roads_kept > 0
+    }
+
     /// The bytes of a tile that exists, as far as these sections need them, for those who decode it elsewhere; `None` if only tiles beneath it are
     /// stored.
     ///

@@ -63,6 +63,11 @@ pub trait TileSource: TileCatalog {
     fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         self.load(id)
     }
+
+    /// Whether some of its tiles may have roads.
+    fn may_have_roads(&self) -> bool {
+        true
+    }
 }
 
 /// A package before any of its tiles is loaded: which tiles there are, and its table of contents.
@@ -71,7 +76,7 @@ pub trait MapPackage: TileCatalog {
     fn manifest(&self) -> &Manifest;
 }
 
-/// A package whose tiles can be waited for, as pictures, flights and the threads of a window need it.
-pub trait BlockingPackage: MapPackage + TileSource {}
+/// A package whose tiles can be waited for, by any thread, as pictures, flights and windows need it.
+pub trait BlockingPackage: MapPackage + TileSource + Sync {}
 
-impl<P: MapPackage + TileSource + ?Sized> BlockingPackage for P {}
+impl<P: MapPackage + TileSource + Sync + ?Sized> BlockingPackage for P {}

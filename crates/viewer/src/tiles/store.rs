@@ -1,8 +1,14 @@
 //! The tiles that were loaded so far, for a picture that needs all of them at once.
 
-use std::collections::BTreeMap;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    iter,
+    num::NonZeroUsize,
+    thread,
+};
 
 use corniche_geom::{Bounds, TileId};
+use corniche_work::workers::in_order;
 
 use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
 use crate::lod::{Drawn, GroundSummary, Node, Request, TileTree};
@@ -14,8 +20,8 @@ const FEW_TILES: usize = 64;
 pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
 
 /// The tiles loaded so far. Of tiles that are only passed while tiles are chosen it holds errors and heights.
-pub struct TileStore<'a> {
-    source: &'a dyn TileSource,
+pub struct TileStore<'a, S: ?Sized = dyn TileSource + Sync + 'a> {
+    source: &'a S,
     tiles: BTreeMap<TileId, TileGeometry>,
     /// The summaries of all tiles that were read in any way.
     summaries: BTreeMap<TileId, Option<GroundSummary>>,
@@ -23,10 +29,17 @@ pub struct TileStore<'a> {
     coarser: BTreeMap<TileId, TileGeometry>,
 }
 
-impl<'a> TileStore<'a> {
+/// What is to be loaded of a tile for a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Whole(TileId),
+    Slopes(TileId),
+}
+
+impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
     /// An empty store of the tiles of `source`.
     #[must_use]
-    pub fn new(source: &'a dyn TileSource) -> Self {
+    pub fn new(source: &'a S) -> Self {
         Self {
             source,
             tiles: BTreeMap::new(),
@@ -66,21 +79,15 @@ impl<'a> TileStore<'a> {
         Ok(())
     }
 
-    /// Loads a tile that is drawn, and the slopes of those tiles above it that it is shaded with.
-    ///
-    /// # Errors
-    /// When one of them cannot be read.
-    pub fn load_drawn(&mut self, drawn: &Drawn) -> Result<(), LoadTileError> {
-        self.load_tile(drawn.id)?;
-        let above = std::iter::successors(drawn.id.parent(), |id| id.parent());
-        for id in above.take(MOST_SLOPES_ABOVE) {
-            if !self.tiles.contains_key(&id) && !self.coarser.contains_key(&id) {
-                let tile = self.source.load_slopes(id)?;
-                self.summaries.insert(id, tile.summary);
-                self.coarser.insert(id, tile);
-            }
-        }
-        Ok(())
+    /// What is missing of tiles that are drawn, and of those above them with whose slopes they are shaded.
+    fn missing(&self, drawn: &[Drawn]) -> Vec<Wanted> {
+        let whole = drawn.iter().map(|drawn| drawn.id).filter(|id| !self.tiles.contains_key(id));
+        let above = |drawn: &Drawn| {
+            iter::successors(drawn.id.parent(), |id| id.parent()).take(MOST_SLOPES_ABOVE)
+        };
+        let above: BTreeSet<TileId> = drawn.iter().flat_map(above).collect();
+        let slopes = above.into_iter().filter(|id| self.with_slopes(*id).is_none());
+        whole.map(Wanted::Whole).chain(slopes.map(Wanted::Slopes)).collect()
     }
 
     /// Whether the tile or anything beneath it exists.
@@ -133,7 +140,8 @@ impl<'a> TileStore<'a> {
     /// When a tile cannot be read.
     pub fn map_extent(&mut self, data: Bounds) -> Result<Option<MapExtent>, LoadTileError> {
         let Some(ground) = self.coarsest_ground()? else { return Ok(None) };
-        let mut level = vec![TileId::ROOT];
+        // Without roads nothing tells where they are, and all levels would be searched for them.
+        let mut level = if self.source.may_have_roads() { vec![TileId::ROOT] } else { Vec::new() };
         while !level.is_empty() && level.len() <= FEW_TILES {
             for id in &level {
                 self.load_tile(*id)?;
@@ -167,7 +175,40 @@ impl<'a> TileStore<'a> {
     }
 }
 
-impl TileTree for TileStore<'_> {
+impl<S: TileSource + Sync + ?Sized> TileStore<'_, S> {
+    /// Loads tiles that are drawn, and the slopes of those tiles above them that they are shaded with, on all processors. `check` is asked about each.
+    ///
+    /// # Errors
+    /// When one of them cannot be read, or `check` fails.
+    pub fn load_drawn<E: From<LoadTileError> + Send>(
+        &mut self,
+        drawn: &[Drawn],
+        check: impl Fn() -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (source, wanted) = (self.source, self.missing(drawn));
+        let load = |wanted| match wanted {
+            Wanted::Whole(id) => source.load(id),
+            Wanted::Slopes(id) => source.load_slopes(id),
+        };
+        check()?;
+        in_order(
+            thread::available_parallelism().map_or(1, NonZeroUsize::get),
+            wanted.len(),
+            || Ok(()),
+            |(), index| Ok(load(wanted[index])?),
+            |index, tile| {
+                let (Wanted::Whole(id) | Wanted::Slopes(id)) = wanted[index];
+                let is_whole = wanted[index] == Wanted::Whole(id);
+                self.summaries.insert(id, tile.summary);
+                let tiles = if is_whole { &mut self.tiles } else { &mut self.coarser };
+                tiles.insert(id, tile);
+                check()
+            },
+        )
+    }
+}
+
+impl<S: TileSource + ?Sized> TileTree for TileStore<'_, S> {
     fn node(&self, id: TileId) -> Node {
         match self.summaries.get(&id) {
             Some(summary) => Node::Loaded(*summary),
@@ -184,3 +225,7 @@ impl TileTree for TileStore<'_> {
         self.source.frame().max_level()
     }
 }
+
+#[cfg(test)]
+#[path = "store_tests.rs"]
+mod tests;
