@@ -146,7 +146,8 @@ impl Job {
         while !is_time() && matches!(child.try_wait(), Ok(None)) {
             thread::sleep(Duration::from_millis(2));
         }
-        send_signal(&child, signal);
+        // It may have been faster.
+        let _ = send_signal(&child, signal);
         ended(&mut child)
     }
 

@@ -85,15 +85,16 @@ pub fn shell(commands: &str, folder: &Path) -> Ran {
     }
 }
 
-/// Sends a program a signal, named without `SIG`, or says nothing if it has ended.
+/// Sends a program a signal, named without `SIG`. Returns whether it is there still: one that was waited for is not.
 ///
 /// # Panics
 /// When there is no shell.
-pub fn send_signal(child: &Child, name: &str) {
+#[must_use]
+pub fn send_signal(child: &Child, name: &str) -> bool {
     // The `kill` built into the shell: a minimal machine has no program of that name.
     let command = format!("kill -s {name} {} 2>&1", child.id());
     let sent = Command::new("sh").args(["-c", &command]).output();
-    assert!(sent.is_ok(), "there is no shell: {sent:?}");
+    sent.unwrap_or_else(|error| panic!("there is no shell: {error}")).status.success()
 }
 
 /// Waits for the end of a program whose standard output is not read.

@@ -18,12 +18,9 @@ use std::{
 };
 
 use corniche_geom::TileId;
-use corniche_viewer::tiles::{LoadTileError, TileGeometry, TileSource};
+use corniche_viewer::tiles::{LoadTileError, MOST_LOADERS, TileGeometry, TileSource};
 
 use crate::tile_loader::{Loaded, TileLoader};
-
-/// More threads would compete with the one that draws.
-const MOST_THREADS: usize = 4;
 
 /// Threads that load tiles.
 pub struct LoaderThreads {
@@ -69,7 +66,7 @@ impl LoaderThreads {
     /// How many workers are useful on this machine: one core is left to the thread that draws.
     pub fn usual_number() -> NonZeroUsize {
         let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
-        NonZeroUsize::new((cores - 1).clamp(1, MOST_THREADS)).unwrap_or(NonZeroUsize::MIN)
+        NonZeroUsize::new((cores - 1).clamp(1, MOST_LOADERS)).unwrap_or(NonZeroUsize::MIN)
     }
 
     /// Starts `threads` workers, which load at most `room` tiles more than have been taken. `wake` is called from them

@@ -39,14 +39,14 @@ pub use self::{
     geometry::{TileGeometry, TransferError},
     line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
     map_extent::MapExtent,
-    package::PackageTiles,
+    package::{PackageTiles, may_have_roads},
     photo::PhotoImage,
     roads::{
         DashPlace, DeckLine, DeckPiece, DeckPieces, RoadList, RoadLook, RoadSegment, RoadSegments,
         RoadVolume, RoadVolumes, TileLines,
     },
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
-    store::TileStore,
+    store::{MOST_LOADERS, TileStore},
     tile_surface::TileSurface,
 };
 pub(crate) use self::{

@@ -7,7 +7,8 @@ use corniche_tileset::Manifest;
 use corniche_viewer::{
     CameraRequest, SightedGround,
     tiles::{
-        LoadTileError, MapExtent, MapPackage as _, TileCatalog, TileGeometry, TileSource, TileStore,
+        LoadTileError, MapExtent, MapPackage as _, TileCatalog, TileGeometry, TileSource,
+        TileStore, may_have_roads,
     },
 };
 use futures_util::future::join_all;
@@ -18,6 +19,7 @@ use crate::{decoders::Reading, loader::Tileset, problem::Problem};
 struct Noting<'a> {
     tiles: &'a Tileset,
     there: &'a BTreeMap<TileId, TileGeometry>,
+    reading: &'a Reading,
     missing: RefCell<Vec<TileId>>,
 }
 
@@ -52,7 +54,7 @@ impl TileSource for Noting<'_> {
     }
 
     fn may_have_roads(&self) -> bool {
-        self.tiles.package.may_have_roads()
+        may_have_roads(self.tiles.package.manifest(), self.reading.sections)
     }
 }
 
@@ -82,7 +84,8 @@ pub(crate) async fn first_tiles(
             let tile = tile.map_err(|error| tileset.problem_of(&error))?;
             there.insert(tile.id, tile);
         }
-        let noting = Noting { tiles: tileset, there: &there, missing: RefCell::default() };
+        let missing = RefCell::default();
+        let noting = Noting { tiles: tileset, there: &there, reading, missing };
         let found = looked(&noting, manifest, camera, place);
         wanted = noting.missing.into_inner();
         wanted.retain(|id| !there.contains_key(id));

@@ -203,7 +203,7 @@ fn goes_on_after_an_interruption() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     let meshing = lines.any(|line| line.unwrap().contains("\"coarse-tins\""));
     assert!(meshing, "the build ended before it meshed");
-    e2e::send_signal(&child, "INT");
+    assert!(e2e::send_signal(&child, "INT"));
     let rest: Vec<String> = lines.map(Result::unwrap).collect();
     let code = child.wait().unwrap().code();
     assert_eq!(code, Some(4), "{rest:?}");

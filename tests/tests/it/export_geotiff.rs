@@ -508,7 +508,7 @@ fn an_interrupted_export_leaves_nothing() {
         }
         // A little later in every round.
         thread::sleep(Duration::from_millis(10 * round));
-        e2e::send_signal(&child, "INT");
+        let _ = e2e::send_signal(&child, "INT");
         let ran = ended(&mut child);
         match ran.code {
             0 => {

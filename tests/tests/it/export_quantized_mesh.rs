@@ -116,6 +116,8 @@ fn real_regions_are_the_package_s_ground() {
 #[test]
 #[ignore = "slow: a square degree"]
 fn a_square_degree_is_read_about_once() {
+    /// What libraries and their data take at most.
+    const START_BYTES: u64 = 2_000_000;
     let Some(dem) = real_data("liechtenstein/N47E009.hgt") else { return };
     let folder = TempDir::new().unwrap();
     let package = built_of(&folder, &dem);
@@ -127,9 +129,8 @@ fn a_square_degree_is_read_about_once() {
     let (ran, costs) = e2e::ended_with_costs(&mut child);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let package_bytes = fs::metadata(&package).unwrap().len();
-    // Twice is for what every program reads at its start.
-    let once = package_bytes..3 * package_bytes;
-    assert!(once.contains(&costs.read_bytes), "{} of {package_bytes}", costs.read_bytes);
+    let about_once = package_bytes / 2..START_BYTES + package_bytes * 3 / 2;
+    assert!(about_once.contains(&costs.read_bytes), "{} of {package_bytes}", costs.read_bytes);
 }
 
 /// Makes a terrain wrong, or what it is compared with.

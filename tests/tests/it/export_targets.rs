@@ -136,7 +136,7 @@ fn an_interrupted_export_leaves_nothing() {
             thread::sleep(Duration::from_millis(1));
         }
         thread::sleep(Duration::from_millis(8 * round));
-        send_signal(&child, "INT");
+        let _ = send_signal(&child, "INT");
         let ran = ended(&mut child);
         match ran.code {
             0 => {
@@ -169,7 +169,7 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
         assert!(child.try_wait().unwrap().is_none(), "it was faster than the signal");
         thread::sleep(Duration::from_millis(1));
     }
-    send_signal(&child, "KILL");
+    assert!(send_signal(&child, "KILL"));
     assert_eq!(ended(&mut child).code, -1, "SIGKILL ended it");
     assert!(unfinished(folder.path()).is_some() && !target.exists(), "{:?}", names(folder.path()));
     let ran = export(&package, &target, &[]);

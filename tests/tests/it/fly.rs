@@ -273,7 +273,7 @@ fn a_flight_is_interrupted_while_it_is_being_checked_too() {
         }
     }
     let signalled = Instant::now();
-    send_signal(&child, "INT");
+    assert!(send_signal(&child, "INT"));
     assert_eq!(child.wait().unwrap().code(), Some(4));
     assert!(signalled.elapsed() < Duration::from_secs(10), "{:?}", signalled.elapsed());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the package is there");
@@ -318,7 +318,7 @@ fn an_interrupted_flight_leaves_nothing() {
         assert!(begun.elapsed() < Duration::from_mins(2), "no picture");
         std::thread::sleep(Duration::from_millis(20));
     }
-    send_signal(&child, "INT");
+    assert!(send_signal(&child, "INT"));
     let ran = Ran::from(child.wait_with_output().unwrap());
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(ran.err.contains("interrupted"), "{}", ran.err);

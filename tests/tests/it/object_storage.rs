@@ -15,8 +15,8 @@ use e2e::{ObjectStorage, Ran, STORE_HEADER_BYTES, corniche, ended, sample, send_
 use tempfile::TempDir;
 
 const STORE: &str = "s3://maps/alps/build";
-/// Longer than the time after which artifacts are made durable.
-const SYNC_INTERVAL: Duration = Duration::from_millis(2_500);
+/// After this time artifacts are made durable: a little more than `SYNC_INTERVAL` of the store.
+const LONGER_THAN_A_SYNC: Duration = Duration::from_millis(2_500);
 /// So that tiles take about a second.
 const FINE: [&str; 2] = ["--max-error", "0.02"];
 const COARSE: [&str; 2] = ["--max-error", "10"];
@@ -146,9 +146,16 @@ fn succeed(ran: Ran) -> Ran {
     ran
 }
 
-fn kill(mut child: Child) {
+/// What it said before.
+fn kill(mut child: Child) -> Ran {
     child.kill().unwrap();
-    let _ = ended(&mut child);
+    ended(&mut child)
+}
+
+/// Whether a part that was begun before was gone on with.
+fn went_on(ran: &Ran) -> bool {
+    let mut already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
+    already.any(|(_, rest)| !rest.starts_with('0'))
 }
 
 /// Inputs, store and package are all in object storage; the parts are made one by one and some at once, some twice.
@@ -273,11 +280,11 @@ fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
     let mut child = planned.start("tiles", None);
     planned.wait_for_artifacts(&mut child, "data");
     // All tiles may take less time than that after which they are made durable, so it passes while the process is suspended.
-    send_signal(&child, "STOP");
-    thread::sleep(SYNC_INTERVAL);
-    send_signal(&child, "CONT");
+    assert!(send_signal(&child, "STOP"));
+    thread::sleep(LONGER_THAN_A_SYNC);
+    assert!(send_signal(&child, "CONT"));
     planned.wait_for_artifacts(&mut child, "journal");
-    kill(child);
+    assert!(!went_on(&kill(child)), "nothing was there");
     assert!(planned.has_artifacts("journal"), "it was faster than the kill");
     assert_eq!(planned.count("tiles-0-0-0"), 0);
 
@@ -285,15 +292,14 @@ fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
     let mut child = planned.start("tiles", None);
     planned.storage.proxy().wait_until_held();
     assert!(matches!(child.try_wait(), Ok(None)));
-    kill(child);
+    let ran = kill(child);
+    assert!(went_on(&ran), "all is made again: {}", ran.err);
     planned.storage.proxy().open();
     assert_eq!(planned.count("tiles-0-0-0"), 0);
 
     let mut child = planned.start("tiles", None);
     let ran = succeed(ended(&mut child));
-    let already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
-    let already: Vec<&str> = already.map(|(_, rest)| rest).collect();
-    assert!(already.iter().any(|rest| !rest.starts_with('0')), "all is made again: {}", ran.err);
+    assert!(went_on(&ran), "all is made again: {}", ran.err);
     assert_eq!(planned.count("tiles-0-0-0"), 1);
     planned.check_merged();
 }

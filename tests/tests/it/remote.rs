@@ -267,7 +267,7 @@ fn waiting_for_a_server_can_be_interrupted() {
         .unwrap();
     assert!(told.recv_timeout(Duration::from_mins(1)).unwrap() > 0, "it asks");
     let begun = Instant::now();
-    send_signal(&child, "INT");
+    assert!(send_signal(&child, "INT"));
     let ran = ended(&mut child);
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(begun.elapsed() < Duration::from_secs(20), "it waits for the server");

@@ -123,7 +123,7 @@ impl Serving {
     /// Sends a signal and waits for the end.
     #[cfg(unix)]
     fn signal(mut self, name: &str) -> Ran {
-        send_signal(&self.child, name);
+        assert!(send_signal(&self.child, name));
         ended(&mut self.child)
     }
 }

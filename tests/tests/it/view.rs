@@ -138,7 +138,7 @@ impl Desk {
 
     /// Suspends the window's program, or resumes it.
     fn signal(&self, name: &str) {
-        send_signal(&self.window, name);
+        assert!(send_signal(&self.window, name));
     }
 
     fn point_at(&mut self, x: i32, y: i32) -> Line {

@@ -120,7 +120,7 @@ fn a_recording_is_saved_however_the_window_ends() {
         let opened = recording(&display, &package, folder.path(), &trace);
         let Some((mut window, id)) = opened else { return };
         match end {
-            "signal" => send_signal(&window, "TERM"),
+            "signal" => assert!(send_signal(&window, "TERM")),
             "windowclose" => {
                 display.xdotool(&format!("windowclose {id}"));
             }

@@ -213,7 +213,7 @@ impl<'a> Builder<'a> {
                 for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
                 {
                     let corner = corner as usize;
-                    let known = places[corner].filter(|(of_label, _)| *of_label == label);
+                    let known = places[corner].filter(|(last, _)| *last == label);
                     let index = known.map_or_else(
                         || {
                             let vertex = &self.placed.vertices[corner];

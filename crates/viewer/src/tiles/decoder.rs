@@ -146,11 +146,6 @@ impl TileDecoder {
         tile.map_err(|source| LoadTileError { id, source })
     }
 
-    /// Whether it reads roads, by any method.
-    pub(crate) fn reads_roads(&self) -> bool {
-        self.sections.contains(Sections::ATTRIBUTES)
-    }
-
     /// The bridges and tunnels of a tile; `None` if the package tells nothing of them, or no roads are read.
     pub(crate) fn spans(
         &self,
@@ -158,7 +153,7 @@ impl TileDecoder {
         id: TileId,
         manifest: &Manifest,
     ) -> Result<Option<Vec<SpanRun>>, DecodeError> {
-        if manifest.spans.is_none() || !self.reads_roads() {
+        if manifest.spans.is_none() || !self.sections.contains(Sections::ATTRIBUTES) {
             return Ok(None);
         }
         decode_spans(payload, id, &manifest.frame, manifest.vertical.quantum_m).map(Some)

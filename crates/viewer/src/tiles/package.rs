@@ -121,10 +121,10 @@ impl<S: ByteSource> PackageTiles<S> {
         self.decoder.tile(bytes.as_deref(), id, self.manifest())
     }
 
-    /// Whether it has roads, and they are read.
+    /// Whether some of its tiles may have roads as they are loaded here.
     #[must_use]
     pub fn may_have_roads(&self) -> bool {
-        self.decoder.reads_roads() && self.manifest().counts.roads_kept > 0
+        may_have_roads(self.manifest(), self.decoder.sections())
     }
 
     /// The bytes of a tile that exists, as far as these sections need them, for those who decode it elsewhere; `None` if only tiles beneath it are
@@ -146,6 +146,12 @@ impl<S: ByteSource> PackageTiles<S> {
     pub fn package(&self) -> &Package<S> {
         &self.package
     }
+}
+
+/// Whether tiles of a package may have roads where these sections are read.
+#[must_use]
+pub fn may_have_roads(manifest: &Manifest, read: Sections) -> bool {
+    read.contains(Sections::ATTRIBUTES) && manifest.counts.roads_kept > 0
 }
 
 impl<S: ByteSource> TileCatalog for PackageTiles<S> {

@@ -16,10 +16,14 @@ use crate::lod::{Drawn, GroundSummary, Node, Request, TileTree};
 /// More tiles than these are not loaded to find out where roads are.
 const FEW_TILES: usize = 64;
 
+/// So many threads load tiles at most: each takes memory of its own, and far away all ask one server.
+pub const MOST_LOADERS: usize = 4;
+
 /// A tile is shaded with its own slopes and with those of so many tiles above it.
 pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
 
-/// The tiles loaded so far. Of tiles that are only passed while tiles are chosen it holds errors and heights.
+/// The tiles loaded so far. Of tiles that are only passed while tiles are chosen it holds errors and heights. Only in a page, where there are no threads, is
+/// their source one that threads cannot share.
 pub struct TileStore<'a, S: ?Sized = dyn TileSource + Sync + 'a> {
     source: &'a S,
     tiles: BTreeMap<TileId, TileGeometry>,
@@ -30,7 +34,7 @@ pub struct TileStore<'a, S: ?Sized = dyn TileSource + Sync + 'a> {
 }
 
 /// What is to be loaded of a tile for a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 enum Wanted {
     Whole(TileId),
     Slopes(TileId),
@@ -176,7 +180,8 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
 }
 
 impl<S: TileSource + Sync + ?Sized> TileStore<'_, S> {
-    /// Loads tiles that are drawn, and the slopes of those tiles above them that they are shaded with, on all processors. `check` is asked about each.
+    /// Loads tiles that are drawn, and the slopes of those tiles above them that they are shaded with, by several threads. `check` is asked before the
+    /// first and after each.
     ///
     /// # Errors
     /// When one of them cannot be read, or `check` fails.
@@ -186,21 +191,23 @@ impl<S: TileSource + Sync + ?Sized> TileStore<'_, S> {
         check: impl Fn() -> Result<(), E>,
     ) -> Result<(), E> {
         let (source, wanted) = (self.source, self.missing(drawn));
+        let processors = thread::available_parallelism().map_or(1, NonZeroUsize::get);
         let load = |wanted| match wanted {
             Wanted::Whole(id) => source.load(id),
             Wanted::Slopes(id) => source.load_slopes(id),
         };
         check()?;
         in_order(
-            thread::available_parallelism().map_or(1, NonZeroUsize::get),
+            processors.min(MOST_LOADERS),
             wanted.len(),
             || Ok(()),
             |(), index| Ok(load(wanted[index])?),
             |index, tile| {
-                let (Wanted::Whole(id) | Wanted::Slopes(id)) = wanted[index];
-                let is_whole = wanted[index] == Wanted::Whole(id);
+                let (tiles, id) = match wanted[index] {
+                    Wanted::Whole(id) => (&mut self.tiles, id),
+                    Wanted::Slopes(id) => (&mut self.coarser, id),
+                };
                 self.summaries.insert(id, tile.summary);
-                let tiles = if is_whole { &mut self.tiles } else { &mut self.coarser };
                 tiles.insert(id, tile);
                 check()
             },

@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{
+    cell::Cell,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
 use corniche_geom::{GridFrame, NodeIndex};
 use corniche_tileset::Terrain;
@@ -144,4 +147,14 @@ fn a_picture_that_is_stopped_loads_no_more() {
     let stopped = TileStore::new(&source).load_drawn(&finest(), || Err(Stopped));
     assert!(stopped.is_err());
     assert_eq!(source.counts(), [0, 0]);
+    // Stopped after the second tile.
+    let asked = Cell::new(0);
+    let mut store = TileStore::new(&source);
+    let stopped = store.load_drawn(&finest(), || {
+        asked.set(asked.get() + 1);
+        if asked.get() < 3 { Ok(()) } else { Err(Stopped) }
+    });
+    assert!(stopped.is_err());
+    let loaded = finest().iter().filter(|drawn| store.get(drawn.id).is_some()).count();
+    assert_eq!([asked.get(), loaded], [3, 2]);
 }

@@ -19,8 +19,8 @@ use corniche_viewer::{
     lod::{Drawn, Quality},
     stream::{StreamBudget, Streamer, TileFacts},
     tiles::{
-        MapPackage as _, PackageSource, PackageTiles, TileCatalog, TileGeometry, TileSource as _,
-        TileStore,
+        MapPackage as _, PackageSource, PackageTiles, TileCatalog, TileDecoder, TileGeometry,
+        TileSource as _, TileStore, may_have_roads,
     },
 };
 
@@ -153,6 +153,22 @@ fn settled(
         }
     }
     panic!("something is still missing after 200 frames");
+}
+
+/// A first view is sought where roads are, if there are some and they are read.
+#[test]
+fn roads_that_are_not_read_are_not_sought() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = package(folder.path());
+    let reads = |method| PackageSource::open(&path).unwrap().for_method(method).may_have_roads();
+    assert!(PackageSource::open(&path).unwrap().may_have_roads());
+    assert_eq!(
+        [RoadMethod::Geometry, RoadMethod::ShadowVolumes, RoadMethod::None].map(reads),
+        [true, true, false]
+    );
+    let mut manifest = PackageSource::open(&path).unwrap().manifest().clone();
+    manifest.counts.roads_kept = 0;
+    assert!(!may_have_roads(&manifest, TileDecoder::default().sections()));
 }
 
 /// The streamer asks only which tiles there are, so it can be driven by tiles that nothing waits for.
