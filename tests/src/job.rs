@@ -199,6 +199,13 @@ impl Job {
     }
 }
 
+/// Whether a run with `--json-progress` found something done.
+#[must_use]
+pub fn went_on(ran: &Ran) -> bool {
+    let mut already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
+    already.any(|(_, rest)| !rest.starts_with('0'))
+}
+
 /// The names in a folder, ascending, with their paths.
 fn files_of(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();

@@ -27,7 +27,7 @@ pub use corniche_testing::{
 };
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
-pub use job::{Job, STORE_HEADER_BYTES, When};
+pub use job::{Job, STORE_HEADER_BYTES, When, went_on};
 pub use object_storage::{ObjectStorage, Proxy};
 use serde_json::Value;
 

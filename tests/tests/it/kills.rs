@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use corniche_testing::Random;
-use e2e::{Job, Ran, When};
+use e2e::{Job, When, went_on};
 
 /// So long that work becomes durable several times, every two seconds.
 const OPTIONS: [&str; 2] = ["--max-error", "0.25"];
@@ -70,12 +70,6 @@ impl Campaign {
         assert!(job.result() == self.whole, "seed {seed}: other bytes after {kills} kills");
         (kills, had_work)
     }
-}
-
-/// Whether a build found something done.
-fn went_on(ran: &Ran) -> bool {
-    let lines = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
-    lines.into_iter().any(|(_, rest)| !rest.starts_with('0'))
 }
 
 fn killed_builds(seeds: std::ops::Range<u64>, threads: &'static str) {

@@ -11,7 +11,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{ObjectStorage, Ran, STORE_HEADER_BYTES, corniche, ended, sample, send_signal, text};
+use e2e::{
+    ObjectStorage, Ran, STORE_HEADER_BYTES, corniche, ended, sample, send_signal, text, went_on,
+};
 use tempfile::TempDir;
 
 const STORE: &str = "s3://maps/alps/build";
@@ -150,12 +152,6 @@ fn succeed(ran: Ran) -> Ran {
 fn kill(mut child: Child) -> Ran {
     child.kill().unwrap();
     ended(&mut child)
-}
-
-/// Whether a part that was begun before was gone on with.
-fn went_on(ran: &Ran) -> bool {
-    let mut already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
-    already.any(|(_, rest)| !rest.starts_with('0'))
 }
 
 /// Inputs, store and package are all in object storage; the parts are made one by one and some at once, some twice.
