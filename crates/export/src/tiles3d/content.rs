@@ -213,9 +213,11 @@ impl<'a> Builder<'a> {
                 for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
                 {
                     let corner = corner as usize;
-                    let known = places[corner].filter(|(last, _)| *last == label);
-                    let index = known.map_or_else(
-                        || {
+                    let index = match places[corner] {
+                        Some((last, index)) if last == label => index,
+                        _ => {
+                            let index = part.positions.len() as u32;
+                            places[corner] = Some((label, index));
                             let vertex = &self.placed.vertices[corner];
                             part.positions.push(y_up(vertex.at_m));
                             part.normals.push(y_up(vertex.normal));
@@ -223,11 +225,9 @@ impl<'a> Builder<'a> {
                                 Some(road) => ways.push(road.way_id),
                                 None => self.add_look(vertex, &mut part),
                             }
-                            part.positions.len() as u32 - 1
-                        },
-                        |(_, index)| index,
-                    );
-                    places[corner] = Some((label, index));
+                            index
+                        }
+                    };
                     part.indices.push(index);
                 }
                 if let Some(road) = road {

@@ -16,7 +16,7 @@ use crate::lod::{Drawn, GroundSummary, Node, Request, TileTree};
 /// More tiles than these are not loaded to find out where roads are.
 const FEW_TILES: usize = 64;
 
-/// So many threads load tiles at most: each takes memory of its own, and far away all ask one server.
+/// So many threads load tiles at most: more would compete with one that draws, each takes memory of its own, and far away all ask one server.
 pub const MOST_LOADERS: usize = 4;
 
 /// A tile is shaded with its own slopes and with those of so many tiles above it.
