@@ -71,6 +71,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                 others: &[],
                 table,
                 place: &place,
+                ring_area_m2: &|_| 0.0,
                 seam: None,
                 node_ids: false,
                 pool,

@@ -19,8 +19,13 @@ count_tests() {
     if [ "$skipped" -gt 0 ]; then
         say ""
         say "skipped, or a part of them, and why:"
-        # The reason follows the first `: `; names of tests hold `::` alone.
-        say "$(sed 's/^[^:]*\(::[^:]*\)*: //' "$2" | sort | uniq -c | sort -rn)"
+        # The reason follows the first `: `; names of tests hold `::` alone. A test counts once for each of its reasons.
+        say "$(sort -u "$2" | sed 's/^[^:]*\(::[^:]*\)*: //' | sort | uniq -c | sort -rn | awk '{
+            number = $1
+            $1 = number == 1 ? "  1 test" : "  " number " tests"
+            if ($2 == "need") { if (number == 1) $2 = "needs" } else { $1 = $1 ":" }
+            print
+        }')"
     fi
     if [ "$3" = quick ]; then
         say ""

@@ -1,8 +1,8 @@
-//! Coastlines joined, and cut by a rectangle.
+//! Coastlines joined, and cut by a region.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticePoint, LatticeRegion};
 
 /// A way between land on its left and sea on its right.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,24 +102,26 @@ fn take_next(
     None
 }
 
-/// The parts of a chain inside a rectangle, its edge included, in order. Only a whole ring stays a ring.
-pub(crate) fn cut(chain: &Chain, bounds: &LatticeBounds) -> Vec<Chain> {
+/// The parts of a chain inside a region, its edge included, in order. Only a whole ring stays a ring.
+pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
     let mut parts: Vec<Chain> = Vec::new();
+    // Whether the last part goes on from the end of the last segment.
     let mut open = false;
-    for (pair, &way_id) in chain.points.array_windows::<2>().zip(&chain.ways) {
-        let &[from, to] = pair;
-        let Some([inner_from, inner_to]) = clip([from, to], bounds) else {
-            open = false;
-            continue;
-        };
-        match parts.last_mut() {
-            Some(part) if open && inner_from == from => {
-                part.points.push(inner_to);
-                part.ways.push(way_id);
+    for (&[from, to], &way_id) in chain.points.array_windows::<2>().zip(&chain.ways) {
+        let whole = || if region.contains(from) { vec![[0.0, 1.0]] } else { Vec::new() };
+        let inside = region.shares_inside([from, to]).unwrap_or_else(whole);
+        let is_open = inside.last().is_some_and(|&[_, end]| end >= 1.0);
+        for [begin, end] in inside {
+            let [inner_from, inner_to] = [begin, end].map(|share| at([from, to], share));
+            match parts.last_mut() {
+                Some(part) if open && begin <= 0.0 => {
+                    part.points.push(inner_to);
+                    part.ways.push(way_id);
+                }
+                _ => parts.push(Chain { points: vec![inner_from, inner_to], ways: vec![way_id] }),
             }
-            _ => parts.push(Chain { points: vec![inner_from, inner_to], ways: vec![way_id] }),
         }
-        open = inner_to == to;
+        open = is_open;
     }
     // A ring that begins inside goes on at its beginning.
     if chain.is_ring()
@@ -136,50 +138,10 @@ pub(crate) fn cut(chain: &Chain, bounds: &LatticeBounds) -> Vec<Chain> {
     parts
 }
 
-/// The part of a segment inside a rectangle, its edge included; ends on the edge are rounded along it.
-fn clip(
-    [mut from, mut to]: [LatticePoint; 2],
-    bounds: &LatticeBounds,
-) -> Option<[LatticePoint; 2]> {
-    let LatticeBounds { min, max } = *bounds;
-    // Each round brings one end to the line of an edge, and there are four.
-    for _ in 0..8 {
-        if bounds.contains(from) && bounds.contains(to) {
-            return Some([from, to]);
-        }
-        let is_beside = |beside: &dyn Fn(LatticePoint) -> bool| beside(from) && beside(to);
-        if is_beside(&|p| p.u < min.u)
-            || is_beside(&|p| p.u > max.u)
-            || is_beside(&|p| p.v < min.v)
-            || is_beside(&|p| p.v > max.v)
-        {
-            return None;
-        }
-        let outer = if bounds.contains(from) { to } else { from };
-        let moved = if outer.u < min.u || outer.u > max.u {
-            let u = outer.u.clamp(min.u, max.u);
-            LatticePoint::new(u, between([from.u, from.v], [to.u, to.v], u))
-        } else {
-            let v = outer.v.clamp(min.v, max.v);
-            LatticePoint::new(between([from.v, from.u], [to.v, to.u], v), v)
-        };
-        if outer == from {
-            from = moved;
-        } else {
-            to = moved;
-        }
-    }
-    None
-}
-
-/// The second coordinate of the point of a segment whose first one is `at`, rounded; the first ones of its ends differ.
-fn between(from: [i64; 2], to: [i64; 2], at: i64) -> i64 {
-    let [from, to] = [from, to].map(|point| point.map(i128::from));
-    let (along, whole) = (i128::from(at) - from[0], to[0] - from[0]);
-    let (along, whole) = if whole < 0 { (-along, -whole) } else { (along, whole) };
-    let aside = (2 * (to[1] - from[1]) * along + whole).div_euclid(2 * whole.max(1));
-    // Between two coordinates of 64 bits there are no others.
-    i64::try_from(from[1] + aside).unwrap_or_default()
+/// The point of a segment at a share of it, rounded.
+fn at([from, to]: [LatticePoint; 2], share: f64) -> LatticePoint {
+    let along = |from: i64, to: i64| from + ((to - from) as f64 * share).round() as i64;
+    LatticePoint::new(along(from.u, to.u), along(from.v, to.v))
 }
 
 #[cfg(test)]

@@ -6,8 +6,13 @@ fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
     Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }
 }
 
-fn bounds() -> LatticeBounds {
-    LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(100, 60) }
+fn region(corners: &[(i64, i64)]) -> LatticeRegion {
+    let corners = corners.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
+    LatticeRegion::new(&[vec![corners]]).unwrap()
+}
+
+fn bounds() -> LatticeRegion {
+    region(&[(0, 0), (100, 0), (100, 60), (0, 60)])
 }
 
 fn points(chain: &Chain) -> Vec<(i64, i64)> {
@@ -62,10 +67,11 @@ fn a_chain_is_cut_where_it_crosses_the_edge() {
     );
 }
 
+/// Cut at edges in any direction; the ends are rounded.
 #[test]
-fn ends_on_the_edge_are_rounded_to_it() {
-    assert_eq!(between([0, 0], [3, 1], 1), 0);
-    assert_eq!(between([0, 0], [3, 1], 2), 1);
-    assert_eq!(between([3, 1], [0, 0], 2), 1);
-    assert_eq!(between([-7, i64::MIN / 4], [9, i64::MAX / 4], 1), 0);
+fn a_chain_is_cut_by_a_region_that_is_no_rectangle() {
+    let diamond = region(&[(0, -50), (50, 0), (0, 50), (-50, 0)]);
+    let chain = join(vec![coast(1, &[(-90, 0), (-20, 0), (0, 81), (20, 0), (49, 1)])]).remove(0);
+    let parts: Vec<_> = cut(&chain, &diamond).iter().map(points).collect();
+    assert_eq!(parts, [vec![(-50, 0), (-20, 0), (-10, 40)], vec![(10, 40), (20, 0), (49, 1)]]);
 }

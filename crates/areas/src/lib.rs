@@ -5,7 +5,7 @@
 //!  ways ──► segments ──► planar graph ──► faces ──► polygons: an outer ring, holes
 //!           (doubled ones   (half-edges,    (inside by the
 //!            cancel out)     sorted by angle)  even-odd rule)
-//!  coastlines ──► chains, cut by a rectangle ──► closed along its edge ──► polygons of the sea
+//!  coastlines ──► chains, cut by a region ──► closed along its edge ──► polygons of the sea
 //!  Polygon ──► coarsen: for a level ──► divide: by lines between tiles ──► polygons
 //! ```
 //!
@@ -34,7 +34,7 @@ mod coastlines;
 mod faces;
 mod named_classes;
 mod planar_graph;
-mod rectangle_edge;
+mod region_edge;
 mod segments;
 mod stabbing;
 

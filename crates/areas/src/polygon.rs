@@ -1,6 +1,6 @@
 //! Rings and polygons on the lattice, with their areas in square steps.
 
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, cross};
 
 /// A closed line that neither touches nor crosses itself. The first point is not repeated at the end.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,6 +51,15 @@ impl Polygon {
     pub(crate) fn new(outer: Ring, mut holes: Vec<Ring>) -> Self {
         holes.sort_unstable();
         Self { outer, holes }
+    }
+
+    /// A rectangle; `None` where it has no area.
+    #[must_use]
+    pub fn rectangle(LatticeBounds { min, max }: LatticeBounds) -> Option<Self> {
+        let corners =
+            vec![min, LatticePoint::new(max.u, min.v), max, LatticePoint::new(min.u, max.v)];
+        let has_area = min.u < max.u && min.v < max.v;
+        has_area.then(|| Self::new(Ring::new(corners), Vec::new()))
     }
 
     /// What is around it.

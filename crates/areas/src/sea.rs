@@ -1,69 +1,95 @@
-//! The sea is made of coastlines: they are closed along the edge of a rectangle, and what is missing or wrong is reported.
+//! The sea is made of coastlines: they are closed along the edge of a region, and what is missing or wrong is reported.
 
-use corniche_geom::{LatticeBounds, LatticePoint, cross};
+use corniche_geom::{LatticePoint, cross};
 
 use crate::{
-    OutlineError, OutlineWay, Polygon, assemble,
+    OutlineError, OutlineWay, Polygon, Ring, assemble,
+    assemble::polygons_of,
     coastlines::{Chain, Coastline, cut, join},
-    rectangle_edge::{
-        along_edge, corner_places, corners, edge_distance, nearest_on_edge, perimeter,
-        point_on_edge, squared_distance,
-    },
+    intersection,
+    region_edge::{AlongEdge, RegionEdge, squared_distance},
+    segments::{segments_of, uncrossed_segments_of},
 };
 
+/// Points that are rounded to the lattice count as inside from so many steps on.
+const INSIDE: f64 = 1.0;
 /// More open ends than this are not looked at for one near by.
 const MOST_OPEN_ENDS: usize = 4096;
 
-/// The sea within a rectangle.
+/// The sea within a region.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sea {
     /// No two have inner points in common.
     pub polygons: Vec<Polygon>,
-    /// Ways that end where no other begins, inside the rectangle. A straight line goes on to the nearest beginning or to the edge.
+    /// Ways that end where no other begins, inside the region. A straight line goes on to the nearest beginning or to the edge.
     pub bridged: Vec<i64>,
     /// Ways that say that there is sea where others say that there is land. They were left out.
     pub left_out: Vec<i64>,
 }
 
-/// Makes the sea of coastlines: what lies on their right. Along the edge of `bounds` it is closed clockwise, from where a coast leaves the
-/// rectangle to where the next one enters it. A rectangle without any coast has no sea.
+/// Makes the sea of coastlines: what lies on their right. Along the edge of each part of `region` it is closed clockwise, from where a
+/// coast leaves the part to where the next one enters it. A part without any coast has no sea. Coasts are looked at in holes of the region,
+/// too, and the sea then ends there.
 ///
 /// The rule that sea lies on the right is OSM's (wiki, "Tag:natural=coastline"). As in Jochen Topf's *osmcoastline*, open ends are joined
 /// with the nearest open beginning.
 ///
 /// # Errors
 /// When coastlines cross between their points.
-pub fn close_sea(coastlines: Vec<Coastline>, bounds: &LatticeBounds) -> Result<Sea, OutlineError> {
+pub fn close_sea(coastlines: Vec<Coastline>, region: &[Polygon]) -> Result<Sea, OutlineError> {
     let mut sea = Sea::default();
-    let chains = bridge(join(coastlines), bounds, &mut sea.bridged);
+    let chains = join(coastlines);
+    for part in region {
+        let Some(edge) = RegionEdge::new(part.outer()) else { continue };
+        let mut polygons = close_in(chains.clone(), &edge, &mut sea)?;
+        if !part.holes().is_empty() {
+            polygons = intersection(&polygons, part.rings().map(Ring::points), 1)?;
+        }
+        sea.polygons.extend(polygons);
+    }
+    for ways in [&mut sea.bridged, &mut sea.left_out] {
+        ways.sort_unstable();
+        ways.dedup();
+    }
+    Ok(sea)
+}
+
+/// The sea within an edge.
+fn close_in(
+    chains: Vec<Chain>,
+    edge: &RegionEdge,
+    sea: &mut Sea,
+) -> Result<Vec<Polygon>, OutlineError> {
+    let chains = bridge(chains, edge, &mut sea.bridged);
     let mut rings = Vec::new();
     let mut parts = Vec::new();
     for chain in &chains {
-        for part in cut(chain, bounds) {
+        for part in cut(chain, edge.region()) {
             if part.is_ring() {
                 rings.push(part);
             } else {
-                parts.push(to_edge(part, bounds, &mut sea.bridged));
+                parts.push(to_edge(part, edge, &mut sea.bridged));
             }
         }
     }
-    sea.bridged.sort_unstable();
-    sea.bridged.dedup();
-    let crossings = agreeing(crossings_of(&parts, bounds), &mut parts, &mut sea.left_out);
-    sea.left_out.sort_unstable();
-    sea.left_out.dedup();
-    let mut lines: Vec<Vec<LatticePoint>> = edge_lines(&crossings, bounds);
+    let crossings = agreeing(crossings_of(&parts, edge), &mut parts, &mut sea.left_out);
+    let mut lines: Vec<Vec<LatticePoint>> =
+        parts.iter().chain(&rings).map(|part| part.points.clone()).collect();
+    let coasts = lines.len();
+    lines.extend(edge_lines(&crossings, edge));
     if crossings.is_empty() && is_surrounded_by_sea(&rings) {
-        lines.push(closed(corners(bounds)));
+        lines.push(closed(edge.corners().to_vec()));
     }
-    lines.extend(parts.into_iter().chain(rings).map(|part| part.points));
     let ways: Vec<OutlineWay<'_>> = lines.iter().map(|points| OutlineWay { points }).collect();
     match assemble(&ways) {
-        Ok(assembled) => sea.polygons = assembled.polygons,
-        Err(OutlineError::Nothing) => {}
-        Err(error) => return Err(error),
+        Ok(assembled) => Ok(assembled.polygons),
+        Err(OutlineError::Nothing) => Ok(Vec::new()),
+        // Where coasts meet a slanting edge they are rounded, so that a line along it may cross one of them by less than a step.
+        Err(OutlineError::Crossing { .. }) if segments_of(&ways[..coasts]).is_ok() => {
+            polygons_of(uncrossed_segments_of(&ways)?)
+        }
+        Err(error) => Err(error),
     }
-    Ok(sea)
 }
 
 fn closed(mut points: Vec<LatticePoint>) -> Vec<LatticePoint> {
@@ -71,25 +97,27 @@ fn closed(mut points: Vec<LatticePoint>) -> Vec<LatticePoint> {
     points
 }
 
-/// Joins ends that lie inside with the nearest beginnings inside, where these are nearer than the edge.
-fn bridge(chains: Vec<Chain>, bounds: &LatticeBounds, bridged: &mut Vec<i64>) -> Vec<Chain> {
-    let inside =
-        |point: Option<LatticePoint>| point.filter(|&point| edge_distance(point, bounds) > 0);
+/// Joins ends that lie inside with the nearest beginnings inside, where these are nearer than the way of both to the edge.
+fn bridge(chains: Vec<Chain>, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Vec<Chain> {
+    let inside = |point: Option<LatticePoint>| {
+        let distance = edge.distance(point?);
+        Some((point?, distance)).filter(|_| distance >= INSIDE)
+    };
     let open = |chain: &&Chain| !chain.is_ring();
     let ends = || chains.iter().enumerate().filter(|(_, chain)| open(chain));
-    let tails: Vec<(usize, LatticePoint)> =
+    let tails: Vec<(usize, (LatticePoint, f64))> =
         ends().filter_map(|(index, chain)| Some((index, inside(chain.last())?))).collect();
-    let heads: Vec<(usize, LatticePoint)> =
+    let heads: Vec<(usize, (LatticePoint, f64))> =
         ends().filter_map(|(index, chain)| Some((index, inside(chain.first())?))).collect();
     if tails.len().max(heads.len()) > MOST_OPEN_ENDS {
         return chains;
     }
     let mut pairs: Vec<(i128, usize, usize)> = Vec::new();
-    for &(tail, end) in &tails {
-        for &(head, beginning) in &heads {
-            let nearest_edge = edge_distance(end, bounds).min(edge_distance(beginning, bounds));
+    for &(tail, (end, end_to_edge)) in &tails {
+        for &(head, (beginning, beginning_to_edge)) in &heads {
             let away = squared_distance(end, beginning);
-            if away <= i128::from(nearest_edge).pow(2) {
+            // Of both ways to close the coast, the one that invents less of it.
+            if away as f64 <= (end_to_edge + beginning_to_edge).powi(2) {
                 pairs.push((away, tail, head));
             }
         }
@@ -132,14 +160,14 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
 }
 
 /// The same part with ends that lie inside brought to the edge by the shortest way.
-fn to_edge(mut part: Chain, bounds: &LatticeBounds, bridged: &mut Vec<i64>) -> Chain {
-    if let Some(last) = part.last().filter(|&last| edge_distance(last, bounds) > 0) {
+fn to_edge(mut part: Chain, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Chain {
+    if let Some(last) = part.last().filter(|&last| edge.distance(last) >= INSIDE) {
         bridged.extend(part.ways.last());
-        part.push(nearest_on_edge(last, bounds));
+        part.push(edge.nearest_on_edge(last));
     }
-    if let Some(first) = part.first().filter(|&first| edge_distance(first, bounds) > 0) {
+    if let Some(first) = part.first().filter(|&first| edge.distance(first) >= INSIDE) {
         bridged.extend(part.ways.first());
-        part.points.insert(0, nearest_on_edge(first, bounds));
+        part.points.insert(0, edge.nearest_on_edge(first));
         part.ways.extend_from_within(..1);
         part.ways.rotate_right(1);
     }
@@ -149,18 +177,18 @@ fn to_edge(mut part: Chain, bounds: &LatticeBounds, bridged: &mut Vec<i64>) -> C
 /// Where a coast meets the edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing {
-    /// How far along the edge, clockwise from the north-western corner.
-    along: i128,
+    /// How far along the edge, clockwise.
+    along: AlongEdge,
     leaves: bool,
     part: usize,
+    at: LatticePoint,
 }
 
-fn crossings_of(parts: &[Chain], bounds: &LatticeBounds) -> Vec<Crossing> {
+fn crossings_of(parts: &[Chain], edge: &RegionEdge) -> Vec<Crossing> {
     let mut crossings = Vec::new();
     for (part, chain) in parts.iter().enumerate() {
-        for (point, leaves) in [(chain.first(), false), (chain.last(), true)] {
-            let along = point.map(|point| along_edge(point, bounds)).unwrap_or_default();
-            crossings.push(Crossing { along, leaves, part });
+        for (at, leaves) in [(chain.first(), false), (chain.last(), true)] {
+            crossings.extend(at.map(|at| Crossing { along: edge.along(at), leaves, part, at }));
         }
     }
     crossings.sort_unstable();
@@ -228,22 +256,24 @@ fn length_steps(chain: &Chain) -> f64 {
 }
 
 /// The lines along the edge from where coasts leave to where the next one enters, clockwise.
-fn edge_lines(crossings: &[Crossing], bounds: &LatticeBounds) -> Vec<Vec<LatticePoint>> {
-    let (corners, places, around) = (corners(bounds), corner_places(bounds), perimeter(bounds));
+fn edge_lines(crossings: &[Crossing], edge: &RegionEdge) -> Vec<Vec<LatticePoint>> {
+    let corners = || edge.corners().iter().enumerate().map(|(index, &corner)| ((index, 0), corner));
     let mut lines = Vec::new();
     let count = crossings.len();
     for (index, crossing) in crossings.iter().enumerate().filter(|(_, crossing)| crossing.leaves) {
         let next = crossings[(index + 1) % count];
-        // The last one goes on to the first, past the beginning of the edge.
-        let last = if index + 1 == count { next.along + around } else { next.along };
-        let mut line = vec![point_on_edge(crossing.along, bounds)];
-        for round in [0, around] {
-            let between = places.iter().zip(&corners).filter(|(place, _)| {
-                (crossing.along < **place + round) && (**place + round < last)
-            });
-            line.extend(between.map(|(_, corner)| *corner));
+        let behind = |place: AlongEdge| place > crossing.along;
+        let before = |place: AlongEdge| place < next.along;
+        let mut line = vec![crossing.at];
+        if index + 1 == count {
+            // The last one goes on to the first, past the beginning of the edge.
+            line.extend(corners().filter(|&(place, _)| behind(place)).map(|(_, corner)| corner));
+            line.extend(corners().filter(|&(place, _)| before(place)).map(|(_, corner)| corner));
+        } else {
+            let between = corners().filter(|&(place, _)| behind(place) && before(place));
+            line.extend(between.map(|(_, corner)| corner));
         }
-        line.push(point_on_edge(next.along, bounds));
+        line.push(next.at);
         line.dedup();
         lines.push(line);
     }

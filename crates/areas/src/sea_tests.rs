@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use corniche_geom::LatticeBounds;
 use proptest::prelude::*;
 
 use super::*;
@@ -12,8 +13,24 @@ fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
 }
 
 /// 100 east, 60 north.
-fn bounds() -> LatticeBounds {
-    LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(100, 60) }
+fn bounds() -> Vec<Polygon> {
+    rectangle([0, 0, 100, 60])
+}
+
+fn rectangle([west, south, east, north]: [i64; 4]) -> Vec<Polygon> {
+    let [min, max] = [LatticePoint::new(west, south), LatticePoint::new(east, north)];
+    Polygon::rectangle(LatticeBounds { min, max }).into_iter().collect()
+}
+
+/// What rings have inside, by the even-odd rule.
+fn region(rings: &[&[(i64, i64)]]) -> Vec<Polygon> {
+    let closed = |ring: &&[(i64, i64)]| {
+        let points = ring.iter().chain(ring.first());
+        points.map(|&(u, v)| LatticePoint::new(u, v)).collect::<Vec<_>>()
+    };
+    let rings: Vec<Vec<LatticePoint>> = rings.iter().map(closed).collect();
+    let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
+    assemble(&ways).unwrap().polygons
 }
 
 fn area(sea: &Sea) -> i128 {
@@ -89,6 +106,50 @@ fn coasts_that_contradict_each_other_are_left_out_and_told() {
     assert!(crossing.is_err() || !crossing.unwrap().left_out.is_empty());
 }
 
+/// Coasts are closed along the edge of what is known, whatever its shape.
+#[test]
+fn regions_that_are_no_rectangles() {
+    let southward = || vec![coast(1, &[(30, 70), (30, -5)])];
+    // The northern west is not known.
+    let corner = region(&[&[(0, 0), (100, 0), (100, 60), (20, 60), (20, 40), (0, 40)]]);
+    let sea = close_sea(southward(), &corner).unwrap();
+    assert_eq!((area(&sea), sea.bridged.len()), (30 * 60 - 20 * 20, 0));
+    // Two places that are known.
+    let apart =
+        region(&[&[(0, 0), (50, 0), (50, 20), (0, 20)], &[(10, 40), (60, 40), (60, 60), (10, 60)]]);
+    assert_eq!(area(&close_sea(southward(), &apart).unwrap()), 30 * 20 + 20 * 20);
+    // A hole in what is known, on the coast.
+    let hole = region(&[
+        &[(0, 0), (100, 0), (100, 60), (0, 60)],
+        &[(20, 20), (40, 20), (40, 30), (20, 30)],
+    ]);
+    assert_eq!(area(&close_sea(southward(), &hole).unwrap()), 30 * 60 - 100);
+    // An island in a diamond, and one that reaches over its edge.
+    let diamond = || region(&[&[(0, -500), (500, 0), (0, 500), (-500, 0)]]);
+    let island = coast(1, &[(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]);
+    assert_eq!(area(&close_sea(vec![island], &diamond()).unwrap()), 500_000 - 100);
+    let cape = coast(2, &[(600, -100), (600, 100), (300, 100), (300, -100), (600, -100)]);
+    assert_eq!(area(&close_sea(vec![cape], &diamond()).unwrap()), 500_000 - 30_000);
+}
+
+/// A turned square over a coast: where its sides are cut, points are rounded, and no end counts as open.
+#[test]
+fn slanting_edges_are_met_between_steps() {
+    let turned = || region(&[&[(-970, -333), (333, -970), (970, 333), (-333, 970)]]);
+    let (mut found, mut count) = (0, 0);
+    for tilt in -40..40 {
+        let line = coast(1, &[(-2000, 13 * tilt - 7), (2000, -11 * tilt + 5)]);
+        let mut back = line.clone();
+        back.points.reverse();
+        let both = [line, back].map(|coast| close_sea(vec![coast], &turned()).unwrap());
+        assert!(both.iter().all(|sea| sea.bridged.is_empty() && sea.left_out.is_empty()));
+        found += both.iter().map(area).sum::<i128>();
+        count += 1;
+    }
+    let whole = 970 * 970 * 2 + 333 * 333 * 2;
+    assert!((found - count * whole).abs() < count * 3000, "{found} {}", count * whole);
+}
+
 /// Steps along a cell of the random sea.
 const CELL: i64 = 10;
 
@@ -130,8 +191,7 @@ proptest! {
         land in prop::collection::btree_set((0_i64..9, 0_i64..9), 1..60),
         seed in 1_u64..,
     ) {
-        let bounds = LatticeBounds { min: LatticePoint::new(13, 14), max: LatticePoint::new(77, 76) };
-        let sea = close_sea(coasts_around(&land, seed), &bounds).unwrap();
+        let sea = close_sea(coasts_around(&land, seed), &rectangle([13, 14, 77, 76])).unwrap();
         prop_assert!(sea.bridged.is_empty() && sea.left_out.is_empty());
         let mut expected = 0;
         let (mut has_land, mut has_coast) = (false, false);

@@ -17,6 +17,7 @@ mod reading;
 mod serve;
 mod shared;
 mod shell;
+mod terrain_values;
 mod values;
 mod view;
 mod voice;
@@ -34,7 +35,7 @@ pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
     Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
     ExportEdgesArgs, ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs,
-    ExportTiles3dArgs, Format, InPlanArgs, OnOrNone, TerrainCompress, VectorArgs,
+    ExportTiles3dArgs, Format, InPlanArgs, OnOrNone, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, Roads};
@@ -48,10 +49,11 @@ pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFile
 pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs, ThreadsArg};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
+pub(crate) use terrain_values::TerrainCompress;
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
 
-use crate::escaped::in_line;
+use crate::escaped::one_line;
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
@@ -74,11 +76,11 @@ impl Arguments {
     /// When it cannot be used; also when what is asked for is help or the version.
     pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
         let words: Vec<OsString> = words.collect();
-        Self::parsed(words.clone()).map_err(|error| as_shown(error, words))
+        Self::parsed(&words).map_err(|error| as_shown(error, words))
     }
 
-    fn parsed(words: Vec<OsString>) -> Result<Self, clap::Error> {
-        let arguments = Self::try_parse_from(words).map_err(with_tip)?;
+    fn parsed(words: &[OsString]) -> Result<Self, clap::Error> {
+        let arguments = Self::try_parse_from(words).map_err(|error| with_tip(error, words))?;
         // Conflicts of options before the command's name with those behind it are not the parser's.
         let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
         let given = [
@@ -99,26 +101,26 @@ impl Arguments {
     }
 }
 
-/// A refusal in whose message the words of the command line stand as [`in_line`] makes them, so that none passes for a line of ours: it is that of
+/// A refusal in whose message the words of the command line stand as [`one_line`] makes them, so that none passes for a line of ours: it is that of
 /// the words so written.
 fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
     let mut is_shown_as_it_is = true;
-    let written = words.into_iter().map(|word| match in_line(&word.to_string_lossy()) {
+    let written = words.into_iter().map(|word| match one_line(&word.to_string_lossy()) {
         Cow::Borrowed(_) => word,
         Cow::Owned(shown) => {
             is_shown_as_it_is = false;
             shown.into()
         }
     });
-    let written = written.collect();
+    let written: Vec<OsString> = written.collect();
     if is_shown_as_it_is {
         return error;
     }
-    Arguments::parsed(written).err().unwrap_or_else(|| {
+    Arguments::parsed(&written).err().unwrap_or_else(|| {
         // Written otherwise nothing is wrong with them.
         let said = error.to_string();
         let said = said.trim_start_matches("error: ").trim_end();
-        Arguments::command().error(error.kind(), in_line(said))
+        Arguments::command().error(error.kind(), one_line(said))
     })
 }
 
@@ -126,9 +128,11 @@ fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
 const NAMES_OF_PARTS: [&str; 3] = ["--bbox", "--clip", "--cutline"];
 
 /// A refusal, with what to write instead where that is known.
-fn with_tip(mut error: clap::Error) -> clap::Error {
+fn with_tip(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let tip = match error.kind() {
-        ErrorKind::UnknownArgument => tip_for_part(&error),
+        ErrorKind::UnknownArgument => {
+            tip_for_part(&error).or_else(|| tip_for_inputs(&error, words))
+        }
         ErrorKind::InvalidValue => tip_for_caps(&error),
         ErrorKind::ArgumentConflict => tip_for_site(&error),
         _ => None,
@@ -155,6 +159,99 @@ fn tip_for_part(error: &clap::Error) -> Option<String> {
         ["corniche build ", "corniche plan "].iter().any(|command| usage.contains(command));
     (has_parts && NAMES_OF_PARTS.contains(&name))
         .then(|| "use --bounds W,S,E,N or --polygon FILE".to_owned())
+}
+
+/// Options by the endings of the files that they take, in lower case; the first that a command has counts.
+const OPTIONS_BY_ENDING: [(&str, &[&str]); 7] = [
+    ("osm", &[".pbf", ".osm", ".osm.gz", ".osm.bz2", ".osm.xz", ".o5m"]),
+    ("line", &[".gpx", ".kml", ".geojson", ".shp"]),
+    ("polygon", &[".geojson", ".kml", ".shp", ".poly"]),
+    ("output", &[".pmtiles", ".gpkg", ".fgb", ".geojson", ".csv", ".png", ".glb", ".gltf", ".svg"]),
+    (
+        "dem",
+        &[
+            ".tif", ".tiff", ".hgt", ".asc", ".vrt", ".img", ".dem", ".dt0", ".dt1", ".dt2",
+            ".bil", ".flt", ".zip",
+        ],
+    ),
+    ("config", &[".toml"]),
+    ("photo", &[".jpg", ".jp2"]),
+];
+
+/// For files where a command takes none: its options, by what the files are by their names.
+fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
+    let first = text_of(error, ContextKind::InvalidArg);
+    if first.starts_with('-') {
+        return None;
+    }
+    let usage = text_of(error, ContextKind::Usage);
+    let names = usage.split_once("corniche ")?.1.split_whitespace();
+    let mut names = names.take_while(|name| name.starts_with(|c: char| c.is_ascii_alphanumeric()));
+    let program = Arguments::command();
+    let command = names.try_fold(&program, |command, name| command.find_subcommand(name))?;
+    let has = |option: &str| command.get_arguments().any(|arg| arg.get_long() == Some(option));
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let is_given = |option: &str| {
+        words.iter().any(|word| {
+            let name = word.split('=').next().unwrap_or_default();
+            (option, name) == ("output", "-o") || name.strip_prefix("--") == Some(option)
+        })
+    };
+    let option_of = |file: &str| -> Option<&str> {
+        let name = file.to_lowercase();
+        let is_for = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+        let mut fitting = OPTIONS_BY_ENDING.iter().filter(|(option, endings)| {
+            has(option) && is_for(endings) && !(*option == "output" && is_given(option))
+        });
+        // A raster is what this one writes, unless that is named.
+        let writes_rasters = command.get_name() == "geotiff" && !is_given("output");
+        let found = fitting.next().map(|(option, _)| *option);
+        let other = ["dem", "output"].into_iter().find(|option| has(option) && !is_given(option));
+        match found {
+            Some("dem") if writes_rasters => Some("output"),
+            _ => found.or(other),
+        }
+    };
+    let mut tip: Vec<(&str, Vec<String>)> = Vec::new();
+    for file in files_in(command, words.iter().skip_while(|word| **word != first)) {
+        let Some(option) = option_of(file) else { continue };
+        let file =
+            if file.contains(char::is_whitespace) { format!("'{file}'") } else { file.to_owned() };
+        match tip.iter_mut().find(|(own, _)| *own == option) {
+            Some((_, files)) => files.push(file),
+            None => tip.push((option, vec![file])),
+        }
+    }
+    let named = tip.iter().map(|(option, files)| format!("--{option} {}", files.join(" ")));
+    let named = named.collect::<Vec<_>>().join(" ");
+    (!named.is_empty()).then(|| format!("files are named by options: {named}"))
+}
+
+/// The words that are neither options of a command nor their values.
+fn files_in<'a>(
+    command: &clap::Command,
+    words: impl Iterator<Item = &'a std::borrow::Cow<'a, str>>,
+) -> Vec<&'a str> {
+    let mut values = 0;
+    let mut files = Vec::new();
+    for word in words {
+        if let Some(name) = word.strip_prefix('-').filter(|name| !name.is_empty()) {
+            let arg = command.get_arguments().find(|arg| match name.strip_prefix('-') {
+                Some(long) => arg.get_long() == Some(long),
+                None => arg.get_short().is_some_and(|short| name == short.to_string()),
+            });
+            let takes = |arg: &clap::Arg| {
+                let most = arg.get_num_args().map_or(1, |range| range.max_values());
+                if arg.get_action().takes_values() { most } else { 0 }
+            };
+            values = arg.map_or(0, takes);
+        } else if values > 0 {
+            values -= 1;
+        } else {
+            files.push(word.as_ref());
+        }
+    }
+    files
 }
 
 /// For a method without caps, which `fly` alone has, of a command that has the method itself.
@@ -240,6 +337,11 @@ impl Command {
             Self::Completions(_) => "completions",
             Self::Man(_) => "man",
         }
+    }
+
+    /// Whether it may ask for a graphics card.
+    pub(crate) fn draws(&self) -> bool {
+        matches!(self, Self::Render(_) | Self::Fly(_) | Self::View(_))
     }
 
     /// How progress is told, by a command that tells it.

@@ -151,7 +151,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         (path_of(package), files)
     };
     let files = |arguments: &Arguments| match &arguments.command {
-        Command::Profile(args) => measured(&args.from, &args.extract.osm),
+        Command::Profile(args) => measured(&args.recorded, &args.extract.osm),
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
@@ -332,6 +332,8 @@ fn what_compares_with_the_papers_is_in_the_long_help_alone() {
             assert!(!short.contains(&option) && compared.contains(&option), "{option}: {short}");
         }
         assert!(short.contains("--style ") && !short.contains("Comparing"), "{short}");
+        // A picture alone, never a map that is moved or flown over.
+        assert_eq!(compared.contains("--unmapped"), command.get_name() == "render");
     }
 }
 
@@ -355,6 +357,41 @@ fn options_of_other_programs_for_a_part_get_a_tip() {
     }
     for line in ["corniche info a.pmtiles --bbox 1", "corniche plan --dem a.tif --odd 1"] {
         assert!(!refusal(line).contains(tip), "{line}");
+    }
+}
+
+/// Who writes inputs without their options is told these options, by what the files are.
+#[test]
+fn files_without_options_get_the_options_that_name_them() {
+    for (line, tip) in [
+        ("build a.hgt b.osm.pbf", "--dem a.hgt --osm b.osm.pbf"),
+        ("build a.tif b.asc c.pmtiles", "--dem a.tif b.asc --output c.pmtiles"),
+        ("build A.TIF B.OSM.PBF", "--dem A.TIF --osm B.OSM.PBF"),
+        ("build a.hgt a.HGT b.osm.bz2", "--dem a.hgt a.HGT --osm b.osm.bz2"),
+        ("build b.osm --dem a.tif", "--osm b.osm"),
+        ("build a.tif -q b.osm.pbf", "--dem a.tif --osm b.osm.pbf"),
+        ("profile c.pmtiles road.GPX", "--line road.GPX"),
+        (
+            "export edges c.pmtiles a.tif b.osm.pbf e.gpkg",
+            "--dem a.tif --osm b.osm.pbf --output e.gpkg",
+        ),
+        ("export roads c.pmtiles a.tif", "--dem a.tif"),
+        ("export geotiff c.pmtiles a.tif", "--output a.tif"),
+        ("build b.osm.pbf -o c.pmtiles", "--osm b.osm.pbf"),
+        ("plan a.tif mine.toml", "--dem a.tif --config mine.toml"),
+        ("verify c.pmtiles a.tif b.osm.pbf", "--dem a.tif --osm b.osm.pbf"),
+        ("export roads c.pmtiles roads.gpkg", "--output roads.gpkg"),
+        ("render c.pmtiles a.png --size 640x480", "--output a.png"),
+    ] {
+        let line = format!("corniche {line}");
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        let said = refused.expect_err(&line).to_string();
+        let tip = format!("tip: files are named by options: {tip}\n");
+        assert!(said.contains(&tip) && said.matches("tip:").count() == 1, "{line}: {said}");
+    }
+    for line in ["corniche info a.pmtiles b.pmtiles", "corniche build --odd a.tif"] {
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        assert!(!refused.expect_err(line).to_string().contains("are named by"), "{line}");
     }
 }
 

@@ -37,8 +37,11 @@ impl DefectList {
         Ok(Self { target: target.to_path_buf(), file: Mutex::new(begun) })
     }
 
-    /// Adds a line.
+    /// Adds a line, unless nothing is wrong with the extract.
     pub(crate) fn add(&self, defect: &Defect) {
+        if matches!(defect, Defect::Osm(defect) if defect.is_beyond_extract()) {
+            return;
+        }
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(output) = &mut *file
             && let Err(error) = output.write_all(line(defect).as_bytes())
@@ -67,18 +70,23 @@ fn line(defect: &Defect) -> String {
             let detail = if *is_whole { "the whole road" } else { "a part of it" };
             let _ = writeln!(line, ",way,{way_id},,{length_m:.3},{detail}");
         }
-        Defect::Span { way_id, reason } => {
-            let detail = quoted(span_reason_words(reason));
+        Defect::Span { way_id, node_id, reason } => {
+            let words = span_reason_words(reason);
+            let detail = match node_id {
+                Some(node_id) => quoted(&format!("node {node_id}: {words}")),
+                None => quoted(words),
+            };
             let _ = writeln!(line, ",way,{way_id},,,{detail}");
         }
     }
     line
 }
 
-/// A text as CSV wants it (RFC 4180, section 2): quoted where it holds a comma, a quote or a line break. Spreadsheets do not take it for a formula.
+/// A text as CSV wants it (RFC 4180, section 2): quoted where it holds a comma or a quote. Line breaks and control characters are written as in JSON, and spreadsheets do not take it for a
+/// formula.
 pub(crate) fn quoted(text: &str) -> String {
     let text = &*cell_text(text);
-    if text.contains([',', '"', '\n', '\r']) {
+    if text.contains([',', '"']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()

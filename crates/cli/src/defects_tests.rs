@@ -6,7 +6,7 @@ use super::*;
 fn every_kind_of_defect_is_one_line_of_six_fields() {
     let unknown =
         corniche_pipeline::OsmDefect::UnknownHighway { way_id: -7, value: "a,\"b\"\nc".to_owned() };
-    assert_eq!(line(&unknown.into()), "unknown highway value,way,-7,,,\"a,\"\"b\"\"\nc\"\n");
+    assert_eq!(line(&unknown.into()), "unknown highway value,way,-7,,,\"a,\"\"b\"\"\\u000ac\"\n");
     let missing = corniche_pipeline::OsmDefect::MissingNodes { way_id: 5, points: 3 };
     assert_eq!(line(&missing.into()), "missing nodes,way,5,3,,\n");
     let lost = Defect::LostRoad {

@@ -9,6 +9,7 @@ pub(crate) mod growth;
 pub(crate) mod info;
 pub(crate) mod lines;
 pub(crate) mod plan;
+pub(crate) mod profile;
 pub(crate) mod progress;
 pub(crate) mod spans;
 pub(crate) mod tile;

@@ -6,18 +6,7 @@ use std::{
     io::{self, Write},
 };
 
-/// Whether a character does something other than to be seen. Line breaks and tabs are our own.
-fn is_unseen(character: char) -> bool {
-    match character {
-        '\n' | '\t' => false,
-        // Marks, embeddings, overrides and isolates of the bidirectional algorithm, and two kinds of line breaks.
-        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
-            true
-        }
-        // C0, DEL and C1.
-        other => other.is_control(),
-    }
-}
+use corniche_export::is_unseen;
 
 /// The text with what does something written out, as in `\u{1b}`.
 pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
@@ -26,12 +15,36 @@ pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A value of others that stands within a line of ours: line breaks are written out, too, so that it cannot pass for another line.
+/// Most characters that are shown of a value of others. Documents for programs have all of them.
+const MOST_SHOWN: usize = 2000;
+
+/// A value of others that stands within a line of ours, as [`one_line`] makes it, and no longer than is worth reading.
 pub(crate) fn in_line(value: &str) -> Cow<'_, str> {
+    line_within(value, MOST_SHOWN)
+}
+
+/// A text as one line of at most so many characters.
+pub(crate) fn line_within(text: &str, most: usize) -> Cow<'_, str> {
+    match shortened(text, most) {
+        Cow::Borrowed(text) => one_line(text),
+        Cow::Owned(text) => Cow::Owned(one_line(&text).into_owned()),
+    }
+}
+
+/// A text as one line: line breaks are written out, too, so that none of it can pass for another line.
+pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| is_unseen(character) || matches!(character, '\n' | '\t');
-    replaced(value, breaks, |out, character| {
+    replaced(text, breaks, |out, character| {
         let _ = write!(out, "{}", character.escape_unicode());
     })
+}
+
+/// A text of at most so many characters; what is left out is told by an ellipsis.
+pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+    if text.len() <= most || text.chars().nth(most).is_none() {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(text.chars().take(most.saturating_sub(1)).chain(['…']).collect())
 }
 
 /// A JSON document in which what does something is written as JSON writes it: programs read the same texts.

@@ -13,16 +13,15 @@ mod vector_files;
 use std::path::Path;
 
 use corniche_areas::{AreaClass, ClassedLayer};
-use corniche_export::{Coordinates, ExportError, FeatureRequest, export_areas, export_lines};
+use corniche_export::{ExportError, FeatureRequest, export_areas, export_lines};
 use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
-use self::vector_files::{fill, format};
+use self::vector_files::{coordinates, crs_text, fill, format};
 use crate::{
-    args::{
-        Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, FileArgs, InPlanArgs,
-    },
+    args::{Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
+    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -71,7 +70,7 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
         count(summary.polygons),
         count(summary.points),
     );
-    note_plan(plan, &what, package.manifest(), size);
+    note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -94,7 +93,7 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
         count(summary.lines),
         count(summary.points),
     );
-    note_plan(plan, &what, package.manifest(), size);
+    note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
@@ -111,10 +110,7 @@ fn plan_request<C: Copy>(
         level: args.at.level,
         classes: if classes.is_empty() { all } else { classes }.to_vec(),
         bounds: args.within.bounds,
-        coordinates: match args.crs {
-            ExportCrs::Package => Coordinates::Package,
-            ExportCrs::Wgs84 => Coordinates::Wgs84WithPackageHeights,
-        },
+        coordinates: coordinates(args.crs, false, format)?,
         memory_bytes: MEMORY_BYTES,
     };
     Ok((package, request))
@@ -132,16 +128,17 @@ fn write<T>(
 }
 
 /// Tells what was exported of a layer without heights.
-fn note_plan(args: &InPlanArgs, what: &str, manifest: &Manifest, size: u64) {
-    let coordinates = match args.crs {
-        ExportCrs::Package => &manifest.crs,
-        ExportCrs::Wgs84 => "EPSG:4326",
-    };
+fn note_plan<C>(
+    args: &InPlanArgs,
+    request: &FeatureRequest<C>,
+    what: &str,
+    (manifest, size): (&Manifest, u64),
+) {
     messages::summary(&format!(
-        "{}: {what}, {}\ncoordinates: {}\nto be shown with it: {}",
+        "{}: {what}, {}\ncoordinates: {}{}",
         in_line(&args.file.output.to_string_lossy()),
         bytes(size),
-        in_line(coordinates),
-        in_line(&manifest.attribution.join("; ")),
+        crs_text(request.coordinates, request.format, manifest),
+        credits_line(manifest),
     ));
 }

@@ -105,6 +105,7 @@ impl FolderOutput {
         let version = env!("CARGO_PKG_VERSION");
         let marker = format!("{what}{WRITTEN_BY}{version}. {IS_REPLACED}");
         fs::write(folder.join(MARKER), marker).map_err(not_written)?;
+        self.folder.open_to_others().map_err(not_written)?;
         let bytes = sync_tree(folder).map_err(not_written)?;
         // What an early end removes while it takes its place would be half a new export, or the claim by which the old one is known.
         interrupt::spare(&[claim.path(), folder]);

@@ -15,8 +15,15 @@ use corniche_tileset::FilePackage;
 
 use self::compare::Compared;
 use crate::{
-    args::GrowthArgs, documents::to_line, exit::ExitCode, failure::Failure, messages,
-    output::existing_of, packages, report_files::ReportFiles, table::Digits,
+    args::GrowthArgs,
+    documents::to_line,
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    output::{Output, existing_of},
+    packages,
+    report_files::ReportFiles,
+    table::Digits,
 };
 
 pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
@@ -69,16 +76,24 @@ fn write_files(
     // Both places are looked at before any work is done.
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
-    if let Some(output) = files.svg {
+    let make_svg = || {
         let svg = match compared {
             [one] => chart::growth(one.manifest),
             several => chart::comparison(several),
         };
-        let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        output.write_whole(svg.as_bytes())?;
-    }
-    if let (Some(path), Some(output), [package]) = (&args.per_way, files.list, packages) {
-        per_way::write(package, path, output)?;
+        svg.map_err(|error| Failure::new(ExitCode::Failed, error))
+    };
+    let mut told = None;
+    let fill_list = |output: Output| {
+        // There is a list of one package alone, which was looked at.
+        let path = args.per_way.as_deref().unwrap_or(Path::new(""));
+        let (list, note) = per_way::fill(&packages[0], path, output)?;
+        told = Some(note);
+        Ok(list)
+    };
+    files.write(fill_list, make_svg)?;
+    if let Some(note) = &told {
+        messages::note(note);
     }
     Ok(())
 }

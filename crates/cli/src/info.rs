@@ -1,14 +1,18 @@
 //! `corniche info`: what a package holds and what became of its inputs.
 
+mod words;
+
 use std::fmt::Write as _;
 
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_geom::Cell;
+use corniche_pipeline::LineLoss;
 use corniche_tileset::{
     AreasRecord, Counts, DatumOperationRecord, LinesRecord, Manifest, SampleErrorRecord,
     ScaleRecord, SpansRecord,
 };
 
+use self::words::words_of;
 use crate::{
     args::InfoArgs,
     documents::info::InfoDocument,
@@ -16,6 +20,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, packages,
+    presets::class_labels,
     table::{Digits, Table, bytes, length, wrapped},
 };
 
@@ -124,6 +129,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
+    text.push_str(&words_of(&text));
     narrow(&text)
 }
 
@@ -179,7 +185,7 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
 
 /// How many bridges and tunnels there are, and what they take on each level.
 fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
-    let SpansRecord { counts, levels } = spans;
+    let SpansRecord { counts, levels, .. } = spans;
     let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
     let kilometres = |length_um: u64| format!("{:.1} km", length_um as f64 / 1e9);
     let reasons = counts.reasons.iter();
@@ -200,6 +206,9 @@ fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
 /// Which objects of a layer were lost, by reason.
 fn lost_text(objects: &str, lost: &[(String, u64)], digits: Digits) -> String {
     let line = |(reason, number): &(String, u64)| {
+        if is_beyond_extract(reason) {
+            return format!("  {objects} beyond the extract: {}\n", digits.count(*number));
+        }
         format!("  lost {} {objects}: {}\n", digits.count(*number), in_line(reason))
     };
     lost.iter().map(line).collect()
@@ -394,7 +403,21 @@ fn odd_heights(manifest: &Manifest) -> Option<String> {
 pub(crate) fn defects(counts: &Counts) -> impl Iterator<Item = &(String, u64)> {
     const TOLD_ELSEWHERE: [&str; 3] =
         ["area", "unknown highway value", "tag taken for another value"];
-    counts.defects.iter().filter(|(name, _)| !TOLD_ELSEWHERE.contains(&name.as_str()))
+    counts
+        .defects
+        .iter()
+        .filter(|(name, _)| !TOLD_ELSEWHERE.contains(&name.as_str()) && !is_beyond_extract(name))
+}
+
+/// Whether a reason says that ways lie beyond the extract, where a line of it goes on.
+fn is_beyond_extract(reason: &str) -> bool {
+    ClassedLayer::ALL.into_iter().any(|layer| LineLoss::MissingWay.reason(layer) == reason)
+}
+
+/// How many ways of a layer of lines lie beyond the extract.
+pub(crate) fn beyond_extract(lines: &LinesRecord) -> u64 {
+    let lost = lines.counts.lost.iter().filter(|(reason, _)| is_beyond_extract(reason));
+    lost.map(|(_, number)| number).sum()
 }
 
 fn roads(manifest: &Manifest, digits: Digits) -> String {
@@ -404,11 +427,12 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
+    let labels = class_labels(manifest);
     table.row(["read".into(), digits.count(counts.roads_in), length(counts.roads_in_um)]);
     for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
         if roads > 0 {
             table.row([
-                format!("  FRC {class} ({})", in_line(&manifest.settings.frc_table)),
+                format!("  FRC {class} {}", in_line(&labels[class])),
                 digits.count(roads),
                 length(length_um),
             ]);
@@ -431,6 +455,7 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         ]);
     }
     text.push_str(&table.to_text());
+    let _ = writeln!(text, "FRC table: {}", in_line(&manifest.settings.frc_table));
     let _ = writeln!(text, "highway ways in the extract: {}", digits.count(counts.highways_in));
     if counts.blobs_passed_over > 0 {
         let _ = writeln!(

@@ -6,6 +6,7 @@ mod args;
 mod build;
 mod chart;
 mod completions;
+mod credits;
 mod defects;
 mod documents;
 mod drawing;
@@ -37,6 +38,7 @@ mod plan;
 mod presets;
 mod profile;
 mod progress;
+mod quiet_libraries;
 mod recorded;
 mod render;
 mod report_files;
@@ -68,6 +70,9 @@ fn main() -> process::ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return answer(&error).into(),
     };
+    if arguments.command.draws() {
+        quiet_libraries::begin();
+    }
     messages::begin(arguments.voice());
     let _span = tracing::info_span!("corniche", command = arguments.command.name()).entered();
     tracing::debug!(

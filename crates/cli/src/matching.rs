@@ -44,12 +44,10 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     };
     progress.finish();
     let report = report?;
-    if let Some(output) = files.list {
-        output.write_whole(csv::to_csv(&report).as_bytes())?;
-    }
-    if let Some(output) = files.svg {
-        output.write_whole(map::to_svg(&report, manifest).as_bytes())?;
-    }
+    files.write(
+        |output| output.fill(csv::to_csv(&report).as_bytes()),
+        || Ok(map::to_svg(&report, manifest)),
+    )?;
     let text = text::to_text(&report, manifest, Digits::of_answers());
     messages::answer(&text)?;
     Ok(ExitCode::Done)

@@ -27,7 +27,7 @@ use crate::{
         progress::{EndRecord, ProgressRecord},
         to_line, write_line_to,
     },
-    escaped::{for_people, in_json, in_line},
+    escaped::{for_people, in_json, line_within},
     exit::ExitCode,
     failure::Failure,
 };
@@ -95,17 +95,20 @@ pub(crate) fn note(text: &str) {
     summary(&line(text));
 }
 
-/// Something good to know, in lines of ours. What others wrote stands in them as [`in_line`] makes it.
+/// Something good to know, in lines of ours. What others wrote stands in them as [`in_line`](crate::escaped::in_line) makes it.
 pub(crate) fn summary(text: &str) {
     if !voice().json_progress {
         tracing::info!("{text}");
     }
 }
 
+/// Most characters of a message: all that our words need, and what others wrote as far as anyone reads it.
+const MOST_SAID: usize = 8000;
+
 /// A message of one line. Records for programs hold it as it is.
 fn line(text: &str) -> Cow<'_, str> {
     match voice().format {
-        LogFormat::Text => in_line(text),
+        LogFormat::Text => line_within(text, MOST_SAID),
         LogFormat::Json => Cow::Borrowed(text),
     }
 }

@@ -7,7 +7,7 @@ use std::{
 };
 
 pub(crate) use corniche_store::Existing;
-use corniche_store::{Claim, UnfinishedFile, file_target, is_same_file};
+use corniche_store::{Claim, LackOfRoom, UnfinishedFile, file_target, is_same_file};
 use image::RgbaImage;
 
 use crate::{exit::ExitCode, failure::Failure, interrupt, names};
@@ -40,11 +40,7 @@ pub(crate) fn unusable(named: &Path, reason: &dyn Display) -> Failure {
 
 /// Why something cannot be begun: a disk that is full is no fault of what was asked for.
 pub(crate) fn not_begun(named: &Path, error: &io::Error) -> Failure {
-    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
-    match error.kind() {
-        FileTooLarge | QuotaExceeded | StorageFull => failed(named, error),
-        _ => unusable(named, error),
-    }
+    if LackOfRoom::of(error).is_some() { failed(named, error) } else { unusable(named, error) }
 }
 
 /// Why something did not get to its place.
@@ -87,7 +83,8 @@ impl Output {
         self.end()
     }
 
-    fn end(self) -> Result<Complete, Failure> {
+    /// Ends the file, which takes its place later: together with others.
+    pub(crate) fn end(self) -> Result<Complete, Failure> {
         self.0.into_inner().map(Complete).map_err(|refused| {
             let (error, writer) = refused.into_parts();
             failed(writer.get_ref().target(), &error)
@@ -145,7 +142,11 @@ pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, Failure> {
 pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
     Failure::new(
         ExitCode::Failed,
-        anyhow::anyhow!("cannot write {} (disk full?): {error}", target.display()),
+        anyhow::anyhow!(
+            "cannot write {}{}: {error}",
+            target.display(),
+            LackOfRoom::advice(LackOfRoom::of(error))
+        ),
     )
 }
 

@@ -67,7 +67,13 @@ pub(crate) fn read_config(path: &Path) -> Result<Config, Failure> {
 }
 
 pub(crate) fn refuse(what: &str, error: &dyn std::error::Error) -> Failure {
-    Failure::unusable(format!("{what}: {error}"))
+    let said = error.to_string();
+    // TOML draws the place between its line and its reason; a message is one line.
+    let is_drawn = |line: &&str| {
+        line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit()).starts_with('|')
+    };
+    let said: Vec<&str> = said.lines().filter(|line| !is_drawn(line)).collect();
+    Failure::unusable(format!("{what}: {}", said.join(": ")))
 }
 
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {

@@ -1,89 +1,215 @@
 //! `corniche profile`: height and grade along roads and other lines.
 
-use std::{fmt::Write as _, path::Path};
+mod drawing;
+
+use std::{collections::BTreeSet, fmt::Write as _, path::Path};
 
 use corniche_export::{
-    Profile, ProfileGrades, ProfilePoint, RoadHeights, profile, profile_of_lines,
+    Course, ExportError, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
+    Route, RouteRequest, profile, profile_of_course, route,
 };
-use corniche_geom::LatticePoint;
+use corniche_overlay::Placed;
 use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
-use plotters::prelude::RGBColor;
 
 use crate::{
     args::ProfileArgs,
-    chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other},
+    documents::{profile::ProfileDocument, to_line},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::existing_of,
+    output::{Complete, Output, existing_of},
     overlays, packages,
     progress::Progress,
     recorded,
     report_files::ReportFiles,
+    table::up_to,
 };
-
-const HEIGHT: RGBColor = RGBColor(90, 60, 30);
-const GRADE: RGBColor = RGBColor(200, 30, 40);
 
 pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let usage = "corniche profile PACKAGE --way ID --dem FILE...";
-    let (place, [dem, osm]) = args.from.files(&args.extract.osm, usage)?;
+    let (place, [dem, osm]) = args.recorded.files(&args.extract.osm, usage)?;
+    args.refuse_idle_extract(&dem, &osm)?;
     let package = packages::open(&place)?;
     let list = ("--csv", args.csv.as_deref());
     let existing = existing_of(args.overwrite);
-    // Both places are looked at before any work is done.
+    // All places are looked at before any work is done.
     let inputs: Vec<&Path> = [place.name()]
         .into_iter()
         .chain(args.line.as_deref())
         .chain(dem.iter().chain(&osm).map(AsRef::as_ref))
         .collect();
-    let files = ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing)?;
+    let all_but_json = inputs.iter().copied().chain(args.csv.as_deref()).chain(args.svg.as_deref());
+    let json = args
+        .json
+        .as_deref()
+        .map(|path| Output::create(path, existing, &all_but_json.collect::<Vec<_>>()));
+    let json = json.transpose()?;
+    let all_but_lists: Vec<&Path> = inputs.iter().copied().chain(args.json.as_deref()).collect();
+    let files = ReportFiles::begin(args.svg.as_deref(), list, &all_but_lists, existing)?;
     let placed = |path| placed_lines(path, args.allow_ballpark, &package);
     let lines = args.line.as_deref().map(placed).transpose()?;
-    let recorded = recorded::elevation(&args.from, &dem, &package)?;
+    let recorded = recorded::elevation(&args.recorded, &dem, &package)?;
     let elevation = recorded.as_ref().map(recorded::for_export);
     let network = recorded::network(&args.extract, &osm, (&args.cpu, &package))?;
     let progress = Progress::new();
-    let found = if let Some(lines) = &lines {
-        profile_of_lines(&package, lines, args.at.level, elevation, &progress)
+    let heights = RoadHeights { elevation, network: network.as_ref() };
+    let level = args.at.level;
+    let mut road = None;
+    let found = if args.is_route() {
+        let request = RouteRequest {
+            level,
+            road: args.road.query(),
+            ends_deg: args.ends_deg(),
+            classes: args.filter.classes.classes(),
+        };
+        let found = route(&package, &request, network.as_ref(), &progress);
+        if let Err(ExportError::SeveralRoads { roads, .. }) = &found {
+            progress.finish();
+            for road in roads {
+                messages::warning(road);
+            }
+        }
+        let found = found?;
+        let course = &road.insert(found).course;
+        profile_of_course(&package, course, level, heights, &progress)
+    } else if let Some(course) = &lines {
+        profile_of_course(&package, course, level, heights, &progress)
     } else {
-        let heights = RoadHeights { elevation, network: network.as_ref() };
-        profile(&package, &args.way, args.at.level, heights, &progress)
+        profile(&package, &args.way, level, heights, &progress)
     };
     progress.finish();
     // A file that changed may be the cause of any other error.
     recorded.as_ref().map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let found = found?;
-    if let Some(output) = files.list {
-        output.write_whole(to_csv(&found).as_bytes())?;
-    }
-    if let Some(output) = files.svg {
+    let title = title(args, &found);
+    // All are complete before the first is put in its place.
+    let fill_json = |output: Output| {
+        let document = ProfileDocument::of(&found, &title, &package.manifest().attribution);
+        output.fill(format!("{}\n", to_line(&document)).as_bytes())
+    };
+    let json = json.map(fill_json).transpose()?;
+    let make_svg = || {
         let credits = package.manifest().attribution.join(", ");
-        let name = if let Some(path) = &args.line {
-            path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-        } else {
-            let ways: Vec<String> = args.way.iter().map(i64::to_string).collect();
-            format!("Way {}", ways.join(", "))
-        };
-        let svg = to_svg(&found, &name, &credits);
-        let svg = svg.map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        output.write_whole(svg.as_bytes())?;
-    }
-    messages::answer(&to_text(&found, network.is_some()))?;
+        drawing::to_svg(&found, &title, &facts(&found), &credits)
+            .map_err(|error| Failure::new(ExitCode::Failed, error))
+    };
+    files.write(|output| output.fill(to_csv(&found).as_bytes()), make_svg)?;
+    json.map_or(Ok(()), Complete::place)?;
+    let told = road.map(|road| to_text_of_route(&road, args.road.query().as_ref()));
+    messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?;
     Ok(ExitCode::Done)
 }
 
-/// The lines of a file on the package's lattice.
+/// What a profile is called: a road as it is signed, a file, or else the roads that it follows, each once.
+fn title(args: &ProfileArgs, found: &Profile) -> String {
+    if let Some(path) = &args.line {
+        return path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    }
+    let mut known = BTreeSet::new();
+    let names = found.legs.iter().map(drawing::name_of);
+    let names: Vec<String> =
+        names.filter(|name| !name.is_empty() && known.insert(name.clone())).collect();
+    if let Some(road) = args.road.query() {
+        let written =
+            |leg: &'_ ProfileLeg| road.written(&leg.reference, &leg.name).map(str::to_owned);
+        if let Some(text) = found.legs.iter().find_map(written) {
+            return match road.reference {
+                Some(_) => format!("Road {text}"),
+                None => text,
+            };
+        }
+    }
+    if names.is_empty() {
+        let ways: BTreeSet<i64> = found.legs.iter().map(|leg| leg.way_id).collect();
+        let ways: Vec<String> = ways.iter().map(i64::to_string).collect();
+        return format!("Way {}", ways.join(", "));
+    }
+    names.join(", ")
+}
+
+/// What the text tells, in short.
+fn facts(found: &Profile) -> String {
+    let (grades, over) = match &found.smooth {
+        Some((grades, _)) => (grades, "50 m"),
+        None => (&found.grades, "20 m"),
+    };
+    let steepest = grades
+        .steepest
+        .map(|grade| format!(" · steepest {:.1} % over {over}", 100.0 * grade))
+        .unwrap_or_default();
+    let heights = match &found.smooth {
+        Some(_) => "heights of the DEM".to_owned(),
+        None => format!("heights of the package, level {}", found.level),
+    };
+    let without = match found.on_structures_m {
+        without_m if without_m > 0.0 => ", without bridges and tunnels",
+        _ => "",
+    };
+    format!(
+        "{:.2} km · up {:.0} m, down {:.0} m{steepest}{without} · {heights}",
+        found.length_2d_m / 1e3,
+        grades.ascent_m,
+        grades.descent_m,
+    )
+}
+
+/// What was found of a road.
+fn to_text_of_route(road: &Route, query: Option<&RoadQuery>) -> String {
+    let mut text = String::new();
+    if let (Some(road_m), Some(query)) = (road.road_m, query) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "Road     {}: {:.1} km from end to end, of {:.1} km of its ways{}",
+            in_line(&query.text()),
+            road.length_m / 1e3,
+            road_m / 1e3,
+            if road.length_m < 0.999 * road_m {
+                "; other carriageways, arms of roundabouts and branches are left out"
+            } else {
+                ""
+            },
+        );
+    }
+    if road.others_m > 0.0 && query.is_some() {
+        let _ = writeln!(
+            text,
+            "         {:.0} m of it are other roads, which close its gaps",
+            road.others_m
+        );
+    }
+    if !road.same_name.is_empty() {
+        let _ = writeln!(text, "         not connected with it, and left out:");
+        for other in &road.same_name {
+            let _ = writeln!(text, "         {other}");
+        }
+    }
+    if road.off_m.iter().any(|off_m| *off_m >= 0.5) {
+        let [from_m, to_m] = road.off_m;
+        let _ = writeln!(
+            text,
+            "Ends     {from_m:.0} m and {to_m:.0} m beside the places that were given, on the nearest road"
+        );
+    }
+    text
+}
+
+/// The lines of a file on the package's lattice, with their numbers in the file, from 1.
 fn placed_lines(
     path: &Path,
     allow_ballpark: bool,
     package: &FilePackage,
-) -> Result<Vec<Vec<LatticePoint>>, Failure> {
+) -> Result<Course, Failure> {
     let found = corniche_overlay::read(path, allow_ballpark)?;
     overlays::tell(path, &found);
     let placed = corniche_overlay::place(&found.lines, package.manifest())?;
-    Ok(placed.into_iter().map(|line| line.points).collect())
+    let line = |placed: Placed| {
+        (placed.line as i64 + 1, found.lines[placed.line].name.clone(), placed.points)
+    };
+    let begins_deg = found.lines.first().and_then(|line| line.positions_deg.first()).copied();
+    Ok(Course { begins_deg, ..Course::of_lines(placed.into_iter().map(line)) })
 }
 
 fn points(found: &Profile) -> impl Iterator<Item = &ProfilePoint> {
@@ -102,20 +228,22 @@ fn to_text(found: &Profile, has_network: bool) -> String {
     let mut text = format!(
         "Length   {:.1} m in plan, {:.1} m on the ground{gaps}\n\
          Heights  {lowest:.1} to {highest:.1} m ({})\n",
-        found.length_2d_m, found.length_3d_m, found.heights,
+        found.length_2d_m,
+        found.length_3d_m,
+        in_line(&found.heights),
     );
     // Writing to a String cannot fail.
     let _ = if found.smooth.is_some() {
-        let within_m = found.height_tolerance_m;
+        let within_m = up_to(found.height_tolerance_m, 3);
         let is_deck = |point: &ProfilePoint| matches!(point.height_source, "deck" | "tunnel");
         let decks =
             if points(found).any(is_deck) { "; bridges and tunnels are estimates" } else { "" };
-        writeln!(text, "         those of the DEM, within {within_m:.3} m between vertices{decks}")
+        writeln!(text, "         those of the DEM, within {within_m} m between vertices{decks}")
     } else {
-        let within_m = found.height_tolerance_m;
+        let within_m = up_to(found.height_tolerance_m, 1);
         writeln!(
             text,
-            "         within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own"
+            "         within {within_m} m of the DEM at its samples; --dem FILE gives the DEM's own"
         )
     };
     let has_grades = found.on_structures_m < found.length_2d_m;
@@ -123,7 +251,8 @@ fn to_text(found: &Profile, has_network: bool) -> String {
         text.push_str(&grades_text(&smooth, "50 m"));
         let _ = writeln!(
             text,
-            "         of a smooth line, which is up to {most_off_m:.1} m from the ground; of the ground itself:"
+            "         of a smooth line, which is up to {} m from the ground; of the ground itself:",
+            up_to(most_off_m, 1)
         );
     }
     if has_grades {
@@ -182,38 +311,4 @@ fn to_csv(found: &Profile) -> String {
         }
     }
     text
-}
-
-fn to_svg(found: &Profile, name: &str, credits: &str) -> anyhow::Result<String> {
-    let kilometres = |point: &ProfilePoint| point.distance_m / 1e3;
-    let curves = |value: fn(&ProfilePoint) -> f64, color: RGBColor, name: &str| -> Vec<Curve> {
-        let curve = |(number, part): (usize, &corniche_export::ProfilePart)| Curve {
-            // One name in the list.
-            name: if number == 0 { name.to_owned() } else { String::new() },
-            color,
-            points: part.points.iter().map(|point| (kilometres(point), value(point))).collect(),
-            marks: Marks::None(0),
-        };
-        found.parts.iter().enumerate().map(curve).collect()
-    };
-    let heights = curves(|point| point.height_m, HEIGHT, "height");
-    let grades = curves(|point| 100.0 * point.grade, GRADE, "grade");
-    let range = |curves: &[Curve], least: f64| {
-        let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-        let (low, high) =
-            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-        let margin = ((high - low) * 0.08).max(least);
-        low - margin..high + margin
-    };
-    let end = points(found).last().map_or(1.0, kilometres).max(1e-3);
-    let axes = |caption: String, description, y, height_px| Axes {
-        size_px: (1000, height_px),
-        caption,
-        x: Axis { description: "distance, km", range: 0.0..end, ticks: Ticks::Round },
-        y: Axis { description, range: y, ticks: Ticks::Round },
-    };
-    let caption = format!("{name} on level {}", found.level);
-    let above = axes(caption, "height, m", range(&heights, 1.0), 380);
-    let below = axes(format!("Grade over 20 m. {credits}"), "grade, %", range(&grades, 1.0), 260);
-    draw_below_each_other(&[(&above, &heights), (&below, &grades)])
 }

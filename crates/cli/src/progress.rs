@@ -5,6 +5,7 @@
 //! told of, too. Each step looks as well.
 
 mod costs;
+mod efforts;
 mod pace;
 mod texts;
 mod usage;
@@ -23,6 +24,7 @@ use tracing::Span;
 
 use self::{
     costs::{Cost, Costs},
+    efforts::Efforts,
     pace::Pace,
     texts::Reading,
     usage::Usage,
@@ -92,6 +94,8 @@ struct State {
     begun: Instant,
     used_before: Usage,
     running: Option<Running>,
+    /// What the steps of the stage that begins next take.
+    efforts: Option<Efforts>,
     costs: Costs,
     is_over: bool,
 }
@@ -103,6 +107,8 @@ struct Running {
     done: u64,
     already: u64,
     pace: Pace,
+    /// Where steps take unequal time, how long they take, and the pace in that.
+    efforts: Option<(Efforts, Pace)>,
     begun: Instant,
     used_before: Usage,
     told: Instant,
@@ -142,6 +148,7 @@ impl Progress {
             begun: Instant::now(),
             used_before: Usage::now(),
             running: None,
+            efforts: None,
             costs: Costs::default(),
             is_over: false,
         };
@@ -152,6 +159,11 @@ impl Progress {
             .then(|| thread::Builder::new().name("progress".into()).spawn(move || ticking.tick()))
             .and_then(Result::ok);
         Self { shared, ticker, defects: None }
+    }
+
+    /// Steps of the stage that begins next take unequal time: so many after each other take so long each.
+    pub(crate) fn expect_efforts(&self, parts: Vec<(u64, f64)>) {
+        self.shared.state().efforts = Some(Efforts::new(parts));
     }
 
     /// The stage that runs is over.
@@ -241,7 +253,8 @@ impl State {
     /// A stage begins, and the one that ran is over.
     fn begin(&mut self, stage: Stage, total: Option<u64>, manner: Manner) {
         self.end_running(manner);
-        let running = Running::new(stage, total, manner);
+        let efforts = self.efforts.take().map(|efforts| (efforts, Pace::new()));
+        let running = Running { efforts, ..Running::new(stage, total, manner) };
         if manner == Manner::Json {
             write_line(&to_line(&running.read().record("begin")));
         }
@@ -294,6 +307,7 @@ impl Running {
             done: 0,
             already: 0,
             pace: Pace::new(),
+            efforts: None,
             begun: now,
             used_before: Usage::now(),
             told: now,
@@ -307,7 +321,11 @@ impl Running {
     fn reach(&mut self, done: u64) {
         self.done = done;
         tracing::trace!(parent: &self.span, done, "counted");
-        self.pace.record(self.begun.elapsed(), done - self.already);
+        let elapsed = self.begun.elapsed();
+        self.pace.record(elapsed, done - self.already);
+        if let Some((efforts, pace)) = &mut self.efforts {
+            pace.record(elapsed, efforts.until(done, self.total));
+        }
     }
 
     /// The same, of a total that is known only now or that changed.
@@ -319,6 +337,10 @@ impl Running {
     fn read(&self) -> Reading {
         let elapsed = self.begun.elapsed();
         let remaining = self.total.map(|total| total.saturating_sub(self.done));
+        let left = match &self.efforts {
+            Some((efforts, pace)) => pace.left(elapsed, efforts.after(self.done, self.total)),
+            None => remaining.and_then(|remaining| self.pace.left(elapsed, remaining)),
+        };
         Reading {
             stage: self.stage,
             done: self.done,
@@ -326,7 +348,7 @@ impl Running {
             total: self.total,
             elapsed,
             per_second: self.pace.per_second(elapsed),
-            left: remaining.and_then(|remaining| self.pace.left(elapsed, remaining)),
+            left,
             used: Usage::now().since(&self.used_before),
         }
     }

@@ -9,8 +9,8 @@ use corniche_pipeline::AreaLoss;
 use corniche_styles::{OwnWidths, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    LegendRequest, RenderError, RenderReport, RenderRequest, TitleFlaws, Wireframe, render,
-    tiles::MapPackage as _,
+    LegendRequest, Mapping, RenderError, RenderReport, RenderRequest, RoadMethod, TitleFlaws,
+    Wireframe, render, tiles::MapPackage as _,
 };
 
 use self::picture_files::PictureFiles;
@@ -31,6 +31,15 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         .collect();
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
+    let mapping = match (args.unmapped, roads.method()) {
+        (false, _) => Mapping::OnTriangles,
+        (true, RoadMethod::Geometry) => Mapping::Unmapped,
+        (true, _) => {
+            return Err(Failure::unusable(
+                "--unmapped has an effect only on roads as geometry; give it together with --roads geo",
+            ));
+        }
+    };
     let request = RenderRequest {
         name: args.from.package.to_string(),
         size_px: args.size,
@@ -50,7 +59,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let package =
         packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
     let overlays = overlays::load(&args.look, package.manifest())?;
-    let package = package.with_overlays(overlays);
+    let package = package.with_overlays(overlays).with_mapping(mapping);
     let scale = args.from_above.print_scale();
     let legend = args.legend.then(|| LegendRequest {
         road_labels: presets::class_labels(package.manifest()),

@@ -5,15 +5,15 @@ use std::path::Path;
 use crate::{
     failure::Failure,
     names::Format,
-    output::{Existing, Output},
+    output::{Complete, Existing, Output},
 };
 
 /// The files that are wanted, begun but not written.
 pub(crate) struct ReportFiles {
     /// The one of `--svg`.
-    pub(crate) svg: Option<Output>,
+    svg: Option<Output>,
     /// The one of the option for a list.
-    pub(crate) list: Option<Output>,
+    list: Option<Output>,
 }
 
 impl ReportFiles {
@@ -37,5 +37,17 @@ impl ReportFiles {
         // What is no file at all is told first.
         svg.map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
         Ok(files)
+    }
+
+    /// Writes both, and puts them in their places once both are complete: an end before that leaves neither. `make_svg` gives the picture; `fill_list`
+    /// writes the list.
+    pub(crate) fn write(
+        self,
+        fill_list: impl FnOnce(Output) -> Result<Complete, Failure>,
+        make_svg: impl FnOnce() -> Result<String, Failure>,
+    ) -> Result<(), Failure> {
+        let list = self.list.map(fill_list).transpose()?;
+        let svg = self.svg.map(|output| output.fill(make_svg()?.as_bytes())).transpose()?;
+        list.into_iter().chain(svg).try_for_each(Complete::place)
     }
 }

@@ -20,7 +20,7 @@ use corniche_presets::{
 use corniche_roads::ClassFilter;
 use corniche_tileset::ReliefLevels;
 
-use crate::{args::WorkArgs, exit::ExitCode, failure::Failure, presets};
+use crate::{args::WorkArgs, credits, exit::ExitCode, failure::Failure, presets};
 
 /// Default tolerance of the simplification of roads, in cells of the level: where a level is drawn its cells have a pixel or two, and a quarter
 /// of one is not seen.
@@ -93,6 +93,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         let credit = args.photos.attribution.filter(|credit| !attribution.contains(credit));
         attribution.extend(credit);
     }
+    credits::check(&attribution)?;
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;
     let lines = lines(&args.areas, &osm)?;
@@ -187,6 +188,7 @@ fn terrain_settings(
         open: OpenOptions {
             band: options.dem_band.or(base.open.band),
             dem_crs: options.dem_crs.or(base.open.dem_crs),
+            vertical_unit: options.vertical_unit.or(base.open.vertical_unit),
             nodata: if options.nodata.is_empty() { base.open.nodata } else { options.nodata },
             dem_vertical_crs: options.dem_vertical_crs.or(base.open.dem_vertical_crs),
             vertical_crs: options.vertical_crs.or(base.open.vertical_crs),

@@ -2,20 +2,22 @@
 
 use std::{fmt::Write as _, ops::Range};
 
-use crate::messages;
+use crate::{escaped::shortened, messages};
 
-/// Rows under headings, columns as wide as they need; the first column left, the others right.
+/// Rows under headings, columns as wide as they need, up to [`MAX_CELL`]; the first column left, the others right.
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
     pub(crate) fn new<const N: usize>(headings: [&str; N]) -> Self {
-        Self { rows: vec![headings.map(str::to_owned).to_vec()] }
+        let mut table = Self { rows: Vec::new() };
+        table.row(headings.map(str::to_owned));
+        table
     }
 
     pub(crate) fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(cells.into());
+        self.rows.push(cells.map(|cell| shortened(&cell, MAX_CELL).into_owned()).into());
     }
 
     /// Leaves out the columns that have nothing in them but their heading.
@@ -56,6 +58,8 @@ impl Table {
 
 /// Most characters in a line of a table.
 const MAX_WIDTH: usize = 100;
+/// Most characters in a cell. Texts of others may be of any length, and no width of a column comes from them.
+const MAX_CELL: usize = 80;
 /// What stands between two columns.
 const GAP: &str = "  ";
 
@@ -158,6 +162,13 @@ pub(crate) fn bytes(size: u64) -> String {
 pub(crate) fn length(micrometres: u64) -> String {
     let metres = micrometres as f64 / 1e6;
     if metres < 1000.0 { format!("{metres:.1} m") } else { format!("{:.1} km", metres / 1000.0) }
+}
+
+/// A number that nothing exceeds, with so many decimals: rounded up.
+pub(crate) fn up_to(value: f64, decimals: u8) -> String {
+    let steps = 10_f64.powi(decimals.into());
+    // A multiple that is not quite one is no reason for the next.
+    format!("{:.*}", decimals.into(), (value * steps - 1e-6).ceil().max(0.0) / steps)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `corniche tile`: one decoded tile, for other tools to check packages with.
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::{Bounds, LatticePoint, TileId};
+use corniche_geom::{Bounds, LatticePoint, NodeIndex, TileId};
 use corniche_tileset::{
     AreaRecord, FilePackage, LineRecord, Manifest, Sections, SpanPoint, SpanRun, Terrain,
     TilePayload, decode_areas, decode_lines, decode_spans,
@@ -89,6 +89,10 @@ fn payload_at(
     let levels = args.level.map_or(0..=finest, |level| level..=level);
     for level in levels.rev() {
         let Some((id, point)) = tile_at(manifest, level, [lon_deg, lat_deg]) else { continue };
+        // A tile at the edge reaches beyond the data.
+        if !lies_in_data(manifest, point) {
+            break;
+        }
         let Some(payload) = payload(package, id)? else { continue };
         if args.level.is_none() && level < finest {
             messages::note(&format!(
@@ -110,28 +114,23 @@ fn no_tile_at(args: &TileArgs, manifest: &Manifest, [lon_deg, lat_deg]: [f64; 2]
     let package = &args.from.package;
     let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
     let place = format!("longitude {lon_deg}, latitude {lat_deg}");
-    let [west, south, east, north] = manifest.wgs84_bounds.to_array();
-    let covers = |lon: f64, lat: f64| {
-        let is_between = |lon: f64| (west..=east).contains(&lon);
-        [lon, lon + 360.0, lon - 360.0].into_iter().any(is_between)
-            && (south..=north).contains(&lat)
-    };
-    if covers(lon_deg, lat_deg) {
+    if manifest.covers_deg([lon_deg, lat_deg]) {
         let coarser = if args.level.is_some() { "leave --level out, or " } else { "" };
         return format!(
             "{package} has no tile{on} at {place}: the data have a void there; {coarser}choose another place \
              (corniche info --json lists the tiles)"
         );
     }
-    let swapped = if covers(lat_deg, lon_deg) {
-        format!("; longitude comes first: --at {lat_deg},{lon_deg} lies inside")
-    } else {
-        String::new()
-    };
-    format!(
-        "{package} has no tile{on} at {place}; it covers longitudes {west:.5} to {east:.5} and latitudes {south:.5} to {north:.5}: choose \
-         a place there{swapped}"
-    )
+    let covered = manifest.covered_text([lon_deg, lat_deg]);
+    format!("{package} has no ground{on} at {place}; it covers {covered}; choose a place there")
+}
+
+/// Whether a place lies in the rectangle of the data, or at its edge, to a cell.
+fn lies_in_data(manifest: &Manifest, point: LatticePoint) -> bool {
+    let [low, high] = manifest.data_nodes();
+    let around =
+        [NodeIndex { i: low.i - 1, j: low.j - 1 }, NodeIndex { i: high.i + 1, j: high.j + 1 }];
+    manifest.frame.lattice_bounds(around).contains(point)
 }
 
 /// Whether a tile's triangles cover a place.

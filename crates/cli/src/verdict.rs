@@ -6,7 +6,7 @@ use corniche_tileset::{AreasRecord, Counts, LinesRecord, Manifest, VerticalRecor
 
 use crate::{
     escaped::in_line,
-    info::{rounded, sides},
+    info::{beyond_extract, rounded, sides},
     table::{Digits, bytes, length},
 };
 
@@ -151,9 +151,12 @@ fn layers(manifest: &Manifest, digits: Digits) -> Option<String> {
         let kept = kept(counts.kept.iter().map(|of| of.areas).sum(), counts.objects);
         format!("areas        {kept} objects kept")
     });
-    let boundaries = manifest.boundaries.as_ref().map(|LinesRecord { counts, .. }| {
+    let boundaries = manifest.boundaries.as_ref().map(|record @ LinesRecord { counts, .. }| {
         let kept = kept(counts.kept.iter().map(|of| of.ways).sum(), counts.ways);
-        format!("{kept} ways kept")
+        match beyond_extract(record) {
+            0 => format!("{kept} ways kept"),
+            beyond => format!("{kept} ways kept, {} beyond the extract", digits.count(beyond)),
+        }
     });
     match (areas, boundaries) {
         (Some(areas), Some(boundaries)) => Some(format!("{areas}; boundaries: {boundaries}")),

@@ -12,6 +12,7 @@ use corniche_tileset::{FilePackage, Manifest};
 use crate::{
     args::{VerifyArgs, VerifyFiles},
     documents::{to_line, verify::VerifyDocument},
+    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
@@ -184,7 +185,7 @@ fn check_text(check: &Check, is_broken: bool, digits: Digits) -> String {
     }
     text.push_str(")\n");
     for example in &check.examples {
-        let _ = writeln!(text, "            {example}");
+        let _ = writeln!(text, "            {}", in_line(example));
     }
     text
 }

@@ -1,6 +1,6 @@
 //! Errors of opening, planning and reading elevation files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use corniche_geom::{Cell, GridFrameError};
 
@@ -53,11 +53,19 @@ pub enum DemError {
         "{path:?} is not a raster that GDAL can read; it is damaged, cut off, or of an unknown format"
     )]
     Open { path: PathBuf, source: Box<LibraryError> },
+    #[error(
+        "{path:?} has {bytes} bytes; whole .hgt files have 2884802 (cells of 3″), 25934402 (1″) or 12970802 (2″ × 1″), so it is cut off or of another kind: fetch it again"
+    )]
+    HgtSize { path: PathBuf, bytes: u64 },
+    #[error(
+        "the name of {path:?} does not say where it lies, and nothing else of an .hgt file does: call it like N47E009.hgt, after its south-western corner"
+    )]
+    HgtName { path: PathBuf },
     #[error("cannot read {path:?}: {advice}")]
     NoDriver { path: PathBuf, advice: String },
     #[error("{path:?} is {found}; {advice}")]
     StandIn { path: PathBuf, found: &'static str, advice: &'static str },
-    #[error("{path:?} has no raster band; give a raster of heights")]
+    #[error("{path:?} has no raster band; {}", what_to_give(path))]
     NoBand { path: PathBuf },
     #[error("{path:?} holds several rasters; give the one with the heights by its name: {names}")]
     Subdatasets { path: PathBuf, names: String },
@@ -82,11 +90,15 @@ pub enum DemError {
     )]
     SampleType { path: PathBuf, band: usize },
     #[error(
-        "heights of {path:?} are in {unit:?}, which is not a known unit of length; convert them to metres, or correct the band's unit (m, ft, US survey foot)"
+        "heights of {path:?} are in {unit:?}, which is not a known unit of length; say what they are in with --vertical-unit metre (or foot, us-foot, decimetre, centimetre)"
     )]
     Unit { path: PathBuf, unit: String },
     #[error(
-        "heights of {path:?} are in {unit:?} by their band, but a unit is {vertical_unit_m} m by their vertical CRS {vertical:?}; correct one of the two (gdal_translate -a_srs, gdal_edit.py)"
+        "--vertical-unit {text:?} is not a known unit of length; write metre, foot, us-foot, decimetre or centimetre"
+    )]
+    UnitName { text: String },
+    #[error(
+        "heights of {path:?} are in {unit:?} by their band, but a unit is {vertical_unit_m} m by their vertical CRS {vertical:?}; say which is right with --vertical-unit, or correct the other (gdal_translate -a_srs, gdal_edit.py)"
     )]
     UnitsDisagree { path: PathBuf, unit: String, vertical: String, vertical_unit_m: f64 },
     #[error(
@@ -98,7 +110,8 @@ pub enum DemError {
     )]
     NoGeoTransform { path: PathBuf },
     #[error(
-        "the geotransform {coefficients:?} of {path:?} is not usable, it has no inverse; correct it with gdal_translate -a_ullr"
+        "the geotransform ({}) of {path:?} is not usable, it has no inverse; correct it with gdal_translate -a_ullr",
+        .coefficients.map(|value| value.to_string()).join(", ")
     )]
     GeoTransform { path: PathBuf, coefficients: [f64; 6] },
     #[error(
@@ -122,6 +135,10 @@ pub enum DemError {
         "--crs {text:?} is not a coordinate system that PROJ knows; write dem (the DEM's own), utm, EPSG:n or WKT"
     )]
     WorkingCrsText { text: String, source: Box<LibraryError> },
+    #[error(
+        "--crs {text} is not a projected CRS; give one that is, such as EPSG:2056, or degrees of WGS84: EPSG:4326, which ETRS89 is within a metre of, and EPSG:4979 with heights"
+    )]
+    NotProjected { text: String },
     #[error(
         "{option} {text:?} is neither projected nor geographic; write EPSG:n or WKT of one that is"
     )]
@@ -195,9 +212,17 @@ pub enum DemError {
     #[error("--bounds {bounds} has no position in {crs}; choose another --crs or other bounds")]
     BoundsOutsideCrs { bounds: String, crs: String },
     #[error(
-        "{asked} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give a part of these data (--bounds takes west,south,east,north in degrees)"
+        "{asked} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give a part of these data (--bounds takes west,south,east,north in degrees{swapped})"
     )]
-    BoundsBesideData { asked: String, west: f64, south: f64, east: f64, north: f64 },
+    BoundsBesideData {
+        asked: String,
+        west: f64,
+        south: f64,
+        east: f64,
+        north: f64,
+        /// The same bounds with longitude first, where these would have cells.
+        swapped: String,
+    },
     #[error(
         "{asked} lies at both ends of elevation data that go around the earth, and a package holds one region; make two packages, or give files that are continuous there"
     )]
@@ -298,4 +323,15 @@ pub enum DemError {
         rows: usize,
         source: Box<LibraryError>,
     },
+}
+
+/// What to give in place of a file without heights, which may be another input.
+fn what_to_give(path: &Path) -> &'static str {
+    let is_extract = path.to_string_lossy().to_ascii_lowercase().contains(".osm")
+        || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pbf"));
+    if is_extract {
+        "an extract of OpenStreetMap is given with --osm"
+    } else {
+        "give a raster of heights"
+    }
 }

@@ -1,5 +1,7 @@
 //! Lists of files in messages.
 
+use std::path::Path;
+
 /// Most files that a message names.
 const MAX_NAMES: usize = 3;
 
@@ -13,4 +15,10 @@ pub(crate) fn names_up_to(most: usize, names: impl ExactSizeIterator<Item = Stri
     let more = names.len().saturating_sub(most);
     let told = names.take(most).collect::<Vec<_>>().join(", ");
     if more == 0 { told } else { format!("{told} and {more} more") }
+}
+
+/// Files as a message names them: quoted, and no more than are read.
+#[must_use]
+pub fn listed_files<F: AsRef<Path>>(files: &[F]) -> String {
+    first_names(files.iter().map(|file| format!("\"{}\"", file.as_ref().display())))
 }

@@ -14,6 +14,7 @@ pub(crate) mod kernel;
 pub(crate) mod node_positions;
 
 pub(crate) mod file_nodes;
+pub(crate) mod footprint;
 
 pub(crate) mod datum_operations;
 pub(crate) mod description;

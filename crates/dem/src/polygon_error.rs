@@ -44,8 +44,9 @@ pub enum PolygonError {
     )]
     Invalid { path: PathBuf, feature: u64, reason: String },
     #[error(
-        "a ring of feature {feature} of the polygon {path:?} begins at {first:?} and ends at {last:?}; repeat its first position as \
-         its last one, which closes it (RFC 7946, section 3.1.6)"
+        "a ring of feature {feature} of the polygon {path:?} begins at {}, {} and ends at {}, {}; repeat its first position as \
+         its last one, which closes it (RFC 7946, section 3.1.6)",
+        .first[0], .first[1], .last[0], .last[1]
     )]
     OpenRing { path: PathBuf, feature: u64, first: [f64; 2], last: [f64; 2] },
     #[error(

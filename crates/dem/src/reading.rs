@@ -2,5 +2,6 @@
 
 pub(crate) mod fill_voids;
 pub(crate) mod reader;
+pub(crate) mod sample_surface;
 pub(crate) mod samples;
 pub(crate) mod window_parts;

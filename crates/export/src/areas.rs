@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_areas::{AreaClass, AreaObject, Polygon};
-use corniche_geom::{TileId, wgs84};
+use corniche_geom::TileId;
 use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
 use corniche_work::Observer;
 
@@ -81,7 +81,7 @@ pub fn export_areas(
         let package = package.path().to_path_buf();
         return Err(ExportError::NoLayer { package, layer: NAME });
     }
-    let source = FeatureSource::new(package, request, Areas::SHAPES)?;
+    let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary =
         AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
@@ -212,7 +212,5 @@ fn joined(pieces: &[PlanPiece]) -> (Vec<Polygon>, bool) {
 
 /// True area inside a ring of positions in working metres, square metres; negative for a clockwise one.
 fn area_of(ring: &[[f64; 2]], places: &Places<'_>) -> f64 {
-    let coordinates = &places.manifest().coordinates;
-    let at = |position: &[f64; 2]| coordinates.wgs84_from_working(*position);
-    wgs84::area_m2(&ring.iter().map(at).collect::<Vec<_>>())
+    places.manifest().coordinates.ring_area_m2(ring)
 }

@@ -8,11 +8,19 @@ use crate::{
     piece::Vertex,
 };
 
-/// What lies on a straight line within this is no vertex, metres.
-const STRAIGHT_M: f64 = 1e-4;
+/// A line that bends by no more than this is straight there, metres: only rounding. Hundreds of such bends in a row are no millimetre.
+const STRAIGHT_M: f64 = 1e-9;
+
+/// A line on its deck.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RaisedLine {
+    pub(crate) vertices: Vec<Vertex>,
+    /// Whether parts of it lie on the ground, which comes in the way of the deck there.
+    pub(crate) is_on_ground: bool,
+}
 
 /// Puts a line of a bridge or a tunnel, which was laid on the ground, where its deck is: `way` are the decks of its way. A bridge never lies below
-/// the ground, a tunnel never above. `None` where the deck is not known.
+/// the ground, a tunnel never above: where the ground is in the way, it has the bends of the ground. `None` where the deck is not known.
 ///
 /// ```text
 ///        ●────────────●       D = max(deck, ground): vertices are points of the way, where the deck bends, and where it meets the ground
@@ -24,7 +32,7 @@ pub(crate) fn on_deck(
     ground: &[Vertex],
     (way, most_steps): (&[SmoothLine], f64),
     distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
-) -> Option<Vec<Vertex>> {
+) -> Option<RaisedLine> {
     let kind = SpanKind::of(structure)?;
     let mut along_m = Vec::with_capacity(ground.len());
     let mut length_m = 0.0;
@@ -55,6 +63,7 @@ pub(crate) fn on_deck(
         places.push(OverGround { along_m: at_m, ground: *vertex, deck_m: deck.at(at_m)?.ground_m });
     }
     let mut all: Vec<(f64, Vertex)> = Vec::with_capacity(places.len());
+    let mut is_on_ground = false;
     let mut before: Option<(OverGround, f64)> = None;
     for place in places {
         let over_m = kind.away() * (place.deck_m - place.ground.z_m);
@@ -67,9 +76,10 @@ pub(crate) fn on_deck(
         }
         let z_m = if over_m > 0.0 { place.deck_m } else { place.ground.z_m };
         all.push((place.along_m, Vertex { z_m, ..place.ground }));
+        is_on_ground |= over_m < 0.0;
         before = Some((place, over_m));
     }
-    Some(without_straight(&all))
+    Some(RaisedLine { vertices: without_straight(&all), is_on_ground })
 }
 
 /// The ground and the deck at a distance along the way.
@@ -87,20 +97,21 @@ fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
     Vertex { at, z_m: mix(from.z_m, to.z_m), is_source: false }
 }
 
-/// The vertices without those that are no points of the way and lie on a straight line between the others.
+/// The vertices without those that are no points of the way, and at which the line is straight.
 fn without_straight(all: &[(f64, Vertex)]) -> Vec<Vertex> {
     let mut kept: Vec<(f64, Vertex)> = Vec::with_capacity(all.len());
-    for (index, &(at_m, vertex)) in all.iter().enumerate() {
+    for (index, &(at_m, at)) in all.iter().enumerate() {
+        // Measured from what is kept: of two at one place, or nearly, each is straight between the other and what is beyond it.
         let is_straight = match (kept.last(), all.get(index + 1)) {
-            (Some((from_m, from)), Some((to_m, to))) if !vertex.is_source => {
+            (Some((from_m, from)), Some((to_m, to))) => {
                 let share = (at_m - from_m) / (to_m - from_m);
                 let straight_m = from.z_m + share * (to.z_m - from.z_m);
-                (vertex.z_m - straight_m).abs() < STRAIGHT_M || at_m <= *from_m
+                (at.z_m - straight_m).abs() < STRAIGHT_M || at_m >= *to_m
             }
             _ => false,
         };
-        if !is_straight {
-            kept.push((at_m, vertex));
+        if at.is_source || !is_straight {
+            kept.push((at_m, at));
         }
     }
     kept.into_iter().map(|(_, vertex)| vertex).collect()

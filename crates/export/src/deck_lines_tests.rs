@@ -23,7 +23,7 @@ fn deck(places: &[(f64, f64)]) -> SmoothLine {
 }
 
 fn raised(structure: Structure, ground: &[Vertex], deck: SmoothLine) -> Vec<(f64, f64)> {
-    let found = on_deck(structure, ground, (&[deck], 10.0), &distance_m).unwrap();
+    let found = on_deck(structure, ground, (&[deck], 10.0), &distance_m).unwrap().vertices;
     found.iter().map(|vertex| (vertex.at[0] / 1000.0, vertex.z_m)).collect()
 }
 
@@ -119,4 +119,26 @@ fn what_lies_elsewhere_or_on_the_ground_is_no_deck() {
     assert_eq!(on_deck(Structure::Ground, &ground, (&way, 10.0), &distance_m), None);
     let beside = [Vertex { at: [0.0, 5000.0], ..ground[0] }, ground[1]];
     assert_eq!(on_deck(Structure::Bridge, &beside, (&way, 10.0), &distance_m), None);
+}
+
+/// On level ground a ridge begins at a vertex: the line meets the ground there twice, and the foot of the ridge stays.
+#[test]
+fn a_ridge_in_the_way_keeps_its_foot_and_its_top() {
+    let along = [
+        (0.0, 100.0),
+        (10.0, 100.0),
+        (20.0, 110.0),
+        (30.0, 120.0),
+        (40.0, 110.0),
+        (50.0, 100.0),
+        (60.0, 100.0),
+    ];
+    let last = along.len() - 1;
+    let ground: Vec<Vertex> = along
+        .iter()
+        .enumerate()
+        .map(|(index, &(east, z_m))| vertex(east, z_m, index == 0 || index == last))
+        .collect();
+    let found = raised(Structure::Bridge, &ground, deck(&[(0.0, 100.0), (60.0, 100.0)]));
+    assert_eq!(found, [(0.0, 100.0), (10.0, 100.0), (30.0, 120.0), (50.0, 100.0), (60.0, 100.0)]);
 }

@@ -4,4 +4,4 @@ mod dem_nodes;
 mod lay;
 
 pub(crate) use dem_nodes::DemNodes;
-pub(crate) use lay::{DemLine, lay, off_dem_m};
+pub(crate) use lay::{DemLine, lay, off_dem_m, places_between};

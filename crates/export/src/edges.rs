@@ -1,6 +1,10 @@
 //! The stretches of an extract's roads from junction to junction, as a router reads them.
 
-use std::{collections::BTreeMap, fmt::Write as _, path::Path};
+use std::{
+    collections::{BTreeMap, HashMap},
+    fmt::Write as _,
+    path::Path,
+};
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
@@ -10,7 +14,7 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
-    deck_lines::on_deck,
+    deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
     elevation::Elevation,
     error::ExportError,
@@ -19,8 +23,10 @@ use crate::{
     features::{About, FeatureSource},
     grades::{GRADE_LENGTH_M, MeasuredChains, Smoothing},
     height_bound::dem_heights,
-    measures::steepest,
+    join::Line,
+    measures::{Profiled, steepest},
     piece::Vertex,
+    road_query::{RoadQuery, named_ways},
     span_facts::SpanFacts,
     vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields},
 };
@@ -109,14 +115,18 @@ pub fn edge_fields() -> Vec<Field> {
 /// When the request cannot be met, an elevation file cannot be read, or something cannot be written.
 pub fn export_edges(
     package: &FilePackage,
-    request: &FeatureRequest<FunctionalRoadClass>,
+    (request, road): (&FeatureRequest<FunctionalRoadClass>, Option<&RoadQuery>),
     (elevation, network): (Elevation<'_>, &Network),
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<EdgesSummary, ExportError> {
-    let source = FeatureSource::new(package, request, ShapeKind::Lines)?;
+    let source = FeatureSource::new(package, request)?;
+    let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
+    let named = named.transpose()?;
     let frame = &package.manifest().frame;
-    let mut nodes = DemNodes::new(elevation, frame);
+    // Edges that reach the package's data are whole.
+    let plan = elevation.plan.of_whole_data();
+    let mut nodes = DemNodes::new(Elevation { plan: &plan, ..elevation }, frame);
     let smoothing = Smoothing::of_frame(frame);
     let places = &source.places;
     let measured = MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)?;
@@ -134,23 +144,29 @@ pub fn export_edges(
         length_m: 0.0,
         heights: places.heights().to_owned(),
         height_tolerance_m: 0.0,
-        spans: SpanFacts::of(measured.decks()),
+        spans: measured.span_facts().clone(),
     };
     let edges = Chains::of(network, Breaks::Junctions);
-    observer.begin(Stage::ExportFeatures, Some(edges.len() as u64));
-    // By both of their nodes, whichever way they were found by.
     let mut numbers: Vec<ChainNumber> = edges.numbers().collect();
-    numbers.sort_by_key(|&number| edges.get(number).ends);
+    if let Some(named) = &named {
+        let is_meant = |link: &Link| named.meant.contains(&network.way_of(*link).way_id);
+        numbers.retain(|&number| edges.get(number).links.iter().any(is_meant));
+    }
+    let all = numbers.len() as u64;
+    observer.begin(Stage::ExportFeatures, Some(all));
     let mut told = 0;
     for (done, number) in (1..).zip(numbers) {
-        if done % TOLD_EDGES == 0 || done == edges.len() as u64 {
+        if done % TOLD_EDGES == 0 || done == all {
             observer.check()?;
             observer.advance(Stage::ExportFeatures, done - told);
             told = done;
         }
         let chain = edges.get(number);
-        let laid = laid(&measured, &mut nodes, &chain)?;
-        if laid.is_empty() {
+        if !measured.reaches(&chain) {
+            continue;
+        }
+        let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
+        if lines.is_empty() {
             summary.without_ground += 1;
             continue;
         }
@@ -158,7 +174,7 @@ pub fn export_edges(
             ends: chain.ends.map(|node| network.node_id(node)),
             ways: ways_text(network, &chain),
             shares: Shares::of(&measured, &chain),
-            profile: measured.profile(chain.links),
+            profile: measured.profile(chain.links, &decks),
             nodes_m: node_heights(&measured, &chain),
         };
         summary.edges += 1;
@@ -166,8 +182,9 @@ pub fn export_edges(
         summary.without_ascent += u64::from(edge.profile.is_none());
         let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
         let mut carried = Vec::new();
-        for line in laid {
-            summary.height_tolerance_m = summary.height_tolerance_m.max(line.tolerance_m);
+        for line in lines {
+            summary.height_tolerance_m =
+                summary.height_tolerance_m.max(line.tolerance_m.unwrap_or(0.0));
             carried.extend(places.carry(object, &line.vertices)?);
         }
         file.push(Record { values: values(&edge), shape: Shape::Lines(carried) })?;
@@ -179,14 +196,22 @@ pub fn export_edges(
 }
 
 /// An edge on the elevation files, and on the decks of its bridges and tunnels.
+struct LaidEdge {
+    lines: Vec<DemLine>,
+    /// Distances and heights along the lines of its bridges and tunnels, by the numbers of their links; lines with a gap are not there.
+    decks: HashMap<usize, Vec<[f64; 2]>>,
+}
+
 fn laid(
     measured: &MeasuredChains<'_>,
     nodes: &mut DemNodes<'_>,
     chain: &Chain<'_>,
-) -> Result<Vec<DemLine>, ExportError> {
+) -> Result<LaidEdge, ExportError> {
     let network = measured.network();
     let distance_m = |from: [f64; 2], to: [f64; 2]| measured.places().distance_m(from, to);
     let mut lines: Vec<DemLine> = Vec::new();
+    let mut decks = HashMap::new();
+    let mut first_link = 0;
     for links in chain.links.chunk_by(|one, other| {
         let [one, other] = [one, other].map(|link| network.way_of(*link).structure);
         one == Structure::Ground && other == Structure::Ground
@@ -213,10 +238,17 @@ fn laid(
                 };
                 turn(&mut own.vertices);
                 let raised = on_deck(structure, &own.vertices, (&deck, NEAR_STEPS), &distance_m);
-                if let Some(vertices) = raised {
-                    (own.vertices, own.tolerance_m) = (vertices, 0.0);
+                let is_raised = raised.is_some();
+                if let Some(RaisedLine { vertices, is_on_ground }) = raised {
+                    own.vertices = vertices;
+                    // A deck lies on the ground where that is in its way.
+                    own.tolerance_m = own.tolerance_m.filter(|_| is_on_ground);
                 }
                 turn(&mut own.vertices);
+                if is_raised && own.has_end == [true; 2] {
+                    let line = Line { vertices: own.vertices.clone(), joins: Vec::new() };
+                    decks.insert(first_link, Profiled::of(&line, &distance_m).profile);
+                }
             }
             let ends = lines.last().and_then(|line| line.vertices.last());
             let goes_on = own.has_end[0]
@@ -224,14 +256,18 @@ fn laid(
             match lines.last_mut().filter(|line| goes_on && line.has_end[1]) {
                 Some(before) => {
                     before.vertices.extend(own.vertices.into_iter().skip(1));
-                    before.tolerance_m = before.tolerance_m.max(own.tolerance_m);
+                    before.tolerance_m = [before.tolerance_m, own.tolerance_m]
+                        .into_iter()
+                        .flatten()
+                        .reduce(f64::max);
                     before.has_end[1] = own.has_end[1];
                 }
                 None => lines.push(own),
             }
         }
+        first_link += links.len();
     }
-    Ok(lines)
+    Ok(LaidEdge { lines, decks })
 }
 
 /// The heights of both nodes that other edges share; none on a bridge or in a tunnel, whose own height counts there.

@@ -10,6 +10,9 @@ use crate::{
     vector::{Field, FieldKind, Value, fields},
 };
 
+/// A grade is over its limit by more than this, percent points: what is left of rounding makes none too steep.
+const ROUNDING_PCT: f64 = 1e-6;
+
 /// What is known of a feature's road.
 pub(crate) struct Road<'a> {
     pub(crate) way_id: i64,
@@ -29,6 +32,8 @@ pub(crate) struct Road<'a> {
 pub(crate) struct Smooth {
     /// `None` for bridges and tunnels whose deck is not known.
     pub(crate) grades: Option<SmoothGrades>,
+    /// How far the smooth line is from the line at most, metres.
+    pub(crate) most_off_m: f64,
     /// Whether the smooth line is that of a chain from junction to junction, not of the way alone.
     pub(crate) is_of_chain: bool,
     /// The grade that roads of its kind are built with at most, percent.
@@ -108,8 +113,8 @@ fields! { DEM_FIELDS, dem_values, road: &Road<'_>:
         on_ground(road, road.measures.descent_m);
     "ground_steepest_pct", Real, "%", "steepest grade of the line itself over 20 m or more; null where no part is as long, and as above",
         percent_on_ground(road, road.measures.steepest);
-    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line; null for bridges and tunnels",
-        if road.heights.on_deck { Value::Null } else { smooth(road, |grades| Some(grades.most_off_m)) };
+    "smoothing_max_m", Real, "m", "largest distance of the smooth line from the line, over its whole length; null for bridges and tunnels",
+        smoothing_max(road);
     "smoothed_by", Text, "", "`chain`: from junction to junction, as --osm allows; `way`: by the way alone; null as above",
         smoothed_by(road);
     "grade_over_limit", Integer, "", "1 where `steepest_pct` is more than roads of that `highway` are built with, else 0; null where either is unknown",
@@ -129,15 +134,15 @@ fields! { LAST_FIELDS, last_values, road: &Road<'_>:
 }
 
 fields! { BOUND_FIELDS, bound_values, road: &Road<'_>:
-    "height_tolerance_m", Real, "m", "how far the heights are from the DEM at its samples at most, as the package promises it; against the DEM, not against the world",
-        real(road.heights.tolerance_m);
+    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length: from the surface that is bilinear between its samples; against the DEM, not against the world; null where the package's nodes are other places than samples",
+        road.heights.tolerance_m.map_or(Value::Null, bound);
 }
 
 fields! { MEASURED_FIELDS, measured_values, road: &Road<'_>:
-    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length; against the DEM, not against the world; null for decks and tunnels",
-        if road.heights.on_deck { Value::Null } else { real(road.heights.tolerance_m) };
-    "ground_tolerance_m", Real, "m", "how far the package's triangles are from the DEM along the line at most; null where they were not compared",
-        road.heights.ground_m.map_or(Value::Null, real);
+    "height_tolerance_m", Real, "m", "how far the line is from the DEM at most, over its whole length: from the surface that is bilinear between its own samples; against the DEM, not against the world; null for decks and tunnels, and where voids were filled",
+        dem_tolerance(road);
+    "ground_tolerance_m", Real, "m", "how far the package's triangles are from the same surface along the line at most; null where they were not compared",
+        road.heights.ground_m.map_or(Value::Null, bound);
 }
 
 /// The fields of features that are pieces, beside the others.
@@ -203,6 +208,21 @@ pub(crate) fn real(value: f64) -> Value {
     Value::Real((value * 1e6).round() / 1e6)
 }
 
+/// A number that nothing exceeds: rounded up to whole micrometres.
+pub(crate) fn bound(value: f64) -> Value {
+    Value::Real((value * 1e6).ceil() / 1e6)
+}
+
+fn smoothing_max(road: &Road<'_>) -> Value {
+    let known = road.smooth.filter(|smooth| smooth.grades.is_some() && !road.heights.has_deck);
+    known.map_or(Value::Null, |smooth| bound(smooth.most_off_m))
+}
+
+fn dem_tolerance(road: &Road<'_>) -> Value {
+    let known = road.heights.tolerance_m.filter(|_| !road.heights.has_deck);
+    known.map_or(Value::Null, bound)
+}
+
 /// A measure of the line; none where it is not the road's.
 fn on_ground(road: &Road<'_>, value: f64) -> Value {
     let is_its_own = road.attributes.structure == Structure::Ground || road.heights.on_deck;
@@ -230,7 +250,9 @@ fn over_limit(road: &Road<'_>) -> Value {
     let steepest = road.grades().and_then(|grades| grades.steepest);
     let limit_pct = road.smooth.and_then(|smooth| smooth.limit_pct);
     match (steepest, limit_pct) {
-        (Some(grade), Some(limit_pct)) => Value::Integer((100.0 * grade > limit_pct).into()),
+        (Some(grade), Some(limit_pct)) => {
+            Value::Integer((100.0 * grade > limit_pct + ROUNDING_PCT).into())
+        }
         _ => Value::Null,
     }
 }

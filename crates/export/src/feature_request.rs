@@ -11,6 +11,8 @@ pub enum Coordinates {
     Wgs84,
     /// Longitude and latitude of WGS84, with the package's heights as they are.
     Wgs84WithPackageHeights,
+    /// Coordinates of a projected CRS of the EPSG registry, by its code, with the package's heights as they are.
+    Epsg(u32),
 }
 
 /// Which objects of a layer of a package are exported, and how.

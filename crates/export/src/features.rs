@@ -30,7 +30,7 @@ pub fn check_lines_request(
     let classes: Vec<()> = Vec::new();
     let request =
         FeatureRequest { format, level, classes, bounds: None, coordinates, memory_bytes: 0 };
-    FeatureSource::new(package, &request, ShapeKind::Lines).map(drop)
+    FeatureSource::new(package, &request).map(drop)
 }
 
 /// A layer of a package on its way into a file: what is its own.
@@ -92,14 +92,10 @@ impl<'a, C> FeatureSource<'a, C> {
     pub(crate) fn new(
         package: &'a FilePackage,
         request: &'a FeatureRequest<C>,
-        shapes: ShapeKind,
     ) -> Result<Self, ExportError> {
         let level = read::level(package, request.level)?;
         if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
-            return Err(match shapes {
-                ShapeKind::Lines => ExportError::GeoJsonCrs,
-                ShapeKind::PlanLines | ShapeKind::Polygons => ExportError::GeoJsonPlanCrs,
-            });
+            return Err(ExportError::GeoJsonCrs);
         }
         let places = Places::new(package.manifest(), request.coordinates)?;
         Ok(Self { package, request, level, places })
@@ -110,6 +106,11 @@ impl<'a, C> FeatureSource<'a, C> {
         let Self { package, level, places, .. } = self;
         let manifest = package.manifest();
         let About { fields, description, metadata } = about;
+        let crs = match (self.request.format, self.request.coordinates) {
+            // GeoJSON names systems by their codes, or not at all: there is none for both parts of a compound one.
+            (VectorFormat::GeoJson, Coordinates::Epsg(code)) => format!("EPSG:{code}"),
+            _ => places.crs().to_owned(),
+        };
         let of_package = [
             ("GENERATOR", manifest.generator.clone()),
             ("PACKAGE", package.file_name().to_owned()),
@@ -121,7 +122,7 @@ impl<'a, C> FeatureSource<'a, C> {
             name,
             fields,
             shapes,
-            crs: places.crs().to_owned(),
+            crs,
             description,
             attribution: manifest.attribution.join("; "),
             metadata: of_package.into_iter().chain(metadata).collect(),

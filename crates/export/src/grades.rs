@@ -12,6 +12,7 @@ mod measured_chains;
 mod on_way;
 mod smooth_line;
 mod smoothing;
+mod span_decks;
 
 pub(crate) use measured_chains::MeasuredChains;
 pub(crate) use on_way::{most_steps, stretch_of_way};

@@ -14,7 +14,12 @@ fn piece(ends: [([f64; 2], bool); 2], goes_on: [bool; 2]) -> Piece {
         attributes: RoadAttributes::default(),
         vertices: ends.map(|(at, is_source)| Vertex { at, z_m: 0.0, is_source }).to_vec(),
         goes_on,
-        heights: crate::piece::PieceHeights { tolerance_m: 0.5, ground_m: None, on_deck: false },
+        heights: crate::piece::PieceHeights {
+            tolerance_m: Some(0.5),
+            ground_m: None,
+            on_deck: false,
+            has_deck: false,
+        },
     }
 }
 

@@ -14,7 +14,12 @@ fn piece(tile: u64, part: u32, places: &[[f64; 2]], goes_on: [bool; 2]) -> Piece
         attributes: RoadAttributes::default(),
         vertices: vertices.collect(),
         goes_on,
-        heights: crate::piece::PieceHeights { tolerance_m: 0.5, ground_m: None, on_deck: false },
+        heights: crate::piece::PieceHeights {
+            tolerance_m: Some(0.5),
+            ground_m: None,
+            on_deck: false,
+            has_deck: false,
+        },
     }
 }
 

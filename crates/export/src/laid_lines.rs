@@ -22,7 +22,7 @@ struct Laid {
 /// The parts of each line that lie on ground, in order. Parts that meet on a border of tiles are one.
 pub(crate) fn laid_lines(
     package: &FilePackage,
-    lines: &[Vec<LatticePoint>],
+    lines: &[&[LatticePoint]],
     level: u8,
     observer: &dyn Observer,
 ) -> Result<Vec<Vec<Vec<Vertex>>>, ExportError> {
@@ -83,11 +83,7 @@ fn lay_on(
         for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
             for draped in corniche_drape::drape_within(&part.line, &surface, work)?.lines {
                 let failed = |source| ExportError::Line { tile: id, source };
-                let positions = corniche_drape::positions(&draped, &surface).map_err(failed)?;
-                let vertices: Vec<Vertex> = positions
-                    .into_iter()
-                    .map(|[u, v, z_m]| Vertex { at: [u, v], z_m, is_source: false })
-                    .collect();
+                let vertices = read::vertices(&draped, &surface).map_err(failed)?;
                 let sources = corniche_drape::source_segments(&draped);
                 let (Some(first), Some(source)) = (vertices.first(), sources.first()) else {
                     continue;

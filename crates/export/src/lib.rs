@@ -33,6 +33,7 @@
 //! writes no file but the one it is asked for.
 
 mod areas;
+mod between_samples;
 mod bounds;
 mod cut;
 mod cut_polygon;
@@ -59,12 +60,15 @@ mod measures;
 mod mesh;
 mod piece;
 mod places;
+mod plain_text;
 mod plan_piece;
 mod profile;
 mod quantized_mesh;
 mod read;
 mod relief_map;
+mod road_query;
 mod roads;
+mod route;
 mod scratch;
 mod sorted_pieces;
 mod span_facts;
@@ -89,12 +93,17 @@ pub use geotiff::{
 pub use growth::{WayGrowth, growth_by_way};
 pub use lines::{LinesSummary, export_lines};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
-pub use profile::{Profile, ProfileGrades, ProfilePart, ProfilePoint, profile, profile_of_lines};
-pub use quantized_mesh::{
-    Availability, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary, Tiling,
-    export_quantized_mesh,
+pub use profile::{
+    Course, CourseLeg, Profile, ProfileGrades, ProfileLeg, ProfilePart, ProfilePoint, profile,
+    profile_of_course,
 };
+pub use quantized_mesh::{
+    Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    QuantizedMeshSummary, Tiling, export_quantized_mesh,
+};
+pub use road_query::RoadQuery;
 pub use roads::{ExportSummary, RoadHeights, export_roads};
+pub use route::{Route, RouteRequest, route};
 pub use span_facts::SpanFacts;
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
-pub use vector::{Field, FieldKind, VectorFormat, cell_text};
+pub use vector::{Field, FieldKind, VectorFormat, cell_text, is_unseen, text_in_line};

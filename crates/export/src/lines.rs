@@ -130,7 +130,7 @@ pub fn export_lines(
         let package = package.path().to_path_buf();
         return Err(ExportError::NoLayer { package, layer: layer.name() });
     }
-    let source = FeatureSource::new(package, request, Lines::SHAPES)?;
+    let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };
     let mut lines = Lines { layer, names, summary };

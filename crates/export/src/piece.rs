@@ -40,25 +40,30 @@ pub(crate) struct Piece {
     pub(crate) heights: PieceHeights,
 }
 
-/// How far heights of a piece are from those of the elevation files, at most, over the whole line, metres.
+/// How far heights of a piece are from those of the elevation files, at most, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PieceHeights {
-    /// The piece's own heights.
-    pub(crate) tolerance_m: f64,
+    /// The piece's own heights, over the whole line where it lies on the ground; `None` where nothing of it lies on the files' samples.
+    pub(crate) tolerance_m: Option<f64>,
     /// The ground of its tile; `None` where it was not measured.
     pub(crate) ground_m: Option<f64>,
     /// Whether they are those of a deck or a tunnel, which nothing tells how good they are.
     pub(crate) on_deck: bool,
+    /// Whether some of them are.
+    pub(crate) has_deck: bool,
 }
 
 impl PieceHeights {
     /// What holds for two pieces together.
     pub(crate) fn with(self, other: Self) -> Self {
-        let both = [self.ground_m, other.ground_m].into_iter().flatten();
+        let most = |one: Option<f64>, other: Option<f64>| {
+            [one, other].into_iter().flatten().reduce(f64::max)
+        };
         Self {
-            tolerance_m: self.tolerance_m.max(other.tolerance_m),
-            ground_m: both.reduce(f64::max),
+            tolerance_m: most(self.tolerance_m, other.tolerance_m),
+            ground_m: most(self.ground_m, other.ground_m),
             on_deck: self.on_deck && other.on_deck,
+            has_deck: self.has_deck || other.has_deck,
         }
     }
 }
@@ -91,9 +96,9 @@ impl SortRecord for Piece {
         bytes.extend(key.cut.to_le_bytes());
         let [first, last] = *goes_on;
         bytes.push(class.number());
-        bytes.extend([first, last, heights.on_deck].map(u8::from));
-        for number in [heights.tolerance_m, heights.ground_m.unwrap_or(f64::NAN)] {
-            bytes.extend(number.to_le_bytes());
+        bytes.extend([first, last, heights.on_deck, heights.has_deck].map(u8::from));
+        for number in [heights.tolerance_m, heights.ground_m] {
+            bytes.extend(number.unwrap_or(f64::NAN).to_le_bytes());
         }
         bytes.extend(codes);
         bytes.extend(width_mm.to_le_bytes());
@@ -117,10 +122,11 @@ impl SortRecord for Piece {
             part: u32::from_le_bytes(array(bytes)?),
             cut: u32::from_le_bytes(array(bytes)?),
         };
-        let [class, first, last, on_deck] = array(bytes)?;
-        let [tolerance_m, ground_m] = [number(bytes)?, number(bytes)?];
-        let ground_m = Some(ground_m).filter(|ground_m| !ground_m.is_nan());
-        let heights = PieceHeights { tolerance_m, ground_m, on_deck: on_deck == 1 };
+        let [class, first, last, on_deck, has_deck] = array(bytes)?;
+        let known = |number: f64| Some(number).filter(|number| !number.is_nan());
+        let [tolerance_m, ground_m] = [number(bytes)?, number(bytes)?].map(known);
+        let (on_deck, has_deck) = (on_deck == 1, has_deck == 1);
+        let heights = PieceHeights { tolerance_m, ground_m, on_deck, has_deck };
         let (codes, width_mm) = (array(bytes)?, u32::from_le_bytes(array(bytes)?));
         let attributes = RoadAttributes::from_parts(codes, width_mm, || text(bytes))?;
         let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);

@@ -32,9 +32,10 @@ fn piece(way_id: i64, tile: u64, part: u32) -> Piece {
         ],
         goes_on: [false, true],
         heights: PieceHeights {
-            tolerance_m: 0.5,
+            tolerance_m: Some(0.5),
             ground_m: Some(f64::from(part) + 0.25),
             on_deck: part % 2 == 1,
+            has_deck: part % 3 == 1,
         },
     }
 }

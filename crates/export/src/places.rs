@@ -1,8 +1,8 @@
 //! Where vertices are, in the coordinates that were asked for.
 
 use corniche_areas::AreaObject;
-use corniche_dem::{DemError, DemProjection, RecordedCrs, RecordedHeights};
-use corniche_geom::{Projection as _, wgs84};
+use corniche_dem::{DemError, DemProjection, ProjectedCrs, RecordedCrs, RecordedHeights};
+use corniche_geom::{LatticePoint, Projection as _, known_line_length_m};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -16,6 +16,8 @@ use crate::{
 pub(crate) struct Places<'a> {
     manifest: &'a Manifest,
     target: Target,
+    /// Where the package's table of longitudes and latitudes ends: there is a network beyond it, if the package was cut.
+    beyond: Option<Box<DemProjection>>,
     /// WKT2 of the features' CRS.
     wkt: String,
     /// What their heights are, in words.
@@ -27,6 +29,8 @@ enum Target {
     Package,
     /// WGS84; heights are carried to the ellipsoid where there is something to carry them.
     Wgs84 { projection: Box<DemProjection>, heights: Option<Box<RecordedHeights>> },
+    /// Another projected CRS.
+    Projected(Box<ProjectedCrs>),
 }
 
 fn crs_failed(source: DemError) -> ExportError {
@@ -73,8 +77,20 @@ impl<'a> Places<'a> {
                 let target = Target::Wgs84 { projection: projection()?, heights: None };
                 (target, "EPSG:4326".to_owned(), of_package)
             }
+            Coordinates::Epsg(code) => {
+                let to = crs
+                    .projected(&format!("EPSG:{code}"), area)
+                    .map_err(|source| ExportError::OtherCrs(Box::new(source)))?;
+                let both = known.as_ref().and_then(|known| known.wkt_with(&to));
+                let wkt = both.unwrap_or_else(|| to.wkt().to_owned());
+                (Target::Projected(Box::new(to)), wkt, of_package)
+            }
         };
-        Ok(Self { manifest, target, wkt, heights })
+        let beyond = match manifest.clip {
+            Some(_) => Some(Box::new(crs.projection(manifest.area_deg()).map_err(crs_failed)?)),
+            None => None,
+        };
+        Ok(Self { manifest, target, beyond, wkt, heights })
     }
 
     /// The CRS of features, as WKT2 or as a code.
@@ -95,7 +111,39 @@ impl<'a> Places<'a> {
 
     /// True distance in plan of two places on the lattice, as the build measures roads.
     pub(crate) fn distance_m(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
-        wgs84::short_distance_m(self.wgs84(from), self.wgs84(to))
+        let frame = &self.manifest.frame;
+        let ends_m = [from, to].map(|at| frame.position_of_fraction_m(at));
+        let degrees = |at_m| self.degrees(at_m);
+        known_line_length_m(ends_m, ends_m.map(degrees), &degrees)
+    }
+
+    /// The true length in plan of a line on the lattice.
+    pub(crate) fn length_m(&self, mut points: impl Iterator<Item = LatticePoint>) -> f64 {
+        let Some(first) = points.next() else { return 0.0 };
+        let mut before = first.in_steps();
+        let mut length_m = 0.0;
+        for point in points {
+            let at = point.in_steps();
+            length_m += self.distance_m(before, at);
+            before = at;
+        }
+        length_m
+    }
+
+    /// Longitude and latitude of a place in working metres, also beyond the package's table.
+    fn degrees(&self, at_m: [f64; 2]) -> [f64; 2] {
+        let coordinates = &self.manifest.coordinates;
+        if let Some(projection) = &self.beyond
+            && !coordinates.bounds().contains(at_m)
+        {
+            let mut position = [at_m];
+            if projection.wgs84_from_working(&mut position).is_ok()
+                && position[0].iter().all(|degrees| degrees.is_finite())
+            {
+                return position[0];
+            }
+        }
+        coordinates.wgs84_from_working(at_m)
     }
 
     /// Replaces positions in working metres by longitude and latitude, and heights by those that were asked for.
@@ -141,7 +189,7 @@ impl<'a> Places<'a> {
     pub(crate) fn working_from_wgs84(&self, places: &mut [[f64; 2]]) -> Result<(), ExportError> {
         match &self.target {
             Target::Wgs84 { projection, .. } => projection.working_from_wgs84(places)?,
-            Target::Package => {
+            Target::Package | Target::Projected(_) => {
                 for place in places.iter_mut() {
                     let known = self.manifest.coordinates.working_from_wgs84(*place);
                     *place = known.unwrap_or([f64::NAN; 2]);
@@ -155,7 +203,7 @@ impl<'a> Places<'a> {
     pub(crate) fn to_wgs84_plan(&self, plan: &mut [[f64; 2]]) -> Result<(), ExportError> {
         match &self.target {
             Target::Wgs84 { projection, .. } => projection.wgs84_from_working(plan)?,
-            Target::Package => {
+            Target::Package | Target::Projected(_) => {
                 for position in plan.iter_mut() {
                     *position = self.manifest.coordinates.wgs84_from_working(*position);
                 }
@@ -183,12 +231,17 @@ impl<'a> Places<'a> {
             }
             Target::Wgs84 { projection, .. } => {
                 projection.wgs84_from_working(&mut plan)?;
-                if plan.iter().flatten().any(|degrees| !degrees.is_finite()) {
-                    return Err(ExportError::NoPosition { object });
-                }
+            }
+            Target::Projected(to) => {
+                to.from_working(&mut plan)
+                    .map_err(|source| ExportError::OtherCrs(Box::new(source)))?;
             }
         }
-        Ok(plan)
+        if plan.iter().flatten().all(|coordinate| coordinate.is_finite()) {
+            Ok(plan)
+        } else {
+            Err(ExportError::NoPosition { object })
+        }
     }
 
     /// Carried rings of a polygon, the outer one first: one polygon, or several where it crosses the antimeridian in degrees. Its corners were
@@ -199,8 +252,8 @@ impl<'a> Places<'a> {
         rings: Vec<Vec<[f64; 2]>>,
         rounding_m: f64,
     ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, ExportError> {
-        match self.target {
-            Target::Package => Ok(vec![rings]),
+        match &self.target {
+            Target::Package | Target::Projected(_) => Ok(vec![rings]),
             Target::Wgs84 { .. } => {
                 // The smallest number of metres to a degree of longitude or latitude at the equator.
                 let rounding_deg = rounding_m / 110_000.0;
@@ -223,8 +276,8 @@ impl<'a> Places<'a> {
         self.to_wanted_heights(&plan, &mut heights_m)?;
         let plan = self.carry_plan(object, plan)?;
         let line = plan.iter().zip(&heights_m).map(|(&[x, y], &z)| [x, y, z]).collect();
-        match self.target {
-            Target::Package => Ok(vec![line]),
+        match &self.target {
+            Target::Package | Target::Projected(_) => Ok(vec![line]),
             Target::Wgs84 { .. } => {
                 self.all_have_heights(&plan, &heights_m)?;
                 Ok(cut_at_antimeridian(line))

@@ -1,4 +1,6 @@
-//! Heights and grades along ways.
+//! Heights and grades along ways and other lines.
+
+mod legs;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -6,18 +8,19 @@ use std::{
 };
 
 use corniche_geom::LatticePoint;
-use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
-    deck_lines::on_deck,
+    deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
     elevation::Elevation,
     error::ExportError,
     feature::HeightSource,
     feature_request::Coordinates,
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
+    height_bound::sample_bound_m,
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
@@ -27,8 +30,13 @@ use crate::{
     roads::RoadHeights,
 };
 
+pub use self::legs::{Course, CourseLeg, ProfileLeg};
+use self::legs::{joined_runs, legs_of};
+
 /// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
 const SAME_PLACE_M: f64 = 0.02;
+/// Such places are at one end of the map within this, working metres.
+const NEAR_ON_MAP_M: f64 = 1000.0;
 
 /// The profile of some ways, one after the other.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +49,8 @@ pub struct Profile {
     pub height_tolerance_m: f64,
     /// Parts without gaps, in order.
     pub parts: Vec<ProfilePart>,
+    /// What is followed, in order. A way that is followed twice, or has a gap, is there several times.
+    pub legs: Vec<ProfileLeg>,
     /// True length in plan of all parts, metres.
     pub length_2d_m: f64,
     /// True length with heights, metres.
@@ -111,8 +121,8 @@ pub fn profile(
     let places = Places::new(manifest, Coordinates::Package)?;
     let mut of_ways: Vec<Vec<Line>> = Vec::with_capacity(way_ids.len());
     let pieces = pieces(package, way_ids, level, observer)?;
-    let mut structures = BTreeMap::new();
-    let mut tolerance_m = 0.0_f64;
+    let mut ways = BTreeMap::new();
+    let tolerance_m = sample_bound_m(manifest, level);
     for &way_id in way_ids {
         let own: Vec<Piece> =
             pieces.iter().filter(|piece| piece.key.way_id == way_id).cloned().collect();
@@ -120,54 +130,78 @@ pub fn profile(
             let package = package.path().to_path_buf();
             return Err(ExportError::NoWay { package, way_id, level });
         };
-        structures.insert(way_id, first.attributes.structure);
-        tolerance_m = own.iter().map(|piece| piece.heights.tolerance_m).fold(tolerance_m, f64::max);
+        ways.insert(way_id, first.attributes.clone());
         of_ways.push(lines(&own));
     }
     let (legs, parts) = in_a_row(way_ids, of_ways);
-    let mut smooth_ways = BTreeMap::new();
-    if let (Some(elevation), Some(network)) = (heights.elevation, heights.network) {
-        let mut nodes = DemNodes::new(elevation, &manifest.frame);
-        let smoothing = Smoothing::of_frame(&manifest.frame);
-        let chains = MeasuredChains::measure(network, &places, &mut nodes, smoothing, observer)?;
-        smooth_ways.extend(way_ids.iter().map(|&way_id| (way_id, chains.of_way(way_id))));
-    }
-    Telling { level, places, legs, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
-        .tell(parts, heights.elevation)
+    let smooth_ways = smooth_ways(way_ids.iter().copied(), &places, heights, observer)?;
+    let on_deck = BTreeSet::new();
+    let mut telling = Telling { level, places, legs, ways, on_deck, smooth_ways, tolerance_m };
+    let parts = telling.on_ground(parts, heights.elevation)?;
+    Ok(telling.tell(&parts, heights.elevation.is_some()))
 }
 
-/// Follows lines that are no ways of the package over the ground of a level, one after the other. Parts of the line with index 0 have the
-/// `way_id` 1, and so on.
+/// Follows lines over the ground of a level, one after the other. With elevation files, heights are theirs.
 ///
 /// # Errors
 /// When the package has no such level, no line lies on its ground, or it is damaged.
-pub fn profile_of_lines(
+pub fn profile_of_course(
     package: &FilePackage,
-    lines: &[Vec<LatticePoint>],
+    course: &Course,
     level: Option<u8>,
-    elevation: Option<Elevation<'_>>,
+    heights: RoadHeights<'_>,
     observer: &dyn Observer,
 ) -> Result<Profile, ExportError> {
     let level = read::level(package, level)?;
     let manifest = package.manifest();
     let places = Places::new(manifest, Coordinates::Package)?;
-    let laid = laid_lines(package, lines, level, observer)?;
-    let legs = (1..).take(lines.len()).map(|way_id| Leg { way_id, is_turned: false }).collect();
+    let lines: Vec<&[LatticePoint]> = course.legs.iter().map(|leg| leg.points.as_slice()).collect();
+    let laid = laid_lines(package, &lines, level, observer)?;
     let numbered = laid.into_iter().enumerate().flat_map(|(leg, parts)| {
         let of_line = move |part: Vec<Vertex>| -> ProfileLine {
             part.into_iter().map(|vertex| (leg, vertex)).collect()
         };
         parts.into_iter().map(of_line)
     });
-    let parts = joined(numbered, &places);
+    let parts: Vec<ProfileLine> = numbered.collect();
+    let tolerance_m = sample_bound_m(manifest, level);
+    let way_ids = course.legs.iter().map(|leg| leg.way_id).filter(|_| course.is_of_ways);
+    let smooth_ways = smooth_ways(way_ids, &places, heights, observer)?;
+    let legs = course.legs.iter();
+    let legs = legs.map(|leg| Leg { way_id: leg.way_id, is_turned: leg.is_against }).collect();
+    let (ways, on_deck) = (course.ways.clone(), BTreeSet::new());
+    let mut telling = Telling { level, places, legs, ways, on_deck, smooth_ways, tolerance_m };
+    let parts = telling.on_ground(parts, heights.elevation)?;
+    // Lines go on at the other end of the map only once they were laid: between its ends there is nothing.
+    let parts = joined(parts.into_iter(), &telling.places);
     if parts.is_empty() {
-        return Err(ExportError::NoLineOnGround { package: package.path().to_path_buf() });
+        let package = package.path().to_path_buf();
+        let begins =
+            course.begins_deg.map(|[lon, lat]| format!("; the first begins at {lon},{lat}"));
+        let begins = begins.unwrap_or_default();
+        let covered = manifest.covered_text(course.begins_deg.unwrap_or([f64::NAN; 2]));
+        return Err(ExportError::NoLineOnGround { package, begins, covered });
     }
-    let tolerance_m = manifest.levels.get(usize::from(level));
-    let tolerance_m = tolerance_m.map_or(0.0, |record| record.geometric_error_m);
-    let (structures, smooth_ways) = (BTreeMap::new(), BTreeMap::new());
-    Telling { level, places, legs, structures, on_deck: BTreeSet::new(), smooth_ways, tolerance_m }
-        .tell(parts, elevation)
+    Ok(telling.tell(&parts, heights.elevation.is_some()))
+}
+
+/// The smooth lines of ways, as those of their chains are, if elevation files and roads are known.
+fn smooth_ways(
+    way_ids: impl Iterator<Item = i64>,
+    places: &Places<'_>,
+    heights: RoadHeights<'_>,
+    observer: &dyn Observer,
+) -> Result<BTreeMap<i64, Vec<SmoothLine>>, ExportError> {
+    let way_ids: BTreeSet<i64> = way_ids.collect();
+    let (Some(elevation), Some(network), false) =
+        (heights.elevation, heights.network, way_ids.is_empty())
+    else {
+        return Ok(BTreeMap::new());
+    };
+    let frame = &places.manifest().frame;
+    let (mut nodes, smoothing) = (DemNodes::new(elevation, frame), Smoothing::of_frame(frame));
+    let chains = MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)?;
+    Ok(way_ids.into_iter().map(|way_id| (way_id, chains.of_way(way_id))).collect())
 }
 
 /// What a profile is told from.
@@ -175,8 +209,8 @@ struct Telling<'a> {
     level: u8,
     places: Places<'a>,
     legs: Vec<Leg>,
-    /// What carries each way.
-    structures: BTreeMap<i64, Structure>,
+    /// What is known of each way.
+    ways: BTreeMap<i64, RoadAttributes>,
     /// Legs over bridges and through tunnels whose decks are known.
     on_deck: BTreeSet<usize>,
     /// The smooth line of each way, where those of chains are known.
@@ -186,24 +220,30 @@ struct Telling<'a> {
 }
 
 impl Telling<'_> {
-    fn tell(
-        mut self,
-        mut parts: Vec<ProfileLine>,
+    /// The parts as they are, or on the ground of the elevation files.
+    fn on_ground(
+        &mut self,
+        parts: Vec<ProfileLine>,
         elevation: Option<Elevation<'_>>,
-    ) -> Result<Profile, ExportError> {
+    ) -> Result<Vec<ProfileLine>, ExportError> {
+        let Some(elevation) = elevation else { return Ok(parts) };
         let frame = &self.places.manifest().frame;
-        let smoothing = elevation.map(|_| Smoothing::of_frame(frame));
-        if let Some(elevation) = elevation {
-            parts = self.on_dem(&parts, &mut DemNodes::new(elevation, frame))?;
-        }
+        self.on_dem(&parts, &mut DemNodes::new(elevation, frame))
+    }
+
+    /// Measures the parts; those of elevation files are smoothed.
+    fn tell(self, parts: &[ProfileLine], is_on_dem: bool) -> Profile {
+        let smoothing = is_on_dem.then(|| Smoothing::of_frame(&self.places.manifest().frame));
         let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
         let mut whole = Measures::default();
         let mut on_ground = Vec::new();
         let mut smooth = Vec::new();
+        let mut most_off_m = 0.0_f64;
         let mut told = Vec::with_capacity(parts.len());
+        let mut legs = Vec::new();
         let mut on_structures_m = 0.0;
         let mut begin_m = 0.0;
-        for part in &parts {
+        for part in parts {
             let line =
                 Line { vertices: part.iter().map(|(_, at)| *at).collect(), joins: Vec::new() };
             let profile = Profiled::of(&line, &distance_m).profile;
@@ -217,6 +257,10 @@ impl Telling<'_> {
                 Some(smoothing) => {
                     let of = |run: &Range<usize>| {
                         let own = &profile[run.clone()];
+                        // A deck is smooth by itself, and on the ground where that is in its way.
+                        if self.on_deck.contains(&part[run.end - 1].0) {
+                            return SmoothLine::itself(own);
+                        }
                         let of_chains = self.of_chains(&part[run.clone()], own);
                         of_chains.unwrap_or_else(|| SmoothLine::of_profile(own, smoothing))
                     };
@@ -224,10 +268,18 @@ impl Telling<'_> {
                 }
                 None => Vec::new(),
             };
-            told.push(ProfilePart {
-                points: self.points(part, (&profile, begin_m), (&runs, &smooth_of_runs)),
-            });
+            let (runs, smooth_of_runs) = joined_runs(runs, smooth_of_runs);
+            let points = self.points(part, (&profile, begin_m), (&runs, &smooth_of_runs));
+            let numbers: Vec<usize> = part.iter().map(|(leg, _)| *leg).collect();
+            let distances_m: Vec<f64> = points.iter().map(|point| point.distance_m).collect();
+            for (number, range_m) in legs_of(&distances_m, &numbers) {
+                self.add_leg(&mut legs, self.legs[number], range_m);
+            }
+            told.push(ProfilePart { points });
             begin_m += own.length_2d_m;
+            for (run, line) in runs.iter().zip(&smooth_of_runs) {
+                most_off_m = most_off_m.max(line.most_off_m(&profile[run.clone()]));
+            }
             smooth.extend(smooth_of_runs);
             for run in runs {
                 let vertices = line.vertices[run].to_vec();
@@ -238,15 +290,15 @@ impl Telling<'_> {
             on_ground.iter().map(|line| Profiled::of(line, &distance_m)).collect();
         let own = Measures::of(&on_ground);
         let smooth = smoothing.map(|_| {
-            let SmoothGrades { ascent_m, descent_m, steepest, most_off_m } =
-                SmoothGrades::of(&smooth);
+            let SmoothGrades { ascent_m, descent_m, steepest } = SmoothGrades::of(&smooth);
             (ProfileGrades { ascent_m, descent_m, steepest }, most_off_m)
         });
-        Ok(Profile {
+        Profile {
             level: self.level,
             heights: self.places.heights().to_owned(),
             height_tolerance_m: self.tolerance_m,
             parts: told,
+            legs: legs.into_iter().map(|(_, leg)| leg).collect(),
             length_2d_m: whole.length_2d_m,
             length_3d_m: whole.length_3d_m,
             on_structures_m,
@@ -256,7 +308,17 @@ impl Telling<'_> {
                 steepest: own.steepest,
             },
             smooth,
-        })
+        }
+    }
+
+    /// Adds what a leg follows; parts of a way in a row are one.
+    fn add_leg(&self, legs: &mut Vec<(Leg, ProfileLeg)>, leg: Leg, range_m: [f64; 2]) {
+        match legs.last_mut() {
+            Some((before, told)) if *before == leg && told.range_m[1] >= range_m[0] => {
+                told.range_m[1] = range_m[1];
+            }
+            _ => legs.push((leg, ProfileLeg::new(leg.way_id, range_m, self.ways.get(&leg.way_id)))),
+        }
     }
 
     /// The same parts on the ground of the elevation files.
@@ -276,11 +338,13 @@ impl Telling<'_> {
                 let run: Vec<Vertex> =
                     part[first..=first + own].iter().map(|(_, vertex)| *vertex).collect();
                 for DemLine { mut vertices, tolerance_m, .. } in lay(nodes, &run)? {
-                    if let Some(raised) = self.raised(leg, &vertices) {
-                        vertices = raised;
+                    let raised = self.raised(leg, &vertices);
+                    if raised.as_ref().is_none_or(|line| line.is_on_ground) {
+                        self.tolerance_m = self.tolerance_m.max(tolerance_m.unwrap_or(0.0));
+                    }
+                    if let Some(RaisedLine { vertices: own, .. }) = raised {
+                        vertices = own;
                         self.on_deck.insert(leg);
-                    } else {
-                        self.tolerance_m = self.tolerance_m.max(tolerance_m);
                     }
                     let begin = vertices.first().map(|vertex| vertex.at);
                     let goes_on = |before: &&mut ProfileLine| {
@@ -299,14 +363,15 @@ impl Telling<'_> {
     }
 
     /// A line of a bridge or a tunnel on its deck; `None` where it is none, or not known.
-    fn raised(&self, leg: usize, ground: &[Vertex]) -> Option<Vec<Vertex>> {
+    fn raised(&self, leg: usize, ground: &[Vertex]) -> Option<RaisedLine> {
         let Leg { way_id, is_turned } = self.legs[leg];
         let (structure, way) = (self.structure(leg), self.smooth_ways.get(&way_id)?);
         let most_steps = most_steps(self.places.manifest(), self.level);
         let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
         let ground = along_way(ground.iter().copied(), is_turned);
         let raised = on_deck(structure, &ground, (way, most_steps), &distance_m)?;
-        Some(along_way(raised.into_iter(), is_turned))
+        let vertices = along_way(raised.vertices.into_iter(), is_turned);
+        Some(RaisedLine { vertices, ..raised })
     }
 
     /// Whether heights along a leg are its own.
@@ -315,7 +380,8 @@ impl Telling<'_> {
     }
 
     fn structure(&self, leg: usize) -> Structure {
-        self.structures.get(&self.legs[leg].way_id).copied().unwrap_or_default()
+        let way = self.ways.get(&self.legs[leg].way_id);
+        way.map(|way| way.structure).unwrap_or_default()
     }
 
     /// The smooth line of some vertices of a leg, where those of chains are known.
@@ -411,7 +477,7 @@ fn pieces(
 }
 
 /// A way as it is followed once, or a line of a file. A way may be followed again, also back at once.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Leg {
     way_id: i64,
     /// Whether it is followed against its direction.
@@ -469,6 +535,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileL
 /// Lines of which each begins where the one before ends are one part: also where a line ends at the end of the map and goes on at its other end.
 fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<ProfileLine> {
     let mut parts: Vec<ProfileLine> = Vec::new();
+    let near_steps = NEAR_ON_MAP_M / places.manifest().frame.lattice_step_m();
     for line in lines {
         let goes_on = |before: &&mut ProfileLine| match (before.last(), line.first()) {
             (Some((_, end)), Some((_, begin))) => {
@@ -477,7 +544,14 @@ fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<
             _ => false,
         };
         match parts.last_mut().filter(goes_on) {
-            Some(before) => before.extend(line.into_iter().skip(1)),
+            Some(before) => {
+                // At the other end of the map the line begins at a place of its own: from the one before, the next would be a map away.
+                let is_there = |end: &(usize, Vertex), begin: &(usize, Vertex)| {
+                    (0..2).all(|axis| (end.1.at[axis] - begin.1.at[axis]).abs() <= near_steps)
+                };
+                let is_same = before.last().zip(line.first()).is_some_and(|(a, b)| is_there(a, b));
+                before.extend(line.into_iter().skip(usize::from(is_same)));
+            }
             None => parts.push(line),
         }
     }

@@ -21,6 +21,8 @@ mod layer;
 mod mesh;
 mod mesh_vertex;
 mod node_heights;
+mod plan;
+mod planned_levels;
 mod quantized_mesh_request;
 mod raster;
 mod summary;
@@ -28,6 +30,7 @@ mod surfaces;
 mod tiling;
 mod write_tiles;
 
+pub use planned_levels::{PlannedLevel, QuantizedMeshPlan};
 pub use quantized_mesh_request::{Availability, QuantizedMeshRequest};
 pub use summary::{QuantizedMeshLevel, QuantizedMeshSummary};
 pub use tiling::Tiling;

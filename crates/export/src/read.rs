@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use corniche_drape::DrapedVertex;
+use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_geom::{Bounds, GridFrame, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
@@ -11,6 +11,7 @@ use corniche_tileset::{
 use corniche_tin::{Placement, Surface};
 
 use crate::{
+    between_samples::SampleCells,
     bounds::DegreeBounds,
     error::ExportError,
     piece::{Piece, PieceHeights, PieceKey, Vertex},
@@ -105,10 +106,29 @@ pub(crate) fn pieces(
     id: TileId,
     classes: &[FunctionalRoadClass],
 ) -> Result<Vec<Piece>, ExportError> {
-    match package.payload(id, road_sections())? {
-        Some(payload) => pieces_of(&payload, package.manifest(), classes),
-        None => Ok(Vec::new()),
+    let payload = package.payload(id, road_sections())?;
+    payload.map_or(Ok(Vec::new()), |payload| pieces_of(&payload, package.manifest(), classes))
+}
+
+/// The same, with what the package knows of the distance of their lines from the elevation data.
+pub(crate) fn bounded_pieces(
+    package: &FilePackage,
+    id: TileId,
+    classes: &[FunctionalRoadClass],
+) -> Result<Vec<Piece>, ExportError> {
+    let Some(payload) = package.payload(id, road_sections())? else { return Ok(Vec::new()) };
+    let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
+        return Ok(Vec::new());
+    };
+    let quantum_m = manifest.vertical.quantum_m;
+    let surface = Surface::new(&terrain.tin, Placement::of_tile(&manifest.frame, id, quantum_m));
+    let mut pieces = pieces_on(&surface, &payload, manifest, classes)?;
+    let cells = SampleCells::of(manifest, id.z());
+    let mut cells = cells.as_ref().map(|cells| cells.on_tile(&surface, terrain.geometric_error_m));
+    for piece in &mut pieces {
+        piece.heights.tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&piece.vertices));
     }
+    Ok(pieces)
 }
 
 /// The runs of bridges and tunnels of one tile by their ways; none in a package that was built without.
@@ -137,10 +157,19 @@ pub(crate) fn pieces_of(
     manifest: &Manifest,
     classes: &[FunctionalRoadClass],
 ) -> Result<Vec<Piece>, ExportError> {
-    let id = payload.id;
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
     let Manifest { frame, vertical, .. } = manifest;
-    let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, id, vertical.quantum_m));
+    let placement = Placement::of_tile(frame, payload.id, vertical.quantum_m);
+    pieces_on(&Surface::new(&terrain.tin, placement), payload, manifest, classes)
+}
+
+fn pieces_on(
+    surface: &Surface,
+    payload: &TilePayload,
+    Manifest { frame, .. }: &Manifest,
+    classes: &[FunctionalRoadClass],
+) -> Result<Vec<Piece>, ExportError> {
+    let id = payload.id;
     let mut pieces = Vec::new();
     for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {
         let known = payload.attributes.binary_search_by_key(&road.way_id, |record| record.way_id);
@@ -148,17 +177,18 @@ pub(crate) fn pieces_of(
             .ok()
             .and_then(|at| payload.attributes.get(at))
             .ok_or(ExportError::NoAttributes { tile: id, way_id: road.way_id })?;
-        let vertices =
-            vertices(road, &surface).map_err(|source| ExportError::Line { tile: id, source })?;
+        let vertices = vertices(&road.line, surface)
+            .map_err(|source| ExportError::Line { tile: id, source })?;
         pieces.push(Piece {
             key: PieceKey { way_id: road.way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
             class: road.class,
             attributes: attributes.attributes.clone(),
             goes_on: goes_on(road, frame, id),
             heights: PieceHeights {
-                tolerance_m: terrain.geometric_error_m,
+                tolerance_m: None,
                 ground_m: None,
                 on_deck: false,
+                has_deck: false,
             },
             vertices,
         });
@@ -166,9 +196,13 @@ pub(crate) fn pieces_of(
     Ok(pieces)
 }
 
-fn vertices(road: &GeoRoad, surface: &Surface) -> Result<Vec<Vertex>, corniche_drape::BadLine> {
-    let positions = corniche_drape::positions(&road.line, surface)?;
-    let vertices = positions.into_iter().zip(&road.line.vertices);
+/// The vertices of a line on the ground of a tile.
+pub(crate) fn vertices(
+    line: &DrapedLine,
+    surface: &Surface,
+) -> Result<Vec<Vertex>, corniche_drape::BadLine> {
+    let positions = corniche_drape::positions(line, surface)?;
+    let vertices = positions.into_iter().zip(&line.vertices);
     Ok(vertices
         .map(|([u, v, z_m], vertex)| Vertex {
             at: [u, v],

@@ -1,6 +1,9 @@
 //! The whole way of roads out of a package.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
@@ -11,7 +14,7 @@ use corniche_work::Observer;
 
 use crate::{
     cut::cut_at_bounds,
-    deck_lines::on_deck,
+    deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay, off_dem_m},
     elevation::Elevation,
     error::ExportError,
@@ -19,12 +22,13 @@ use crate::{
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
-    height_bound::{dem_heights, height_bound},
+    height_bound::{dem_heights, height_bound, sample_bound_m},
     join::{Line, lines},
     measures::{Measures, Profiled},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
     places::Places,
     read,
+    road_query::{RoadQuery, named_ways},
     span_facts::{SpanFacts, least_free_heights},
     vector::{Record, Shape, ShapeKind},
 };
@@ -44,8 +48,11 @@ pub struct ExportSummary {
     pub vertices: u64,
     /// What the heights of the features are, in words.
     pub heights: String,
-    /// How far heights are from the elevation files at most, metres.
-    pub height_tolerance_m: f64,
+    /// How far lines are from the elevation files at most, over their whole length, metres; without bridges and tunnels off the ground. `None` where
+    /// that is not known.
+    pub height_tolerance_m: Option<f64>,
+    /// How far the package's triangles are from the elevation files' samples at most, metres.
+    pub sample_tolerance_m: f64,
     /// How far the package's triangles are from the elevation files along the lines at most, metres; `None` where they were not compared.
     pub ground_tolerance_m: Option<f64>,
     /// The bridges and tunnels of the network, where there is one.
@@ -69,7 +76,11 @@ pub struct RoadHeights<'a> {
 /// written.
 pub fn export_roads(
     package: &FilePackage,
-    (request, features): (&FeatureRequest<FunctionalRoadClass>, RoadFeatures),
+    (request, features, road): (
+        &FeatureRequest<FunctionalRoadClass>,
+        RoadFeatures,
+        Option<&RoadQuery>,
+    ),
     heights: RoadHeights<'_>,
     path: &Path,
     observer: &dyn Observer,
@@ -78,7 +89,9 @@ pub fn export_roads(
     if manifest.inputs.iter().all(|input| input.kind != "osm") {
         return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
     }
-    let source = FeatureSource::new(package, request, Roads::SHAPES)?;
+    let source = FeatureSource::new(package, request)?;
+    let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
+    let meant = named.transpose()?.map(|named| named.meant);
     let frame = &manifest.frame;
     let dem = match heights.elevation {
         None => None,
@@ -96,10 +109,11 @@ pub fn export_roads(
             Some(OnDem { nodes, smoothing, chains, most_steps, free_heights_m, deck: None })
         }
     };
-    let decks = dem.as_ref().and_then(|dem| dem.chains.as_ref()).map(MeasuredChains::decks);
-    let spans = decks.map(SpanFacts::of);
+    let chains = dem.as_ref().and_then(|dem| dem.chains.as_ref());
+    let spans = chains.map(|chains| chains.span_facts().clone());
     let mut roads = Roads {
         by_piece: features == RoadFeatures::Pieces,
+        meant,
         dem,
         summary: ExportSummary {
             level: source.level,
@@ -108,7 +122,8 @@ pub fn export_roads(
             length_2d_m: 0.0,
             vertices: 0,
             heights: source.places.heights().to_owned(),
-            height_tolerance_m: 0.0,
+            height_tolerance_m: None,
+            sample_tolerance_m: sample_bound_m(manifest, source.level),
             ground_tolerance_m: None,
             spans,
         },
@@ -120,6 +135,8 @@ pub fn export_roads(
 /// Roads on their way into a file.
 struct Roads<'a> {
     by_piece: bool,
+    /// The ways that are taken, if roads are named.
+    meant: Option<BTreeSet<i64>>,
     dem: Option<OnDem<'a>>,
     summary: ExportSummary,
 }
@@ -165,11 +182,11 @@ impl Features for Roads<'_> {
     }
 
     fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
-        match self.dem {
-            None => height_bound(source.package.manifest(), source.level),
-            Some(_) => {
-                Some(dem_heights(self.summary.height_tolerance_m, self.summary.spans.is_some()))
-            }
+        if self.dem.is_none() {
+            height_bound(source.package.manifest(), source.level)
+        } else {
+            let tolerance_m = self.summary.height_tolerance_m.unwrap_or_default();
+            Some(dem_heights(tolerance_m, self.summary.spans.is_some()))
         }
     }
 
@@ -179,7 +196,14 @@ impl Features for Roads<'_> {
         tile: TileId,
     ) -> Result<Vec<Piece>, ExportError> {
         let mut found = Vec::new();
-        for piece in read::pieces(package, tile, &request.classes)? {
+        let is_meant = |piece: &Piece| {
+            self.meant.as_ref().is_none_or(|meant| meant.contains(&piece.key.way_id))
+        };
+        // Elevation files tell distances themselves.
+        let read = if self.dem.is_some() { read::pieces } else { read::bounded_pieces };
+        let mut pieces = read(package, tile, &request.classes)?;
+        pieces.retain(is_meant);
+        for piece in pieces {
             let cut = match &request.bounds {
                 None => vec![piece],
                 Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
@@ -239,9 +263,15 @@ impl OnDem<'_> {
                     _ => self.raised(piece.key.way_id, structure, &vertices),
                 };
                 let on_deck = raised.is_some();
-                let tolerance_m = if on_deck { 0.0 } else { tolerance_m };
-                let heights = PieceHeights { tolerance_m, ground_m, on_deck };
-                let vertices = raised.unwrap_or(vertices);
+                // A deck lies on the ground where that is in its way.
+                let is_on_ground = raised.as_ref().is_none_or(|line| line.is_on_ground);
+                let heights = PieceHeights {
+                    tolerance_m: tolerance_m.filter(|_| is_on_ground),
+                    ground_m,
+                    on_deck,
+                    has_deck: on_deck,
+                };
+                let vertices = raised.map_or(vertices, |line| line.vertices);
                 laid.push(Piece {
                     key: PieceKey { cut: laid.len() as u32, ..piece.key },
                     vertices,
@@ -260,7 +290,7 @@ impl OnDem<'_> {
         way_id: i64,
         structure: Structure,
         ground: &[Vertex],
-    ) -> Option<Vec<Vertex>> {
+    ) -> Option<RaisedLine> {
         let chains = self.chains.as_ref()?;
         if self.deck.as_ref().is_none_or(|(known, _)| *known != way_id) {
             self.deck = Some((way_id, chains.of_way(way_id)));
@@ -275,21 +305,44 @@ impl OnDem<'_> {
         let limit_pct = grade_limit(&of.attributes.highway);
         let free_height_m = self.free_heights_m.get(&of.key.way_id).copied();
         if of.attributes.structure != Structure::Ground && !of.heights.on_deck {
-            return Smooth { grades: None, is_of_chain: false, limit_pct, free_height_m };
+            return Smooth {
+                grades: None,
+                most_off_m: 0.0,
+                is_of_chain: false,
+                limit_pct,
+                free_height_m,
+            };
         }
         let mut parts = Vec::new();
+        let mut most_off_m = 0.0_f64;
         let mut is_of_chain = !way.is_empty();
         for Profiled { line, profile } in lines {
             let length_m = profile.last().map_or(0.0, |last| last[0]);
             let found = stretch_of_way(way, &line.vertices, length_m, self.most_steps);
             is_of_chain &= found.is_some();
-            match found {
-                Some(stretch) => parts.extend(way.iter().map(|line| line.part(stretch))),
-                None => parts.push(SmoothLine::of_profile(profile, self.smoothing)),
+            // A deck is smooth by itself, and on the ground where that is in its way.
+            if of.heights.on_deck {
+                parts.push(SmoothLine::itself(profile));
+                continue;
+            }
+            let Some([from_m, to_m]) = found else {
+                let own = SmoothLine::of_profile(profile, self.smoothing);
+                most_off_m = most_off_m.max(own.most_off_m(profile));
+                parts.push(own);
+                continue;
+            };
+            // Lines that are simplified are shorter than their ways.
+            let on_way = |&[at_m, height_m]: &[f64; 2]| {
+                [from_m + at_m * (to_m - from_m) / length_m, height_m]
+            };
+            let profile: Vec<[f64; 2]> = profile.iter().map(on_way).collect();
+            for own in way.iter().map(|line| line.part([from_m, to_m])) {
+                most_off_m = most_off_m.max(own.most_off_m(&profile));
+                parts.push(own);
             }
         }
         let grades = Some(SmoothGrades::of(&parts));
-        Smooth { grades, is_of_chain, limit_pct, free_height_m }
+        Smooth { grades, most_off_m, is_of_chain, limit_pct, free_height_m }
     }
 }
 
@@ -310,9 +363,11 @@ impl Roads<'_> {
         summary.features += 1;
         summary.length_2d_m += measures.length_2d_m;
         summary.vertices += measures.vertices_out;
-        summary.height_tolerance_m = summary.height_tolerance_m.max(heights.tolerance_m);
-        summary.ground_tolerance_m =
-            [summary.ground_tolerance_m, heights.ground_m].into_iter().flatten().reduce(f64::max);
+        let most = |one: Option<f64>, other: Option<f64>| {
+            [one, other].into_iter().flatten().reduce(f64::max)
+        };
+        summary.height_tolerance_m = most(summary.height_tolerance_m, heights.tolerance_m);
+        summary.ground_tolerance_m = most(summary.ground_tolerance_m, heights.ground_m);
         let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
         let road = Road {
             way_id: key.way_id,

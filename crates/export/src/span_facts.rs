@@ -1,8 +1,8 @@
 //! What is told of the bridges and tunnels of a network.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use corniche_spans::Decks;
+use corniche_spans::{Decks, FreeHeight, SpanProblem, SpanReason};
 
 /// How many bridges and tunnels a network has, and what is to be known of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,16 +13,35 @@ pub struct SpanFacts {
     pub crossings: u64,
     /// How often there is a reason to look at one, by its name.
     pub reasons: BTreeMap<&'static str, u64>,
+    /// The nodes at which a road on the ground meets a span and does not carry it, in order.
+    pub ground_nodes: Vec<i64>,
+}
+
+/// The bridges and tunnels that are told of: those of a package. Others are solved because these depend on them.
+#[derive(Debug, Default)]
+pub(crate) struct ToldSpans {
+    /// The numbers of these spans.
+    pub(crate) spans: BTreeSet<usize>,
+    /// The ids of all ways of these spans.
+    pub(crate) ways: BTreeSet<i64>,
 }
 
 impl SpanFacts {
-    pub(crate) fn of(decks: &Decks) -> Self {
+    pub(crate) fn of(decks: &Decks, told: &ToldSpans) -> Self {
+        let problems = decks.problems(&|way_id| told.ways.contains(&way_id));
         let mut reasons = BTreeMap::new();
-        for problem in decks.problems() {
+        for problem in &problems {
             *reasons.entry(problem.reason.id()).or_default() += 1;
         }
-        let crossings = decks.free_heights().len() as u64;
-        Self { spans: decks.spans().len() as u64, crossings, reasons }
+        let is_told = |found: &&FreeHeight| {
+            let both = [found.crossing.upper, found.crossing.lower];
+            both.iter().any(|place| place.kind.is_some() && told.ways.contains(&place.way_id))
+        };
+        let crossings = decks.free_heights().iter().filter(is_told).count() as u64;
+        let ground = |own: &&SpanProblem| own.reason == SpanReason::GroundWayOnDeck;
+        let nodes = problems.iter().filter(ground).filter_map(|own| own.node_id);
+        let ground_nodes = nodes.collect::<BTreeSet<i64>>().into_iter().collect();
+        Self { spans: told.spans.len() as u64, crossings, reasons, ground_nodes }
     }
 }
 

@@ -8,7 +8,7 @@ mod geopackage;
 mod map_style;
 mod whole;
 
-pub use cell::cell_text;
+pub use cell::{cell_text, is_unseen, text_in_line};
 pub use field::{Field, FieldKind};
 pub(crate) use field::{Record, Shape, ShapeKind, Value, fields};
 pub(crate) use file::{Layer, VectorFile};

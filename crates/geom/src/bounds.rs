@@ -73,6 +73,13 @@ impl Bounds {
         self.max_y - self.min_y
     }
 
+    /// A rectangle in degrees, in words.
+    #[must_use]
+    pub fn degrees_text(&self) -> String {
+        let [west, south, east, north] = self.to_array();
+        format!("longitudes {west:.5} to {east:.5} and latitudes {south:.5} to {north:.5}")
+    }
+
     /// The rectangle as `[min_x, min_y, max_x, max_y]`.
     #[must_use]
     pub fn to_array(self) -> [f64; 4] {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Bounds, ProjectError, Projection, Seam, wgs84};
+use crate::{Bounds, ProjectError, Projection, Seam, line_length_m, ring_area_m2, wgs84};
 
 /// WGS84 positions sampled over the working CRS, from which a reader interpolates both ways without PROJ.
 ///
@@ -202,6 +202,20 @@ impl CoordinateTable {
             }
         }
         sum
+    }
+
+    /// True length of the straight line between two positions in the working CRS, metres.
+    #[must_use]
+    pub fn line_length_m(&self, ends: [[f64; 2]; 2]) -> f64 {
+        line_length_m(ends, &|at| self.wgs84_from_working(at))
+    }
+
+    /// True area inside a closed line of positions in the working CRS, square metres; negative for a clockwise one.
+    #[must_use]
+    pub fn ring_area_m2(&self, ring: &[[f64; 2]]) -> f64 {
+        let degrees = |at| self.wgs84_from_working(at);
+        let ring_deg: Vec<[f64; 2]> = ring.iter().copied().map(degrees).collect();
+        ring_area_m2(&ring_deg, &|side| side.map(|corner| ring[corner]), &degrees)
     }
 
     /// Working metres to a true metre at a position, along the working CRS's east and north: by how far longitude and

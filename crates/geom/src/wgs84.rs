@@ -47,15 +47,23 @@ pub fn short_distance_m(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
 #[must_use]
 pub fn area_m2(ring_deg: &[[f64; 2]]) -> f64 {
     let next = ring_deg.iter().cycle().skip(1);
-    let doubled: f64 = ring_deg
-        .iter()
-        .zip(next)
-        .map(|(from, to)| {
-            let turns = (to[0] - from[0]) / 360.0;
-            let east = ((turns - turns.round()) * 360.0).to_radians();
-            east * (equal_area_latitude(from[1]) + equal_area_latitude(to[1]))
-        })
-        .sum();
+    let doubled: f64 = ring_deg.iter().zip(next).map(|(&from, &to)| doubled_beside(from, to)).sum();
+    half_of_doubled_m2(doubled)
+}
+
+/// What the side between two corners adds to [`area_m2`].
+#[must_use]
+pub fn area_beside_m2(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
+    half_of_doubled_m2(doubled_beside(from_deg, to_deg))
+}
+
+fn doubled_beside(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
+    let turns = (to_deg[0] - from_deg[0]) / 360.0;
+    let east = ((turns - turns.round()) * 360.0).to_radians();
+    east * (equal_area_latitude(from_deg[1]) + equal_area_latitude(to_deg[1]))
+}
+
+fn half_of_doubled_m2(doubled: f64) -> f64 {
     // Going east, what lies between the line and the equator counts as outside.
     -doubled / 2.0 * SEMI_MAJOR_M * SEMI_MAJOR_M / 2.0
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use corniche_geom::{IndexLists, LatticePoint};
+use corniche_geom::{IndexLists, LatticeBounds, LatticePoint};
 use corniche_roads::Structure;
 
 use crate::network::{Network, NetworkWay, NodeNumber};
@@ -60,8 +60,8 @@ pub struct Chains {
 const NO_PLACE: u32 = u32::MAX;
 
 impl Chains {
-    /// The chains of a network, ordered by the nodes at which they begin. What they are does not depend on the order, the direction or the
-    /// splitting of ways.
+    /// The chains of a network, ordered by the nodes at their ends, and those between the same two by their points. What they are and their order
+    /// do not depend on the order, the direction or the splitting of ways.
     #[must_use]
     pub fn of(network: &Network, breaks: Breaks) -> Self {
         let mut chains = Self {
@@ -83,7 +83,35 @@ impl Chains {
                 }
             }
         }
-        chains
+        chains.sorted(network)
+    }
+
+    /// The same chains in the order of their ends, then of their points.
+    fn sorted(self, network: &Network) -> Self {
+        let mut order: Vec<ChainNumber> = self.numbers().collect();
+        let points =
+            |number| self.get(number).links.iter().flat_map(|&link| network.points_of_link(link));
+        order.sort_by(|&one, &other| {
+            let ends = self.get(one).ends.cmp(&self.get(other).ends);
+            ends.then_with(|| points(one).cmp(points(other)))
+        });
+        let mut sorted = Self {
+            links: Vec::with_capacity(self.links.len()),
+            starts: Vec::with_capacity(self.starts.len()),
+            ends: Vec::with_capacity(self.ends.len()),
+            places: self.places.clone(),
+        };
+        sorted.starts.push(0);
+        for number in order {
+            let Chain { ends, links } = self.get(number);
+            for (place, link) in (sorted.links.len()..).zip(links) {
+                sorted.places[link.stretch as usize] = place as u32;
+            }
+            sorted.links.extend(links);
+            sorted.starts.push(sorted.links.len());
+            sorted.ends.push(ends);
+        }
+        sorted
     }
 
     /// Adds the chain that leaves a node with an end of a stretch.
@@ -185,11 +213,56 @@ impl Chains {
     }
 }
 
+/// How long chains are, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChainLengths {
+    /// The length of each chain.
+    pub chains_m: Vec<f64>,
+    /// Where each link begins and ends along its chain, by [`Chains::place_of`].
+    pub links_m: Vec<[f64; 2]>,
+}
+
+impl Chains {
+    /// Lengths by the distances between neighbouring points, in lattice steps. Sums run along whole chains: those of links would depend, in the last
+    /// bit, on where ways are split.
+    #[must_use]
+    pub fn lengths(
+        &self,
+        network: &Network,
+        distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+    ) -> ChainLengths {
+        let mut lengths = ChainLengths {
+            chains_m: Vec::with_capacity(self.len()),
+            links_m: Vec::with_capacity(self.link_count()),
+        };
+        for number in self.numbers() {
+            let mut along_m = 0.0;
+            for &link in self.get(number).links {
+                let from_m = along_m;
+                let points: Vec<LatticePoint> = network.points_of_link(link).collect();
+                for [from, to] in points.array_windows() {
+                    along_m += distance_m(from.in_steps(), to.in_steps());
+                }
+                lengths.links_m.push([from_m, along_m]);
+            }
+            lengths.chains_m.push(along_m);
+        }
+        lengths
+    }
+}
+
 impl Network {
     /// The road of a link.
     #[must_use]
     pub fn way_of(&self, link: Link) -> &NetworkWay {
         &self.ways[self.way_of_stretch(link.stretch)]
+    }
+
+    /// The nodes at both ends of a link, in the direction of the chain.
+    #[must_use]
+    pub fn nodes_of_link(&self, link: Link) -> [NodeNumber; 2] {
+        let [first, last] = self.stretch_nodes(link.stretch).map(NodeNumber);
+        if link.is_against { [last, first] } else { [first, last] }
     }
 
     /// What carries a chain of [`Breaks::JunctionsAndStructures`].
@@ -207,6 +280,13 @@ impl Network {
         let count = last + 1 - first;
         let at = move |k: usize| if link.is_against { last - k } else { first + k };
         (0..count).map(move |k| self.points[at(k)])
+    }
+
+    /// Whether a box around a chain has a place of some bounds.
+    #[must_use]
+    pub fn reaches(&self, chain: &Chain<'_>, bounds: &LatticeBounds) -> bool {
+        let points = self.points_of_chain(chain);
+        LatticeBounds::of(&points).is_some_and(|own| own.intersects(bounds))
     }
 
     /// The points of a chain, each once.

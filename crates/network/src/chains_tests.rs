@@ -1,7 +1,7 @@
 //! Chains are those of small networks drawn by hand, however their ways are split, turned and named.
 
 use corniche_geom::Polyline;
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
 use proptest::prelude::*;
 
 use super::*;
@@ -18,6 +18,7 @@ fn road(way_id: i64, node_ids: &[i64], structure: Structure) -> Road {
         fixed: (0..node_ids.len() as u32).collect(),
         node_ids: node_ids.iter().copied().map(Some).collect(),
         same_places: Vec::new(),
+        met: MetNodes::default(),
     }
 }
 
@@ -45,6 +46,50 @@ fn nodes_of(network: &Network, breaks: Breaks) -> Vec<Vec<i64>> {
         .collect();
     all.sort();
     all
+}
+
+/// The points of all chains in their order and direction, without rings that have no junction: these begin where a way does.
+fn in_order(network: &Network) -> Vec<Vec<LatticePoint>> {
+    let chains = Chains::of(network, Breaks::Junctions);
+    let all = chains.numbers().map(|number| chains.get(number));
+    all.filter(|chain| !chain.is_closed() || network.degree(chain.ends[0]) > 2)
+        .map(|chain| network.points_of_chain(&chain))
+        .collect()
+}
+
+/// Two ways between the same two nodes have the order of their points, whatever their ids.
+#[test]
+fn chains_between_the_same_nodes_do_not_have_the_order_of_ways() {
+    let ground = Structure::Ground;
+    let orders = [[1, 2, 3], [3, 2, 1], [2, 3, 1], [2, 1, 3]].map(|ids: [i64; 3]| {
+        let shapes: [&[i64]; 3] = [&[1, 5, 2], &[2, 3, 1], &[1, 4, 2]];
+        let mut roads: Vec<Road> =
+            ids.into_iter().zip(shapes).map(|(id, nodes)| road(id, nodes, ground)).collect();
+        roads.sort_by_key(|road| road.way_id);
+        in_order(&network(&roads))
+    });
+    let middles: Vec<i64> = orders[0].iter().map(|points| points[1].u / 1000).collect();
+    assert_eq!(middles, [3, 4, 5]);
+    assert!(orders.iter().all(|order| *order == orders[0]));
+}
+
+/// Where roads are cut, ends have no node: they are numbered by where they lie.
+#[test]
+fn ends_without_a_node_do_not_have_the_order_of_ways() {
+    let orders = [[1, 2], [2, 1]].map(|ids: [i64; 2]| {
+        let mut roads: Vec<Road> = ids
+            .into_iter()
+            .zip([[2, 7], [3, 6]])
+            .map(|(id, nodes)| Road {
+                node_ids: vec![None; 2],
+                ..road(id, &nodes, Structure::Ground)
+            })
+            .collect();
+        roads.sort_by_key(|road| road.way_id);
+        in_order(&network(&roads))
+    });
+    assert_eq!(orders[0], orders[1]);
+    assert_eq!(orders[0].iter().map(|points| points[0].u / 1000).collect::<Vec<_>>(), [2, 3]);
 }
 
 #[test]
@@ -178,8 +223,11 @@ proptest! {
         parts.reverse();
         let split: Vec<Road> =
             (1..).zip(&parts).map(|(id, line)| road(id, line, Structure::Ground)).collect();
-        let [one, other] = [network(&whole), network(&split)].map(|network| nodes_of(&network, Breaks::Junctions));
+        let both = [network(&whole), network(&split)];
+        let [one, other] = both.each_ref().map(|network| nodes_of(network, Breaks::Junctions));
         // A ring without a junction may be walked in either direction, which `nodes_of` evens out.
+        prop_assert_eq!(one, other);
+        let [one, other] = both.each_ref().map(in_order);
         prop_assert_eq!(one, other);
     }
 }

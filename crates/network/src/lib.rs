@@ -20,6 +20,6 @@ mod chains;
 mod network;
 mod network_builder;
 
-pub use chains::{Breaks, Chain, ChainNumber, Chains, Link};
+pub use chains::{Breaks, Chain, ChainLengths, ChainNumber, Chains, Link};
 pub use network::{Network, NetworkWay, NodeNumber};
 pub use network_builder::NetworkBuilder;

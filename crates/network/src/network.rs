@@ -48,9 +48,24 @@ pub struct Network {
     /// stop at which it begins.
     pub(crate) ends_at: IndexLists,
     pub(crate) highways: Vec<String>,
+    /// What carries its bridges and tunnels, where that is more than itself.
+    pub(crate) of_spans: Option<Box<Network>>,
 }
 
 impl Network {
+    /// The same, whose bridges and tunnels are those of another network: with ways that are none of its own, but carry them or cross them.
+    #[must_use]
+    pub fn with_spans(self, of_spans: Self) -> Self {
+        Self { of_spans: Some(Box::new(of_spans)), ..self }
+    }
+
+    /// The network in which bridges and tunnels are solved: itself, or that of [`Network::with_spans`], which has roads of the same ways with the same
+    /// points, as far as they are near bridges and tunnels.
+    #[must_use]
+    pub fn of_spans(&self) -> &Self {
+        self.of_spans.as_deref().unwrap_or(self)
+    }
+
     /// The ways, ascending by id.
     #[must_use]
     pub fn ways(&self) -> &[NetworkWay] {

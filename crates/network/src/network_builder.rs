@@ -73,15 +73,24 @@ impl NetworkBuilder {
         let mut node_ids: Vec<i64> = stop_ids.iter().copied().flatten().collect();
         node_ids.sort_unstable();
         node_ids.dedup();
-        let mut nodes = node_ids.len();
-        let mut number = |id: Option<i64>| {
-            if let Some(id) = id {
-                return node_ids.partition_point(|&known| known < id) as u32;
-            }
-            nodes += 1;
-            nodes as u32 - 1
+        let number = |id: &Option<i64>| {
+            id.map_or(0, |id| node_ids.partition_point(|&known| known < id) as u32)
         };
-        let stop_nodes: Vec<u32> = stop_ids.into_iter().map(&mut number).collect();
+        let mut stop_nodes: Vec<u32> = stop_ids.iter().map(number).collect();
+        // Places that are no nodes come after them, by where they are: not in the order of ways.
+        let mut others: Vec<(LatticePoint, usize)> = Vec::new();
+        for way in &ways {
+            let without_id = way.stops.clone().filter(|&stop| stop_ids[stop].is_none());
+            others.extend(
+                without_id
+                    .map(|stop| (points[way.points.start + stop_points[stop] as usize], stop)),
+            );
+        }
+        others.sort_unstable();
+        for (number, &(_, stop)) in (node_ids.len()..).zip(&others) {
+            stop_nodes[stop] = number as u32;
+        }
+        let nodes = node_ids.len() + others.len();
         // The last stop of a road begins no stretch.
         let mut begins = vec![true; stop_points.len()];
         for way in &ways {
@@ -98,6 +107,17 @@ impl NetworkBuilder {
         for (text, number) in highways {
             texts[number as usize] = text;
         }
-        Network { ways, points, stop_points, stop_nodes, node_ids, nodes, ends_at, highways: texts }
+        let (highways, of_spans) = (texts, None);
+        Network {
+            ways,
+            points,
+            stop_points,
+            stop_nodes,
+            node_ids,
+            nodes,
+            ends_at,
+            highways,
+            of_spans,
+        }
     }
 }

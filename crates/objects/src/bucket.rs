@@ -1,20 +1,40 @@
 //! A bucket of object storage: its objects are listed, found, read and created here.
 
-use std::{fmt, ops::Range, sync::Arc, thread, time::Duration};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    ops::Range,
+    sync::Arc,
+    thread,
+    time::{Duration, Instant},
+};
 
 use bytes::Bytes;
 use object_store::{
-    Attribute, AttributeValue, Error, GetOptions, GetRange, GetResult, ObjectStore, PutMode,
-    PutOptions,
+    Attribute, AttributeValue, Error, GetOptions, GetRange, GetResult, HeaderValue, ObjectStore,
+    PutMode, PutOptions,
     aws::{AmazonS3, S3ConditionalPut},
+    list::{PaginatedListOptions, PaginatedListStore as _},
     path::Path as Key,
 };
 use tokio::runtime::{Builder, Runtime};
 
 use crate::{
     ObjectAddress, ObjectError, Requests, StorageSettings,
-    watch::{AtTheEnd, Counter, NoMachineCredentials, RangeIgnored, Refusal, Watch},
+    watch::{
+        AnswerTooLarge, AtTheEnd, BadAnswer, Counter, NoMachineCredentials, RangeIgnored, Refusal,
+        Watch, check_name,
+    },
 };
+
+/// Names directly beneath a prefix that are listed: many times as many as the parts of the largest plan.
+const MOST_LISTED: usize = 100_000;
+/// Pages in a row without a new name: servers that look for names may give some.
+const MOST_EMPTY_PAGES: u32 = 8;
+/// Answers that a list may take; a server gives a thousand names in each.
+const MOST_PAGES: usize = 1_000;
+/// How long a list may take.
+const LIST_WITHIN: Duration = Duration::from_mins(10);
 
 /// What tells apart who wrote an object: metadata with a random number.
 pub(crate) const WRITER: &str = "corniche-writer";
@@ -36,7 +56,7 @@ pub struct Bucket {
     /// Ends uploads in any case.
     pub(crate) replacing: Arc<AmazonS3>,
     pub(crate) runtime: Arc<Runtime>,
-    first_pause: Duration,
+    pub(crate) first_pause: Duration,
 }
 
 /// An object that was found.
@@ -114,18 +134,46 @@ impl Bucket {
     pub fn list(&self, prefix: &str) -> Result<(Vec<Found>, Vec<String>), ObjectError> {
         let failed = |error| self.explain(prefix, "list", error);
         let path = Self::path(prefix).map_err(failed)?;
-        let listed = self.runtime.block_on(self.keeping.list_with_delimiter(Some(&path)));
-        let listed = listed.map_err(failed)?;
-        let found = listed.objects.into_iter().map(|object| Found {
-            key: object.location.to_string(),
-            length: object.size,
-            etag: object.e_tag,
-        });
-        let folders = listed.common_prefixes.into_iter().map(|path| path.to_string());
-        let (mut found, mut folders): (Vec<_>, Vec<_>) = (found.collect(), folders.collect());
-        found.sort_by(|a, b| a.key.cmp(&b.key));
-        folders.sort();
-        Ok((found, folders))
+        let prefix = if prefix.is_empty() { String::new() } else { format!("{path}/") };
+        let (mut found, mut folders) = (BTreeMap::new(), BTreeSet::new());
+        let begun = Instant::now();
+        let (mut page_token, mut without_names) = (None, 0);
+        for _ in 0..MOST_PAGES {
+            let options = PaginatedListOptions {
+                delimiter: Some("/".into()),
+                page_token: page_token.clone(),
+                ..PaginatedListOptions::default()
+            };
+            let page = self.keeping.list_paginated(Some(prefix.as_str()), options);
+            let page = self.runtime.block_on(page).map_err(failed)?;
+            let names = page.result.objects.iter().map(|object| object.location.as_ref());
+            let token = page.page_token.as_deref().map(|token| ("the name of a page", token));
+            for (of, name) in names.map(|name| ("the name of an object", name)).chain(token) {
+                check_name(of, name).map_err(|bad| self.bad_answer(&prefix, &bad))?;
+            }
+            let before = found.len() + folders.len();
+            found.extend(page.result.objects.into_iter().filter_map(|object| {
+                let (key, length) = (object.location.to_string(), object.size);
+                // One that no request can be made with says nothing.
+                let etag = object.e_tag.filter(|etag| HeaderValue::from_str(etag).is_ok());
+                // Programs that show folders make an object for the prefix itself.
+                let is_beneath = key.len() > prefix.trim_end_matches('/').len();
+                is_beneath.then(|| (key.clone(), Found { key, length, etag }))
+            }));
+            folders.extend(page.result.common_prefixes.iter().map(ToString::to_string));
+            if page.page_token.is_none() {
+                return Ok((found.into_values().collect(), folders.into_iter().collect()));
+            }
+            let count = found.len() + folders.len();
+            without_names = if count == before { without_names + 1 } else { 0 };
+            let is_stuck = page.page_token == page_token || without_names > MOST_EMPTY_PAGES;
+            if is_stuck || count > MOST_LISTED || begun.elapsed() > LIST_WITHIN {
+                break;
+            }
+            page_token = page.page_token;
+        }
+        let (name, count) = (self.address(&prefix).to_string(), found.len() + folders.len());
+        Err(ObjectError::EndlessList { name, count })
     }
 
     /// An object's length and `ETag`; `None` if it is not there.
@@ -259,6 +307,12 @@ impl Bucket {
             if found.is::<RangeIgnored>() {
                 return ObjectError::NoRanges { name };
             }
+            if let Some(AnswerTooLarge { most }) = found.downcast_ref() {
+                return ObjectError::TooMuchSent { name, most: *most };
+            }
+            if let Some(bad) = found.downcast_ref() {
+                return self.bad_answer(key, bad);
+            }
             if found.is::<NoMachineCredentials>() {
                 return ObjectError::NoCredentials { name };
             }
@@ -270,6 +324,10 @@ impl Bucket {
             Error::AlreadyExists { .. } => ObjectError::Exists { name },
             error => ObjectError::Failed { doing, name, source: Box::new(error) },
         }
+    }
+
+    fn bad_answer(&self, key: &str, BadAnswer(what): &BadAnswer) -> ObjectError {
+        ObjectError::BadAnswer { name: self.address(key).to_string(), what: what.clone() }
     }
 
     fn refused(&self, name: String, refusal: &Refusal) -> ObjectError {

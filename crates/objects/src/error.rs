@@ -41,6 +41,22 @@ pub enum ObjectError {
         "{name}: the server delivers {got} bytes of {wanted} again and again; run the same command later, or tell who runs the server"
     )]
     Short { name: String, got: u64, wanted: u64 },
+    #[error(
+        "{name}: the server's list of what is there does not end ({count} names so far); use another prefix, or tell who runs the server"
+    )]
+    EndlessList { name: String, count: usize },
+    #[error(
+        "{name}: the server sends more than the {most} bytes that such an answer can have; use another endpoint, or tell who runs the server"
+    )]
+    TooMuchSent { name: String, most: u64 },
+    #[error(
+        "{name}: the server's answer cannot be right ({what}); use another endpoint, or tell who runs the server"
+    )]
+    BadAnswer { name: String, what: String },
+    #[error(
+        "{name}: the server says that it has stored it, but {found}; use another endpoint, or tell who runs the server"
+    )]
+    NotStored { name: String, found: String },
     #[error("{name} exists already; give -O to replace it")]
     Exists { name: String },
     #[error(

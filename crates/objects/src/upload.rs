@@ -5,6 +5,7 @@ use std::{
     io::{self, Read, Write as _},
     path::{Path, PathBuf},
     sync::Arc,
+    thread,
     time::Duration,
 };
 
@@ -17,7 +18,7 @@ use object_store::{
 };
 use tokio::{task::JoinSet, time::timeout};
 
-use crate::{Bucket, ObjectError};
+use crate::{Bucket, ObjectError, watch::check_name};
 
 /// What is sent in one request. S3 wants at least 5 MiB of all parts but the last.
 const PART_BYTES: u64 = 8 << 20;
@@ -83,7 +84,7 @@ impl Bucket {
             self.send_in_parts(upload, (&object, length), &mut file, &writer, &note)
         };
         match sent {
-            Ok(()) => Ok(length),
+            Ok(()) => self.check_stored(key, length, &writer),
             Err(Ended::Stopped) => Err(ObjectError::Stopped { name: address }),
             Err(Ended::File(source)) => Err(file_failed("read")(source)),
             Err(Ended::Note(source)) => {
@@ -107,6 +108,29 @@ impl Bucket {
         }
     }
 
+    /// Looks for what was sent: that a server says it has stored something proves nothing. Returns its length.
+    fn check_stored(&self, key: &str, length: u64, writer: &str) -> Result<u64, ObjectError> {
+        /// Not every server shows at once what it has.
+        const TRIES: u32 = 4;
+        let name = self.address(key).to_string();
+        let mut found = String::new();
+        for pause in 0..TRIES {
+            if pause > 0 {
+                thread::sleep(self.first_pause * (1 << pause));
+            }
+            found = match self.look(key)? {
+                None => "it is not there".to_owned(),
+                Some((there, _)) if there.length != length => {
+                    format!("it has {} bytes in place of {length}", there.length)
+                }
+                // Not every server keeps who wrote it.
+                Some((_, Some(by))) if by != writer => return Err(ObjectError::Changed { name }),
+                Some(_) => return Ok(length),
+            };
+        }
+        Err(ObjectError::NotStored { name, found })
+    }
+
     fn send_in_parts(
         &self,
         upload: &Upload<'_>,
@@ -123,6 +147,8 @@ impl Bucket {
         let options = PutMultipartOptions { attributes, ..PutMultipartOptions::default() };
         let begun = storage.create_multipart_opts(object, options);
         let id = self.runtime.block_on(begun).map_err(Ended::Storage)?;
+        check_name("the name of an upload", &id)
+            .map_err(|bad| Ended::Storage(Error::Generic { store: "S3", source: Box::new(bad) }))?;
         let sent = note.write(upload.key, &id).map_err(Ended::Note).and_then(|()| {
             let parts = send_parts(storage, (object, &id), file, length, upload.should_stop);
             let parts = self.runtime.block_on(parts)?;

@@ -1,16 +1,21 @@
-//! Between `object_store` and the network: what passes is counted, and four things are done that `object_store` does not do.
+//! Between `object_store` and the network: what passes is counted, and five things are done that `object_store` does not do.
 //!
 //! - The end of an upload in parts is made conditional (`If-None-Match: *`). S3 knows that, `object_store` asks for it only when it copies.
 //! - That two write one object at the same moment (409) is no answer yet: the request is made again, and then one of them was first.
 //! - A refusal that no repetition can change ends at once, and with the words that S3 has for it.
+//! - An answer ends with an error where it has more bytes than such an answer can have.
 //! - A request that was cut off is made again also where it may have arrived: every request of this crate can be made twice.
 
 use std::{
     collections::BTreeMap,
+    pin::Pin,
     sync::{Arc, Mutex, PoisonError},
+    task::{Context, Poll, ready},
 };
 
 use async_trait::async_trait;
+use bytes::Bytes;
+use http_body::{Body, Frame, SizeHint};
 use object_store::{
     ClientOptions, HeaderValue,
     client::{
@@ -89,6 +94,97 @@ pub(crate) struct Refusal {
 #[error("the answer holds the whole object instead of the range that was asked for")]
 pub(crate) struct RangeIgnored;
 
+/// The answer has more bytes than it can have.
+#[derive(Debug, thiserror::Error)]
+#[error("the answer has more than {most} bytes")]
+pub(crate) struct AnswerTooLarge {
+    pub(crate) most: u64,
+}
+
+/// The answer says what no honest one does.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct BadAnswer(pub(crate) String);
+
+/// Names of objects have 1024 bytes at most, names of uploads and pages fewer than this. `object_store` puts them into addresses of requests, and panics where
+/// these are too long.
+const LONGEST_NAME_BYTES: usize = 8192;
+
+/// Refuses what is too long for a name.
+pub(crate) fn check_name(of: &str, name: &str) -> Result<(), BadAnswer> {
+    if name.len() <= LONGEST_NAME_BYTES {
+        return Ok(());
+    }
+    Err(BadAnswer(format!("{of} of {} bytes", name.len())))
+}
+
+/// Whether a range of bytes ends where one can; `object_store` adds one to it.
+fn is_possible(content_range: &HeaderValue) -> bool {
+    let text = content_range.to_str().unwrap_or_default();
+    let last = text.split_once('-').and_then(|(_, rest)| rest.split('/').next()?.parse().ok());
+    last.is_none_or(|last: u64| i64::try_from(last).is_ok())
+}
+
+/// A list has a thousand names of 1024 bytes at most, written as XML; a whole object that is read at once is small.
+const MOST_WHOLE_BYTES: u64 = 64 << 20;
+/// All else has some words.
+const MOST_WORDS_BYTES: u64 = 1 << 20;
+
+/// The most bytes that the body of an answer can have.
+fn most_bytes(request: &HttpRequest) -> u64 {
+    let range = request.headers().get("range").and_then(|range| range.to_str().ok());
+    let ends = range.and_then(|range| range.strip_prefix("bytes=")?.split_once('-'));
+    let length = ends.and_then(|(first, last)| {
+        last.parse::<u64>().ok()?.checked_sub(first.parse().ok()?)?.checked_add(1)
+    });
+    match length {
+        Some(length) => length.max(MOST_WORDS_BYTES),
+        None if request.method().as_str() == "GET" => MOST_WHOLE_BYTES,
+        None => MOST_WORDS_BYTES,
+    }
+}
+
+/// The body of an answer, which fails beyond so many bytes.
+struct Bounded {
+    body: HttpResponseBody,
+    most: u64,
+    left: u64,
+}
+
+impl Body for Bounded {
+    type Data = Bytes;
+    type Error = HttpError;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, HttpError>>> {
+        let frame = ready!(Pin::new(&mut self.body).poll_frame(context));
+        let bytes = match &frame {
+            Some(Ok(frame)) => frame.data_ref().map_or(0, Bytes::len) as u64,
+            _ => 0,
+        };
+        Poll::Ready(if let Some(left) = self.left.checked_sub(bytes) {
+            self.left = left;
+            frame
+        } else {
+            let most = self.most;
+            Some(Err(HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most })))
+        })
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        // What the server claims is not made room for.
+        let mut hint = SizeHint::new();
+        hint.set_lower(self.body.size_hint().lower().min(self.most));
+        hint
+    }
+}
+
 /// This machine gives no credentials.
 #[derive(Debug, thiserror::Error)]
 #[error("no credentials are set, and this machine gives none")]
@@ -107,6 +203,7 @@ impl HttpService for Watched {
             // Only headers that begin with x-amz- must be signed.
             request.headers_mut().insert("if-none-match", HeaderValue::from_static("*"));
         }
+        let most = most_bytes(&request);
         let sent_bytes = request.body().content_length() as u64;
         self.counter.change(|counts| {
             *counts.by_method.entry(method.as_str().to_owned()).or_default() += 1;
@@ -129,6 +226,16 @@ impl HttpService for Watched {
         if method.as_str() != "HEAD" {
             self.counter.change(|counts| counts.received_bytes += received.unwrap_or_default());
         }
+        if received.is_some_and(|length| length > most) && method.as_str() != "HEAD" {
+            return Err(HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most }));
+        }
+        if response.headers().get("content-range").is_some_and(|range| !is_possible(range)) {
+            let bad = BadAnswer("a range that ends beyond any object".to_owned());
+            return Err(HttpError::new(HttpErrorKind::Decode, bad));
+        }
+        let (parts, body) = response.into_parts();
+        let body = HttpResponseBody::new(Bounded { body, most, left: most });
+        let response = HttpResponse::from_parts(parts, body);
         let status = response.status();
         if has_range && status.as_u16() == 200 {
             return Err(HttpError::new(HttpErrorKind::Decode, RangeIgnored));

@@ -13,3 +13,10 @@ fn the_words_of_an_answer_are_found_and_kept_short() {
     let long = format!("<Message>{}</Message>", "ö".repeat(5000));
     assert_eq!(element(&long, "Message").chars().count(), 200);
 }
+
+#[test]
+fn ranges_end_where_objects_can() {
+    let is = |text: &str| is_possible(&HeaderValue::from_str(text).unwrap());
+    assert!(is("bytes 0-47/100") && is("bytes */100") && is("what is this"));
+    assert!(!is("bytes 0-18446744073709551615/5"));
+}

@@ -42,6 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         others: &[],
         table: &table,
         place: &to_lattice,
+        ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
         node_ids: false,
         pool: &pool,

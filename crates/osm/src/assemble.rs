@@ -2,12 +2,16 @@
 
 use std::ops::Range;
 
-use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, split_at_seam, wgs84};
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
+use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, line_length_m, split_at_seam};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location, location::Location, read_request::Placing,
-    records::Stop, self_crossings::self_crossings, way_bytes::WayKind,
+    Defect, LeftOutReason, ReadOsmError, location,
+    location::Location,
+    read_request::Placing,
+    records::Stop,
+    self_crossings::self_crossings,
+    way_bytes::{LeftOutWay, WayKind},
 };
 
 /// A way without its nodes.
@@ -24,6 +28,7 @@ pub(crate) struct PlainWay {
 /// What became of one way.
 #[derive(Debug, Default)]
 pub(crate) struct Assembled {
+    /// Its roads; a way that is left out has those that carry bridges and tunnels.
     pub(crate) roads: Vec<Road>,
     pub(crate) defects: Vec<Defect>,
     /// Why a way is left out, its `highway` value and its length in micrometres.
@@ -37,8 +42,12 @@ pub(crate) fn assemble(
     placing: Placing<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
-    let is_road = |way: &&PlainWay| matches!(way.kind, WayKind::Road(..));
-    let stops = some.iter().filter(is_road).flat_map(stops_of);
+    let has_line = |way: &&PlainWay| match &way.kind {
+        WayKind::Road(..) => true,
+        // It is joined to others by the ids of its nodes.
+        WayKind::LeftOut(way_kind) => way_kind.carrier.is_some() && !way.node_ids.is_empty(),
+    };
+    let stops = some.iter().filter(has_line).flat_map(stops_of);
     let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
     let points = (placing.place)(&positions_deg);
     if points.len() != positions_deg.len() {
@@ -46,30 +55,41 @@ pub(crate) fn assemble(
     }
     let mut points = points.into_iter();
     let assemble = |way: PlainWay| {
+        let has_line = has_line(&&way);
         let PlainWay { way_id, kind, node_ids, stops } = way;
         let stops = &all_stops[stops];
         match kind {
             WayKind::Road(class, attributes) => {
-                let what = What { way_id, class, attributes, node_ids: &node_ids };
+                let (node_ids, is_carrier) = (&*node_ids, false);
+                let what = What { way_id, class, attributes, node_ids, is_carrier };
                 assemble_way(what, stops, &mut points, placing.seam)
             }
-            WayKind::LeftOut(reason, highway) => {
-                let left_out =
-                    Some((reason, highway, length_um(stops.iter().map(|stop| stop.location))));
-                Assembled { left_out, ..Assembled::default() }
+            WayKind::LeftOut(LeftOutWay { reason, highway, carrier }) => {
+                let length_um = length_um(stops.iter().map(|stop| stop.location));
+                let mut roads = Vec::new();
+                if let Some((structure, layer)) = carrier.filter(|_| has_line) {
+                    let of_tags = RoadAttributes { structure, layer, ..RoadAttributes::default() };
+                    let attributes = RoadAttributes { highway: highway.clone(), ..of_tags };
+                    let (class, node_ids) = (FunctionalRoadClass::LEAST, &*node_ids);
+                    let what = What { way_id, class, attributes, node_ids, is_carrier: true };
+                    roads = assemble_way(what, stops, &mut points, placing.seam).roads;
+                }
+                let left_out = Some((reason, highway, length_um));
+                Assembled { roads, left_out, ..Assembled::default() }
             }
         }
     };
     Ok(some.into_iter().map(assemble).collect())
 }
 
-/// The true length of a way, micrometres, segment by segment as those of roads; without those at a node that has no place.
+/// The true length of a way that has no place on a map, micrometres: of straight segments in degrees, without those at a node that has no place.
 pub(crate) fn length_um(locations: impl Iterator<Item = Location>) -> u64 {
     const UM: f64 = 1e6;
-    let (mut sum, mut last) = (0, None);
+    let (mut sum, mut last): (u64, Option<[f64; 2]>) = (0, None);
     for place in locations.map(location::degrees) {
         if let (Some(from), Some(to)) = (last, place) {
-            sum += (wgs84::short_distance_m(from, to) * UM).round() as u64;
+            let to = [Seam::of_degrees().around(from[0]).image(to[0]), to[1]];
+            sum += (line_length_m([from, to], &|at| at) * UM).round() as u64;
         }
         last = place;
     }
@@ -83,6 +103,8 @@ struct What<'a> {
     attributes: RoadAttributes,
     /// One for each stop, or none.
     node_ids: &'a [i64],
+    /// Whether it is left out, and carries bridges and tunnels: then all count that it may carry or meet.
+    is_carrier: bool,
 }
 
 /// A node of a way on the lattice.
@@ -91,6 +113,8 @@ struct PlacedNode {
     point: LatticePoint,
     /// Two roads name it, or one does twice; a cut at the seam must stay, too.
     is_fixed: bool,
+    /// The same of roads and ways that carry them.
+    is_met: bool,
     /// `None` for a cut at the seam, and where ids are not wanted.
     id: Option<i64>,
 }
@@ -105,7 +129,8 @@ impl OnSeamedMap for PlacedNode {
     }
 
     fn towards(self, other: Self, share: f64) -> Self {
-        Self { point: self.point.towards(other.point, share), is_fixed: true, id: None }
+        let point = self.point.towards(other.point, share);
+        Self { point, is_fixed: true, is_met: false, id: None }
     }
 
     fn is_at(&self, other: &Self) -> bool {
@@ -131,7 +156,7 @@ fn assemble_way(
     let mut assembled = Assembled::default();
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
     let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::with_capacity(stops.len())];
-    let mut same_places = Vec::new();
+    let (mut same_places, mut met_places) = (Vec::new(), Vec::new());
     for (index, stop) in stops.iter().enumerate() {
         // The node has a position: the next one of the placed points.
         let is_known = location::degrees(stop.location).is_some();
@@ -140,18 +165,21 @@ fn assemble_way(
             (Some(point), Some(piece)) => match piece.last_mut() {
                 Some(last) if last.point == point => {
                     duplicates += 1;
-                    let id = way.node_ids.get(index).copied();
+                    let next = way.placed(point, index, stop);
+                    let pair = last.id.zip(next.id).map(|(one, other)| [one, other]);
                     // Of several nodes at one place, those count at which other roads may join.
-                    if stop.is_shared() && last.is_fixed {
-                        same_places.extend(last.id.zip(id).map(|(one, other)| [one, other]));
-                    } else if stop.is_shared() {
-                        (last.is_fixed, last.id) = (true, id);
+                    if next.is_fixed && last.is_fixed {
+                        same_places.extend(pair);
+                    } else if next.is_met && last.is_met {
+                        met_places.extend(pair);
                     }
+                    let is_met = last.is_met || next.is_met;
+                    if (next.is_fixed, next.is_met) > (last.is_fixed, last.is_met) {
+                        *last = next;
+                    }
+                    last.is_met = is_met;
                 }
-                _ => {
-                    let id = way.node_ids.get(index).copied();
-                    piece.push(PlacedNode { point, is_fixed: stop.is_shared(), id });
-                }
+                _ => piece.push(way.placed(point, index, stop)),
             },
             _ if is_known => outside += 1,
             _ if stop.location == location::OUT_OF_RANGE => out_of_range += 1,
@@ -185,6 +213,7 @@ fn assemble_way(
     }
     if let Some(first) = assembled.roads.first_mut() {
         first.same_places = same_places;
+        first.met.same_places = met_places;
     }
     for (count, defect) in [
         (missing, Defect::MissingNodes { way_id, points: missing }),
@@ -203,6 +232,15 @@ fn assemble_way(
     assembled
 }
 
+impl What<'_> {
+    /// A node that was placed.
+    fn placed(&self, point: LatticePoint, index: usize, stop: &Stop) -> PlacedNode {
+        let is_met = stop.is_met();
+        let is_fixed = if self.is_carrier { is_met } else { stop.is_shared() };
+        PlacedNode { point, is_fixed, is_met, id: self.node_ids.get(index).copied() }
+    }
+}
+
 /// One road of a piece of a way, still without attributes; `None` when the piece has less than two points.
 fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
     let last = piece.len().checked_sub(1)?;
@@ -213,6 +251,12 @@ fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
         [] => Vec::new(),
         _ => fixed.iter().map(node_id).collect(),
     };
+    let met = |index: usize| {
+        let node = piece[index];
+        Some((index as u32, node.id.filter(|_| node.is_met && !node.is_fixed)?))
+    };
+    let met =
+        MetNodes { nodes: (0..piece.len()).filter_map(met).collect(), same_places: Vec::new() };
     // Equal neighbours are merged already, so the indices stay true.
     let line = Polyline::new(piece.into_iter().map(|node| node.point).collect()).ok()?;
     Some(Road {
@@ -223,5 +267,6 @@ fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
         fixed,
         node_ids,
         same_places: Vec::new(),
+        met,
     })
 }

@@ -192,6 +192,12 @@ impl Defect {
         }
     }
 
+    /// Whether it is nothing wrong with the extract, but something that lies beyond it: a boundary goes on in the country next to it.
+    #[must_use]
+    pub const fn is_beyond_extract(&self) -> bool {
+        matches!(self, Self::LostLine { loss: LineLoss::MissingWay, .. })
+    }
+
     /// What it is about: `"way"`, `"node"` or `"relation"`, and its id.
     #[must_use]
     pub const fn object(&self) -> (&'static str, i64) {

@@ -51,8 +51,8 @@ pub enum ReadOsmError {
     )]
     TooMuch { path: PathBuf, len_bytes: u64 },
     #[error(
-        "cannot keep on disk what is read of OSM extract {path:?}, or read it back; if the disk is full, free space on it or \
-         name a folder on another one"
+        "cannot keep on disk what is read of OSM extract {path:?}, or read it back{}",
+        corniche_store::LackOfRoom::advice(corniche_store::LackOfRoom::of(.source))
     )]
     Scratch { path: PathBuf, source: io::Error },
     #[error("what is kept of OSM extract {path:?} in shares cannot be read or written")]

@@ -67,6 +67,7 @@ pub(crate) fn hand_out_roads(
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
             own.ways += 1;
             own.length_um += length_um;
+            assembled.roads.into_iter().for_each(|road| sink.take_carrier(road));
             return;
         }
         let roads = assembled.roads.len() as u64;

@@ -13,6 +13,9 @@ pub trait LayerSink<T, S> {
     /// Takes an object.
     fn take(&mut self, object: T);
 
+    /// Takes a road that is left out because its class is off or not known: where ids of nodes were asked for, since it may carry bridges and tunnels.
+    fn take_carrier(&mut self, _object: T) {}
+
     /// `done` of `all` ways or objects of this layer were looked at.
     fn reached(&mut self, _done: u64, _all: u64) {}
 

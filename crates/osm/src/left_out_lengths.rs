@@ -16,7 +16,7 @@ use crate::{
     reading::Reading,
     records::SoughtId,
     spool::{Spool, damaged},
-    way_bytes::{take_left_out, take_node_ids},
+    way_bytes::{LeftOutWay, take_left_out, take_node_ids},
     wire::{push_varint, varint},
 };
 
@@ -124,7 +124,8 @@ fn add_up<'b>(
             Ok(())
         })
         .ok()?;
-        let own = lengths.entry(take_left_out(&mut way)?).or_default();
+        let LeftOutWay { reason, highway, .. } = take_left_out(&mut way)?;
+        let own = lengths.entry((reason, highway)).or_default();
         own.ways += 1;
         own.length_um += length_um(locations.iter().copied());
     }

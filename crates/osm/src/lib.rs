@@ -99,7 +99,7 @@ pub use lines::{ClassedLine, LineSummary};
 pub use read_areas::read_areas;
 pub use read_extract::{read_extract, read_extract_from};
 pub use read_lines::read_lines;
-pub use read_request::{OnProgress, ReadRequest, ToLattice};
+pub use read_request::{OnProgress, ReadRequest, RingArea, ToLattice};
 pub use read_roads::{read_roads, read_roads_from};
 pub use share::{Share, ShareError};
 pub use shares::{Kept, KeptKinds, keep_nodes, keep_ways, read_kept_roads};

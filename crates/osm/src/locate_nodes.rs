@@ -19,7 +19,7 @@ use crate::{
     looked::NodeBlob,
     nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
     reading::{Reading, Step},
-    records::{Located, Mention, SoughtId, Stop},
+    records::{Located, Mention, SoughtId, Stop, WayUse},
     spool::{Spool, damaged},
     wire::{push_varint, varint},
 };
@@ -133,8 +133,8 @@ pub(crate) fn locate_nodes<'a>(
         for (layer, ((asked, nodes), left_out)) in layers.enumerate() {
             let by_ways = by_ways.next().flatten();
             let places = by_ways.as_ref().unwrap_or(&places);
-            // What only ways name that are left out is needed for their lengths alone.
-            let is_needed = |&number: &usize| asked.named[number] > Named::LeftOut;
+            // What only ways name that are left out is needed by no road.
+            let is_needed = |&number: &usize| asked.named[number].is_needed();
             let needed = (0..asked.named.len()).filter(is_needed);
             nodes.needed += needed.clone().count() as u64;
             nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
@@ -217,13 +217,36 @@ pub(crate) fn read_places<R: Read + Seek>(
 }
 
 /// How often the ways of a layer name a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Named {
-    Never,
-    /// Only ways that are left out do.
-    LeftOut,
-    Once,
-    Often,
+///
+/// ```text
+///  │ by roads and ways that carry them: 2 bits │ by roads: 2 bits │      0: never, 1: once, 2: more often, a junction
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+struct Named(u8);
+
+impl Named {
+    fn and_by(self, mention: &Mention) -> Self {
+        let more = |often: u8| match often {
+            1 if mention.is_repeat() => 1,
+            often => 2.min(often + 1),
+        };
+        let [by_roads, by_carriers] = [self.0 & 3, self.0 >> 2];
+        match mention.way_use() {
+            WayUse::Road => Self(more(by_carriers) << 2 | more(by_roads)),
+            WayUse::Carrier => Self(more(by_carriers) << 2 | by_roads),
+            WayUse::Length => self,
+        }
+    }
+
+    /// Whether a road names it.
+    fn is_needed(self) -> bool {
+        self.0 & 3 > 0
+    }
+
+    /// Whether it is a junction of roads, and whether it is one of roads and ways that carry them.
+    fn is_junction(self) -> [bool; 2] {
+        [self.0 & 3 == 2, self.0 >> 2 == 2]
+    }
 }
 
 /// Some of the nodes that ways name, with neighbouring ids.
@@ -236,7 +259,7 @@ struct Chunk<'a> {
 
 /// The nodes of a chunk that a layer asks for.
 struct Asked<'a> {
-    /// How often its ways name a node: not at all, once, or more often, by two ways or twice by one: a junction.
+    /// How often its ways name a node.
     named: Vec<Named>,
     /// Numbers of the mentions, node by node.
     ///
@@ -329,18 +352,13 @@ impl<'a> Asked<'a> {
         count: &mut u64,
     ) -> Result<(), ReadOsmError> {
         let failed = |error| reading.scratch_failed(error);
-        let mut named = Named::Never;
+        let mut named = Named::default();
+        let mut is_first = true;
         while let Some(mention) = mentions.peek().map_err(failed)? {
             if mention.node_id != id {
                 break;
             }
-            let is_first = named == Named::Never;
-            named = match named {
-                _ if mention.is_left_out() => named.max(Named::LeftOut),
-                Named::Never | Named::LeftOut => Named::Once,
-                Named::Once if mention.is_repeat() => Named::Once,
-                Named::Once | Named::Often => Named::Often,
-            };
+            named = named.and_by(mention);
             let visit = (mention.number() << 1) | u64::from(is_first);
             let push = |bytes: &mut Vec<u8>| {
                 push_varint(bytes, visit);
@@ -350,6 +368,7 @@ impl<'a> Asked<'a> {
             };
             self.visits.push(push).map_err(failed)?;
             self.last = number;
+            is_first = false;
             mentions.take();
             self.mentions_count += 1;
             reading.check_stop_at(*count)?;
@@ -380,7 +399,7 @@ impl<'a> Asked<'a> {
             let (visit, after) = visit.ok_or_else(damaged).map_err(failed)?;
             node += after;
             let named = self.named.get(node).ok_or_else(damaged).map_err(failed)?;
-            let stop = Stop::new(visit >> 1, *named == Named::Often, places.location(node));
+            let stop = Stop::new(visit >> 1, named.is_junction(), places.location(node));
             stops.push(stop).map_err(failed)?;
         }
         Ok(())

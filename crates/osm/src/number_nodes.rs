@@ -8,10 +8,10 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     left_out_lengths::LeftOutNodes,
     reading::Reading,
-    records::{Mention, WayRecord},
+    records::{Mention, WayRecord, WayUse},
     spool::Spool,
     versions::{known_version, two_versions},
-    way_bytes::{is_left_out, take_node_ids},
+    way_bytes::{is_carrier, is_left_out, take_node_ids},
     way_facts::WayFacts,
     ways::add_summary,
     wire::{push_varint, to_zigzag},
@@ -34,7 +34,8 @@ pub(crate) struct NumberedNodes<'a> {
 /// The first of several roads with one id in a file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
 /// with the newest version count, or of the first; what they count for goes to `summary`.
 ///
-/// Those that are left out go to `left_out`, or where there is none are numbered as the others are.
+/// Those that are left out go to `left_out`, but for those that carry bridges and tunnels where these are wanted; where there is no `left_out`, all are
+/// numbered as the others are.
 ///
 /// Fails if a way is there in two versions.
 pub(crate) fn number_nodes<'a>(
@@ -77,9 +78,14 @@ pub(crate) fn number_nodes<'a>(
         // Where ids are wanted, they stay before what the way is.
         let kept = if request.node_ids { &*way.bytes } else { kind };
         if is_left_out(kind) {
+            // Where bridges and tunnels are wanted, what may carry them is.
+            let carries = request.node_ids && is_carrier(kind);
             match &mut numbered.left_out {
-                Some(apart) => apart.push(&way.bytes, &node_ids),
-                None => numbered.add(way.way_id, &node_ids, true, kept),
+                Some(apart) if !carries => apart.push(&way.bytes, &node_ids),
+                _ => {
+                    let used = if carries { WayUse::Carrier } else { WayUse::Length };
+                    numbered.add(way.way_id, &node_ids, used, kept)
+                }
             }
             .map_err(failed)?;
             continue;
@@ -99,7 +105,7 @@ pub(crate) fn number_nodes<'a>(
             }
             _ => {
                 last = Some((way.way_id, version));
-                numbered.add(way.way_id, &node_ids, false, kept).map_err(failed)?;
+                numbered.add(way.way_id, &node_ids, WayUse::Road, kept).map_err(failed)?;
             }
         }
     }
@@ -148,18 +154,12 @@ impl WayRecord {
 
 impl NumberedNodes<'_> {
     /// `kept`: what stays of the way's bytes.
-    fn add(
-        &mut self,
-        way_id: i64,
-        node_ids: &[i64],
-        is_left_out: bool,
-        kept: &[u8],
-    ) -> io::Result<()> {
+    fn add(&mut self, way_id: i64, node_ids: &[i64], used: WayUse, kept: &[u8]) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
         let mut previous = None;
         for &id in node_ids {
             let is_repeat = previous.replace(id) == Some(id);
-            mentions.push(Mention::new(id, *mentions_count, is_left_out, is_repeat))?;
+            mentions.push(Mention::new(id, *mentions_count, used, is_repeat))?;
             *mentions_count += 1;
         }
         *ways_count += 1;

@@ -14,6 +14,10 @@ use corniche_store::Scratch;
 /// Called from several threads.
 pub type ToLattice<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
 
+/// The area inside a ring of `[longitude, latitude]` (WGS84, degrees), square metres, negative for a clockwise one. Called from several
+/// threads.
+pub type RingArea<'a> = dyn Fn(&[[f64; 2]]) -> f64 + Sync + 'a;
+
 /// Is told how much of the reading is done, of how much. Both are counted in bytes of the files, each of them twice: read for its relations
 /// and ways, read for its nodes. What is done never shrinks and ends at the whole, which does not change.
 pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
@@ -29,6 +33,8 @@ pub struct ReadRequest<'a> {
     pub table: &'a FrcTable,
     /// Where positions lie on the lattice.
     pub place: &'a ToLattice<'a>,
+    /// The true area inside a ring of longitudes and latitudes whose sides are straight on the lattice's map.
+    pub ring_area_m2: &'a RingArea<'a>,
     /// Where the lattice's map of the earth is cut open, if it is: lines over it are cut there.
     pub seam: Option<Seam>,
     /// Whether roads come with the ids of their fixed nodes, which takes a few bytes more for each node.
@@ -48,12 +54,13 @@ pub struct ReadRequest<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Placing<'a> {
     pub(crate) place: &'a ToLattice<'a>,
+    pub(crate) ring_area_m2: &'a RingArea<'a>,
     pub(crate) seam: Option<Seam>,
 }
 
 impl ReadRequest<'_> {
     pub(crate) fn placing(&self) -> Placing<'_> {
-        Placing { place: self.place, seam: self.seam }
+        Placing { place: self.place, ring_area_m2: self.ring_area_m2, seam: self.seam }
     }
 
     /// One of the extracts, by its number: 0 is the first.

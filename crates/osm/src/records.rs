@@ -92,25 +92,38 @@ impl SortRecord for SoughtId {
 pub(crate) struct Mention {
     pub(crate) node_id: i64,
     /// ```text
-    ///  │ number: 62 bits │ 1 if the way is left out │ 1 if the node before it in the way is the same │
+    ///  │ number: 61 bits │ the use of its way: 2 bits │ 1 if the node before it in the way is the same │
     /// ```
     visit: u64,
 }
 
+/// What a way is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum WayUse {
+    Road = 0,
+    /// It is left out, but carries bridges and tunnels.
+    Carrier = 1,
+    /// It is left out: only its length is asked for.
+    Length = 2,
+}
+
 impl Mention {
     /// `is_repeat`: the way names the same node directly before.
-    pub(crate) fn new(node_id: i64, number: u64, is_left_out: bool, is_repeat: bool) -> Self {
-        let marks = (u64::from(is_left_out) << 1) | u64::from(is_repeat);
-        Self { node_id, visit: (number << 2) | marks }
+    pub(crate) fn new(node_id: i64, number: u64, used: WayUse, is_repeat: bool) -> Self {
+        let marks = ((used as u64) << 1) | u64::from(is_repeat);
+        Self { node_id, visit: (number << 3) | marks }
     }
 
     pub(crate) fn number(&self) -> u64 {
-        self.visit >> 2
+        self.visit >> 3
     }
 
-    /// A way that is left out makes no junction.
-    pub(crate) fn is_left_out(&self) -> bool {
-        self.visit & 2 == 2
+    pub(crate) fn way_use(&self) -> WayUse {
+        match self.visit >> 1 & 3 {
+            0 => WayUse::Road,
+            1 => WayUse::Carrier,
+            _ => WayUse::Length,
+        }
     }
 
     /// A node that is repeated directly counts as one visit, not two.
@@ -163,20 +176,25 @@ impl SortRecord for Located {
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Stop {
     /// ```text
-    ///  │ number of the mention: 63 bits │ 1 if it is a junction │
+    ///  │ number of the mention: 62 bits │ 1 if ways meet there that carry │ 1 if it is a junction │
     /// ```
     visit: u64,
     pub(crate) location: Location,
 }
 
 impl Stop {
-    /// `is_shared`: two roads name the node, or one does twice.
-    pub(crate) fn new(number: u64, is_shared: bool, location: Location) -> Self {
-        Self { visit: (number << 1) | u64::from(is_shared), location }
+    /// `is_shared`: two roads name the node, or one does twice. `is_met`: the same of roads and ways that carry them.
+    pub(crate) fn new(number: u64, [is_shared, is_met]: [bool; 2], location: Location) -> Self {
+        let marks = (u64::from(is_met) << 1) | u64::from(is_shared);
+        Self { visit: (number << 2) | marks, location }
     }
 
     pub(crate) fn is_shared(&self) -> bool {
         self.visit & 1 == 1
+    }
+
+    pub(crate) fn is_met(&self) -> bool {
+        self.visit & 2 == 2
     }
 }
 

@@ -33,16 +33,19 @@ proptest! {
         let (file, age, facts) = (order as u32, version.unsigned_abs(), bytes.iter().rev().copied());
         let facts = facts.collect();
         check(&WayRecord { way_id: id, age, order, version, file, bytes: bytes.into(), facts });
-        check(&Mention::new(id, order >> 2, !mark, mark));
+        check(&Mention::new(id, order >> 3, WayUse::Carrier, mark));
         check(&Located { node_id: id, order, location, layer: 2 });
-        check(&Stop::new(order >> 1, mark, location));
+        check(&Stop::new(order >> 2, [mark, !mark], location));
     }
 
     #[test]
-    fn a_mark_does_not_change_the_number(number in 0..1_u64 << 62, mark: bool, other: bool) {
-        let mention = Mention::new(5, number, other, mark);
-        prop_assert_eq!((mention.number(), mention.is_left_out(), mention.is_repeat()), (number, other, mark));
-        let stop = Stop::new(number, mark, [0; 2]);
-        prop_assert_eq!((stop.visit >> 1, stop.is_shared()), (number, mark));
+    fn a_mark_does_not_change_the_number(
+        number in 0..1_u64 << 61, mark: bool, other: bool,
+        used in prop::sample::select(vec![WayUse::Road, WayUse::Carrier, WayUse::Length]),
+    ) {
+        let mention = Mention::new(5, number, used, mark);
+        prop_assert_eq!((mention.number(), mention.way_use(), mention.is_repeat()), (number, used, mark));
+        let stop = Stop::new(number, [mark, other], [0; 2]);
+        prop_assert_eq!((stop.visit >> 2, stop.is_shared(), stop.is_met()), (number, mark, other));
     }
 }

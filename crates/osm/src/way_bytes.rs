@@ -7,14 +7,15 @@
 //! A way that is left out has a mark in place of the class, the reason, and its `highway` value:
 //!
 //! ```text
-//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │
+//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer │
 //! ```
+//! Its structure is counted from 1; 0 is that of a way that carries nothing.
 //! Counts and lengths are varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
 //! others are a byte each.
 
 use std::io;
 
-use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
+use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes, Structure};
 
 use crate::{
     LeftOutReason,
@@ -48,17 +49,30 @@ const LEFT_OUT: u8 = u8::MAX;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum WayKind {
     Road(FunctionalRoadClass, RoadAttributes),
-    /// Why, and its `highway` value.
-    LeftOut(LeftOutReason, String),
+    LeftOut(LeftOutWay<String>),
+}
+
+/// A way that is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeftOutWay<T> {
+    pub(crate) reason: LeftOutReason,
+    /// Its `highway` value.
+    pub(crate) highway: T,
+    /// What carries it, and its layer: of a way that is a road of another class. `None` for what is no road.
+    pub(crate) carrier: Option<(Structure, i8)>,
 }
 
 /// Writes the nodes of a way that is left out, and why.
-pub(crate) fn left_out_bytes(node_ids: &[i64], reason: LeftOutReason, highway: &str) -> Box<[u8]> {
+pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8]> {
+    let LeftOutWay { reason, highway, carrier } = way;
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
     push_node_ids(&mut bytes, node_ids);
     bytes.extend([LEFT_OUT, reason as u8]);
     push_varint(&mut bytes, highway.len() as u64);
     bytes.extend(highway.as_bytes());
+    let (structure, layer) =
+        carrier.map_or((0, 0), |(structure, layer)| (structure as u8 + 1, layer));
+    bytes.extend([structure, layer.cast_unsigned()]);
     bytes.into()
 }
 
@@ -101,8 +115,8 @@ pub(crate) fn take_node_ids(
 /// Takes what follows the nodes. `None` if the bytes are damaged.
 pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     if is_left_out(bytes) {
-        let (reason, highway) = take_left_out(bytes)?;
-        return Some(WayKind::LeftOut(reason, highway.to_owned()));
+        let LeftOutWay { reason, highway, carrier } = take_left_out(bytes)?;
+        return Some(WayKind::LeftOut(LeftOutWay { reason, highway: highway.to_owned(), carrier }));
     }
     let (&[class, ref codes @ ..], rest) = bytes.split_first_chunk::<6>()?;
     *bytes = rest;
@@ -112,11 +126,23 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
 }
 
 /// The same for a way that is left out.
-pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<(LeftOutReason, &'b str)> {
+pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b str>> {
     let (&[_, reason], rest) = bytes.split_first_chunk::<2>()?;
     *bytes = rest;
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
-    Some((reason, take_str(bytes)?))
+    let highway = take_str(bytes)?;
+    let (&[structure, layer], rest) = bytes.split_first_chunk::<2>()?;
+    *bytes = rest;
+    let carrier = match structure.checked_sub(1) {
+        Some(code) => Some((*Structure::ALL.get(usize::from(code))?, layer.cast_signed())),
+        None => None,
+    };
+    Some(LeftOutWay { reason, highway, carrier })
+}
+
+/// Whether what follows the nodes is that of a way that carries bridges and tunnels, although it is left out.
+pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
+    matches!(after_nodes, [LEFT_OUT, .., structure, _] if *structure > 0)
 }
 
 fn take_text(bytes: &mut &[u8]) -> Option<String> {

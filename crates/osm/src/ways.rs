@@ -3,8 +3,8 @@
 use std::{borrow::Cow, cell::OnceCell, collections::BTreeMap};
 
 use corniche_roads::{
-    Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes,
-    tags_taken_otherwise,
+    Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes, is_area,
+    structure_and_layer, tags_taken_otherwise,
 };
 
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
     records::WayRecord,
     text::Text,
     versions::known_version,
-    way_bytes::{left_out_bytes, way_bytes},
+    way_bytes::{LeftOutWay, left_out_bytes, way_bytes},
     way_facts::WayFacts,
 };
 
@@ -146,20 +146,20 @@ impl Ways {
             }
             Classified::NotShown(_) => {
                 left_out.class_off += 1;
-                self.leave_out(way, LeftOutReason::ClassOff, highway);
+                self.leave_out(way, LeftOutReason::ClassOff, highway, Some(tags));
             }
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
-                self.leave_out(way, LeftOutReason::Area, highway);
+                self.leave_out(way, LeftOutReason::Area, highway, None);
                 self.push_defect(Defect::Area { way_id });
             }
             Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => {
                 left_out.listed += 1;
-                self.leave_out(way, LeftOutReason::Listed, highway);
+                self.leave_out(way, LeftOutReason::Listed, highway, None);
             }
             Classified::Unknown(value) => {
                 left_out.unknown += 1;
-                self.leave_out(way, LeftOutReason::Unknown, value);
+                self.leave_out(way, LeftOutReason::Unknown, value, Some(tags));
                 *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
                 self.push_defect(Defect::UnknownHighway { way_id, value: value.to_owned() });
                 return;
@@ -200,9 +200,18 @@ impl Ways {
         self.keep(way, attributes.text_bytes(), |ids| way_bytes(ids, class, attributes));
     }
 
-    /// Keeps a way that is no road here, for its length.
-    fn leave_out(&mut self, way: &BlockWay<'_, '_>, reason: LeftOutReason, highway: &str) {
-        self.keep(way, highway.len(), |ids| left_out_bytes(ids, reason, highway));
+    /// Keeps a way that is no road here, for its length, and, of a road of another class with these tags, for what it carries.
+    fn leave_out(
+        &mut self,
+        way: &BlockWay<'_, '_>,
+        reason: LeftOutReason,
+        highway: &str,
+        tags: Option<&[(&str, &str)]>,
+    ) {
+        let tags = tags.filter(|tags| !is_area(tags));
+        let carrier = tags.map(structure_and_layer);
+        let left_out = LeftOutWay { reason, highway, carrier };
+        self.keep(way, highway.len(), |ids| left_out_bytes(ids, left_out));
     }
 
     fn keep(

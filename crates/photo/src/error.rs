@@ -36,7 +36,8 @@ pub enum PhotoError {
     )]
     NoPalette { path: PathBuf },
     #[error(
-        "no photo lies on the ground that is built: the photos reach from {photos:.0?}, the ground from {ground:.0?} (west, south, east, north in metres of the grid); give photos of this region, or leave --photo out"
+        "no photo lies on the ground that is built: the photos have {}, the ground has {} (metres of the grid); give photos of this region, or leave --photo out",
+        reach(*.photos), reach(*.ground)
     )]
     NoOverlap { photos: [f64; 4], ground: [f64; 4] },
     #[error(
@@ -73,4 +74,9 @@ impl From<DemError> for PhotoError {
             other => Self::Raster(other),
         }
     }
+}
+
+/// A rectangle of the grid in words: west, south, east, north.
+fn reach([west, south, east, north]: [f64; 4]) -> String {
+    format!("x {west:.0} to {east:.0} and y {south:.0} to {north:.0}")
 }

@@ -27,10 +27,10 @@
 //! | `AreaTotals` | 0 | counts of the extract's areas, after all their sections | roads | tiles, merge |
 //! | `BoundarySection` | tile | its boundaries section, encoded, with counts; nothing where it has none | roads | tiles |
 //! | `BoundaryTotals` | 0 | counts of the extract's boundaries, after all their sections | roads | merge |
-//! | `SpanRoads` | block of roads | bridges, tunnels, and the pieces of roads near them | roads | merge |
+//! | `SpanRoads` | block of roads | bridges and tunnels, whole, and the pieces of roads near them, of all classes | roads | merge |
 //! | `SpanGround` | tile | its lines of bridges and tunnels on the ground; nothing where it has none | tiles, merge | merge |
 //! | `SpanSection` | tile | its section of spans, encoded, with counts; nothing where it has none | merge | merge |
-//! | `SpanTotals` | 0 | counts of bridges and tunnels, after all their sections | merge | merge |
+//! | `SpanTotals` | 0 | counts of bridges and tunnels, ground beyond the bounds, files that it needs; after all their sections | merge | merge |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is a patch when its `Patch` is there, and the roads when
 //! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is

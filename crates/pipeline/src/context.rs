@@ -1,17 +1,19 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
-use corniche_dem::{Dem, FileDatums, GridPlan};
+use corniche_dem::{Dem, DemError, DemProjection, FileDatums, GridPlan};
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
 use corniche_store::Artifacts;
 
 use crate::{
     Observer, PlanSettings, Resources,
+    areas::{data_outline::data_outline, extent::Outline},
     heights::{data_tiles::DataTiles, pyramid::Pyramid},
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
     plan::{Opened, PhotoSource},
     terrain::ground::GroundSource,
+    true_lengths::TrueLengths,
 };
 
 /// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
@@ -23,6 +25,8 @@ pub(crate) struct Context<'a> {
     pub(crate) grid: &'a GridPlan,
     pub(crate) levels: &'a Levels,
     pub(crate) coordinates: &'a CoordinateTable,
+    /// WGS84 ⇄ the grid's working CRS.
+    pub(crate) projection: &'a DemProjection,
     /// Tolerance of the finest level, given or derived from the cell.
     pub(crate) max_error_m: f64,
     /// Photos of the ground.
@@ -49,6 +53,7 @@ impl<'a> Context<'a> {
             levels,
             max_error_m,
             coordinates,
+            projection,
             photo,
             relief: _,
             file_datums,
@@ -62,12 +67,18 @@ impl<'a> Context<'a> {
             grid,
             levels,
             coordinates,
+            projection,
             max_error_m,
             photo,
             file_datums,
             store,
             observer,
         }
+    }
+
+    /// How roads are measured.
+    pub(crate) fn lengths(&self) -> TrueLengths<'a> {
+        TrueLengths::new(*self.frame(), self.coordinates, self.projection)
     }
 
     pub(crate) fn frame(&self) -> &GridFrame {
@@ -86,6 +97,14 @@ impl<'a> Context<'a> {
     /// The rectangle of all nodes at which data can lie.
     pub(crate) fn node_bounds(&self) -> LatticeBounds {
         self.frame().lattice_bounds([self.grid.south_west, self.grid.north_east])
+    }
+
+    /// The outline of the elevation files, where they fill no rectangle.
+    pub(crate) fn data_outline(&self) -> Result<Option<Outline>, DemError> {
+        match self.source {
+            GroundSource::Dem(dem) => data_outline(dem, self.grid, self.projection),
+            GroundSource::Package(package) => Ok(package.manifest().data_outline()),
+        }
     }
 
     /// The bounds that were asked for.

@@ -24,6 +24,8 @@ pub enum Defect {
     Span {
         /// A way of it.
         way_id: i64,
+        /// The node at which it is so, if it is so at a node.
+        node_id: Option<i64>,
         /// The name of the reason.
         reason: String,
     },
@@ -67,11 +69,15 @@ impl Defect {
     }
 }
 
+/// The reasons to look at a bridge or a tunnel by their names, with what they mean.
+pub fn span_reasons() -> impl Iterator<Item = (&'static str, &'static str)> {
+    SpanReason::ALL.into_iter().map(|reason| (reason.id(), reason.words()))
+}
+
 /// What a reason to look at a bridge or a tunnel means, by its name.
 #[must_use]
 pub fn span_reason_words(name: &str) -> &'static str {
-    let reason = SpanReason::ALL.into_iter().find(|reason| reason.id() == name);
-    reason.map_or("a bridge or a tunnel", SpanReason::words)
+    span_reasons().find(|(own, _)| *own == name).map_or("a bridge or a tunnel", |(_, words)| words)
 }
 
 /// What a build or a check reports to its caller: its stages, as all work does, and the defects of its inputs.

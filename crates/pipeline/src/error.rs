@@ -2,7 +2,10 @@
 
 use std::{io, path::PathBuf};
 
-use corniche_store::TargetError;
+use corniche_dem::listed_files;
+use corniche_geom::Bounds;
+use corniche_store::{LackOfRoom, TargetError};
+use corniche_tileset::WriteError;
 use corniche_work::Interrupted;
 
 use crate::plan_error::PlanError;
@@ -43,22 +46,24 @@ pub enum BuildError {
     Photo(#[from] corniche_photo::PhotoError),
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
-    #[error("{dem:?} have no height at any node: every node is void, or outside --polygon")]
+    #[error("no node of {} has a height: every node is void, or outside --polygon", listed_files(.dem))]
     NoHeights { dem: Vec<PathBuf> },
     #[error(
-        "{dem:?} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
-         ground; give rasters with heights side by side"
+        "{} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
+         ground; give rasters with heights side by side",
+        listed_files(.dem)
     )]
     NoCell { dem: Vec<PathBuf>, nodes: u64 },
-    #[error("{osm:?} has no road: {why}")]
+    #[error("{} has no road: {why}", listed_files(.osm))]
     NoRoads { osm: Vec<PathBuf>, why: String },
     #[error(
-        "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:.4?}, heights within \
-         {heights_deg:.4?} (west, south, east, north in degrees)"
+        "{} and the elevation data do not overlap: roads lie within {}, heights within {}",
+        listed_files(.osm), .roads_deg.degrees_text(), .heights_deg.degrees_text()
     )]
-    NoOverlap { osm: Vec<PathBuf>, roads_deg: [f64; 4], heights_deg: [f64; 4] },
+    NoOverlap { osm: Vec<PathBuf>, roads_deg: Bounds, heights_deg: Bounds },
     #[error(
-        "no {what} of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone"
+        "no {what} of {} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone",
+        listed_files(.osm)
     )]
     NoGround { osm: Vec<PathBuf>, what: &'static str },
     #[error("the roads could not be projected into the working CRS")]
@@ -80,10 +85,6 @@ pub enum BuildError {
     DamagedPackage { path: PathBuf, what: String },
     #[error("{path:?} cannot be used; build from the elevation files with --dem")]
     PackageTile { path: PathBuf, source: corniche_tileset::ReadError },
-    #[error(
-        "bridges and tunnels of {osm:?} cross other roads more often than any real ones; build with --structures ground, and they lie on the ground"
-    )]
-    ManyCrossings { osm: Vec<PathBuf> },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
     #[error(
@@ -123,7 +124,8 @@ pub enum BuildError {
     )]
     Missing { what: String, step: &'static str },
     #[error(
-        "roads could not be sorted on the disk: if it is full, free space or name another folder with --tmp"
+        "roads could not be sorted on the disk{}",
+        LackOfRoom::advice(LackOfRoom::of(.0))
     )]
     Storage(#[source] io::Error),
     #[error(transparent)]
@@ -138,8 +140,8 @@ pub enum BuildError {
     Triangulate { id: corniche_geom::TileId, source: corniche_tin::TriangulateError },
     #[error("a tile could not be encoded")]
     Encode(#[from] corniche_tileset::EncodeError),
-    #[error("{path:?} could not be written (disk full?)")]
-    Write { path: PathBuf, source: corniche_tileset::WriteError },
+    #[error("{path:?} could not be written{}", room_of(.source))]
+    Write { path: PathBuf, source: WriteError },
     #[error("{path:?} could not be put in its place")]
     Rename { path: PathBuf, source: io::Error },
     #[error(
@@ -148,6 +150,14 @@ pub enum BuildError {
     Coordinates(#[from] corniche_geom::CoordinateTableError),
     #[error("interrupted; no package was written")]
     Interrupted,
+}
+
+/// What is lacking where a package could not be written.
+fn room_of(error: &WriteError) -> String {
+    LackOfRoom::advice(match error {
+        WriteError::Io(error) => LackOfRoom::of(error),
+        _ => None,
+    })
 }
 
 impl From<Interrupted> for BuildError {

@@ -211,6 +211,29 @@ impl Inputs {
         Ok(())
     }
 
+    /// Hashes those elevation files that were not said to be used, but are needed after all: told in their order; the parts of each go with it. Returns the
+    /// place of each, and what it is.
+    pub(crate) fn hash_unused(
+        &self,
+        is_needed: &[bool],
+        observer: &dyn Observer,
+    ) -> Result<Vec<(u32, InputRecord)>, InputError> {
+        let mut is_needed = is_needed.iter();
+        let mut last = false;
+        let mut found = Vec::new();
+        for (index, input) in self.files.iter().enumerate() {
+            match input.kind {
+                InputKind::Dem => last = is_needed.next().copied().unwrap_or_default(),
+                InputKind::DemPart => {}
+                _ => continue,
+            }
+            if last && !input.is_used {
+                found.push((index as u32, input.hash_content(observer)?));
+            }
+        }
+        Ok(found)
+    }
+
     /// Sorts the parts of each raster, which GDAL lists in any order.
     pub(crate) fn in_order(records: &mut [InputRecord]) {
         let is_part = |record: &InputRecord| {
@@ -341,7 +364,6 @@ impl Input {
     }
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
-        let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
         if !self.is_used {
             return Ok(InputRecord {
                 kind: self.kind.name().to_owned(),
@@ -350,6 +372,11 @@ impl Input {
                 sha256: String::new(),
             });
         }
+        self.hash_content(observer)
+    }
+
+    fn hash_content(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+        let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
         let mut hasher = Sha256::new();
         let bytes = match &self.content {
             Content::Folder => Some(0),

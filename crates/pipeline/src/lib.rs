@@ -35,6 +35,7 @@ mod steps;
 mod terrain;
 mod tile;
 mod tiles_near;
+mod true_areas;
 mod true_lengths;
 mod verify;
 
@@ -45,14 +46,14 @@ pub use corniche_dem::{
     OpenOptions, PlanOptions, Polygon, PolygonError, libraries, missing_formats, use_files_beside,
 };
 pub use corniche_objects::Requests;
-pub use corniche_osm::{AreaLoss, Defect as OsmDefect, Share};
+pub use corniche_osm::{AreaLoss, Defect as OsmDefect, LineLoss, Share};
 pub use corniche_store::Existing;
 pub use corniche_work::{Silent, Stage};
-pub use defect::{Defect, Loss, Observer, span_reason_words};
+pub use defect::{Defect, Loss, Observer, span_reason_words, span_reasons};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
 pub use inputs::{PlannedInput, elevation_names, extract_names, input_name, photo_names};
-pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
+pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, free_bytes, machine_memory_bytes};
 pub use objects::is_in_object_storage;
 pub use open_package::open_package;
 pub use parts::{

@@ -1,7 +1,10 @@
 //! Texts and records that every manifest has: written by the build, compared by `verify`.
 
 use corniche_dem::{Clip, DatumOperation, GridPlan, libraries};
+use corniche_geom::LatticePoint;
 use corniche_tileset::{ClipRecord, DatumOperationRecord, Manifest, VerticalRecord};
+
+use crate::areas::extent::Outline;
 
 /// How tiles are numbered.
 pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
@@ -9,6 +12,12 @@ pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the r
 
 /// Unit of heights.
 pub(crate) const HEIGHT_UNIT: &str = "metre";
+
+/// The outline of the elevation files.
+pub(crate) fn outline(outline: &Outline) -> Vec<Vec<Vec<[i64; 2]>>> {
+    let ring = |ring: &Vec<LatticePoint>| ring.iter().map(|at| [at.u, at.v]).collect();
+    outline.iter().map(|rings| rings.iter().map(ring).collect()).collect()
+}
 
 /// The part of the elevation files that the package is of.
 pub(crate) fn clip(plan: &GridPlan) -> Option<ClipRecord> {

@@ -32,8 +32,15 @@ pub(crate) fn of(
         max_error_m: _,
         relief,
     } = terrain;
-    let OpenOptions { band, dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } =
-        open;
+    let OpenOptions {
+        band,
+        dem_crs,
+        vertical_unit,
+        nodata,
+        dem_vertical_crs,
+        vertical_crs,
+        vertical_shift_m,
+    } = open;
     let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
         plan;
     let RoadSettings { table, filter, simplify_cells, spans } = roads;
@@ -47,6 +54,7 @@ pub(crate) fn of(
         dem_vertical_crs: dem_vertical_crs.clone(),
         vertical_crs: vertical_crs.clone(),
         vertical_shift_m: *vertical_shift_m,
+        vertical_unit: vertical_unit.clone(),
         crs: crs.clone(),
         cell_m: *cell,
         cell_every: *cell_every,
@@ -91,6 +99,7 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
         open: OpenOptions {
             band: record.dem_band,
             dem_crs: record.dem_crs.clone(),
+            vertical_unit: record.vertical_unit.clone(),
             nodata: record.nodata.clone(),
             dem_vertical_crs: record.dem_vertical_crs.clone(),
             vertical_crs: record.vertical_crs.clone(),

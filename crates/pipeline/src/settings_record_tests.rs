@@ -39,7 +39,7 @@ fn record((terrain, roads): &Settings) -> SettingsRecord {
 }
 
 /// Every setting that determines bytes, and another value of it.
-const CHANGES: [Change; 17] = [
+const CHANGES: [Change; 18] = [
     ("dem_crs", |(terrain, _)| terrain.open.dem_crs = Some("EPSG:4326".to_owned())),
     ("nodata", |(terrain, _)| terrain.open.nodata = vec![-9999.0]),
     ("dem_band", |(terrain, _)| terrain.open.band = Some(2)),
@@ -48,6 +48,7 @@ const CHANGES: [Change; 17] = [
     }),
     ("vertical_crs", |(terrain, _)| terrain.open.vertical_crs = Some("EPSG:5773".to_owned())),
     ("vertical_shift_m", |(terrain, _)| terrain.open.vertical_shift_m = -1.5),
+    ("vertical_unit", |(terrain, _)| terrain.open.vertical_unit = Some("foot".to_owned())),
     ("crs", |(terrain, _)| terrain.plan.crs = Some("utm".to_owned())),
     ("cell", |(terrain, _)| terrain.plan.cell = Some(Cell::from([30.0, 40.0]))),
     ("cell_every", |(terrain, _)| terrain.plan.cell_every = Some(3)),

@@ -5,6 +5,7 @@
 //!  tiles ─► ground beneath bridges and tunnels, by tile ──────────────┴─► decks of each level ─► runs by tile
 //! ```
 
+pub(crate) mod outer_ground;
 pub(crate) mod runs;
 pub(crate) mod solving;
 pub(crate) mod span_network;

@@ -2,19 +2,25 @@
 
 use corniche_drape::{ClippedPart, Gap};
 use corniche_geom::{
-    CoordinateTable, GridFrame, LatticeBounds, LatticePoint, Polyline, Projection, wgs84,
+    CoordinateTable, GridFrame, LatticeBounds, LatticePoint, Polyline, Projection,
+    known_line_length_m, line_length_m, wgs84,
 };
 
 /// Micrometres in a metre.
 pub(crate) const UM: f64 = 1e6;
 
-/// True lengths of roads. Each segment has one length, by the ellipsoid's radii of curvature at its middle. Pieces of a
-/// segment have their shares of its length, cut at whole micrometres along it. Pieces that meet share the cut, so the
-/// lengths of all pieces of a segment add up to its length exactly.
+/// A cut may lie this far from its true place along a segment that counts as even.
+const EVEN_M: f64 = 1e-3;
+/// Segments of no more working metres are even: over them the scale of no map changes by more.
+const SHORT_M: f64 = 100.0;
+
+/// True lengths of roads. Each segment has one length, that of the straight line on the map. Its pieces are cut at whole micrometres
+/// along it: where the scale hardly changes, at their shares of it, else at the true lengths from its start. Pieces that meet share the
+/// cut, so the lengths of all pieces of a segment add up to its length exactly.
 pub(crate) struct TrueLengths<'a> {
     frame: GridFrame,
     /// Longitudes and latitudes inside its bounds come from this table, others from PROJ.
-    table: &'a CoordinateTable,
+    table: Option<&'a CoordinateTable>,
     projection: &'a (dyn Projection + Sync),
 }
 
@@ -24,43 +30,131 @@ impl<'a> TrueLengths<'a> {
         table: &'a CoordinateTable,
         projection: &'a (dyn Projection + Sync),
     ) -> Self {
-        Self { frame, table, projection }
+        Self { frame, table: Some(table), projection }
+    }
+
+    /// Lengths by PROJ alone: they do not depend on the extent of a package, as its table does.
+    pub(crate) fn projected(frame: GridFrame, projection: &'a (dyn Projection + Sync)) -> Self {
+        Self { frame, table: None, projection }
+    }
+
+    /// The true length of each segment of a line by PROJ alone, micrometres.
+    pub(crate) fn projected_segments_um(&self, line: &Polyline) -> Vec<u64> {
+        Self::projected(self.frame, self.projection).segments_um(line)
     }
 
     /// The true length of each segment of a line, micrometres.
     pub(crate) fn segments_um(&self, line: &Polyline) -> Vec<u64> {
-        let positions_deg = self.positions_deg(line.points());
+        let positions: Vec<[f64; 2]> =
+            line.points().iter().map(|&point| self.frame.position_m(point)).collect();
+        let table = self.table_of(line.points());
+        let mut positions_deg = positions.clone();
+        if let Some(table) = table {
+            for position in &mut positions_deg {
+                *position = table.wgs84_from_working(*position);
+            }
+        } else if self.projection.wgs84_from_working(&mut positions_deg).is_err() {
+            positions_deg.fill([f64::NAN; 2]);
+        }
+        let degrees = |at| self.degrees(table, at);
         positions_deg
-            .windows(2)
-            .zip(line.points().windows(2))
-            .map(|(pair_deg, pair)| {
-                let true_m = wgs84::short_distance_m(pair_deg[0], pair_deg[1]);
+            .array_windows()
+            .zip(positions.array_windows())
+            .zip(line.points().array_windows::<2>())
+            .map(|((&ends_deg, &ends), [from, to])| {
+                let true_m = known_line_length_m(ends, ends_deg, &degrees);
                 // Far outside the area of the CRS a position may have no longitude and latitude; then the length in working metres is taken.
-                let plain_m = pair[0].distance_steps(pair[1]) * self.frame.lattice_step_m();
+                let plain_m = from.distance_steps(*to) * self.frame.lattice_step_m();
                 ((if true_m.is_finite() { true_m } else { plain_m }) * UM).round() as u64
             })
             .collect()
     }
 
-    fn positions_deg(&self, points: &[LatticePoint]) -> Vec<[f64; 2]> {
-        let mut positions: Vec<[f64; 2]> =
-            points.iter().map(|&point| self.frame.position_m(point)).collect();
-        let bounds = self.table.bounds();
-        let is_tabulated = LatticeBounds::of(points).is_some_and(|own| {
-            let [min, max] = [own.min, own.max].map(|point| self.frame.position_m(point));
-            min[0] >= bounds.min_x
-                && min[1] >= bounds.min_y
-                && max[0] <= bounds.max_x
-                && max[1] <= bounds.max_y
-        });
-        if is_tabulated {
-            for position in &mut positions {
-                *position = self.table.wgs84_from_working(*position);
-            }
-        } else if self.projection.wgs84_from_working(&mut positions).is_err() {
-            positions.fill([f64::NAN; 2]);
+    /// The table, if all these points lie within its bounds.
+    fn table_of(&self, points: &[LatticePoint]) -> Option<&'a CoordinateTable> {
+        let (table, own) = (self.table?, LatticeBounds::of(points)?);
+        let is_within =
+            |&point: &LatticePoint| table.bounds().contains(self.frame.position_m(point));
+        [own.min, own.max].iter().all(is_within).then_some(table)
+    }
+
+    fn degrees(&self, table: Option<&CoordinateTable>, at: [f64; 2]) -> [f64; 2] {
+        if let Some(table) = table {
+            return table.wgs84_from_working(at);
         }
-        positions
+        let mut places = [at];
+        match self.projection.wgs84_from_working(&mut places) {
+            Ok(()) => places[0],
+            Err(_) => [f64::NAN; 2],
+        }
+    }
+
+    /// Where a share of a segment of this length ends, in whole micrometres from its start.
+    fn cut_um(&self, segment: [LatticePoint; 2], share: f64, segment_um: u64) -> u64 {
+        // A point is rounded to the lattice and may lie a little beyond the end.
+        let share = share.clamp(0.0, 1.0);
+        let is_end = share <= 0.0 || share >= 1.0;
+        let working_m = segment[0].distance_steps(segment[1]) * self.frame.lattice_step_m();
+        if is_end || working_m <= SHORT_M {
+            return part_um(share, segment_um);
+        }
+        let table = self.table_of(&segment);
+        let degrees = |at| self.degrees(table, at);
+        let ends = segment.map(|point| self.frame.position_m(point));
+        let at =
+            |share: f64| [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
+        // Quarters, because both halves are as long where the scale is the same on both sides of the middle.
+        let places = [ends[0], at(0.25), at(0.5), at(0.75), ends[1]].map(degrees);
+        let quarters_m = [0, 1, 2, 3].map(|k| wgs84::short_distance_m(places[k], places[k + 1]));
+        let [least_m, most_m] = [f64::min, f64::max].map(|of| quarters_m.into_iter().reduce(of));
+        // What has no longitude and latitude is not even, and nothing better is known of it.
+        if least_m.zip(most_m).is_some_and(|(least_m, most_m)| most_m - least_m <= EVEN_M) {
+            return part_um(share, segment_um);
+        }
+        let length_m = |from, to| line_length_m([from, to], &degrees);
+        let [before_m, behind_m] = [length_m(ends[0], at(share)), length_m(at(share), ends[1])];
+        let true_share = before_m / (before_m + behind_m);
+        part_um(if true_share.is_finite() { true_share } else { share }, segment_um)
+    }
+
+    /// How far along a segment of this length, whose true length is `segment_um`, a place on it lies, in whole micrometres.
+    pub(crate) fn along_um(
+        &self,
+        segment: [LatticePoint; 2],
+        at: LatticePoint,
+        segment_um: u64,
+    ) -> u64 {
+        self.cut_um(segment, share(segment, at), segment_um)
+    }
+
+    /// Where each segment of a part begins and ends along the segment of the line that it belongs to, micrometres.
+    /// `segments_um` are the true lengths of the line's segments.
+    pub(crate) fn pieces_um(
+        &self,
+        line: &Polyline,
+        part: &ClippedPart,
+        segments_um: &[u64],
+    ) -> impl Iterator<Item = [u64; 2]> {
+        let pairs = part.line.points().windows(2);
+        pairs.zip(&part.segments).map(|(pair, &segment)| {
+            let whole = [line.points()[segment], line.points()[segment + 1]];
+            let [from, to] =
+                [pair[0], pair[1]].map(|at| self.along_um(whole, at, segments_um[segment]));
+            [from, to.max(from)]
+        })
+    }
+
+    /// How much of a part lies over the gaps that were found when it was draped, micrometres. `pieces` are those of
+    /// [`Self::pieces_um`]: a gap is cut out of them.
+    pub(crate) fn gaps_um(&self, part: &ClippedPart, pieces: &[[u64; 2]], gaps: &[Gap]) -> u64 {
+        gaps.iter()
+            .map(|gap| {
+                let [from, to] = pieces[gap.segment];
+                let ends = [part.line.points()[gap.segment], part.line.points()[gap.segment + 1]];
+                let [from, to] = gap.shares.map(|share| self.cut_um(ends, share, to - from));
+                to.saturating_sub(from)
+            })
+            .sum()
     }
 }
 
@@ -84,37 +178,8 @@ pub(crate) fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
     along(at) as f64 / along(q) as f64
 }
 
-/// Where each segment of a part begins and ends along the segment of the line that it belongs to, micrometres.
-/// `segments_um` are the true lengths of the line's segments.
-pub(crate) fn pieces_um<'a>(
-    line: &'a Polyline,
-    part: &'a ClippedPart,
-    segments_um: &'a [u64],
-) -> impl Iterator<Item = [u64; 2]> + 'a {
-    let pairs = part.line.points().windows(2);
-    pairs.zip(&part.segments).map(|(pair, &segment)| {
-        let whole = [line.points()[segment], line.points()[segment + 1]];
-        [pair[0], pair[1]].map(|at| cut_um(share(whole, at), segments_um[segment]))
-    })
-}
-
-/// How much of a part lies over the gaps that were found when it was draped, micrometres. `pieces` are those of
-/// [`pieces_um`]: a gap takes its shares of them.
-pub(crate) fn gaps_um(pieces: &[[u64; 2]], gaps: &[Gap]) -> u64 {
-    let within = |[from, to]: [u64; 2], share: f64| from + cut_um(share, to - from);
-    gaps.iter()
-        .map(|gap| {
-            let piece = pieces[gap.segment];
-            let [from, to] = gap.shares.map(|share| within(piece, share));
-            to - from
-        })
-        .sum()
-}
-
-/// Where a share of a segment ends, in whole micrometres from its start.
-pub(crate) fn cut_um(share: f64, segment_um: u64) -> u64 {
-    // A point is rounded to the lattice and may lie a little beyond the end.
-    (share.clamp(0.0, 1.0) * segment_um as f64).round() as u64
+fn part_um(share: f64, segment_um: u64) -> u64 {
+    (share * segment_um as f64).round() as u64
 }
 
 #[cfg(test)]

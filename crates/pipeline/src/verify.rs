@@ -15,6 +15,8 @@ mod elevation;
 mod error;
 mod geo_against_sv;
 mod georeference;
+mod given_files;
+mod given_inputs;
 mod grid;
 mod header;
 mod layer_sums;
@@ -54,6 +56,7 @@ use corniche_tileset::FilePackage;
 
 use crate::Observer;
 use decoded_tiles::DecodedTiles;
+use given_inputs::GivenInputs;
 
 pub use self::{
     checks::{Check, CheckId, Needs},
@@ -91,9 +94,12 @@ fn look_at_all(
     if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
         polygon::check(package.manifest(), settings.polygon.as_ref())?;
     }
+    let GivenInputs { dem, photo, osm, findings: of_inputs } =
+        GivenInputs::open(package.manifest(), settings, observer)?;
     let mut given = vec![Needs::Package];
     let tiles = DecodedTiles::new(package);
     let (mut report, mut findings) = tiles::verify(&tiles, settings.threads, observer)?;
+    findings.merge(of_inputs);
     photos::verify(package, settings.threads, &mut findings, observer)?;
     areas::verify(package, settings.threads, &mut findings, observer)?;
     for layer in ClassedLayer::ALL {
@@ -105,17 +111,17 @@ fn look_at_all(
     header::verify(package, &mut findings)?;
     grid::verify(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
-    if !settings.dem.is_empty() {
+    if let Some(files) = &dem {
         given.push(Needs::Dem);
-        dem::verify(&tiles, settings, &mut report, observer)?;
+        dem::verify(&tiles, files, settings, &mut report, observer)?;
     }
-    if !settings.photo.is_empty() {
+    if let Some(files) = &photo {
         given.push(Needs::Photo);
-        photo_files::verify(package, settings, &mut findings, observer)?;
+        photo_files::verify(package, files, settings, &mut findings, observer)?;
     }
-    if let Some(osm) = &settings.osm {
+    if let (Some(asked), Some(files)) = (&settings.osm, &osm) {
         given.push(Needs::Osm);
-        osm::verify(&tiles, osm, settings, &mut findings, observer)?;
+        osm::verify(&tiles, asked, files, settings, &mut findings, observer)?;
     }
     findings.merge(std::mem::take(&mut report.checks));
     report.checks = findings.into_checks(&given);

@@ -72,6 +72,10 @@ pub struct TerrainOptions {
     /// Added to every height, in metres [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub vertical_shift: Option<f64>,
+    /// Unit of the heights of all rasters, whatever they say of it: metre, foot, us-foot, decimetre or centimetre
+    /// [default: that of their bands or vertical CRS, else metre]
+    #[arg(long, value_name = "UNIT")]
+    pub vertical_unit: Option<String>,
     /// Value that means "no data", as stored in the files, besides the one they declare; may be given several times
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_many")]
@@ -231,6 +235,7 @@ impl TerrainOptions {
             dem_vertical_crs: self.dem_vertical_crs.or_from(other.dem_vertical_crs),
             vertical_crs: self.vertical_crs.or_from(other.vertical_crs),
             vertical_shift: self.vertical_shift.or_from(other.vertical_shift),
+            vertical_unit: self.vertical_unit.or_from(other.vertical_unit),
             nodata: self.nodata.or_from(other.nodata),
             height_range: self.height_range.or_from(other.height_range),
             scale_latitude: self.scale_latitude.or_from(other.scale_latitude),

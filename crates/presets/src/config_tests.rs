@@ -87,6 +87,7 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         dem_vertical_crs: Some(text("dem-vertical-crs")),
         vertical_crs: Some(text("vertical-crs")),
         vertical_shift: Some(number),
+        vertical_unit: Some(text("unit")),
         nodata: vec![number],
         height_range: Some([0.0, number]),
         scale_latitude: Some(number),

@@ -9,7 +9,7 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use bytes::{Bytes, BytesMut};
@@ -153,6 +153,7 @@ impl Ranges {
         asked: &Range<u64>,
         known: Option<&Version>,
     ) -> Result<(Version, Bytes), Failed> {
+        let begun = Instant::now();
         let explain = |error: reqwest::Error| self.explain(error);
         let range = format!("bytes={}-{}", asked.start, asked.end.saturating_sub(1));
         self.counter.sent();
@@ -169,9 +170,14 @@ impl Ranges {
         }
         let said = response.content_length();
         let mut body = BytesMut::with_capacity(length);
-        while body.len() < length
-            && let Some(chunk) = response.chunk().await.map_err(explain)?
-        {
+        while body.len() < length {
+            // By what has come so far, not by what is still to come: a large answer that drips ends as soon as a small one.
+            let within = self.settings.longest(body.len() as u64);
+            let least = self.settings.least_bytes_per_second;
+            let left = within.saturating_sub(begun.elapsed());
+            let chunk = timeout(left, response.chunk()).await;
+            let chunk = chunk.map_err(|_| HttpError::TooSlow { within, least })?;
+            let Some(chunk) = chunk.map_err(explain)? else { break };
             self.counter.received(chunk.len());
             body.extend_from_slice(&chunk);
         }

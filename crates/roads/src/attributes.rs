@@ -27,7 +27,7 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     let text = |key| tag(tags, key).unwrap_or_default();
     let value = |key| text(key).trim();
     let highway = value("highway");
-    let layer = layer(value("layer"));
+    let (structure, layer) = structure_and_layer(tags);
     let is_roundabout = matches!(value("junction"), "roundabout" | "circular");
     let oneway = oneway(value("oneway"), is_roundabout || highway == "motorway");
     RoadAttributes {
@@ -42,7 +42,7 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
         } else {
             Form::Ordinary
         },
-        structure: structure(value("bridge"), value("tunnel"), layer),
+        structure,
         layer,
         oneway,
         name: text("name").to_owned(),
@@ -55,6 +55,14 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
         sac_scale: text("sac_scale").to_owned(),
         tracktype: text("tracktype").to_owned(),
     }
+}
+
+/// What carries a way with these tags, and its layer, as [`attributes`] has them.
+#[must_use]
+pub fn structure_and_layer(tags: &[(&str, &str)]) -> (Structure, i8) {
+    let value = |key| tag(tags, key).unwrap_or_default().trim();
+    let layer = layer(value("layer"));
+    (structure(value("bridge"), value("tunnel"), layer), layer)
 }
 
 /// The tags that [`attributes`] reads as another value, as `(key, value)` with the value as tagged: a `layer` that is no whole number or too

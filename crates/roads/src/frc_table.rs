@@ -222,9 +222,7 @@ impl FrcTable {
         match self.entry(highway) {
             None => Classified::Unknown(highway),
             Some(None) => Classified::NotARoad(NotARoad::Listed),
-            Some(Some(_)) if tag(tags, "area").is_some_and(is_yes) => {
-                Classified::NotARoad(NotARoad::Area)
-            }
+            Some(Some(_)) if is_area(tags) => Classified::NotARoad(NotARoad::Area),
             Some(&Some(class)) if !self.shows(class) => Classified::NotShown(class),
             Some(&Some(class)) => Classified::Road(class),
         }
@@ -236,6 +234,12 @@ impl FrcTable {
         // A link to something that is not a road counts as unknown.
         self.values.get(highway).or_else(|| of_parent().filter(|class| class.is_some()))
     }
+}
+
+/// Whether a way is the outline of an area.
+#[must_use]
+pub fn is_area(tags: &[(&str, &str)]) -> bool {
+    tag(tags, "area").is_some_and(is_yes)
 }
 
 /// The value of the first tag with this key.

@@ -20,10 +20,12 @@ mod simplify;
 mod slab_thickness;
 
 pub use attribute_parts::AttributeParts;
-pub use attributes::{attributes, tags_taken_otherwise};
+pub use attributes::{attributes, structure_and_layer, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
-pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
+pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area};
 pub use grade_limit::grade_limit;
-pub use road::{Form, FunctionalRoadClass, Oneway, OwnWidth, Road, RoadAttributes, Structure};
+pub use road::{
+    Form, FunctionalRoadClass, MetNodes, Oneway, OwnWidth, Road, RoadAttributes, Structure,
+};
 pub use simplify::{kept_points, simplify};
 pub use slab_thickness::slab_thickness_m;

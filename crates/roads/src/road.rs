@@ -32,6 +32,8 @@ impl From<FunctionalRoadClass> for u8 {
 impl FunctionalRoadClass {
     /// How many classes there are.
     pub const COUNT: usize = 9;
+    /// The least important one.
+    pub const LEAST: Self = Self(Self::COUNT as u8 - 1);
 
     /// The class with this number; `None` above 8.
     #[must_use]
@@ -95,7 +97,7 @@ listed! {
 
 listed! {
     /// What carries a road where the ground does not.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
     pub enum Structure {
         /// The ground.
         #[default]
@@ -212,6 +214,17 @@ pub struct Road {
     /// asked for.
     pub node_ids: Vec<Option<i64>>,
     /// Pairs of nodes of the way that lie at one place of the lattice, and may both join other roads. Of each pair one stands in `node_ids`.
+    pub same_places: Vec<[i64; 2]>,
+    /// Where ways join it that are no roads because their classes are off or not known.
+    pub met: MetNodes,
+}
+
+/// Nodes of a road at which only ways join whose classes are off or not known: they carry bridges and tunnels, too.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MetNodes {
+    /// Which points of the line they are, ascending, and their ids; none of them is one of [`Road::fixed`] but for its ends.
+    pub nodes: Vec<(u32, i64)>,
+    /// Pairs of nodes that lie at one place, of which at least one is such a node.
     pub same_places: Vec<[i64; 2]>,
 }
 

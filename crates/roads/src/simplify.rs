@@ -4,6 +4,10 @@ use corniche_geom::{LatticePoint, Polyline, cross};
 
 use crate::Road;
 
+/// A stretch is cut so often, each time in all its parts at once. Then all points stay that are left: a line that goes forth and back loses none of them
+/// anyway, and would be looked at as often as it has points.
+const MOST_ROUNDS: usize = 128;
+
 /// The road's line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
 /// the segment that replaces its stretch.
 ///
@@ -69,16 +73,26 @@ fn thin_stretch(
 ) {
     let is_reversed = is_reversed(&points[first..=last]);
     let mut pending = vec![(first, last)];
-    while let Some((first, last)) = pending.pop() {
-        let Some((farthest, distance_steps)) = farthest(points, first, last, is_reversed) else {
-            continue;
-        };
-        // If both ends are equal there is no segment: without this point the stretch would vanish.
-        if distance_steps > tolerance_steps || points[first] == points[last] {
-            keep[farthest] = true;
-            pending.push((first, farthest));
-            pending.push((farthest, last));
+    for _ in 0..MOST_ROUNDS {
+        let mut parts = Vec::new();
+        for (first, last) in pending {
+            let Some((farthest, distance_steps)) = farthest(points, first, last, is_reversed)
+            else {
+                continue;
+            };
+            // If both ends are equal there is no segment: without this point the stretch would vanish.
+            if distance_steps > tolerance_steps || points[first] == points[last] {
+                keep[farthest] = true;
+                parts.extend([(first, farthest), (farthest, last)]);
+            }
         }
+        if parts.is_empty() {
+            return;
+        }
+        pending = parts;
+    }
+    for (first, last) in pending {
+        keep[first..last].fill(true);
     }
 }
 

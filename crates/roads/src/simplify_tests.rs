@@ -1,7 +1,7 @@
 //! Simplified lines stay within their tolerance and keep what is fixed.
 
 use super::*;
-use crate::{FunctionalRoadClass, RoadAttributes};
+use crate::{FunctionalRoadClass, MetNodes, RoadAttributes};
 use proptest::{collection::vec, prelude::*};
 
 fn road(points: Vec<LatticePoint>, inner_fixed: &[u32]) -> Option<Road> {
@@ -19,6 +19,7 @@ fn road(points: Vec<LatticePoint>, inner_fixed: &[u32]) -> Option<Road> {
         fixed,
         node_ids: Vec::new(),
         same_places: Vec::new(),
+        met: MetNodes::default(),
     })
 }
 
@@ -205,5 +206,31 @@ proptest! {
         let kept = simplify(&road, tolerance_steps);
         let kept: Vec<[f64; 2]> = kept.points().iter().map(|point| point.in_steps()).collect();
         prop_assert_eq!(kept, expected);
+    }
+}
+
+/// A line that goes forth and back keeps its points and is not looked at as often as it has points, whichever way it runs.
+#[test]
+fn work_follows_the_points_of_a_zigzag() {
+    let zigzag = |k: i64| (1000 * k, if k % 2 == 0 { 0 } else { 1_000_000_000 });
+    let spiral = |k: i64| {
+        let (angle, reach) = (k as f64 * 0.37, (100_000 - k) as f64 * 1000.0);
+        ((reach * angle.cos()) as i64, (reach * angle.sin()) as i64)
+    };
+    let comb = |k: i64| (1000 * k, [0, 5_000_000, 200, 7_000_000][k as usize % 4]);
+    let along = |k: i64| (k * k, -k);
+    let shapes: [&dyn Fn(i64) -> (i64, i64); 4] = [&zigzag, &spiral, &comb, &along];
+    for shape in shapes {
+        let begun = std::time::Instant::now();
+        let points: Vec<(i64, i64)> = (0..60_000).map(shape).collect();
+        let there = simplify(&line(&points, &[]), 100.0);
+        let back = simplify(&line(&points.iter().rev().copied().collect::<Vec<_>>(), &[]), 100.0);
+        let turned: Vec<LatticePoint> = back.points().iter().rev().copied().collect();
+        assert_eq!(there.points(), turned);
+        let source: Vec<LatticePoint> =
+            points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
+        assert!(is_subsequence(there.points(), &source));
+        // Looking at each point as often as there are points takes minutes.
+        assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     }
 }

@@ -15,6 +15,7 @@
 mod answer;
 mod body;
 mod conditions;
+mod connections;
 mod error;
 mod host;
 mod media_type;

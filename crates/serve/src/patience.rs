@@ -4,6 +4,10 @@ use std::{
     future::Future as _,
     io,
     pin::Pin,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     task::{Context, Poll, ready},
     time::{Duration, Instant},
 };
@@ -29,12 +33,20 @@ pub(crate) struct Patient<S> {
     may_earn: Duration,
     /// Since when is waited, and what ends it.
     waits: Option<(Instant, Pin<Box<Sleep>>)>,
+    /// Whether its reader is waited for, for others.
+    is_waiting: Arc<AtomicBool>,
 }
 
 impl<S> Patient<S> {
     pub(crate) fn new(stream: S, patience: Duration) -> Self {
         let most = patience * MOST_TIMES;
-        Self { stream, left: patience, most, may_earn: Duration::ZERO, waits: None }
+        let is_waiting = Arc::default();
+        Self { stream, left: patience, most, may_earn: Duration::ZERO, waits: None, is_waiting }
+    }
+
+    /// Tells at any time whether its reader is waited for: then something is sent.
+    pub(crate) fn is_waiting(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_waiting)
     }
 
     /// Counts what a call did that may have to wait.
@@ -43,6 +55,7 @@ impl<S> Patient<S> {
         context: &mut Context<'_>,
         done: Poll<io::Result<usize>>,
     ) -> Poll<io::Result<usize>> {
+        self.is_waiting.store(done.is_pending(), Ordering::Relaxed);
         if let Poll::Ready(done) = done {
             if let Some((since, _)) = self.waits.take() {
                 let waited = since.elapsed();

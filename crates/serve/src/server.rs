@@ -4,15 +4,14 @@ use std::{
     convert::Infallible,
     io,
     net::{SocketAddr, TcpListener, ToSocketAddrs as _},
+    pin::pin,
     sync::Arc,
     time::Duration,
 };
 
+use futures_util::future::{Either, select};
 use hyper::{Request, body::Incoming, server::conn::http1, service::service_fn};
-use hyper_util::{
-    rt::{TokioIo, TokioTimer},
-    server::graceful::GracefulShutdown,
-};
+use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::{
     net::{TcpSocket, TcpStream},
     runtime::Builder,
@@ -20,7 +19,14 @@ use tokio::{
     time::{sleep, timeout},
 };
 
-use crate::{ServeError, answer::Site, host::Hosts, patience::Patient, routes::Routes};
+use crate::{
+    ServeError,
+    answer::Site,
+    connections::{Connection, Connections, End},
+    host::Hosts,
+    patience::Patient,
+    routes::Routes,
+};
 
 /// How often it is asked whether to stop.
 const ASKS_EVERY: Duration = Duration::from_millis(100);
@@ -33,7 +39,7 @@ const READS_WITHIN: Duration = Duration::from_secs(30);
 /// What the system keeps for a client that has not taken it yet. Linux takes twice as much, and asks for more when a third of that is free: a client
 /// of [`patience`](crate::patience)'s least rate gets so far in [`READS_WITHIN`].
 const SEND_BUFFER_BYTES: u32 = 128 << 10;
-/// Connections at once; more wait. A browser opens six.
+/// Connections at once; where there are as many, the one on which nothing was asked for longest gives way. A browser opens six.
 const MOST_CONNECTIONS: usize = 256;
 /// Threads that answer; files are read by others.
 const THREADS: usize = 2;
@@ -133,26 +139,36 @@ async fn accept(
     watch: &Watch<'_>,
 ) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let graceful = GracefulShutdown::new();
+    let connections = Arc::new(Connections::default());
     let free = Arc::new(Semaphore::new(most_connections));
+    // One that has come and has no room yet.
+    let mut next: Option<TcpStream> = None;
     while !(watch.is_stopped)() {
-        let Ok(Ok(permit)) = timeout(ASKS_EVERY, Arc::clone(&free).acquire_owned()).await else {
+        let Some(stream) = next.take() else {
+            match timeout(ASKS_EVERY, listener.accept()).await {
+                Ok(Ok((stream, _))) => next = Some(stream),
+                // Too many open files, or a client that is gone already: neither ends the server.
+                Ok(Err(_)) => sleep(ASKS_EVERY).await,
+                Err(_) => {}
+            }
             continue;
         };
-        match timeout(ASKS_EVERY, listener.accept()).await {
-            Ok(Ok((stream, _))) => {
-                // Without it small answers may wait for each other.
-                let _ = stream.set_nodelay(true);
-                let Ok(stream) = with_small_buffer(stream) else { continue };
-                begin(Patient::new(stream, patience), permit, site, watch, &graceful);
-            }
-            // Too many open files, or a client that is gone already: neither ends the server.
-            Ok(Err(_)) => sleep(ASKS_EVERY).await,
-            Err(_) => {}
+        if free.available_permits() == 0 {
+            connections.close_idlest();
         }
+        let Ok(Ok(permit)) = timeout(ASKS_EVERY, Arc::clone(&free).acquire_owned()).await else {
+            next = Some(stream);
+            continue;
+        };
+        // Without it small answers may wait for each other.
+        let _ = stream.set_nodelay(true);
+        let Ok(stream) = with_small_buffer(stream) else { continue };
+        begin(Patient::new(stream, patience), permit, site, watch, &connections);
     }
-    drop(listener);
-    let _ = timeout(ENDS_WITHIN, graceful.shutdown()).await;
+    drop((listener, next));
+    connections.end_all();
+    let all = u32::try_from(most_connections).unwrap_or(u32::MAX);
+    let _ = timeout(ENDS_WITHIN, free.acquire_many(all)).await;
     Ok(())
 }
 
@@ -170,11 +186,16 @@ fn begin(
     permit: OwnedSemaphorePermit,
     site: &Arc<Site>,
     watch: &Watch<'_>,
-    graceful: &GracefulShutdown,
+    connections: &Arc<Connections>,
 ) {
     let (site, observer) = (Arc::clone(site), Arc::clone(&watch.observer));
+    let (connections, connection) =
+        (Arc::clone(connections), Arc::new(Connection::new(stream.is_waiting())));
+    let number = connections.add(&connection);
+    let own = Arc::clone(&connection);
     let service = service_fn(move |request: Request<Incoming>| {
         let (site, observer) = (Arc::clone(&site), Arc::clone(&observer));
+        let answering = connection.begin_answer();
         async move {
             let answer = site.answer(&request).await;
             let range = request.headers().get(hyper::header::RANGE);
@@ -184,17 +205,28 @@ fn begin(
                 range: range.and_then(|range| range.to_str().ok()).map(str::to_owned),
                 status: answer.status().as_u16(),
             });
-            Ok::<_, Infallible>(answer)
+            Ok::<_, Infallible>(answer.map(|body| answering.with_body(body)))
         }
     });
-    let connection = http1::Builder::new()
+    let served = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(REQUEST_WITHIN)
         .serve_connection(TokioIo::new(stream), service);
-    let connection = graceful.watch(connection);
     tokio::spawn(async move {
-        // A client that goes away is no concern of ours.
-        let _ = connection.await;
+        let mut served = pin!(served);
+        loop {
+            // What has been asked meanwhile is answered: the first of both is looked at first.
+            match select(served.as_mut(), pin!(own.is_told())).await {
+                // A client that goes away is no concern of ours.
+                Either::Left(_) => break,
+                Either::Right(_) => match own.end() {
+                    End::Now => break,
+                    End::AfterAnswer => served.as_mut().graceful_shutdown(),
+                    End::Not => {}
+                },
+            }
+        }
+        connections.remove(number);
         drop(permit);
     });
 }

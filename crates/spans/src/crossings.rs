@@ -1,31 +1,21 @@
 //! Where bridges and tunnels cross other roads without a node in common.
 
-use corniche_geom::{LatticePoint, Side, TooMuchWork, Work, cross, side};
-use corniche_network::{ChainNumber, Chains, Network, NetworkWay};
-use corniche_roads::grade_limit;
+use std::collections::BTreeMap;
+
+use corniche_geom::{LatticePoint, Side, cross, side};
+use corniche_network::{ChainNumber, Chains, Network};
 use rstar::{
     AABB, RTree,
     primitives::{GeomWithData, Rectangle},
 };
 
-use crate::{Distance, spans::SpanKind};
-
-/// A place on a chain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CrossingPlace {
-    /// The chain.
-    pub chain: ChainNumber,
-    /// OSM's id of the way there.
-    pub way_id: i64,
-    /// The distance along the chain, metres; on the ground nobody needs it, and it is 0.
-    pub along_m: f64,
-    /// What it is there; `None` on the ground.
-    pub kind: Option<SpanKind>,
-    /// How it is ordered: OSM's `layer`, but at least 1 on a bridge, 0 on the ground and at most −1 in a tunnel.
-    pub layer: i8,
-    /// The steepest grade with which roads of its kind are built, rise over run.
-    pub steepest: f64,
-}
+use crate::{
+    Distance,
+    chain_lines::{ChainLine, ChainLines, OnLine},
+    contacts::{Contact, contacts},
+    crossing_place::CrossingPlace,
+    spans::SpanKind,
+};
 
 /// Whether it is known what is above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,137 +37,310 @@ pub struct Crossing {
     pub lower: CrossingPlace,
     /// Whether it is known which is which.
     pub order: Order,
+    /// How far along both it reaches to either side, metres; 0 where they cross in one place.
+    pub half_m: f64,
+    /// Whether it is one crossing with the one before: a stretch that both share is told in several places.
+    pub continues: bool,
 }
 
-/// Ways for which no grade is known may be as steep as service roads, percent.
-const OTHER_LIMIT_PCT: f64 = 20.0;
-
-/// A piece of a chain between two points.
-#[derive(Debug, Clone, Copy)]
-struct Segment {
-    ends: [LatticePoint; 2],
-    place: CrossingPlace,
-    length_m: f64,
+/// What was found of crossings.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Crossings {
+    /// In the order of their chains.
+    pub all: Vec<Crossing>,
+    /// Ways that cross others more often than any real ones: crossings with the chains that they are in are left out.
+    pub left_out: Vec<i64>,
 }
 
-/// Pairs of segments that are looked at, at least and for each segment of bridges and tunnels: in a city it is a handful. A crossing counts for
-/// as many as it takes memory.
-const MOST_PAIRS: u64 = 1 << 26;
-const MOST_PAIRS_OF_SEGMENT: u64 = 1 << 10;
-const PAIRS_OF_CROSSING: usize = 64;
+/// Pairs of segments that are looked at for each segment of a chain, and beyond that for each chain: in a city it is a handful. A chain for which
+/// there are more is left out.
+const MOST_PAIRS_OF_SEGMENT: u64 = 64;
+const MOST_PAIRS_OF_CHAIN: u64 = 1 << 16;
+/// The latter for all chains together, at least and for each segment of bridges and tunnels.
+const MOST_PAIRS: u64 = 1 << 22;
+const MORE_PAIRS_OF_SEGMENT: u64 = 1 << 6;
+/// Crossings of two chains; no real ones have as many.
+const MOST_CROSSINGS: usize = 256;
+/// A stretch that two lines share is told in places that are so far apart, metres, but in so many at most.
+const SPACING_M: f64 = 10.0;
+const MOST_PLACES: f64 = 64.0;
 
-type Boxed = GeomWithData<Rectangle<[f64; 2]>, usize>;
-
-/// All crossings of a network's bridges and tunnels with its roads and with each other, in the order of their chains.
+/// All crossings of a network's bridges and tunnels with its roads and with each other.
 ///
-/// Orientations are exact. Roads that end on one another, or share a point, do not cross there.
+/// Orientations are exact. Lines cross where one changes from one side of the other to the other side: also at a place where each has a point, or along a
+/// stretch that both share, but not where they have a node in common. Roads that end on one another do not cross there.
 ///
-/// # Errors
-/// Where more lines cross each other than in any real network.
-pub fn crossings(
-    network: &Network,
-    chains: &Chains,
-    distance_m: &Distance<'_>,
-) -> Result<Vec<Crossing>, TooMuchWork> {
-    let mut of_spans: Vec<Segment> = Vec::new();
-    for chain in chains.numbers() {
-        if SpanKind::of(network.structure_of(&chains.get(chain))).is_some() {
-            of_spans.extend(segments(network, chains, chain, distance_m));
-        }
-    }
-    let corners = |[a, b]: [LatticePoint; 2]| [a.in_steps(), b.in_steps()];
-    let boxed = |(number, segment): (usize, &Segment)| -> Boxed {
-        let [a, b] = corners(segment.ends);
-        GeomWithData::new(Rectangle::from_corners(a, b), number)
-    };
-    let tree = RTree::bulk_load(of_spans.iter().enumerate().map(boxed).collect());
-    let mut found = Vec::new();
-    if of_spans.is_empty() {
-        return Ok(found);
-    }
-    let work = Work::new(MOST_PAIRS + MOST_PAIRS_OF_SEGMENT * of_spans.len() as u64);
-    let mut numbers: Vec<usize> = Vec::new();
+/// Work follows the number of points: chains that cross others more often than any real ones are left out.
+#[must_use]
+pub fn crossings(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Crossings {
+    let lines = ChainLines::new(network, chains, distance_m);
+    let of_spans: Vec<ChainLine> = chains
+        .numbers()
+        .filter(|&chain| lines.kind_of(chain).is_some())
+        .map(|chain| lines.line(chain))
+        .collect();
+    let mut finder = Finder::new(&lines, &of_spans);
     let mut own_number = 0;
     for chain in chains.numbers() {
-        let is_span = SpanKind::of(network.structure_of(&chains.get(chain))).is_some();
-        for segment in segments(network, chains, chain, distance_m) {
-            let [a, b] = corners(segment.ends);
-            numbers.clear();
-            let near = tree.locate_in_envelope_intersecting(&AABB::from_corners(a, b));
-            // Two spans are compared once.
-            numbers.extend(near.map(|of| of.data).filter(|&other| !is_span || other < own_number));
-            numbers.sort_unstable();
-            work.add(numbers.len());
-            let before = found.len();
-            found.extend(numbers.iter().filter_map(|&other| segment.crossing(&of_spans[other])));
-            work.add(PAIRS_OF_CROSSING * (found.len() - before));
-            work.check()?;
-            own_number += usize::from(is_span);
+        if of_spans.is_empty() {
+            break;
+        }
+        match of_spans.get(own_number).filter(|line| line.chain == chain) {
+            Some(line) => {
+                finder.find(line, own_number);
+                own_number += 1;
+            }
+            None => finder.find(&lines.line(chain), of_spans.len()),
         }
     }
-    Ok(found)
+    finder.finish()
 }
 
-/// The steepest grade with which roads of a way's kind are built, rise over run.
-pub(crate) fn steepest_of(network: &Network, way: &NetworkWay) -> f64 {
-    grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT) / 100.0
+/// The numbers of a line of a bridge or a tunnel, and of one of its segments.
+type OfSegment = (u32, u32);
+type Boxed = GeomWithData<Rectangle<[f64; 2]>, OfSegment>;
+
+struct Finder<'a> {
+    lines: &'a ChainLines<'a>,
+    of_spans: &'a [ChainLine],
+    tree: RTree<Boxed>,
+    /// For each line of `of_spans` whether it is left out. It stays in the tree until so many of its boxes were met as a new tree costs.
+    is_out: Vec<bool>,
+    met_out: usize,
+    found: Vec<Crossing>,
+    /// Chains that are left out, with the way that is told.
+    left_out: BTreeMap<ChainNumber, i64>,
+    /// Pairs that may be looked at beyond those for each segment.
+    pairs: u64,
 }
 
-fn segments(
-    network: &Network,
-    chains: &Chains,
-    chain: ChainNumber,
-    distance_m: &Distance<'_>,
-) -> Vec<Segment> {
-    let mut segments = Vec::new();
-    let mut along_m = 0.0;
-    for &link in chains.get(chain).links {
-        let way = network.way_of(link);
-        let kind = SpanKind::of(way.structure);
-        let layer = kind.map_or(0, |kind| kind.layer(way.layer));
-        let steepest = steepest_of(network, way);
-        let mut points = network.points_of_link(link);
-        let Some(mut before) = points.next() else { continue };
-        for point in points {
-            let length_m = match kind {
-                Some(_) => distance_m(before.in_steps(), point.in_steps()),
-                None => 0.0,
-            };
-            let place = CrossingPlace { chain, way_id: way.way_id, along_m, kind, layer, steepest };
-            segments.push(Segment { ends: [before, point], place, length_m });
-            along_m += length_m;
-            before = point;
+/// How many segments of bridges and tunnels were met.
+#[derive(Default)]
+struct Met {
+    pairs: u64,
+    /// How many more were met of lines that are left out.
+    left_out: usize,
+}
+
+/// What was found between a line and one of a bridge or a tunnel.
+#[derive(Default)]
+struct Between {
+    pairs: u64,
+    /// Where they cross, by the segments of both; of a stretch that both share there are several.
+    crossings: BTreeMap<[usize; 2], Vec<Crossing>>,
+    /// Where they touch.
+    touching: BTreeMap<[OnLine; 2], LatticePoint>,
+}
+
+/// A line that crosses others more often than any real one.
+enum Culprit {
+    Own,
+    /// The line of a bridge or a tunnel with a number.
+    Other(usize),
+}
+
+impl<'a> Finder<'a> {
+    fn new(lines: &'a ChainLines<'a>, of_spans: &'a [ChainLine]) -> Self {
+        let boxes = of_spans.iter().enumerate().flat_map(|(number, line)| boxes(line, number));
+        let tree = RTree::bulk_load(boxes.collect());
+        let pairs = MOST_PAIRS + MORE_PAIRS_OF_SEGMENT * tree.size() as u64;
+        let (is_out, met_out) = (vec![false; of_spans.len()], 0);
+        let (found, left_out) = (Vec::new(), BTreeMap::new());
+        Self { lines, of_spans, tree, is_out, met_out, found, left_out, pairs }
+    }
+
+    /// Finds the crossings of a line with the first `count` lines of bridges and tunnels, and with itself if it is the next of them.
+    fn find(&mut self, line: &ChainLine, count: usize) {
+        let for_segments = MOST_PAIRS_OF_SEGMENT * line.segments() as u64;
+        while !self.left_out.contains_key(&line.chain) {
+            self.forget_left_out();
+            let mut met = Met::default();
+            let most = for_segments + MOST_PAIRS_OF_CHAIN.min(self.pairs);
+            let found = self.try_find((line, count), most, &mut met);
+            self.pairs = self.pairs.saturating_sub(met.pairs.saturating_sub(for_segments));
+            self.met_out += met.left_out;
+            match found {
+                Ok(all) => {
+                    let of_line = all.into_values().flat_map(|own| own.crossings.into_values());
+                    self.found.extend(of_line.flatten());
+                    return;
+                }
+                Err(Culprit::Own) => self.leave_out(line, count),
+                Err(Culprit::Other(number)) => self.leave_out(&self.of_spans[number], number),
+            }
         }
     }
-    segments
-}
 
-impl Segment {
-    fn crossing(&self, other: &Self) -> Option<Crossing> {
-        let [a, b] = self.ends;
-        let [c, d] = other.ends;
-        if self.ends.iter().any(|end| other.ends.contains(end)) {
-            return None;
+    fn leave_out(&mut self, line: &ChainLine, number: usize) {
+        self.left_out.insert(line.chain, self.lines.largest_way(line.chain));
+        if line.kind.is_some() {
+            self.is_out[number] = true;
         }
-        // What lies on a line counts as left of it, so a line that passes through a point of another crosses once.
-        let is_left = |from, to, point| side(from, to, point) != Side::Right;
-        if is_left(a, b, c) == is_left(a, b, d) || is_left(c, d, a) == is_left(c, d, b) {
-            return None;
+    }
+
+    fn try_find(
+        &self,
+        (line, count): (&ChainLine, usize),
+        most: u64,
+        met: &mut Met,
+    ) -> Result<BTreeMap<u32, Between>, Culprit> {
+        let mut all: BTreeMap<u32, Between> = BTreeMap::new();
+        for segment in 0..line.segments() {
+            let [a, b] = line.segment(segment).map(LatticePoint::in_steps);
+            let near = self.tree.locate_in_envelope_intersecting(&AABB::from_corners(a, b));
+            // Two segments are compared once.
+            let place = (count as u32, segment as u32);
+            for (number, other) in near.map(|of| of.data) {
+                if self.is_out[number as usize] {
+                    met.left_out += 1;
+                    continue;
+                }
+                met.pairs += 1;
+                let own = all.entry(number).or_default();
+                own.pairs += 1;
+                if (number, other) < place {
+                    own.add([(line, segment), (&self.of_spans[number as usize], other as usize)]);
+                }
+                if own.crossings.len() > MOST_CROSSINGS {
+                    return Err(self.larger(line, number as usize));
+                }
+                if met.pairs > most {
+                    // One that has most of them is looked at; else there are too many for this line.
+                    let half = all.iter().find(|(_, between)| 2 * between.pairs > met.pairs);
+                    return Err(
+                        half.map_or(Culprit::Own, |(&of, _)| self.larger(line, of as usize))
+                    );
+                }
+            }
         }
-        let share = |from: LatticePoint, to: LatticePoint, [one, two]: [LatticePoint; 2]| {
-            let [of_from, of_to] = [from, to].map(|end| cross(one, two, end) as f64);
-            of_from / (of_from - of_to)
-        };
-        let [own, others] = [share(a, b, other.ends), share(c, d, self.ends)];
-        let [from, to] = [a.in_steps(), b.in_steps()];
-        let at = [0, 1].map(|axis| from[axis] + own * (to[axis] - from[axis]));
-        let [one, two] = [(self, own), (other, others)].map(|(segment, share)| CrossingPlace {
-            along_m: segment.place.along_m + share * segment.length_m,
-            ..segment.place
+        for (&number, own) in &mut all {
+            let both = [line, &self.of_spans[number as usize]];
+            for (on, at) in std::mem::take(&mut own.touching) {
+                for found in contacts(self.lines, both, (at, on), &mut met.pairs) {
+                    own.crossings.insert(found.segments, shared(both, &found));
+                }
+                if met.pairs > most {
+                    return Err(self.larger(line, number as usize));
+                }
+            }
+            if own.crossings.len() > MOST_CROSSINGS {
+                return Err(self.larger(line, number as usize));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Makes a tree without the lines that are left out, once these cost as much.
+    fn forget_left_out(&mut self) {
+        if self.met_out > self.tree.size() {
+            let left = self.of_spans.iter().enumerate().filter(|(number, _)| !self.is_out[*number]);
+            let boxes = left.flat_map(|(number, line)| boxes(line, number));
+            (self.tree, self.met_out) = (RTree::bulk_load(boxes.collect()), 0);
+        }
+    }
+
+    /// Which of a line and one of a bridge or a tunnel has more points.
+    fn larger(&self, line: &ChainLine, other: usize) -> Culprit {
+        let is_other = self.of_spans[other].points.len() > line.points.len();
+        if is_other { Culprit::Other(other) } else { Culprit::Own }
+    }
+
+    fn finish(self) -> Crossings {
+        let Self { found: mut all, left_out, .. } = self;
+        all.retain(|crossing| {
+            [crossing.upper, crossing.lower].iter().all(|at| !left_out.contains_key(&at.chain))
         });
-        let order = if one.layer == two.layer { Order::Tie } else { Order::Known };
-        let [upper, lower] = if one.layer >= two.layer { [one, two] } else { [two, one] };
-        Some(Crossing { at, upper, lower, order })
+        let mut left_out: Vec<i64> = left_out.into_values().collect();
+        left_out.sort_unstable();
+        Crossings { all, left_out }
+    }
+}
+
+fn boxes(line: &ChainLine, number: usize) -> impl Iterator<Item = Boxed> + '_ {
+    (0..line.segments()).map(move |segment| {
+        let [a, b] = line.segment(segment).map(LatticePoint::in_steps);
+        GeomWithData::new(Rectangle::from_corners(a, b), (number as u32, segment as u32))
+    })
+}
+
+impl Between {
+    /// Looks at a pair of segments.
+    fn add(&mut self, both: [(&ChainLine, usize); 2]) {
+        let [(own, own_segment), (other, other_segment)] = both;
+        let [[a, b], [c, d]] = both.map(|(line, segment)| line.segment(segment));
+        let of_own = [c, d].map(|end| side(a, b, end));
+        let of_other = [a, b].map(|end| side(c, d, end));
+        let opposite = [[Side::Left, Side::Right], [Side::Right, Side::Left]];
+        if opposite.contains(&of_own) && opposite.contains(&of_other) {
+            self.crossings.insert([own_segment, other_segment], vec![crossed(both)]);
+        } else if own.chain != other.chain {
+            let within = |[from, to]: [LatticePoint; 2], at: LatticePoint| {
+                let is = |from: i64, to: i64, at: i64| from.min(to) <= at && at <= from.max(to);
+                is(from.u, to.u, at.u) && is(from.v, to.v, at.v)
+            };
+            let others = [c, d].into_iter().zip(of_own).filter(|(at, _)| within([a, b], *at));
+            let owns = [a, b].into_iter().zip(of_other).filter(|(at, _)| within([c, d], *at));
+            for (at, _) in others.chain(owns).filter(|(_, side)| *side == Side::On) {
+                let on = [own.on(own_segment, at), other.on(other_segment, at)];
+                self.touching.insert(on, at);
+            }
+        }
+    }
+}
+
+/// The crossing of two segments of which each is on both sides of the other.
+fn crossed(both: [(&ChainLine, usize); 2]) -> Crossing {
+    let [[a, b], [c, d]] = both.map(|(line, segment)| line.segment(segment));
+    let share = |[from, to]: [LatticePoint; 2], [one, two]: [LatticePoint; 2]| {
+        let [of_from, of_to] = [from, to].map(|end| cross(one, two, end) as f64);
+        of_from / (of_from - of_to)
+    };
+    let shares = [share([a, b], [c, d]), share([c, d], [a, b])];
+    let [from, to] = [a.in_steps(), b.in_steps()];
+    let at = [0, 1].map(|axis| from[axis] + shares[0] * (to[axis] - from[axis]));
+    let places = [0, 1].map(|k| {
+        let (line, segment) = both[k];
+        line.place(segment, line.along_m(segment, shares[k]))
+    });
+    Crossing::new(at, places, 0.0, false)
+}
+
+/// The places of what two lines share, which cross there; the second is a bridge or a tunnel.
+fn shared(both: [&ChainLine; 2], contact: &Contact) -> Vec<Crossing> {
+    let [_, [from_m, to_m]] = contact.along_m;
+    let length_m = (to_m - from_m).abs();
+    let count = (length_m / SPACING_M).ceil().clamp(1.0, MOST_PLACES);
+    let of_share = |share: f64| {
+        let [own_m, other_m] =
+            contact.along_m.map(|[from_m, to_m]| from_m + share * (to_m - from_m));
+        let (segment, at) = both[1].at_m(other_m);
+        let places = [both[0].place(contact.segments[0], own_m), both[1].place(segment, other_m)];
+        (at, places)
+    };
+    (0..count as usize)
+        .map(|k| {
+            let (at, places) = of_share((k as f64 + 0.5) / count);
+            Crossing::new(at, places, length_m / count / 2.0, k > 0)
+        })
+        .collect()
+}
+
+impl Crossing {
+    /// The one that makes room, and the one that it goes around: a bridge is lifted; over a tunnel, of two tunnels, and beneath the ground, the lower one
+    /// is lowered. Heights of the first depend on those of the second.
+    #[must_use]
+    pub fn moved(&self) -> [CrossingPlace; 2] {
+        match (self.upper.kind, self.lower.kind) {
+            (Some(SpanKind::Bridge), None | Some(SpanKind::Bridge)) => [self.upper, self.lower],
+            _ => [self.lower, self.upper],
+        }
+    }
+
+    fn new(at: [f64; 2], [one, two]: [CrossingPlace; 2], half_m: f64, continues: bool) -> Self {
+        let above = one.order(&two);
+        let order = if above.is_eq() { Order::Tie } else { Order::Known };
+        let [upper, lower] = if above.is_ge() { [one, two] } else { [two, one] };
+        Self { at, upper, lower, order, half_m, continues }
     }
 }
 

@@ -5,10 +5,12 @@ use std::{collections::BTreeSet, sync::Arc};
 use corniche_network::{ChainNumber, NodeNumber};
 
 use crate::{
-    crossings::{Crossing, CrossingPlace, Order},
+    crossing_place::CrossingPlace,
+    crossings::{Crossing, Crossings, Order},
     harmonic::Harmonic,
     lifts::{OnEdge, Reach, Tent, put_up},
-    spans::{Edge, Joint, SpanKind, SpanProblem, SpanReason, Spans},
+    refusals::Refusals,
+    spans::{Edge, SpanProblem, SpanReason, Spans},
 };
 
 /// What is wanted between what crosses, metres.
@@ -21,17 +23,19 @@ const LEAST_FLANK: f64 = 0.02;
 const MOST_PASSES: usize = 8;
 /// Where decks are lifted, heights are given so often along them, metres: between the bends of a tent another one may be higher.
 const STATION_M: f64 = 10.0;
+/// But so many at most along an edge: 40 km of it.
+const MOST_STATIONS: f64 = 4096.0;
 /// What is nearer to an end of an edge is at it, metres.
 const END_M: f64 = 1e-6;
 /// What is shorter has no grade, metres.
 const SHORTEST_M: f64 = 1.0;
-/// Less is no reason to lift, metres.
+/// Less is no reason to lift, and makes no grade too steep: what is left of rounding, metres.
 const ENOUGH_M: f64 = 1e-6;
 
 /// How much room there is between what crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeHeight {
-    /// The crossing.
+    /// The crossing; of a stretch that both share the place at which there is least room.
     pub crossing: Crossing,
     /// How far the upper is above the lower, metres; `None` where a height is not known, or which is which.
     pub free_m: Option<f64>,
@@ -41,78 +45,92 @@ pub struct FreeHeight {
 #[derive(Debug)]
 pub struct Decks {
     spans: Arc<Spans>,
+    /// At which joints the ground does not carry them.
+    is_refused: Vec<bool>,
     /// The height of each joint, NaN where it is not known.
     joints_m: Vec<f64>,
     /// The tents on each edge.
     tents: Vec<Vec<Tent>>,
     /// The crossings, in their order.
     free_heights: Vec<FreeHeight>,
+    /// What is to be told of joints and ways.
     problems: Vec<SpanProblem>,
+    /// What is to be told of crossings, with the ways of the spans there.
+    of_crossings: Vec<(SpanReason, [Option<i64>; 2])>,
 }
 
 impl Decks {
     /// The places of the lattice whose ground [`Decks::solve`] needs, in this order.
-    pub fn places(spans: &Spans, crossings: &[Crossing]) -> impl Iterator<Item = [f64; 2]> {
+    pub fn places(spans: &Spans, crossings: &Crossings) -> impl Iterator<Item = [f64; 2]> {
         let joints = spans.joints.iter().map(|joint| joint.at.in_steps());
-        joints.chain(crossings.iter().map(|crossing| crossing.at))
+        joints.chain(crossings.all.iter().map(|crossing| crossing.at))
     }
 
     /// Solves the heights of spans over the ground, whose heights at [`Decks::places`] are given; `None` where there is none.
     ///
-    /// At supports they are the ground's; between them they are harmonic along the chains, which for two supports is a straight line. At crossings
-    /// bridges are lifted and tunnels lowered until there is a metre between them and what they cross, with flanks no steeper than roads of that
-    /// kind are built, less what the span itself has, and 2 % at least; 0.3 m are always made.
+    /// At supports they are the ground's; between them they are harmonic along the chains, which for two supports is a straight line. Where a span passes
+    /// through a node of the ground that is far from that line, the ground carries nothing (see [`SpanReason::GroundWayOnDeck`]). At crossings bridges are
+    /// lifted and tunnels lowered until there is a metre between them and what they cross, with flanks no steeper than roads of that kind are built, less
+    /// what the span itself has, and 2 % at least; 0.3 m are always made.
     #[must_use]
-    pub fn solve(spans: Arc<Spans>, crossings: &[Crossing], grounds_m: &[Option<f64>]) -> Self {
+    pub fn solve(spans: Arc<Spans>, crossings: &Crossings, grounds_m: &[Option<f64>]) -> Self {
         let (of_joints_m, of_crossings_m) = grounds_m.split_at(spans.joints.len());
-        let mut problems = spans.problems();
-        let held = |(number, (joint, own_m)): (usize, (&Joint, &Option<f64>))| {
-            if joint.support.is_none() {
-                return f64::NAN;
+        let grounds_m = (of_joints_m, of_crossings_m);
+        let refusals = Refusals::find(&spans, &crossings.all, grounds_m, FREE_HEIGHT_M);
+        let mut problems = spans.problems(&refusals.is_refused);
+        let unsolved = refusals.unsolved.iter();
+        problems.extend(unsolved.map(|&at| spans.problem_of_joint(SpanReason::TooIntricate, at)));
+        let left_out = crossings.left_out.iter();
+        problems.extend(
+            left_out.map(|&way_id| SpanProblem::of_way(SpanReason::TooManyCrossings, way_id)),
+        );
+        let held_m = held_m(&spans, &refusals.is_refused, of_joints_m);
+        for (number, joint) in spans.joints.iter().enumerate() {
+            let is_held = joint.support.is_some() && !refusals.is_refused[number];
+            if is_held && of_joints_m[number].is_none() {
+                problems.push(spans.problem_of_joint(SpanReason::NoGround, number));
             }
-            if own_m.is_none() {
-                let way_id = spans.way_of_joint(number);
-                problems.push(SpanProblem { reason: SpanReason::NoGround, way_id });
-            }
-            own_m.unwrap_or(f64::NAN)
-        };
-        let held_m: Vec<f64> = spans.joints.iter().zip(of_joints_m).enumerate().map(held).collect();
+        }
         let joints_m = solved(&spans, &held_m);
         problems.extend(too_intricate(&spans, &held_m, &joints_m));
         let mut decks = Self {
             joints_m,
             tents: vec![Vec::new(); spans.edges.len()],
             spans,
-            free_heights: Vec::with_capacity(crossings.len()),
+            is_refused: refusals.is_refused,
+            free_heights: Vec::with_capacity(crossings.all.len()),
             problems,
+            of_crossings: Vec::new(),
         };
-        decks.lift(crossings, of_crossings_m, &held_m);
-        decks.judge(crossings, of_crossings_m);
+        decks.lift(&crossings.all, of_crossings_m, &held_m);
+        decks.judge(&crossings.all, of_crossings_m);
         decks.judge_grades();
         decks
     }
 
-    /// The same decks on another ground, as coarse levels have it, whose heights at the joints are given: solved anew, with the lifts that they have.
+    /// The same decks on another ground, as coarse levels have it, whose heights at the joints are given: solved anew, with the supports and the lifts
+    /// that they have.
     #[must_use]
     pub fn on(&self, grounds_m: &[Option<f64>]) -> Self {
-        let joints = self.spans.joints.iter().zip(grounds_m);
-        let held_m: Vec<f64> = joints
-            .map(|(joint, own_m)| own_m.filter(|_| joint.support.is_some()).unwrap_or(f64::NAN))
-            .collect();
+        let held_m = held_m(&self.spans, &self.is_refused, grounds_m);
         Self {
             joints_m: solved(&self.spans, &held_m),
             tents: self.tents.clone(),
+            is_refused: self.is_refused.clone(),
             spans: Arc::clone(&self.spans),
             free_heights: Vec::new(),
             problems: Vec::new(),
+            of_crossings: Vec::new(),
         }
     }
 
     /// The nodes at which spans are carried, with their heights; those without ground are left out.
     pub fn supports(&self) -> impl Iterator<Item = (NodeNumber, f64)> + '_ {
-        let all = self.spans.joints.iter().zip(&self.joints_m);
-        all.filter(|(joint, height_m)| joint.support.is_some() && height_m.is_finite())
-            .map(|(joint, &height_m)| (joint.node, height_m))
+        let all = self.spans.joints.iter().zip(&self.joints_m).zip(&self.is_refused);
+        all.filter(|((joint, height_m), is_refused)| {
+            joint.support.is_some() && !**is_refused && height_m.is_finite()
+        })
+        .map(|((joint, &height_m), _)| (joint.node, height_m))
     }
 
     /// The spans.
@@ -127,10 +145,17 @@ impl Decks {
         &self.free_heights
     }
 
-    /// What is to be told of spans, in order.
+    /// What is to be told of the ways that `is_told` chooses, in order; of a crossing with the smallest of these.
     #[must_use]
-    pub fn problems(&self) -> &[SpanProblem] {
-        &self.problems
+    pub fn problems(&self, is_told: &dyn Fn(i64) -> bool) -> Vec<SpanProblem> {
+        let own = self.problems.iter().copied().filter(|problem| is_told(problem.way_id));
+        let of_crossings = self.of_crossings.iter().filter_map(|&(reason, ways)| {
+            let told = ways.into_iter().flatten().filter(|&way_id| is_told(way_id)).min();
+            Some(SpanProblem::of_way(reason, told?))
+        });
+        let mut all: Vec<SpanProblem> = own.chain(of_crossings).collect();
+        all.sort_unstable();
+        all
     }
 
     /// The height at a distance along a chain, as if there were no ground; `None` on the ground, and where it is not known.
@@ -147,7 +172,7 @@ impl Decks {
         let (length_m, tents) = (self.spans.edges[edge].length_m, &self.tents[edge]);
         let mut bends_m: Vec<f64> = tents.iter().flat_map(|tent| tent.bends_m(length_m)).collect();
         if !tents.is_empty() {
-            let count = (length_m / STATION_M).ceil();
+            let count = (length_m / STATION_M).ceil().min(MOST_STATIONS);
             let [first, last] =
                 [from_m, to_m].map(|at_m| (at_m / length_m * count).floor().max(0.0) as usize);
             bends_m.extend((first..=last).map(|k| k as f64 * length_m / count));
@@ -194,26 +219,25 @@ impl Decks {
 
     /// Lifts bridges over what they cross, from the lowest layer upwards, and lowers tunnels from the highest downwards.
     fn lift(&mut self, crossings: &[Crossing], grounds_m: &[Option<f64>], held_m: &[f64]) {
-        // Which of both makes room: the bridge; of two tunnels, and beneath the ground, the lower one. A bridge over a tunnel has the ground between.
-        let moved = |crossing: &Crossing| match (crossing.upper.kind, crossing.lower.kind) {
-            (Some(SpanKind::Bridge), Some(SpanKind::Tunnel)) => None,
-            (Some(SpanKind::Bridge), _) => Some((crossing.upper, crossing.lower)),
-            _ => Some((crossing.lower, crossing.upper)),
-        };
         let known = |(number, crossing): (usize, &Crossing)| {
-            let (own, other) = moved(crossing).filter(|_| crossing.order == Order::Known)?;
+            if crossing.order != Order::Known {
+                return None;
+            }
+            let [own, other] = crossing.moved();
             let edge = self.spans.edge_of(own.chain)?;
             let at = OnEdge { edge, along_m: own.along_m };
             let ground_m = grounds_m[number].unwrap_or(f64::NAN);
-            Some((at, own, other, ground_m))
+            Some(((at, crossing.half_m), own, other, ground_m))
         };
         let mut all: Vec<_> = crossings.iter().enumerate().filter_map(known).collect();
-        all.sort_by_key(|(_, own, ..)| own.layer.unsigned_abs());
+        all.sort_by_key(|((at, _), own, ..)| {
+            self.spans.edges[at.edge].kind.away() as i16 * i16::from(own.layer)
+        });
         let grades = self.median_grades();
         let is_held = |joint: usize| held_m[joint].is_finite();
         for _ in 0..MOST_PASSES {
             let mut is_changed = false;
-            for (at, own, other, ground_m) in &all {
+            for ((at, half_m), own, other, ground_m) in &all {
                 let edge = &self.spans.edges[at.edge];
                 let away = edge.kind.away();
                 let other_m = self.crossing_m(other, *ground_m);
@@ -222,7 +246,9 @@ impl Decks {
                 if room_m.is_nan() || room_m >= FREE_HEIGHT_M - ENOUGH_M {
                     continue;
                 }
-                let Some(reach) = Reach::of(&self.spans, &is_held, *at) else { continue };
+                let Some(reach) = Reach::of(&self.spans, &is_held, (*at, *half_m)) else {
+                    continue;
+                };
                 let wanted_m = FREE_HEIGHT_M - away * (base_m - other_m);
                 let limit = own.steepest - grades[edge.span as usize];
                 let gentle_m = limit.max(LEAST_FLANK) * reach.support_m;
@@ -262,17 +288,27 @@ impl Decks {
         of_spans.into_iter().map(median).collect()
     }
 
-    /// Says what there is between what crosses.
+    /// Says what there is between what crosses; of a stretch that both share, where it is least.
     fn judge(&mut self, crossings: &[Crossing], grounds_m: &[Option<f64>]) {
-        for (crossing, ground_m) in crossings.iter().zip(grounds_m) {
-            let own = [crossing.upper, crossing.lower];
-            let way_id =
-                own.iter().filter(|place| place.kind.is_some()).map(|place| place.way_id).min();
-            // Where there is no ground, two bridges have their heights yet.
-            let ground_m = ground_m.unwrap_or(f64::NAN);
-            let [upper_m, lower_m] = own.map(|place| self.crossing_m(&place, ground_m));
-            let free_m = Some(upper_m - lower_m)
-                .filter(|free_m| free_m.is_finite() && crossing.order == Order::Known);
+        let all: Vec<FreeHeight> = crossings
+            .iter()
+            .zip(grounds_m)
+            .map(|(crossing, ground_m)| {
+                // Where there is no ground, two bridges have their heights yet.
+                let ground_m = ground_m.unwrap_or(f64::NAN);
+                let [upper_m, lower_m] =
+                    [crossing.upper, crossing.lower].map(|place| self.crossing_m(&place, ground_m));
+                let free_m = Some(upper_m - lower_m)
+                    .filter(|free_m| free_m.is_finite() && crossing.order == Order::Known);
+                FreeHeight { crossing: *crossing, free_m }
+            })
+            .collect();
+        for stretch in all.chunk_by(|_, next| next.crossing.continues) {
+            let room = |own: &FreeHeight| own.free_m.unwrap_or(f64::INFINITY);
+            let least = stretch.iter().min_by(|one, other| room(one).total_cmp(&room(other)));
+            let Some(&FreeHeight { crossing, free_m }) = least else { continue };
+            let ways = [crossing.upper, crossing.lower]
+                .map(|place| place.kind.is_some().then_some(place.way_id));
             let reason = match free_m {
                 _ if crossing.order == Order::Tie => Some(SpanReason::LayerTie),
                 Some(free_m) if free_m < 0.0 => Some(SpanReason::OrderReversed),
@@ -281,9 +317,8 @@ impl Decks {
                 }
                 _ => None,
             };
-            let problem = reason.zip(way_id).map(|(reason, way_id)| SpanProblem { reason, way_id });
-            self.problems.extend(problem);
-            self.free_heights.push(FreeHeight { crossing: *crossing, free_m });
+            self.of_crossings.extend(reason.map(|reason| (reason, ways)));
+            self.free_heights.push(FreeHeight { crossing, free_m });
         }
     }
 
@@ -298,15 +333,14 @@ impl Decks {
             let is_steep = places_m.array_windows().any(|&[from_m, to_m]| {
                 let length_m = to_m - from_m;
                 let rise_m = (height_m(to_m) - height_m(from_m)).abs();
-                length_m > SHORTEST_M && rise_m > edge.steepest * length_m
+                length_m > SHORTEST_M && rise_m > edge.steepest * length_m + ENOUGH_M
             });
             if is_steep {
                 steep.insert(edge.way_id);
             }
         }
-        let problem = |way_id| SpanProblem { reason: SpanReason::GradeOverLimit, way_id };
+        let problem = |way_id| SpanProblem::of_way(SpanReason::GradeOverLimit, way_id);
         self.problems.extend(steep.into_iter().map(problem));
-        self.problems.sort_unstable();
     }
 }
 
@@ -327,11 +361,20 @@ fn too_intricate<'a>(
             *way_id = Some(way_id.map_or(edge.way_id, |other| other.min(edge.way_id)));
         }
     }
-    let problem = |way_id| SpanProblem { reason: SpanReason::TooIntricate, way_id };
+    let problem = |way_id| SpanProblem::of_way(SpanReason::TooIntricate, way_id);
     ways.into_iter()
         .filter(|(_, is_carried)| *is_carried)
         .filter_map(|(way_id, _)| way_id)
         .map(problem)
+}
+
+/// The ground's height at the joints that carry their spans, NaN at others.
+fn held_m(spans: &Spans, is_refused: &[bool], grounds_m: &[Option<f64>]) -> Vec<f64> {
+    let all = spans.joints.iter().zip(is_refused).zip(grounds_m);
+    all.map(|((joint, &is_refused), own_m)| {
+        own_m.filter(|_| joint.support.is_some() && !is_refused).unwrap_or(f64::NAN)
+    })
+    .collect()
 }
 
 /// The heights of all joints between those that are held; NaN where nothing holds them.

@@ -13,19 +13,26 @@
 //!
 //! This crate never reads a height: callers bring the ground.
 
+mod chain_lines;
+mod connected;
+mod contacts;
+mod crossing_place;
 mod crossings;
 mod decks;
 mod harmonic;
 mod lifts;
+mod refusals;
 mod span_finder;
 mod spans;
 #[cfg(test)]
 mod test_network;
 mod vicinity;
 
-pub use crossings::{Crossing, CrossingPlace, Order, crossings};
+pub use connected::{SpanLine, connected};
+pub use crossing_place::CrossingPlace;
+pub use crossings::{Crossing, Crossings, Order, crossings};
 pub use decks::{Decks, FreeHeight};
-pub use spans::{Joint, SpanKind, SpanProblem, SpanReason, Spans, Support};
+pub use spans::{Joint, SpanChain, SpanKind, SpanProblem, SpanReason, Spans, Support};
 pub use vicinity::Vicinity;
 
 /// The true distance between two places of the lattice in plan, metres.

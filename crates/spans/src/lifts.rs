@@ -26,8 +26,8 @@ pub(crate) struct Tent {
     reach_m: f64,
     /// How far its apex is from the ends of the edge.
     from_ends_m: [f64; 2],
-    /// Where along the edge it is highest, metres, if it is there.
-    apex_at: Option<f64>,
+    /// From where to where along the edge it is highest, metres, if it is there.
+    apex_at: Option<[f64; 2]>,
 }
 
 impl Tent {
@@ -35,14 +35,17 @@ impl Tent {
     pub(crate) fn height_m(&self, along_m: f64, length_m: f64) -> f64 {
         let [first_m, last_m] = self.from_ends_m;
         let around_m = (first_m + along_m).min(last_m + length_m - along_m);
-        let direct_m = self.apex_at.map_or(f64::INFINITY, |own_m| (own_m - along_m).abs());
+        let direct_m = self.apex_at.map_or(f64::INFINITY, |[from_m, to_m]| {
+            (from_m - along_m).max(along_m - to_m).max(0.0)
+        });
         self.apex_m * (1.0 - around_m.min(direct_m) / self.reach_m).max(0.0)
     }
 
     /// Whether it is a lower tent over the same place than another one.
     pub(crate) fn is_below(&self, other: &Self) -> bool {
-        let place =
-            |tent: &Self| (tent.from_ends_m.map(f64::to_bits), tent.apex_at.map(f64::to_bits));
+        let place = |tent: &Self| {
+            (tent.from_ends_m.map(f64::to_bits), tent.apex_at.map(|at| at.map(f64::to_bits)))
+        };
         place(self) == place(other) && self.apex_m < other.apex_m
     }
 
@@ -55,7 +58,7 @@ impl Tent {
         let own = self
             .apex_at
             .into_iter()
-            .flat_map(move |own_m| [own_m - reach_m, own_m, own_m + reach_m]);
+            .flat_map(move |[from_m, to_m]| [from_m - reach_m, from_m, to_m, to_m + reach_m]);
         feet_m
             .into_iter()
             .chain([valley_m])
@@ -71,9 +74,11 @@ pub(crate) struct OnEdge {
     pub(crate) along_m: f64,
 }
 
-/// How far joints are from a place, up to the nearest support.
+/// How far joints are from a stretch of an edge, up to the nearest support.
 pub(crate) struct Reach {
-    at: OnEdge,
+    edge: usize,
+    /// Where it begins and ends along the edge, metres.
+    stretch_m: [f64; 2],
     /// The distance of the nearest support.
     pub(crate) support_m: f64,
     /// Joints that are nearer, with their distances.
@@ -81,13 +86,19 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Goes along edges from a place until it comes to a support; `None` where there is none within [`MOST_JOINTS`].
-    pub(crate) fn of(spans: &Spans, held: &dyn Fn(usize) -> bool, at: OnEdge) -> Option<Self> {
+    /// Goes along edges from a place, and what is so near to it on its edge, until it comes to a support; `None` where there is none within
+    /// [`MOST_JOINTS`].
+    pub(crate) fn of(
+        spans: &Spans,
+        held: &dyn Fn(usize) -> bool,
+        (at, half_m): (OnEdge, f64),
+    ) -> Option<Self> {
         let mut joints = BTreeMap::new();
         // Distances are not negative: as bits they are in the order of their values.
         let mut waiting = BinaryHeap::new();
         let edge = &spans.edges[at.edge];
-        let ends_m = [at.along_m, edge.length_m - at.along_m].map(|to_m| to_m.max(0.0));
+        let stretch_m = [at.along_m - half_m, at.along_m + half_m];
+        let ends_m = [stretch_m[0], edge.length_m - stretch_m[1]].map(|to_m| to_m.max(0.0));
         for (joint, to_m) in edge.joints.into_iter().zip(ends_m) {
             waiting.push(Reverse((to_m.to_bits(), joint)));
         }
@@ -97,7 +108,7 @@ impl Reach {
             }
             let to_m = f64::from_bits(bits);
             if held(joint as usize) {
-                return Some(Self { at, support_m: to_m, joints });
+                return Some(Self { edge: at.edge, stretch_m, support_m: to_m, joints });
             }
             match joints.entry(joint) {
                 Entry::Occupied(_) => continue,
@@ -114,7 +125,7 @@ impl Reach {
     /// The tents that stand on edges within reach when the apex is so high, with the numbers of the edges.
     pub(crate) fn tents(&self, spans: &Spans, apex_m: f64) -> Vec<(usize, Tent)> {
         let to_m = |joint: u32| self.joints.get(&joint).copied().unwrap_or(self.support_m);
-        let mut edges: Vec<usize> = vec![self.at.edge];
+        let mut edges: Vec<usize> = vec![self.edge];
         for &joint in self.joints.keys() {
             edges.extend(spans.edges_at.of(joint as usize).iter().map(|end| *end as usize / 2));
         }
@@ -124,7 +135,7 @@ impl Reach {
             apex_m,
             reach_m: self.support_m,
             from_ends_m: spans.edges[edge].joints.map(to_m),
-            apex_at: (edge == self.at.edge).then_some(self.at.along_m),
+            apex_at: (edge == self.edge).then_some(self.stretch_m),
         };
         edges.into_iter().map(|edge| (edge, tent(edge))).collect()
     }

@@ -7,7 +7,7 @@ use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
 
 use crate::{
     Distance,
-    crossings::steepest_of,
+    crossing_place::steepest_of,
     spans::{Edge, Joint, SpanKind, Spans, Support},
 };
 
@@ -27,6 +27,8 @@ impl Spans {
     ///    a support                    │ steps          ●─── ground      ═══════●═══════  a street between two bridges:
     ///                                 free        ═════╝  a support            │         a support
     /// ```
+    ///
+    /// Only a span that nothing else carries, such as a roundabout on a bridge, is carried by the roads that touch it.
     #[must_use]
     pub fn find(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Self {
         let mut finder = Finder { network, chains, distance_m, numbers: BTreeMap::new() };
@@ -56,8 +58,20 @@ impl Spans {
         for (number, joint) in joints.iter_mut().enumerate() {
             let Some(&first) = edges_at.of(number).first() else { continue };
             let kind = edges[first as usize / 2].kind;
-            (joint.support, joint.touched_by) =
-                finder.support(kind, ends_at.of(network.index_of(joint.node)));
+            finder.support(kind, ends_at.of(network.index_of(joint.node)), joint);
+        }
+        let span_of = |number: usize| Some(edges[*edges_at.of(number).first()? as usize / 2].span);
+        let mut is_carried = vec![false; count];
+        for (number, joint) in joints.iter().enumerate() {
+            if let Some(span) = span_of(number) {
+                is_carried[span as usize] |= joint.support.is_some();
+            }
+        }
+        for (number, joint) in joints.iter_mut().enumerate() {
+            let is_free = span_of(number).is_some_and(|span| !is_carried[span as usize]);
+            if is_free && joint.is_touched {
+                joint.support = Some(Support::Touching);
+            }
         }
         Self { edges, joints, edges_at, count }
     }
@@ -79,13 +93,15 @@ impl Finder<'_> {
         joints: &mut Vec<Joint>,
     ) -> u32 {
         *self.numbers.entry((kind, node)).or_insert_with(|| {
-            joints.push(Joint { node, at, support: None, touched_by: None });
+            let node_id = self.network.node_id(node);
+            let [is_passed, is_touched] = [false; 2];
+            joints.push(Joint { node, node_id, at, support: None, is_passed, is_touched });
             joints.len() as u32 - 1
         })
     }
 
-    /// Why a span of a kind is carried at a node, and which way on the ground touches it; `ends` are all that lie there.
-    fn support(&self, kind: SpanKind, ends: &[u32]) -> (Option<Support>, Option<i64>) {
+    /// Finds out how a joint of a kind carries its span; `ends` are all that lie at its node.
+    fn support(&self, kind: SpanKind, ends: &[u32], joint: &mut Joint) {
         let kind_of = |end: u32| {
             let chain = self.chains.get(ChainNumber(end as usize / 2));
             SpanKind::of(self.network.structure_of(&chain))
@@ -106,12 +122,14 @@ impl Finder<'_> {
             false
         };
         let own = of_kind(Some(kind)).count();
-        let mut grounds = of_kind(None).map(|end| self.way_at(end));
+        let has_ground = of_kind(None).next().is_some();
+        joint.is_passed = passes_through(Some(kind));
         // Where a street passes through, too, it lies between two bridges, and carries both.
-        if passes_through(Some(kind)) && !passes_through(None) {
-            return (None, grounds.min());
+        if joint.is_passed && !passes_through(None) {
+            joint.is_touched = has_ground;
+            return;
         }
-        let support = if grounds.next().is_some() {
+        joint.support = if has_ground {
             Some(Support::Ground)
         } else if own < ends.len() {
             Some(Support::OtherKind)
@@ -121,14 +139,6 @@ impl Finder<'_> {
             // The end of a tunnel where nothing goes on lies inside the mountain as well as anywhere: the ground says nothing of it.
             None
         };
-        (support, None)
-    }
-
-    /// The way at an end of a chain.
-    fn way_at(&self, end: u32) -> i64 {
-        let links = self.chains.get(ChainNumber(end as usize / 2)).links;
-        let link = if is_last(end) { links.last() } else { links.first() };
-        link.map_or(0, |&link| self.network.way_of(link).way_id)
     }
 
     /// From the node at an end of a chain to where the chain is ten metres away, or to its other end.

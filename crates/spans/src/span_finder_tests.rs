@@ -20,8 +20,12 @@ fn found(ways: &[Way<'_>]) -> Found {
         .map(|joint| (network.node_id(joint.node).unwrap(), joint.support))
         .collect();
     joints.sort_by_key(|(id, _)| *id);
-    let problems =
-        spans.problems().iter().map(|problem| (problem.reason, problem.way_id)).collect();
+    let mut problems: Vec<(SpanReason, i64)> = spans
+        .problems(&vec![false; spans.joints.len()])
+        .iter()
+        .map(|problem| (problem.reason, problem.way_id))
+        .collect();
+    problems.sort_unstable();
     (spans.len(), joints, problems)
 }
 

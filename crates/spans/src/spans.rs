@@ -24,15 +24,6 @@ impl SpanKind {
         }
     }
 
-    /// How spans of this kind are ordered where they cross: by their `layer`, but a bridge is above layer 0, and a tunnel below.
-    #[must_use]
-    pub fn layer(self, tagged: i8) -> i8 {
-        match self {
-            Self::Bridge => tagged.max(1),
-            Self::Tunnel => tagged.min(-1),
-        }
-    }
-
     /// Which way is away from the ground: 1 for up, −1 for down.
     #[must_use]
     pub fn away(self) -> f64 {
@@ -52,6 +43,8 @@ pub enum Support {
     OtherKind,
     /// A bridge ends where nothing goes on: at a pier's end, or where the data ends.
     OpenEnd,
+    /// A road on the ground touches the span, which nothing else carries.
+    Touching,
 }
 
 /// A node where chains of a span meet or end.
@@ -59,12 +52,16 @@ pub enum Support {
 pub struct Joint {
     /// Its node.
     pub node: NodeNumber,
+    /// OSM's id of the node; `None` where a road is cut.
+    pub node_id: Option<i64>,
     /// Where it lies.
     pub at: LatticePoint,
-    /// Why it has the ground's height; `None` where it is free.
+    /// Why it has the ground's height, unless that is refused as wrong; `None` where it is free.
     pub support: Option<Support>,
-    /// A way on the ground that touches the span here although it passes through: it does not carry it.
-    pub touched_by: Option<i64>,
+    /// Whether the span passes through.
+    pub(crate) is_passed: bool,
+    /// Whether the span passes through, and a way on the ground only touches it.
+    pub(crate) is_touched: bool,
 }
 
 /// A chain of a span.
@@ -103,8 +100,10 @@ pub enum SpanReason {
     OrderReversed,
     /// Some of its supports lie where there is no ground.
     NoGround,
-    /// It joins so many ways that it is not solved.
+    /// It joins so many ways that not all of it is solved.
     TooIntricate,
+    /// It crosses others more often than any real one.
+    TooManyCrossings,
     /// It is steeper than roads of its kind are built.
     GradeOverLimit,
     /// The ground between the ends of a bridge is more than a metre above where the deck would be.
@@ -128,6 +127,7 @@ impl SpanReason {
             Self::OrderReversed => "order_reversed",
             Self::NoGround => "no_ground",
             Self::TooIntricate => "span_too_intricate",
+            Self::TooManyCrossings => "too_many_crossings",
             Self::GradeOverLimit => "grade_over_limit",
             Self::DeckInGround => "deck_in_ground",
             Self::TunnelAboveGround => "tunnel_above_ground",
@@ -144,7 +144,7 @@ impl SpanReason {
                 "a bridge that ends where nothing goes on has the ground's height there"
             }
             Self::GroundWayOnDeck => {
-                "a road on the ground touches it between its ends, and does not carry it"
+                "a road on the ground meets it between its ends, and does not carry it"
             }
             Self::KindChange => "a bridge goes on as a tunnel: the joint has the ground's height",
             Self::LayerTie => {
@@ -153,7 +153,12 @@ impl SpanReason {
             Self::OrderUnreachable => "less than a metre above or below what it crosses",
             Self::OrderReversed => "on the wrong side of what it crosses",
             Self::NoGround => "an end lies where there is no ground",
-            Self::TooIntricate => "it joins too many ways: it stays on the ground",
+            Self::TooIntricate => {
+                "it joins too many ways, or has too many points: what is not solved of it stays on the ground"
+            }
+            Self::TooManyCrossings => {
+                "it crosses bridges, tunnels or other roads too often: nothing is lifted for its crossings"
+            }
             Self::GradeOverLimit => "steeper than roads of its kind are built",
             Self::DeckInGround => {
                 "the ground beneath is more than a metre above the line between its ends"
@@ -165,7 +170,7 @@ impl SpanReason {
     }
 
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::NoSupport,
         Self::OneSupport,
         Self::OpenEnd,
@@ -176,6 +181,7 @@ impl SpanReason {
         Self::OrderReversed,
         Self::NoGround,
         Self::TooIntricate,
+        Self::TooManyCrossings,
         Self::GradeOverLimit,
         Self::DeckInGround,
         Self::TunnelAboveGround,
@@ -189,6 +195,29 @@ pub struct SpanProblem {
     pub reason: SpanReason,
     /// A way of the span; of several the one with the smallest id.
     pub way_id: i64,
+    /// The node at which it is so, if it is so at a node.
+    pub node_id: Option<i64>,
+}
+
+impl SpanProblem {
+    /// Something of a whole way.
+    #[must_use]
+    pub fn of_way(reason: SpanReason, way_id: i64) -> Self {
+        Self { reason, way_id, node_id: None }
+    }
+}
+
+/// A chain of a span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpanChain {
+    /// The chain.
+    pub chain: ChainNumber,
+    /// Whether it is a bridge or a tunnel.
+    pub kind: SpanKind,
+    /// The number of its span, from 0.
+    pub span: usize,
+    /// How long it is, metres.
+    pub length_m: f64,
 }
 
 /// All bridges and tunnels of a network.
@@ -222,30 +251,28 @@ impl Spans {
         &self.joints
     }
 
-    /// For each joint a chain that meets it, and how far along it the joint is, metres.
-    pub fn places_of_joints(&self) -> impl Iterator<Item = Option<(ChainNumber, f64)>> + '_ {
-        (0..self.joints.len()).map(|joint| {
-            let end = *self.edges_at.of(joint).first()?;
-            let edge = &self.edges[end as usize / 2];
-            Some((edge.chain, if end % 2 == 1 { edge.length_m } else { 0.0 }))
+    /// The chains of all spans.
+    pub fn chains(&self) -> impl Iterator<Item = SpanChain> + '_ {
+        self.edges.iter().map(|&Edge { chain, kind, span, length_m, .. }| SpanChain {
+            chain,
+            kind,
+            span: span as usize,
+            length_m,
         })
     }
 
-    /// How many are of a kind.
-    #[must_use]
-    pub fn count_of(&self, kind: SpanKind) -> u64 {
-        let mut of_kind: Vec<u32> =
-            self.edges.iter().filter(|edge| edge.kind == kind).map(|edge| edge.span).collect();
-        of_kind.sort_unstable();
-        of_kind.dedup();
-        of_kind.len() as u64
+    /// The span of each joint, in their order.
+    pub fn spans_of_joints(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        (0..self.joints.len()).map(|joint| {
+            let end = *self.edges_at.of(joint).first()?;
+            Some(self.edges[end as usize / 2].span as usize)
+        })
     }
 
-    /// How long those of a kind are together, micrometres.
+    /// The span of a chain; `None` on the ground.
     #[must_use]
-    pub fn length_um_of(&self, kind: SpanKind) -> u64 {
-        let own = self.edges.iter().filter(|edge| edge.kind == kind);
-        own.map(|edge| (edge.length_m * 1e6).round() as u64).sum()
+    pub fn span_of(&self, chain: ChainNumber) -> Option<usize> {
+        Some(self.edges[self.edge_of(chain)?].span as usize)
     }
 
     /// The edge of a chain; `None` on the ground.
@@ -259,9 +286,14 @@ impl Spans {
         ends.map(|end| self.edges[*end as usize / 2].way_id).min().unwrap_or_default()
     }
 
-    /// What is to be told of how spans are carried, in order.
-    #[must_use]
-    pub fn problems(&self) -> Vec<SpanProblem> {
+    /// A reason to look at a joint.
+    pub(crate) fn problem_of_joint(&self, reason: SpanReason, joint: usize) -> SpanProblem {
+        let node_id = self.joints[joint].node_id;
+        SpanProblem { reason, way_id: self.way_of_joint(joint), node_id }
+    }
+
+    /// What is to be told of how spans are carried, where supports at some joints are refused.
+    pub(crate) fn problems(&self, is_refused: &[bool]) -> Vec<SpanProblem> {
         let mut supports = vec![0_u64; self.count];
         let mut first_ways = vec![i64::MAX; self.count];
         let mut problems = Vec::new();
@@ -269,20 +301,19 @@ impl Spans {
             let first = &mut first_ways[edge.span as usize];
             *first = edge.way_id.min(*first);
         }
-        for (number, joint) in self.joints.iter().enumerate() {
+        for (number, (joint, &is_refused)) in self.joints.iter().zip(is_refused).enumerate() {
             let ends = self.edges_at.of(number);
             let Some(&end) = ends.first() else { continue };
             let span = self.edges[end as usize / 2].span as usize;
-            supports[span] += u64::from(joint.support.is_some());
-            let way_id = self.way_of_joint(number);
-            let of_support = match joint.support {
-                Some(Support::OtherKind) => Some(SpanReason::KindChange),
-                Some(Support::OpenEnd) => Some(SpanReason::OpenEnd),
-                _ => None,
+            supports[span] += u64::from(joint.support.is_some() && !is_refused);
+            let reason = match joint.support {
+                Some(Support::OtherKind) => SpanReason::KindChange,
+                Some(Support::OpenEnd) => SpanReason::OpenEnd,
+                _ if is_refused => SpanReason::GroundWayOnDeck,
+                None if joint.is_touched => SpanReason::GroundWayOnDeck,
+                _ => continue,
             };
-            let touched = joint.touched_by.map(|_| SpanReason::GroundWayOnDeck);
-            let reasons = of_support.into_iter().chain(touched);
-            problems.extend(reasons.map(|reason| SpanProblem { reason, way_id }));
+            problems.push(self.problem_of_joint(reason, number));
         }
         for (count, way_id) in supports.into_iter().zip(first_ways) {
             let reason = match count {
@@ -290,9 +321,8 @@ impl Spans {
                 1 => SpanReason::OneSupport,
                 _ => continue,
             };
-            problems.push(SpanProblem { reason, way_id });
+            problems.push(SpanProblem::of_way(reason, way_id));
         }
-        problems.sort_unstable();
         problems
     }
 }

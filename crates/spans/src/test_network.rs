@@ -2,9 +2,12 @@
 
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_network::{Breaks, Chains, Network, NetworkBuilder};
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
+
+use crate::{Decks, Spans, crossings};
 
 /// A way through nodes, `(id, east, north)`.
+#[derive(Clone)]
 pub(crate) struct Way<'a> {
     pub(crate) id: i64,
     pub(crate) structure: Structure,
@@ -36,6 +39,7 @@ pub(crate) fn network(ways: &[Way<'_>]) -> (Network, Chains) {
             fixed: (0..way.nodes.len() as u32).collect(),
             node_ids: way.nodes.iter().map(|&(id, ..)| Some(id)).collect(),
             same_places: Vec::new(),
+            met: MetNodes::default(),
         });
     }
     let network = builder.finish();
@@ -46,4 +50,36 @@ pub(crate) fn network(ways: &[Way<'_>]) -> (Network, Chains) {
 /// Metres between two places.
 pub(crate) fn distance_m(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[0] - from[0]).hypot(to[1] - from[1]) / 1000.0
+}
+
+/// Solves the spans of ways over the ground, and hands them to a test.
+pub(crate) fn solved<T>(
+    ways: &[Way<'_>],
+    ground_m: impl Fn([f64; 2]) -> Option<f64>,
+    test: impl FnOnce(&Decks, &Network, &Chains) -> T,
+) -> T {
+    let (network, chains) = network(ways);
+    let spans = Spans::find(&network, &chains, &distance_m);
+    let crossings = crossings(&network, &chains, &distance_m);
+    let places = Decks::places(&spans, &crossings);
+    let grounds_m: Vec<Option<f64>> =
+        places.map(|at| ground_m(at.map(|part| part / 1000.0))).collect();
+    let decks = Decks::solve(spans.into(), &crossings, &grounds_m);
+    test(&decks, &network, &chains)
+}
+
+/// The height of a way of one chain at a distance from its first node.
+pub(crate) fn at(
+    decks: &Decks,
+    network: &Network,
+    chains: &Chains,
+    way_id: i64,
+    along_m: f64,
+) -> f64 {
+    let way = &network.ways()[network.roads_of(way_id).start];
+    let (chain, index) = chains.of_road(way).next().unwrap();
+    let chain_found = chains.get(chain);
+    let length_m = decks.spans().edges[decks.spans().edge_of(chain).unwrap()].length_m;
+    let is_against = chain_found.links[index].is_against;
+    decks.height_m(chain, if is_against { length_m - along_m } else { along_m }).unwrap()
 }

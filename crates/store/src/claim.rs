@@ -20,7 +20,10 @@ use tempfile::{NamedTempFile, TempPath};
 use crate::{
     OpenMode,
     ids::{Marked, marked, random_digits},
-    own_files::{folder_of, in_the_way, is_there, open_own, sync_folder, system::is_at},
+    own_files::{
+        folder_of, in_the_way, is_there, open_own, sync_folder,
+        system::{create_private_folder, is_at},
+    },
 };
 
 /// How often it is tried again when another program ends at the same moment, and removes its claim.
@@ -50,6 +53,16 @@ pub struct Claim {
     path: PathBuf,
     file: File,
     id: String,
+}
+
+fn beside(target: &Path, id: &str, end: &str) -> PathBuf {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    target.with_file_name(format!(".{name}.{id}.{end}"))
+}
+
+/// The longest name that a file has beside its target while it is written.
+pub(crate) fn longest_name(target: &Path) -> PathBuf {
+    beside(target, &random_digits(), UNFINISHED)
 }
 
 impl Claim {
@@ -111,8 +124,7 @@ impl Claim {
     }
 
     fn beside(&self, end: &str) -> PathBuf {
-        let name = self.target.file_name().unwrap_or_default().to_string_lossy();
-        self.target.with_file_name(format!(".{name}.{}.{end}", self.id))
+        beside(&self.target, &self.id, end)
     }
 
     /// Begins the file that becomes the target. What a killed run left of it is removed.
@@ -136,7 +148,8 @@ impl Claim {
         for left in [&path, &self.replaced()] {
             remove_left(left)?;
         }
-        fs::create_dir(&path)?;
+        // What is not finished is no concern of other users.
+        create_private_folder(&path)?;
         Ok(UnfinishedFolder { path, claim: self })
     }
 
@@ -230,6 +243,19 @@ impl UnfinishedFolder {
     #[must_use]
     pub fn claim(&self) -> &Claim {
         &self.claim
+    }
+
+    /// Gives the folder the permissions of any new folder: for one that becomes the target itself. Until then it is this user's alone.
+    ///
+    /// # Errors
+    /// Where the disk fails.
+    pub fn open_to_others(&self) -> io::Result<()> {
+        // What the process masks can be read only by setting it, for all threads.
+        let any = self.path.join(".permissions");
+        fs::create_dir(&any)?;
+        let permissions = any.metadata()?.permissions();
+        fs::remove_dir(&any)?;
+        fs::set_permissions(&self.path, permissions)
     }
 
     /// Moves a finished file of the folder to the target, durably; returns its size.

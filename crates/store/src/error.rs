@@ -2,6 +2,8 @@
 
 use std::{io, path::PathBuf};
 
+use crate::LackOfRoom;
+
 /// Why something could not be kept or read back.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
@@ -67,15 +69,18 @@ fn advice(source: &io::Error) -> &'static str {
         return ": too many files are open, and each part of a store is one; allow more (ulimit -n) or make parts of larger \
                 subtrees, then run the same command again";
     }
+    match LackOfRoom::of(source) {
+        Some(LackOfRoom::Disk) => {
+            return ": the disk is full; free space and run the same command again (build: with --resume), or choose another folder \
+             (build: with --tmp)";
+        }
+        Some(LackOfRoom::FileSize) => {
+            return ": a limit on the size of files is reached (ulimit -f, or the file system's own); raise it, or choose another folder (build: \
+             with --tmp), then run the same command again (build: with --resume)";
+        }
+        None => {}
+    }
     match source.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            ": the disk is full; free space and run the same command again (build: with --resume), or choose another folder \
-             (build: with --tmp)"
-        }
-        io::ErrorKind::FileTooLarge => {
-            ": a limit on the size of files is reached (ulimit -f, or the file system's own); raise it, or choose another folder (build: \
-             with --tmp), then run the same command again (build: with --resume)"
-        }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             ": no permission; choose another folder (build: with --tmp)"
         }

@@ -36,6 +36,7 @@ mod error;
 mod files;
 mod groups;
 mod ids;
+mod lack_of_room;
 mod local;
 mod memory;
 mod own_files;
@@ -53,6 +54,7 @@ pub use error::StoreError;
 pub use files::Traffic;
 pub use groups::Groups;
 pub use ids::random_digits;
+pub use lack_of_room::LackOfRoom;
 pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,

@@ -353,6 +353,7 @@ impl LocalStore {
     /// [`StoreError::NotAStore`], [`StoreError::Locked`], and where the disk fails.
     pub fn discard(disk: Arc<dyn Disk>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
         let files = Files::new(disk);
+        binding::clear_damaged_lock(&files, folder)?;
         if matches!(binding::state(&files, folder)?.0, FolderState::Absent) {
             return Ok(Vec::new());
         }

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::folder_of;
+use crate::{claim::longest_name, folder_of};
 
 /// Why nothing can be written at a place.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +20,10 @@ pub enum TargetError {
         "{path:?} is a link that leads nowhere; delete it, or name the file that it should lead to"
     )]
     DeadLink { path: PathBuf },
+    #[error(
+        "the name of {path:?} is too long for this file system, with what is added to it while the file is written; choose a shorter one"
+    )]
+    LongName { path: PathBuf },
     #[error("{path:?} cannot be looked at")]
     Unknown { path: PathBuf, source: io::Error },
 }
@@ -31,7 +35,7 @@ pub enum TargetError {
 ///
 /// # Errors
 /// When `path` names a folder (also by ending in a slash), a link that leads nowhere, or what is neither a file nor a
-/// folder: a device, a pipe, a socket.
+/// folder: a device, a pipe, a socket. When the name is too long for a file that is written beside it.
 pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
     let own = || path.to_path_buf();
     let ends_in_slash = path
@@ -41,6 +45,12 @@ pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
         .is_some_and(|&byte| std::path::is_separator(byte.into()));
     if ends_in_slash || path.file_name().is_none() {
         return Err(TargetError::Folder { path: own() });
+    }
+    let is_long = |name: &Path| {
+        name.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::InvalidFilename)
+    };
+    if is_long(path) || is_long(&longest_name(path)) {
+        return Err(TargetError::LongName { path: own() });
     }
     let unknown = |source| TargetError::Unknown { path: own(), source };
     let there = match path.symlink_metadata() {

@@ -29,8 +29,8 @@ mod sheet;
 mod sheet_values;
 mod style;
 
+pub use self::color::{ColorError, Rgb, parse_color, to_bytes};
 pub use area_style::AreaStyle;
-pub use color::{Rgb, to_bytes};
 pub use dash::Dash;
 pub use error::StyleError;
 pub use ground::{Light, MOST_TINT_STOPS, Tint, TintHeights, TintStop};

@@ -66,9 +66,10 @@ fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
 }
 
 #[test]
-fn colours_are_six_hexadecimal_digits() {
+fn colours_are_those_of_css() {
     assert_eq!(Rgb8::try_from("#ff0033".to_owned()), Ok(Rgb8([255, 0, 0x33])));
-    for bad in ["ff0033", "#ff003", "#ff00330", "#+f0033", "#gg0000", "", "#", "#é0033", "red"] {
+    assert_eq!(Rgb8::try_from("red".to_owned()), Ok(Rgb8([255, 0, 0])));
+    for bad in ["ff0033", "#ff003", "#ff00330", "#+f0033", "#gg0000", "", "#", "#é0033", "redd"] {
         assert!(Rgb8::try_from(bad.to_owned()).is_err(), "{bad}");
     }
     refuses("\"#C50D2B\"", "\"#C50D2\"", &["line", "#C50D2", "colour"]);

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::Deserialize;
 
-use crate::{Rgb, StyleError};
+use crate::{Rgb, StyleError, parse_color, to_bytes};
 
 /// A colour as red, green, blue in sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -14,17 +14,8 @@ pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 impl TryFrom<String> for Rgb8 {
     type Error = String;
 
-    /// Reads "#RRGGBB".
     fn try_from(text: String) -> Result<Self, String> {
-        let digits = text
-            .strip_prefix('#')
-            // `from_str_radix` would accept a sign too.
-            .filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
-            .and_then(|digits| u32::from_str_radix(digits, 16).ok());
-        let [_, red, green, blue] = digits
-            .ok_or_else(|| format!("{text:?} is no colour; write it like \"#D93A2B\""))?
-            .to_be_bytes();
-        Ok(Self([red, green, blue]))
+        parse_color(&text).map(|color| Self(to_bytes(color))).map_err(|error| error.to_string())
     }
 }
 

@@ -34,8 +34,24 @@ pub fn real_data(path: &str) -> Option<PathBuf> {
     if file.exists() {
         return Some(file);
     }
-    skip(&format!("{} is not here; set CORNICHE_DATA to a folder that has it", file.display()));
+    eprintln!("{} is not here; set CORNICHE_DATA to a folder that has it", file.display());
+    skip(&format!("need {} that are not in the repository", kind_of(path)));
     None
+}
+
+/// What kind of data a file is, for whoever does not have it.
+fn kind_of(path: &str) -> &'static str {
+    let name = path.to_lowercase();
+    let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    if name.starts_with("cases/") {
+        "small cases of public bug reports"
+    } else if ends(&[".pbf"]) {
+        "extracts"
+    } else if name.contains("rgb") || ends(&[".jpg", ".jp2"]) {
+        "photos"
+    } else {
+        "elevation files"
+    }
 }
 
 /// 259 × 259 samples (a tile with a halo of one node) of an SRTM file of 1201 × 1201 samples, the first at
@@ -49,3 +65,7 @@ pub fn srtm_heights(path: &str, column: usize, row: usize) -> Option<HeightGrid>
         if height_m == i16::MIN { f32::NAN } else { f32::from(height_m) }
     }))
 }
+
+#[cfg(test)]
+#[path = "data_tests.rs"]
+mod tests;

@@ -8,10 +8,13 @@ mod metadata_cases;
 mod parts;
 mod road_cases;
 mod span_cases;
+mod text_cases;
 mod tile_cases;
 
 pub use case::{Case, Outcome};
 pub use lie_cases::{COMMANDING, commanding_texts};
+pub use span_cases::{ATTACKS as SPAN_ATTACKS, attack as span_attack};
+pub use text_cases::{TextCase, text_cases};
 
 /// A name, and how its cases are made.
 type Family = (&'static str, fn() -> Vec<Case>);

@@ -68,6 +68,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         resampling: "nodes are the DEM's samples".to_owned(),
         nodes_are_samples: true,
         clip: None,
+        outline: None,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),
@@ -85,6 +86,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
             nodata: Vec::new(),
             height_range_m: None,
             dem_band: None,
+            vertical_unit: None,
             dem_crs: None,
             dem_vertical_crs: None,
             vertical_crs: None,

@@ -4,7 +4,8 @@ use std::{env, fs::OpenOptions, io::Write as _, thread};
 
 /// Says that the test that runs in this thread, or a part of it, is skipped, and why.
 ///
-/// `libtest` hides what a test prints and counts it as passed. So a line `binary test: reason` is appended to the file that
+/// The reason goes on after the number of tests: "need elevation files that are not in the repository"; it names no file, so that tests with one reason
+/// are counted together. `libtest` hides what a test prints and counts it as passed. So a line `binary test: reason` is appended to the file that
 /// `CORNICHE_SKIPPED` names; `scripts/test` counts these lines and shows them at its end.
 ///
 /// # Panics

@@ -37,6 +37,8 @@ pub const MAX_TRIANGLES: usize = 2 * (TILE_NODES - 1) * (TILE_NODES - 1);
 pub const MAX_LINES: usize = 1 << 20;
 /// Points of all lines of one road section: 64 MiB in memory, and while a coded section is read 128 MiB more.
 pub const MAX_POINTS: usize = 1 << 22;
+/// Points of all runs of a spans section. Each becomes a piece of a deck, which costs a hundred times what a point of a road does.
+pub const MAX_SPAN_POINTS: usize = 1 << 18;
 /// Vertices of all lines of the GEO section, crossings included: 128 MiB in memory.
 pub const MAX_LINE_VERTICES: usize = 1 << 22;
 /// Parts of lines of one layer, such as boundaries, in one tile.

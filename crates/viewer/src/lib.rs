@@ -69,7 +69,9 @@ pub use boundary_lines::BoundaryLines;
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use lon_lat::{LonLatError, parse_lon_lat};
-pub use options::{CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth};
+pub use options::{
+    CapTest, Caps, ClassSet, Mapping, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+};
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use picture_legend::LegendRequest;
 pub use range::OutOfRange;

@@ -6,7 +6,7 @@
 pub enum LonLatError {
     #[error("write longitude,latitude like 9.52,47.14")]
     Form,
-    #[error("longitude must be within ±360 and latitude within ±90 degrees")]
+    #[error("longitude comes first and must be within ±360 degrees, latitude within ±90")]
     Range,
 }
 

@@ -1,6 +1,7 @@
 //! How roads are drawn: option values that the command line, the window and the renderer share.
 
 use corniche_roads::FunctionalRoadClass;
+use serde::{Deserialize, Serialize};
 
 use corniche_styles::{RoadStyle, Style, WidthScaling};
 
@@ -42,6 +43,17 @@ pub enum Quads {
     /// What lies as high as the piece: the quad is level across the road, as in the paper (section 4.2), so a road on a slope is too
     /// narrow (its Fig. 15). Kept for comparison. Only for geometry.
     Level,
+}
+
+/// What roads as geometry are laid on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Mapping {
+    /// The triangles of their tile.
+    #[default]
+    OnTriangles,
+    /// Nothing: they are straight from each point of their source to the next, and ground between two points hides them or lies below, as in Agrawal
+    /// et al. 2006, Fig. 12. Kept for comparison.
+    Unmapped,
 }
 
 /// How widths depend on the distance from the eye (the paper, Fig. 10).

@@ -45,18 +45,18 @@ pub enum CameraRequest {
 }
 
 /// The place to look at has no ground.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
-     package, which covers {covered_deg:?} (west, south, east, north in degrees)"
+     package, which covers {covered}"
 )]
 pub struct OffGround {
     /// Its longitude, WGS84.
     pub lon_deg: f64,
     /// Its latitude, WGS84.
     pub lat_deg: f64,
-    /// What the package covers: west, south, east, north.
-    pub covered_deg: [f64; 4],
+    /// What the package covers, in words.
+    pub covered: String,
 }
 
 /// The ground that a camera is set up by.
@@ -101,7 +101,7 @@ impl CameraRequest {
             return Ok(None);
         };
         let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
-        at.map(Some).ok_or(off_ground(lon_deg, lat_deg, manifest))
+        at.map(Some).ok_or_else(|| off_ground(lon_deg, lat_deg, manifest))
     }
 
     /// The camera for a package with this manifest and this ground. World heights are `vertical_scale` times true ones.
@@ -151,5 +151,5 @@ impl CameraRequest {
 }
 
 fn off_ground(lon_deg: f64, lat_deg: f64, manifest: &Manifest) -> OffGround {
-    OffGround { lon_deg, lat_deg, covered_deg: manifest.wgs84_bounds.to_array() }
+    OffGround { lon_deg, lat_deg, covered: manifest.covered_text([lon_deg, lat_deg]) }
 }

@@ -40,6 +40,14 @@ export function stillsOf(/** @type {string | null} */ still, /** @type {string} 
   });
 }
 
+/** An address without user name, password, query and fragment, which may hold secrets. */
+export function shownAddress(/** @type {string} */ src) {
+  if (/^(blob|data):/.test(src) || !URL.canParse(src, document.baseURI)) return "";
+  const { origin, host, protocol, pathname, search } = new URL(src, document.baseURI);
+  const server = origin === "null" ? `${protocol}//${host}` : origin;
+  return server + pathname + (search ? "?…" : "");
+}
+
 /** Shows the first of some pictures that exists. */
 function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} */ addresses) {
   const [first, ...rest] = addresses;
@@ -59,13 +67,14 @@ export function makeFailure(failure, about) {
   const image = make("img", { class: "still", alt: "A picture of the map", hidden: true });
   if (WITH_PICTURE.has(failure.kind)) tryStills(image, stillsOf(about.still, about.src));
   const credit = make("p", { class: "still-credit pill" }, about.credit);
+  const shown = about.src ? shownAddress(about.src) : "";
   const card = make(
     "div",
     { class: "card failure", role: "alert" },
     make("h2", {}, icons.warning(), HEADINGS[failure.kind] ?? HEADINGS.other),
     make("p", {}, sentence(failure.message)),
     failure.advice ? make("p", { class: "advice" }, sentence(failure.advice)) : null,
-    about.src && !about.src.startsWith("blob:") ? make("p", { class: "address" }, about.src) : null,
+    shown ? make("p", { class: "address" }, shown) : null,
     make("button", { type: "button", class: "plain", onclick: about.again }, "Try again"),
   );
   return make("div", { class: "failed", "data-kind": failure.kind }, image, credit, card);

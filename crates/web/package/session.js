@@ -286,7 +286,7 @@ export async function openSession(from) {
     } catch (error) {
       if (isOver || turn !== picks) return;
       layout.place.hide();
-      tell("warn", failureOf(error).message);
+      tell("warn", `The road here cannot be fetched: ${failureOf(error).message}`);
       return;
     }
     if (isOver || turn !== picks) return;

@@ -54,12 +54,17 @@ fn refuses_an_extract_that_lies_elsewhere() {
     // The message gives the place of both, so that the reader sees which one is wrong.
     let rectangle = |before: &str| -> Vec<f64> {
         let (_, from) = ran.err.split_once(before).expect("it says so");
-        let (inside, _) = from.split_once(']').expect("four numbers in brackets");
-        inside.split(", ").map(|number| number.parse().expect("a number")).collect()
+        let words = from.split([' ', ',', '\n']);
+        let [west, east, south, north] =
+            words.filter_map(|word| word.parse().ok()).take(4).collect::<Vec<f64>>()[..]
+        else {
+            panic!("{from}");
+        };
+        vec![west, south, east, north]
     };
     for (within, true_deg) in [
-        ("roads lie within [", [9.47, 47.05, 9.64, 47.27]),
-        ("heights within [", [9.50, 46.85, 9.58, 46.95]),
+        ("roads lie within longitudes ", [9.47, 47.05, 9.64, 47.27]),
+        ("heights within longitudes ", [9.50, 46.85, 9.58, 46.95]),
     ] {
         let told_deg = rectangle(within);
         let is_near = told_deg.iter().zip(true_deg).all(|(told, near)| (told - near).abs() < 0.1);

@@ -18,6 +18,7 @@ fn has(need: &str) -> bool {
     let program = match need {
         "osmium-tool" => "osmium",
         "gdal-bin" => "ogr2ogr",
+        "python3-gdal" => "gdal_calc.py",
         // Downloads are replaced by the sample.
         "curl" => return false,
         _ => panic!("a block needs {need}, of which this test knows nothing"),

@@ -110,8 +110,8 @@ fn levels_and_classes_can_be_chosen_and_areas_that_are_not_there_are_told() {
     refused(export(&package, &["--classes", "pond"]), "classes of areas are sea, water, glacier");
     refused(export(&package, &["--level", "9"]), "has no level 9");
     refused(export(&build(folder.path(), "off"), &[]), "it was built without --areas");
-    let words = ["export", "areas", text(&package), "-O", "-o", text(&file)];
-    refused(corniche(words), "give --crs EPSG:4326");
+    let words = ["export", "areas", text(&package), "-O", "-o", text(&file), "--crs", "package"];
+    refused(corniche(words), "RFC 7946");
     // What was there stays.
     assert_eq!(json_features(&file), 1);
 }

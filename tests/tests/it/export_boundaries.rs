@@ -145,7 +145,7 @@ fn boundaries_come_back_whole_in_each_format() {
     refused(export(&package, "boundaries", &file, &["--classes", "admin-9"]), "are admin-2, ");
     refused(export(&package, "areas", &file, &[]), "it was built without --areas");
     let geojson = folder.path().join("boundaries.geojson");
-    refused(export(&package, "boundaries", &geojson, &[]), "give --crs EPSG:4326");
+    refused(export(&package, "boundaries", &geojson, &["--crs", "package"]), "RFC 7946");
 }
 
 /// Each segment of way 2, in the package's CRS, is in the JSON of some tile, with the way's class.

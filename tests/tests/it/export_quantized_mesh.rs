@@ -129,7 +129,8 @@ fn a_square_degree_is_read_about_once() {
     let (ran, costs) = e2e::ended_with_costs(&mut child);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let package_bytes = fs::metadata(&package).unwrap().len();
-    let about_once = package_bytes / 2..START_BYTES + package_bytes * 3 / 2;
+    // Some tiles are made beforehand, to tell how large the files will be.
+    let about_once = package_bytes / 2..START_BYTES + package_bytes * 2;
     assert!(about_once.contains(&costs.read_bytes), "{} of {package_bytes}", costs.read_bytes);
 }
 
@@ -209,7 +210,7 @@ fn flat_ground_has_few_levels() {
     let dem = raster.write(folder.path(), "flat.tif", |_| 400.0_f32);
     let package = built_of(&folder, &dem);
     let terrain = Terrain::read(&export(&package, "terrain", &["--heights", "as-is"]));
-    assert_eq!(terrain.levels(), 13, "tiles of 16 cells of some 300 m");
+    assert_eq!(terrain.levels(), 11, "tiles of 64 cells of some 300 m");
     check_tree(&terrain).unwrap();
     // Too many tiles are refused, before anything is made.
     let output = folder.path().join("fine");
@@ -218,6 +219,63 @@ fn flat_ground_has_few_levels() {
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("--max-level"), "{}", ran.err);
     assert!(!output.exists());
+}
+
+/// Levels, files and bytes are told before anything is made, and end where the package's cells do.
+#[test]
+fn what_will_be_written_is_told_and_too_much_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let package = built(&folder);
+    let output = folder.path().join("terrain");
+    let run = |options: &[&str]| {
+        let words = ["export", "quantized-mesh", text(&package), "-o", text(&output), "-O"];
+        corniche(words.iter().chain(options))
+    };
+    let ran = run(&[]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let told = ran.err.lines().find(|line| line.starts_with("terrain  ")).unwrap();
+    assert!(told.contains("an estimate"), "{told}");
+    let between = |from: &str, to: &str| {
+        let (_, rest) = told.split_once(from).unwrap();
+        rest.split_once(to).unwrap().0.replace([' ', '\u{202f}', ','], "")
+    };
+    let terrain = Terrain::read(&output);
+    assert_eq!(between("levels 0 to ", ":"), (terrain.levels() - 1).to_string(), "{told}");
+    let sizes: Vec<u64> = walk(&output);
+    let most: usize = between("at most ", " files").parse().unwrap();
+    assert!(sizes.len() <= most && most <= 2 * sizes.len() + 8, "{} {told}", sizes.len());
+    let (number, unit) = told.split_once("about ").unwrap().1.split_once(' ').unwrap();
+    let unit = match unit.split_whitespace().next().unwrap() {
+        "B" => 1.0,
+        "kB" => 1e3,
+        "MB" => 1e6,
+        unit => panic!("{unit}: {told}"),
+    };
+    let estimate = number.parse::<f64>().unwrap() * unit;
+    let found = sizes.iter().sum::<u64>() as f64;
+    assert!((0.5..2.0).contains(&(estimate / found)), "{estimate} {found}");
+    fs::remove_dir_all(&output).unwrap();
+    for options in [&["--max-files", "5"][..], &["--max-level", "22"], &["--max-level", "24"]] {
+        let begun = std::time::Instant::now();
+        let ran = run(options);
+        assert_eq!(ran.code, 2, "{options:?}: {}", ran.err);
+        assert!(ran.err.contains("--max-level "), "{options:?}: {}", ran.err);
+        assert!(!output.exists() && begun.elapsed().as_secs() < 60);
+    }
+    // What is named is what has to be given.
+    let ran = run(&["--max-files", "5"]);
+    let asked = ran.err.split("--max-files ").nth(1).unwrap().split(',').next().unwrap();
+    assert_eq!(run(&["--max-files", asked]).code, 0);
+}
+
+/// The sizes of all files in a folder.
+fn walk(folder: &Path) -> Vec<u64> {
+    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let sizes = entries.map(|entry| match entry.metadata().unwrap() {
+        metadata if metadata.is_dir() => walk(&entry.path()),
+        metadata => vec![metadata.len()],
+    });
+    sizes.flatten().collect()
 }
 
 /// Where ground bends on a border of tiles, the border bends with it: in steep mountains, too, each level is within four fifths of its error at all

@@ -13,7 +13,10 @@ use std::{
 };
 
 use corniche_testing::{
-    hostile::{COMMANDING, Case, FAMILIES, Outcome, commanding_texts},
+    hostile::{
+        COMMANDING, Case, FAMILIES, Outcome, SPAN_ATTACKS, commanding_texts, span_attack,
+        text_cases,
+    },
     some_of,
 };
 use e2e::{Costs, Ran, binary, corniche, ended_with_costs, json, text};
@@ -64,7 +67,7 @@ fn run(
         .args(before)
         .arg(package)
         .args(after)
-        .stdout(Stdio::null())
+        .stdout(fs::File::create(folder.join("said")).unwrap())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -128,6 +131,70 @@ fn every_command_ends_on_every_hostile_package() {
     check(&families, [41, 41, 1], |case, command| is_read(case) || of_refused.contains(&command));
 }
 
+/// Most bytes that a command says of a package, but for documents, which have all that is in it.
+const MOST_SAID: u64 = 200_000;
+
+/// Tells what is wrong with how a command ends on a package with a text that does harm: neither a panic nor endless output, and no guess at a full disk.
+fn fault_of_text(
+    folder: &Path,
+    package: &Path,
+    command: (&str, &[&str], &[&str]),
+) -> Option<String> {
+    let (ran, Costs { peak_bytes, cpu_s, .. }) = run(folder, package, command);
+    let said = fs::metadata(folder.join("said")).unwrap().len() + ran.err.len() as u64;
+    let is_right = matches!(ran.code, 0..=2)
+        && !ran.err.contains("panicked")
+        && !ran.err.contains("disk")
+        && (said <= MOST_SAID || command.1.contains(&"--json"))
+        && peak_bytes >> 20 <= MOST_MIB;
+    let last: String = ran.err.chars().take(300).collect();
+    let costs = format!("code {}, {cpu_s:.2} s, {} MiB, {said} B", ran.code, peak_bytes >> 20);
+    (!is_right).then(|| format!("{}: {costs}: {last}", command.0))
+}
+
+/// Each text of the metadata, endless or with characters that mean something else, through `info`.
+#[test]
+fn no_text_of_a_package_makes_info_panic_or_talk_for_ever() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("text.pmtiles");
+    let mut faults = Vec::new();
+    for case in some_of(text_cases(), [4, 4, 1]) {
+        fs::write(&package, &case.bytes).unwrap();
+        for command in [("info", &["info"][..], &[][..]), ("json", &["info", "--json"], &[])] {
+            let fault = fault_of_text(folder.path(), &package, command);
+            faults.extend(fault.map(|fault| format!("{}: {fault}", case.name)));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The same through all that reads a package, and through pictures with a legend.
+#[test]
+#[ignore = "slow: every command on every text, some minutes"]
+fn no_text_of_a_package_ends_another_command_otherwise() {
+    let legend: (&str, &[&str], &[&str]) =
+        ("legend", &["render", "-q", "--size", "200x150", "--legend"], &["-o", "OUT.png"]);
+    let csv: (&str, &[&str], &[&str]) = (
+        "csv",
+        &["export", "roads", "-q", "--level", "0", "--crs", "EPSG:4979", "--heights", "as-is"],
+        &["-o", "OUT.csv"],
+    );
+    let commands: Vec<_> = COMMANDS.into_iter().chain([legend, csv]).collect();
+    let pairs = text_cases().flat_map(|case| {
+        let case = std::rc::Rc::new(case);
+        commands.clone().into_iter().map(move |command| (std::rc::Rc::clone(&case), command))
+    });
+    let mut faults = Vec::new();
+    for (case, command) in some_of(pairs, [37, 37, 1]) {
+        let folder = tempfile::tempdir().unwrap();
+        let package = folder.path().join("text.pmtiles");
+        fs::write(&package, &case.bytes).unwrap();
+        let fault = fault_of_text(folder.path(), &package, command);
+        faults.extend(fault.map(|fault| format!("{}: {fault}", case.name)));
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
 /// Attribution, datum, CRS, names of inputs, reasons: nothing of it commands the terminal, nor does a file's name. Programs get it as it is.
 #[test]
 fn no_text_of_a_package_commands_the_terminal() {
@@ -172,4 +239,32 @@ fn no_text_of_a_package_commands_the_terminal() {
     }
     let told = json(&["info", package, "--json"]);
     assert_eq!(told["manifest"]["attribution"][0], COMMANDING);
+}
+
+/// Spans that follow no road: as many pieces as few bytes can stand for, over all of a tile, are drawn or refused soon.
+#[test]
+fn spans_of_a_million_points_end_soon() {
+    let mut broken = Vec::new();
+    for number in some_of(0..SPAN_ATTACKS, [37, 9, 1]) {
+        let case = span_attack(number);
+        let folder = tempfile::tempdir().unwrap();
+        let package = folder.path().join("hostile.pmtiles");
+        fs::write(&package, &case.bytes).unwrap();
+        for roads in ["geo", "sv"] {
+            let command =
+                ("render", &["render", "-q", "-O", "--roads", roads][..], &["-o", "OUT.png"][..]);
+            let (ran, Costs { peak_bytes, cpu_s, .. }) = run(folder.path(), &package, command);
+            let line = format!(
+                "{number}, {roads}: {} bytes, code {}, {cpu_s:.2} s, {} MiB",
+                case.bytes.len(),
+                ran.code,
+                peak_bytes >> 20
+            );
+            println!("{line}");
+            if !matches!(ran.code, 0..=2) || peak_bytes >> 20 > MOST_MIB {
+                broken.push(line);
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
 }

@@ -93,6 +93,15 @@ fn what_is_printed_fits_its_schema() {
         "verify",
         &[json(&["verify", package, "--json", "-q", "--dem", text(&dem), "--osm", text(&osm)])],
     );
+    let profile = folder.path().join("profile.json");
+    let of_dem = ["profile", package, "--ref", "L 28", "--json", text(&profile), "-q", "-O"];
+    let mut profiles = Vec::new();
+    for more in [&[][..], &inputs] {
+        let ran = corniche(of_dem.iter().chain(more));
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        profiles.extend(lines(&fs::read_to_string(&profile).unwrap()));
+    }
+    check("profile", &profiles);
     check("plan", &[json(&[&["plan", "--json", "-o", text(&plan)], &inputs[..]].concat())]);
     check("job", &lines(&corniche(["jobs", text(&plan), "--slots", "3"]).out));
     let tiles: Vec<&str> =
@@ -207,8 +216,8 @@ fn a_tile_is_found_by_its_place() {
     }
     for (arguments, word) in [
         (&["--at", "100,10"][..], "choose a place there"),
-        (&["--at", "46.9,9.5"], "longitude comes first: --at 9.5,46.9"),
-        (&["--at", "95.4,46.9", "--level", "1"], "no tile on level 1"),
+        (&["--at", "46.9,9.5"], "longitude comes first: 9.5,46.9 lies inside"),
+        (&["--at", "95.4,46.9", "--level", "1"], "no ground on level 1"),
         (&["--at", "9.54,46.9", "--level", "9"], "finest level is 3"),
         (&["--at", "9.54"], "longitude,latitude"),
         (&["--at", "9.54,46.9", "0/0/0"], "cannot be used with"),

@@ -1,4 +1,4 @@
-//! What the scripts say on machines that cannot build, and the layout of an archive.
+//! What the scripts say on machines that cannot build, the layout of an archive, and the measurements of a graphics card.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -84,9 +84,12 @@ fn tests_are_counted_with_those_that_are_skipped() {
         result(3, 0, 0),
     ];
     fs::write(&output, lines.join("\n")).unwrap();
-    // One test says twice that a part of it is skipped.
-    let reason = "it rooms::attic: no ladder: none in ../shared\n";
-    fs::write(&skipped, reason.repeat(2)).unwrap();
+    // One test says twice that a part of it is skipped, and has two reasons.
+    let said_of = |test: &str, reason: &str| format!("it rooms::{test}: {reason}\n");
+    let ladder = said_of("attic", "no ladder: none in ../shared").repeat(2);
+    let need = "need elevation files that are not in the repository";
+    let files = said_of("attic", need) + &said_of("cellar", need);
+    fs::write(&skipped, ladder + &files + &said_of("cellar", "need light")).unwrap();
     let count = |tier: &str| {
         let script =
             ". scripts/lib/setup.sh; . scripts/lib/count-tests.sh; count_tests \"$@\" 2>&1";
@@ -97,12 +100,15 @@ fn tests_are_counted_with_those_that_are_skipped() {
         String::from_utf8(done.stdout).unwrap()
     };
     let said = count("quick");
-    assert!(said.ends_with("9 passed, 1 failed, 3 skipped\n"), "{said}");
+    assert!(said.ends_with("8 passed, 1 failed, 4 skipped\n"), "{said}");
     assert!(said.contains("failed:\n  rooms::cellar::a_lamp_burns\n"), "{said}");
-    assert!(said.contains("2 no ladder: none in ../shared\n"), "{said}");
+    let reasons = format!(
+        "and why:\n  2 tests {need}\n  1 test: no ladder: none in ../shared\n  1 test needs light\n"
+    );
+    assert!(said.contains(&reasons), "{said}");
     assert!(said.contains("2 slow tests"), "{said}");
     let said = count("full");
-    assert!(said.ends_with("9 passed, 1 failed, 1 skipped\n"), "{said}");
+    assert!(said.ends_with("8 passed, 1 failed, 2 skipped\n"), "{said}");
     fs::write(&output, "error: could not compile").unwrap();
     assert!(count("quick").contains("they do not compile"));
 }
@@ -133,4 +139,65 @@ fn an_archive_is_laid_out_around_a_program() {
     }
     let readme = fs::read_to_string(made.join("README.md")).unwrap();
     assert!(readme.starts_with("# Corniche 0."), "{readme}");
+}
+
+/// One command measures what a graphics card costs, tells what it left out, and takes no renderer in software for a card.
+#[test]
+fn what_needs_a_card_is_measured_in_one_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    e2e::copy_pass(&package, &["--quiet"]);
+    let png = folder.path().join("probe.png");
+    let Some(probe) = e2e::draw("render", &package, &png, &["--size", "32x32"]) else { return };
+    let python = std::env::var("CORNICHE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let out = folder.path().join("card");
+    let measure = |options: &[&str]| {
+        let mut command = Command::new(&python);
+        command.arg(e2e::root().join("scripts/card")).arg("--out").arg(&out).args(options);
+        let done = command.env("CORNICHE", e2e::binary()).output().unwrap();
+        (done.status.code(), String::from_utf8(done.stderr).unwrap())
+    };
+    let small = ["--size", "48x32", "--frames", "3", "--rounds", "1", e2e::text(&package)];
+    let (code, said) = measure(&[&["--parts", "curves,areas"][..], &small].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let told: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("card.json")).unwrap()).unwrap();
+    let page = fs::read_to_string(out.join("card.md")).unwrap();
+    let adapter = told["adapter"].as_str().unwrap();
+    assert!(probe.err.contains(adapter) && page.starts_with(&format!("# Measured on {adapter}\n")));
+    let is_software = adapter.contains("llvmpipe") || adapter.contains("SwiftShader");
+    assert_eq!(told["software"], is_software, "{adapter}");
+    assert_eq!(page.contains("this is no graphics card"), is_software);
+    let pass = &told["curves"]["pass"];
+    let curves: Vec<&String> = pass["flights"].as_object().unwrap().keys().collect();
+    let methods = ["none", "geo-no-caps", "geo", "sv-no-caps", "sv"];
+    assert_eq!(curves.len(), methods.len(), "{curves:?}");
+    for method in methods {
+        let flight = &pass["flights"][format!("lod {method}")];
+        let frame_ms = flight["draw_ms"]["mean"].as_f64().unwrap();
+        let frames_per_s = flight["frames_per_s"].as_f64().unwrap();
+        assert!((frames_per_s * frame_ms - 1000.0).abs() < 1e-6, "{flight}");
+        assert_eq!(flight["frames"], 2, "the first frame is left out");
+        let roads = &flight["bytes_of_roads_most"];
+        assert_eq!(roads.as_f64().is_some_and(|bytes| bytes > 0.0), method != "none", "{flight}");
+    }
+    // The list of each flight has the loss, too.
+    let list = fs::read_to_string(out.join("curves-pass-1.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = list.lines().map(|line| line.split(',').collect()).collect();
+    let at = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
+    let [roads, frame, draw] = ["roads", "frame", "draw_ms"].map(at);
+    let drawn_ms = |method: &str| -> f64 {
+        let of = rows.iter().filter(|row| row[roads] == method && row[frame] != "0");
+        of.map(|row| row[draw].parse::<f64>().unwrap()).sum()
+    };
+    let loss = 100.0 * (1.0 - drawn_ms("none") / drawn_ms("sv"));
+    let found = pass["flights"]["lod sv"]["loss_pct_by_draw"]["in_all"].as_f64().unwrap();
+    assert!((loss - found).abs() < 1e-6, "{loss} {found}");
+    assert!(page.contains("| 26 | 30 | 10 |") && page.contains("| 42 | 55 | 20 |"), "{page}");
+    for left_out in ["levels", "pixels", "left out by --parts", "areas: pass has none"] {
+        assert!(said.contains(left_out) && page.contains(left_out), "{left_out}: {said}");
+    }
+    // What is there stays.
+    let (code, said) = measure(&small);
+    assert!(code == Some(1) && said.contains("is not empty"), "{said}");
 }

@@ -89,24 +89,34 @@ fn pictures_show_bridges_in_the_air() {
     assert!(bare[0] == bare[1], "without roads");
 }
 
-/// Bounds through bridges: what ends there is carried there.
+/// Bounds through bridges and tunnels: these are known as they are in the whole, and in parts and on the terrain of a package the bytes are the same.
 #[test]
-fn spans_end_at_the_bounds() {
+fn spans_go_on_beyond_the_bounds() {
     let folder = tempfile::tempdir().unwrap();
-    let package = folder.path().join("part.pmtiles");
-    let info = folder.path().join("all.pmtiles");
-    copy_pass(&info, &SPANS);
-    let bounds = &manifest(&info)["wgs84_bounds"];
-    let [west, south, east, north] =
-        ["min_x", "min_y", "max_x", "max_y"].map(|side| bounds[side].as_f64().unwrap());
-    let half = format!("--bounds={west},{south},{},{north}", f64::midpoint(west, east));
-    build_pass(&package, &[&SPANS[..], &[&half]].concat());
-    holds(&package, &sample("pass/pass.osm.pbf"), &[]);
-    // Two tunnels are cut, whose other ends are not known.
-    let reasons = &manifest(&package)["spans"]["reasons"];
-    assert_eq!(reasons.as_array().unwrap().len(), 1, "{reasons}");
-    assert_eq!(reasons[0]["reason"], "span_one_support");
-    assert_eq!(reasons[0]["count"], 2);
+    let at = |name: &str| folder.path().join(name);
+    let (whole, package) = (at("all.pmtiles"), at("part.pmtiles"));
+    copy_pass(&whole, &SPANS);
+    let whole = manifest(&whole);
+    let bounds = &whole["wgs84_bounds"];
+    let [west, south, north] =
+        ["min_x", "min_y", "max_y"].map(|side| bounds[side].as_f64().unwrap());
+    // Through the bridge of way 137.
+    let half = format!("--bounds={west},{south},9.5567,{north}");
+    let options = [&SPANS[..], &[&half]].concat();
+    build_pass(&package, &options);
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    holds(&package, &osm, &[]);
+    let part = manifest(&package);
+    assert_eq!(part["spans"]["reasons"], whole["spans"]["reasons"]);
+    let bytes = fs::read(&package).unwrap();
+    let inputs = [&["--dem", text(&dem), "--osm", text(&osm)][..], &options, &COARSE].concat();
+    assert!(built_in_parts(folder.path(), &inputs) == bytes, "in parts");
+    let again = at("again.pmtiles");
+    let words =
+        ["build", "-q", "--terrain", text(&package), "--osm", text(&osm), "-o", text(&again)];
+    let ran = corniche(words.iter().chain(&SPANS));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(fs::read(&again).unwrap() == bytes, "on the terrain of a package");
 }
 
 /// A polygon through the sample: roads begin where it cuts them, and bridges and tunnels are where they are along the whole road.

@@ -53,6 +53,30 @@ fn every_option_of_the_look_shows_in_the_picture() {
     assert!(ran.err.contains("write --roads sv --caps none"), "{}", ran.err);
 }
 
+/// Roads as Agrawal et al. 2006, Fig. 12, have them. With shadow volumes nothing could be drawn so.
+#[test]
+fn roads_that_are_laid_on_nothing_are_another_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    copy_pass(&package, &["--quiet"]);
+    let picture = |name: &str, options: &[&str]| {
+        let png = folder.path().join(name);
+        let ran = render(&package, &png, options)?;
+        assert_eq!(ran.code, 0, "{options:?}: {}", ran.err);
+        Some(fs::read(&png).unwrap())
+    };
+    let Some(mapped) = picture("mapped.png", &["--roads", "geo"]) else { return };
+    let unmapped = picture("unmapped.png", &["--roads", "geo", "--unmapped"]).unwrap();
+    let none = picture("none.png", &["--roads", "none"]).unwrap();
+    assert!(unmapped != mapped && unmapped != none && mapped != none);
+    for roads in ["sv", "none"] {
+        let png = folder.path().join("refused.png");
+        let ran = render(&package, &png, &["--roads", roads, "--unmapped"]).unwrap();
+        assert!(ran.code == 2 && ran.err.contains("together with --roads geo"), "{}", ran.err);
+        assert!(!png.exists());
+    }
+}
+
 #[test]
 fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
     let folder = tempfile::tempdir().unwrap();

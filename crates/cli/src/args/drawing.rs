@@ -7,12 +7,13 @@ use clap::{Args, ValueEnum};
 use super::{
     camera::{CameraArgs, FromAboveArgs},
     ground::GroundArgs,
-    look::{LookArgs, Roads},
+    look::{COMPARING, LookArgs, Roads},
     shared::{GpuArgs, PackageArg},
     values::{parse_size, parse_title},
 };
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "switches of the command line")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
@@ -48,6 +49,9 @@ pub(crate) struct RenderArgs {
     /// Draw the edges of the ground's triangles, beneath the roads
     #[arg(long)]
     pub(crate) wireframe: bool,
+    /// Lay no road on the ground: with --roads geo, straight lines between their points, which ground hides
+    #[arg(long, help_heading = COMPARING, hide_short_help = true)]
+    pub(crate) unmapped: bool,
 }
 
 /// How much of the ground is drawn.

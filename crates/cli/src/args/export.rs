@@ -4,17 +4,16 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
-use corniche_export::{
-    Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
-};
+use corniche_export::{MeshFormat, ModelRoads, TileRoads, UpAxis, VectorFormat};
 use corniche_remote::PackagePlace;
 
 use super::{
     ReportArgs,
     shared::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
-        RecordedArgs, ThreadsArg,
+        RecordedArgs, RoadArg, ThreadsArg,
     },
+    terrain_values::{AvailabilityArg, TerrainCompress, TilingArg},
     values::{package_among, package_place},
 };
 use crate::failure::Failure;
@@ -101,14 +100,16 @@ pub(crate) struct ExportEdgesArgs {
 pub(crate) struct VectorArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
+    #[command(flatten)]
+    pub(crate) road: RoadArg,
     /// The format of a file with another ending
     #[arg(short, long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
-    /// The coordinates: "package" (its CRS and heights, exactly) or "EPSG:4979" (longitude, latitude and height above the
-    /// ellipsoid of WGS84)
-    #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_crs)]
-    pub(crate) crs: ExportCrs,
-    /// With --crs EPSG:4979: keep the package's heights as they are (the CRS is then EPSG:4326)
+    /// The coordinates: "package", "EPSG:4979" (with heights above the ellipsoid of WGS84), "EPSG:4326", or a projected CRS such as "EPSG:2056" [default:
+    /// package; GeoJSON: EPSG:4326]
+    #[arg(long, value_name = "CRS", value_parser = parse_crs)]
+    pub(crate) crs: Option<ExportCrs>,
+    /// Keep the package's heights as they are: --crs EPSG:4979 is then EPSG:4326
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
     #[command(flatten)]
@@ -127,9 +128,10 @@ pub(crate) struct InPlanArgs {
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
-    #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
-    pub(crate) crs: ExportCrs,
+    /// The coordinates: "package" (its CRS), "EPSG:4326" (longitude and latitude of WGS84), or a projected CRS such as "EPSG:2056" [default: package; GeoJSON:
+    /// EPSG:4326]
+    #[arg(long, value_name = "CRS", value_parser = parse_plan_crs)]
+    pub(crate) crs: Option<ExportCrs>,
 }
 
 #[derive(Debug, Args)]
@@ -201,8 +203,7 @@ pub(crate) struct ExportMeshArgs {
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are
-    /// slabs of surfaces if the package has spans
+    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are slabs of surfaces if the package has spans
     #[arg(
         long,
         value_enum,
@@ -336,9 +337,12 @@ pub(crate) struct ExportQuantizedMeshArgs {
         hide_possible_values = true
     )]
     pub(crate) tiling: TilingArg,
-    /// The finest level [default: the first one whose error, as CesiumJS assumes it, is at most the package's]
+    /// The finest level [default: the one with the package's cells, or a coarser one whose error is the package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
     pub(crate) max_level: Option<u8>,
+    /// Refuse to write more files than this
+    #[arg(long, value_name = "N", default_value_t = 250_000)]
+    pub(crate) max_files: u64,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
     /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with many tiles)
@@ -384,45 +388,6 @@ impl Export {
             Self::QuantizedMesh(args) => args.report,
         }
     }
-}
-
-/// Grids of terrain tiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TilingArg {
-    Geographic,
-    WebMercator,
-}
-
-impl From<TilingArg> for Tiling {
-    fn from(tiling: TilingArg) -> Self {
-        match tiling {
-            TilingArg::Geographic => Self::Geographic,
-            TilingArg::WebMercator => Self::WebMercator,
-        }
-    }
-}
-
-/// Where it is told which tiles there are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum AvailabilityArg {
-    Layer,
-    Tiles,
-}
-
-impl From<AvailabilityArg> for Availability {
-    fn from(availability: AvailabilityArg) -> Self {
-        match availability {
-            AvailabilityArg::Layer => Self::Layer,
-            AvailabilityArg::Tiles => Self::Tiles,
-        }
-    }
-}
-
-/// How terrain tiles are compressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TerrainCompress {
-    None,
-    Gzip,
 }
 
 /// What 3D Tiles have of roads.
@@ -528,7 +493,7 @@ pub(crate) enum Format {
     Gpkg,
     /// FlatGeobuf
     Fgb,
-    /// GeoJSON (RFC 7946; with --crs EPSG:4979, areas and boundaries with EPSG:4326)
+    /// GeoJSON (RFC 7946)
     Geojson,
     /// Comma-separated values, geometries as WKT
     Csv,
@@ -550,8 +515,12 @@ impl From<Format> for VectorFormat {
 pub(crate) enum ExportCrs {
     /// The package's own.
     Package,
-    /// WGS84: roads in three dimensions, areas and boundaries in two.
+    /// WGS84 in three dimensions (EPSG:4979).
     Wgs84,
+    /// WGS84 in two (EPSG:4326).
+    Degrees,
+    /// A projected system of the EPSG registry.
+    Epsg(u32),
 }
 
 /// What becomes of heights in another CRS.
@@ -577,20 +546,30 @@ fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
 }
 
 fn parse_plan_crs(text: &str) -> Result<ExportCrs, String> {
-    parse_crs_or("EPSG:4326", text)
+    match parse_crs(text)? {
+        ExportCrs::Wgs84 => {
+            Err("EPSG:4979 has heights, which these layers have not; give EPSG:4326".to_owned())
+        }
+        crs => Ok(crs),
+    }
 }
 
 fn parse_crs(text: &str) -> Result<ExportCrs, String> {
-    parse_crs_or("EPSG:4979", text)
-}
-
-fn parse_crs_or(wgs84: &str, text: &str) -> Result<ExportCrs, String> {
-    match text {
-        "package" => Ok(ExportCrs::Package),
-        text if text.eq_ignore_ascii_case(wgs84) => Ok(ExportCrs::Wgs84),
-        _ => Err(format!(
-            "give \"package\" or {wgs84}; for other systems use ogr2ogr -t_srs on the result"
-        )),
+    if text == "package" {
+        return Ok(ExportCrs::Package);
+    }
+    let code = match text.split_once(':') {
+        Some((registry, code)) if registry.trim().eq_ignore_ascii_case("EPSG") => Some(code),
+        Some(_) => None,
+        None => Some(text),
+    };
+    match code.and_then(|code| code.trim().parse().ok()) {
+        Some(4979) => Ok(ExportCrs::Wgs84),
+        Some(4326) => Ok(ExportCrs::Degrees),
+        Some(code) => Ok(ExportCrs::Epsg(code)),
+        None => Err(
+            "give \"package\", EPSG:4326 or a projected CRS as EPSG:n; for others use ogr2ogr -t_srs on the result".to_owned()
+        ),
     }
 }
 

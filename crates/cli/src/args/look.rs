@@ -11,7 +11,7 @@ use super::overlay::{self, OverlayArg};
 use crate::failure::Failure;
 
 /// The heading in the help under which options stand that are there for comparisons with published methods.
-const COMPARING: &str = "Comparing with the papers";
+pub(crate) const COMPARING: &str = "Comparing with the papers";
 
 /// How roads are drawn. The methods without caps are named by `fly` alone, which can so take one flight with and without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -162,7 +162,7 @@ pub(crate) struct LookArgs {
     pub(crate) boundaries: OnOff,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
-    /// Behind the file's name: ,color=#RRGGBB ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
+    /// Behind the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
     pub(crate) overlay: Vec<OverlayArg>,
     /// Take the datum of such a file for that of WGS84 where PROJ knows nothing between them; its lines can then lie 100 m and more beside the map

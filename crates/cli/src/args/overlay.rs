@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_styles::{Dash, LineStyle, Rgb, Style};
+use corniche_styles::{Dash, LineStyle, Rgb, Style, parse_color};
 
-/// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=#RRGGBB`, `,width=PX`,
+/// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=COLOUR`, `,width=PX`,
 /// `,opacity=SHARE` and `,dash=DASH/GAP` or `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OverlayArg {
@@ -68,7 +68,7 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
     };
     let mut rest = text;
     let mut given = Vec::new();
-    while let Some((before, entry)) = rest.rsplit_once(',')
+    while let Some((before, entry)) = last_entry(rest)
         && let Some((name, value)) = entry.split_once('=')
         && is_entry(name)
     {
@@ -81,7 +81,7 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
         }
         given.push(name);
         match name {
-            "color" => found.color = Some(color(value)?),
+            "color" => found.color = Some(parse_color(value).map_err(|error| error.to_string())?),
             "width" => found.width_px = Some(number(0.5..=50.0)?),
             "opacity" => found.opacity = Some(number(0.01..=1.0)?),
             _ if found.dash.is_some() => {
@@ -98,15 +98,18 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
     Ok(OverlayArg { path: PathBuf::from(rest), ..found })
 }
 
-fn color(text: &str) -> Result<Rgb, String> {
-    let digits = text
-        .strip_prefix('#')
-        .filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
-        .and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let [_, channels @ ..] = digits
-        .ok_or_else(|| format!("{text:?} is no colour; write it like color=#C21E8A"))?
-        .to_be_bytes();
-    Ok(channels.map(|channel| f32::from(channel) / 255.0))
+/// A text before and after its last comma, but for commas in brackets, as colours have them.
+fn last_entry(text: &str) -> Option<(&str, &str)> {
+    let mut open = 0_usize;
+    let comma = text.rfind(|letter| {
+        match letter {
+            ')' => open += 1,
+            '(' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        letter == ',' && open == 0
+    })?;
+    Some((&text[..comma], &text[comma + 1..]))
 }
 
 fn dash(text: &str) -> Result<Dash, String> {

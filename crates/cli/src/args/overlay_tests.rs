@@ -19,13 +19,30 @@ fn entries_may_come_in_any_order() {
     assert_eq!(found.path(), Path::new("a, b.geojson"));
     let style = found.style(usual());
     assert_eq!((style.width_px, style.opacity, style.color), (4.5, 0.5, [1.0, 0.0, 0.0]));
+    let named = parse("a.geojson,color=Red").unwrap();
+    assert!(
+        named
+            .style(usual())
+            .color
+            .iter()
+            .zip([1.0, 0.0, 0.0])
+            .all(|(own, of_red)| (own - of_red).abs() < 1e-6)
+    );
     assert_eq!(style.dash, Dash::new(&[8.0, 4.0]).unwrap());
+}
+
+#[test]
+fn colours_may_have_commas() {
+    let found = parse("a (1,2).gpx,color=rgb(255, 0, 0),width=2").unwrap();
+    assert_eq!(found.path(), Path::new("a (1,2).gpx"));
+    let style = found.style(usual());
+    assert_eq!((style.width_px, style.color), (2.0, [1.0, 0.0, 0.0]));
 }
 
 #[test]
 fn what_is_wrong_is_told() {
     for (text, part) in [
-        ("a.gpx,color=red", "is no colour"),
+        ("a.gpx,color=redd", "is no colour"),
         ("a.gpx,width=0", "width must be 0.5 to 50"),
         ("a.gpx,dash=8-4", "is no pattern"),
         ("a.gpx,pattern=dots", "is no pattern"),

@@ -3,7 +3,7 @@
 use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, ValueHint};
-use corniche_export::DegreeBounds;
+use corniche_export::{DegreeBounds, RoadQuery};
 use corniche_presets::{BoundsChoice, Classes, parse_bytes};
 use corniche_remote::PackagePlace;
 use corniche_viewer::stream::StreamBudget;
@@ -113,6 +113,25 @@ pub(crate) struct ClassesArg {
     pub(crate) classes: Classes,
 }
 
+// Roads by what is written on signs.
+#[derive(Debug, Args)]
+pub(crate) struct RoadArg {
+    /// Only roads with this number (OSM's ref), such as "CG 2"; spaces, hyphens and case do not matter
+    #[arg(long = "ref", value_name = "NUMBER", value_parser = parse_road)]
+    reference: Option<String>,
+    /// Only roads with this name (OSM's name); spaces, hyphens and case do not matter
+    #[arg(long, value_name = "NAME", value_parser = parse_road)]
+    name: Option<String>,
+}
+
+impl RoadArg {
+    /// The road that is named.
+    pub(crate) fn query(&self) -> Option<RoadQuery> {
+        let query = RoadQuery { reference: self.reference.clone(), name: self.name.clone() };
+        (query != RoadQuery::default()).then_some(query)
+    }
+}
+
 // What a command may use of the processor.
 #[derive(Debug, Args)]
 pub(crate) struct ThreadsArg {
@@ -140,6 +159,14 @@ impl GpuArgs {
             upload_bytes_per_frame: self.upload_per_frame,
             gpu_bytes: self.gpu_memory,
         }
+    }
+}
+
+fn parse_road(text: &str) -> Result<String, String> {
+    if text.chars().any(char::is_alphanumeric) {
+        Ok(text.to_owned())
+    } else {
+        Err("it has neither letters nor digits".to_owned())
     }
 }
 

@@ -63,6 +63,9 @@ pub(crate) struct ManifestDocument {
     /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
     #[serde(skip_serializing_if = "Option::is_none")]
     clip: Option<ClipDocument>,
+    /// The outline of the elevation files, where they fill no rectangle, on the lattice: polygons of rings of [u, v].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline: Option<Vec<Vec<Vec<[i64; 2]>>>>,
     /// How nodes relate to the DEM's samples, in words.
     resampling: String,
     /// Whether nodes and the DEM's samples are the same points.
@@ -177,6 +180,9 @@ struct SettingsDocument {
     vertical_crs: Option<String>,
     /// `--vertical-shift`; 0 when not given.
     vertical_shift_m: f64,
+    /// `--vertical-unit`, if given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertical_unit: Option<String>,
     /// `--crs`, if given.
     crs: Option<String>,
     /// `--cell`, if given, east and north.
@@ -290,6 +296,7 @@ impl From<&Manifest> for ManifestDocument {
             data_bounds: manifest.data_bounds.into(),
             wgs84_bounds: manifest.wgs84_bounds.into(),
             clip: manifest.clip.map(Into::into),
+            outline: manifest.outline,
             resampling: manifest.resampling,
             nodes_are_samples: manifest.nodes_are_samples,
             vertical: VerticalDocument {
@@ -349,6 +356,7 @@ impl From<SettingsRecord> for SettingsDocument {
             dem_vertical_crs: settings.dem_vertical_crs,
             vertical_crs: settings.vertical_crs,
             vertical_shift_m: settings.vertical_shift_m,
+            vertical_unit: settings.vertical_unit,
             crs: settings.crs,
             cell_m: settings.cell_m.map(corniche_geom::Cell::to_array),
             cell_every: settings.cell_every,

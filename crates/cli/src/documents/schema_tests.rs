@@ -11,6 +11,7 @@ use super::{
     growth::{ComparisonDocument, GrowthDocument},
     info::InfoDocument,
     plan::{JobDocument, PlanDocument},
+    profile::ProfileDocument,
     progress::ProgressRecord,
     tile::TileDocument,
     verify::VerifyDocument,
@@ -21,7 +22,7 @@ fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
 
-fn schemas() -> [(&'static str, &'static str, Schema); 8] {
+fn schemas() -> [(&'static str, &'static str, Schema); 9] {
     [
         ("growth", "corniche growth --json", schema::<GrowthDocument>()),
         (
@@ -32,6 +33,7 @@ fn schemas() -> [(&'static str, &'static str, Schema); 8] {
         ("info", "corniche info --json", schema::<InfoDocument>()),
         ("job", "a line of corniche jobs", schema::<JobDocument>()),
         ("plan", "corniche plan --json", schema::<PlanDocument>()),
+        ("profile", "corniche profile --json", schema::<ProfileDocument<'_>>()),
         ("progress", "a line of --json-progress", schema::<ProgressRecord<'_>>()),
         ("tile", "corniche tile --json", schema::<TileDocument<'_>>()),
         ("verify", "corniche verify --json", schema::<VerifyDocument>()),

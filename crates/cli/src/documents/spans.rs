@@ -14,7 +14,7 @@ pub(crate) struct SpansDocument {
     bridges: u64,
     /// How many tunnels.
     tunnels: u64,
-    /// The true length of all bridges in plan, as far as there is data, kilometres.
+    /// The true length of all bridges in plan, as far as they are kept, kilometres.
     bridges_km: f64,
     /// The same of all tunnels.
     tunnels_km: f64,
@@ -37,7 +37,7 @@ struct ReasonDocument {
 }
 
 impl From<SpansRecord> for SpansDocument {
-    fn from(SpansRecord { counts, levels }: SpansRecord) -> Self {
+    fn from(SpansRecord { counts, levels, .. }: SpansRecord) -> Self {
         let reasons = counts.reasons.into_iter();
         Self {
             bridges: counts.bridges,

@@ -1,6 +1,6 @@
 //! `corniche export edges`: roads from junction to junction.
 
-use corniche_export::{EdgesSummary, FeatureRequest, export_edges};
+use corniche_export::{Coordinates, EdgesSummary, FeatureRequest, VectorFormat, export_edges};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
@@ -14,7 +14,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, recorded,
-    table::{Digits, bytes, length},
+    table::{Digits, bytes, length, up_to},
 };
 
 pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
@@ -44,15 +44,17 @@ pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let inputs = (recorded::for_export(&elevation), &network);
+    let road = args.vector.road.query();
     let (summary, size) = fill(&args.vector.file, output, Some(&elevation), |path, progress| {
-        export_edges(&package, &request, inputs, path, progress)
+        export_edges(&package, (&request, road.as_ref()), inputs, path, progress)
     })?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
 fn to_text(
     args: &ExportEdgesArgs,
+    coordinates: (Coordinates, VectorFormat),
     summary: &EdgesSummary,
     manifest: &Manifest,
     size: u64,
@@ -63,7 +65,7 @@ fn to_text(
         _ => format!("; {} {what}", count(number)),
     };
     format!(
-        "{}: {} edges, {}, {}{}{}\n{}\nheights are those of the DEM, within {:.3} m between vertices",
+        "{}: {} edges, {}, {}{}{}\n{}\nheights are within {} m of the DEM, over whole lines",
         in_line(&args.vector.file.output.to_string_lossy()),
         count(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
@@ -73,7 +75,7 @@ fn to_text(
             summary.without_ascent,
             "without an ascent, because the ground ends, or nothing carries a bridge or a tunnel",
         ),
-        facts(&args.vector, &summary.heights, manifest),
-        summary.height_tolerance_m,
+        facts(coordinates, &summary.heights, manifest),
+        up_to(summary.height_tolerance_m, 3),
     ) + &spans_text(&summary.spans)
 }

@@ -8,6 +8,7 @@ use corniche_tileset::{Manifest, SampleErrorRecord};
 use super::vector_files::fill;
 use crate::{
     args::ExportGeoTiffArgs,
+    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -76,7 +77,7 @@ fn to_text(
         )
     });
     format!(
-        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}\nto be shown with it: {}",
+        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}{}",
         in_line(&args.file.output.to_string_lossy()),
         summary.level,
         count(summary.columns),
@@ -87,6 +88,6 @@ fn to_text(
         summary.error_bound_m,
         in_line(&manifest.crs),
         in_line(&summary.heights),
-        in_line(&manifest.attribution.join("; ")),
+        credits_line(manifest),
     )
 }

@@ -42,7 +42,7 @@ impl LinesExport {
     pub(crate) fn begin(args: &LinesArgs<'_>, layer: &str) -> Result<Self, Failure> {
         let LinesArgs { from, extract, vector, cpu, level, usage } = args;
         let format = format(vector.format, &vector.file.output)?;
-        let coordinates = coordinates(vector)?;
+        let coordinates = coordinates(vector.crs, vector.heights.is_some(), format)?;
         let (place, [dem, osm]) = from.files(&extract.osm, usage)?;
         let package = packages::open_with_datum(&place, &vector.datum)?;
         check_lines_request(&package, *level, (format, coordinates))?;

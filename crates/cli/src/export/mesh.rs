@@ -11,6 +11,7 @@ use corniche_tileset::Manifest;
 use super::unknown_ending::unknown_ending;
 use crate::{
     args::{ExportMeshArgs, OnOrNone},
+    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -116,7 +117,7 @@ fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, si
         ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", count(summary.lines)),
     };
     format!(
-        "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})\nto be shown with it: {}",
+        "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {}){}",
         in_line(&args.file.output.to_string_lossy()),
         summary.level,
         count(summary.tiles),
@@ -124,6 +125,6 @@ fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, si
         bytes(size),
         in_line(&manifest.crs),
         in_line(&manifest.vertical.datum),
-        in_line(&manifest.attribution.join("; ")),
+        credits_line(manifest),
     )
 }

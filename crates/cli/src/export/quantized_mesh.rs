@@ -1,13 +1,16 @@
 //! `corniche export quantized-mesh`: terrain tiles of the globe.
 
+use std::path::Path;
+
 use corniche_export::{
-    Availability, Coordinates, QuantizedMeshLevel, QuantizedMeshRequest, QuantizedMeshSummary,
-    Tiling, export_quantized_mesh,
+    Availability, Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    QuantizedMeshSummary, Tiling, export_quantized_mesh,
 };
 use corniche_tileset::Manifest;
 
 use crate::{
     args::{ExportQuantizedMeshArgs, TerrainCompress},
+    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -21,11 +24,15 @@ use crate::{
     table::{Digits, bytes},
 };
 
+/// Half of the block that most file systems have.
+const HALF_BLOCK_BYTES: u64 = 2048;
+
 pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = QuantizedMeshRequest {
         tiling: Tiling::from(args.tiling),
         max_level: args.max_level,
+        max_files: args.max_files,
         bounds: args.within.bounds,
         coordinates: match args.heights {
             None => Coordinates::Wgs84,
@@ -37,13 +44,44 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     };
     let existing = existing_of(args.folder.overwrite);
     let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
+    let plan = QuantizedMeshPlan::new(&package, &request)
+        .map_err(|error| named(error, &args.folder.output))?;
+    messages::note(&plan_text(&plan));
+    refuse_full_disk(&plan, output.path())?;
     let progress = Progress::new();
-    let exported = export_quantized_mesh(&package, &request, output.path(), &progress);
+    let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort)).collect();
+    progress.expect_efforts(effort);
+    let exported = export_quantized_mesh(&package, (&request, plan), output.path(), &progress);
     progress.finish();
     let summary = exported.map_err(|error| named(error, &args.folder.output))?;
     let size = output.place("quantized-mesh")?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
+}
+
+/// What will be written.
+fn plan_text(plan: &QuantizedMeshPlan) -> String {
+    format!(
+        "terrain      levels 0 to {}: at most {} files, about {} (an estimate from some tiles); --max-level chooses another finest level",
+        plan.finest(),
+        Digits::of_notes().count(plan.files()),
+        bytes(plan.bytes),
+    )
+}
+
+/// Refuses what has no room, as far as that can be told. A file takes half a block more than its bytes on average.
+fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failure> {
+    let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
+    // Where nothing is known of the file system, writing tells.
+    match corniche_pipeline::free_bytes(folder) {
+        Ok(free) if free < needed => Err(Failure::unusable(format!(
+            "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
+            bytes(needed),
+            Digits::of_notes().count(plan.files()),
+            bytes(free),
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn to_text(
@@ -77,12 +115,12 @@ fn to_text(
     };
     let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
     format!(
-        "{}: {} tiles, {}\n{}heights: {}\nto be shown with it: {}",
+        "{}: {} tiles, {}\n{}heights: {}{}",
         in_line(&args.folder.output.to_string_lossy()),
         count(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        in_line(&manifest.attribution.join("; ")),
+        credits_line(manifest),
     )
 }

@@ -1,6 +1,9 @@
 //! `corniche export roads`: roads as lines with heights, lengths and grades.
 
-use corniche_export::{ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, export_roads};
+use corniche_export::{
+    Coordinates, ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, VectorFormat,
+    export_roads,
+};
 use corniche_tileset::Manifest;
 
 use super::{
@@ -13,7 +16,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, recorded,
-    table::{Digits, bytes, length},
+    table::{Digits, bytes, length, up_to},
 };
 
 pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
@@ -40,15 +43,17 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         elevation: elevation.as_ref().map(recorded::for_export),
         network: network.as_ref(),
     };
+    let road = args.vector.road.query();
     let (summary, size) = fill(&args.vector.file, output, elevation.as_ref(), |path, progress| {
-        export_roads(&package, (&request, features), heights, path, progress)
+        export_roads(&package, (&request, features, road.as_ref()), heights, path, progress)
     })?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
 fn to_text(
     args: &ExportRoadsArgs,
+    coordinates: (Coordinates, VectorFormat),
     summary: &ExportSummary,
     manifest: &Manifest,
     size: u64,
@@ -59,13 +64,20 @@ fn to_text(
     } else {
         format!("{} ways", count(summary.features))
     };
-    let within_m = summary.height_tolerance_m;
-    let tolerance = match summary.ground_tolerance_m {
-        None => format!(
-            "heights are within {within_m:.1} m of the DEM at its samples; --dem FILE gives the DEM's own"
+    let tolerance = match (summary.ground_tolerance_m, summary.height_tolerance_m) {
+        (Some(ground_m), within_m) => format!(
+            "heights are within {} m of the DEM, over whole lines; the package's triangles are within {} m of it there",
+            up_to(within_m.unwrap_or_default(), 3),
+            up_to(ground_m, 1),
         ),
-        Some(ground_m) => format!(
-            "heights are those of the DEM, within {within_m:.3} m between vertices; the package's triangles are within {ground_m:.1} m of it there"
+        (None, Some(within_m)) => format!(
+            "heights are within {} m of the DEM, over whole lines, and within {} m at its samples; --dem FILE gives the DEM's own",
+            up_to(within_m, 1),
+            up_to(summary.sample_tolerance_m, 1),
+        ),
+        (None, None) => format!(
+            "heights are within {} m of the DEM at its samples, and may be farther off between them; --dem FILE measures it",
+            up_to(summary.sample_tolerance_m, 1),
         ),
     };
     format!(
@@ -75,6 +87,6 @@ fn to_text(
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),
         bytes(size),
-        facts(&args.vector, &summary.heights, manifest),
+        facts(coordinates, &summary.heights, manifest),
     ) + &summary.spans.as_ref().map(spans_text).unwrap_or_default()
 }

@@ -7,6 +7,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     args::{Compress, ExportTiles3dArgs, OnOrNone},
+    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -71,13 +72,13 @@ fn to_text(
     };
     let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
     format!(
-        "{}: {} tiles, {}, {} tileset documents\n{}heights: {}\nto be shown with it: {}",
+        "{}: {} tiles, {}, {} tileset documents\n{}heights: {}{}",
         in_line(&args.folder.output.to_string_lossy()),
         count(total(|level| level.tiles)),
         bytes(size),
         count(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        in_line(&manifest.attribution.join("; ")),
+        credits_line(manifest),
     )
 }

@@ -8,7 +8,8 @@ use corniche_tileset::Manifest;
 
 use super::unknown_ending::unknown_ending;
 use crate::{
-    args::{ExportCrs, FileArgs, Format, VectorArgs},
+    args::{ExportCrs, FileArgs, Format},
+    credits::credits_line,
     escaped::in_line,
     failure::Failure,
     named_output::{NamedOutput, named},
@@ -44,33 +45,73 @@ pub(crate) fn format(format: Option<Format>, output: &Path) -> Result<VectorForm
     })
 }
 
-/// The coordinates of lines with heights that are asked for.
-pub(crate) fn coordinates(args: &VectorArgs) -> Result<Coordinates, Failure> {
-    match (args.crs, args.heights) {
-        (ExportCrs::Package, None) => Ok(Coordinates::Package),
-        (ExportCrs::Wgs84, None) => Ok(Coordinates::Wgs84),
-        (ExportCrs::Wgs84, Some(_)) => Ok(Coordinates::Wgs84WithPackageHeights),
-        (ExportCrs::Package, Some(_)) => Err(Failure::unusable(
-            "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
-        )),
+/// The coordinates that are asked for; of GeoJSON degrees, where nothing is. `keeps_heights` says that heights are to stay as they are.
+pub(crate) fn coordinates(
+    crs: Option<ExportCrs>,
+    keeps_heights: bool,
+    format: VectorFormat,
+) -> Result<Coordinates, Failure> {
+    let unasked =
+        if format == VectorFormat::GeoJson { ExportCrs::Degrees } else { ExportCrs::Package };
+    Ok(match crs.unwrap_or(unasked) {
+        ExportCrs::Package if keeps_heights => {
+            return Err(Failure::unusable(
+                "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
+            ));
+        }
+        ExportCrs::Package => Coordinates::Package,
+        ExportCrs::Wgs84 if !keeps_heights => Coordinates::Wgs84,
+        ExportCrs::Wgs84 | ExportCrs::Degrees => Coordinates::Wgs84WithPackageHeights,
+        ExportCrs::Epsg(code) => Coordinates::Epsg(code),
+    })
+}
+
+/// Coordinates in words.
+pub(crate) fn crs_text(
+    coordinates: Coordinates,
+    format: VectorFormat,
+    manifest: &Manifest,
+) -> String {
+    let is_json = format == VectorFormat::GeoJson;
+    match coordinates {
+        Coordinates::Package => in_line(&manifest.crs).into_owned(),
+        Coordinates::Wgs84 => "EPSG:4979".to_owned(),
+        Coordinates::Wgs84WithPackageHeights if is_json => {
+            "EPSG:4326, the degrees that GeoJSON has (RFC 7946)".to_owned()
+        }
+        Coordinates::Wgs84WithPackageHeights => "EPSG:4326".to_owned(),
+        Coordinates::Epsg(code) if is_json => {
+            format!(
+                "EPSG:{code}, in the member \"crs\"; programs that know only RFC 7946 take them for degrees"
+            )
+        }
+        Coordinates::Epsg(code) => format!("EPSG:{code}"),
     }
 }
 
 /// What coordinates and heights of exported lines are, and what is to be shown with them, a line each.
-pub(crate) fn facts(args: &VectorArgs, heights: &str, manifest: &Manifest) -> String {
-    let coordinates = match (args.crs, args.heights) {
-        (ExportCrs::Package, _) => &manifest.crs,
-        (ExportCrs::Wgs84, None) => "EPSG:4979",
-        (ExportCrs::Wgs84, Some(_)) => "EPSG:4326",
+pub(crate) fn facts(
+    (coordinates, format): (Coordinates, VectorFormat),
+    heights: &str,
+    manifest: &Manifest,
+) -> String {
+    let is_json = format == VectorFormat::GeoJson;
+    let hint = match coordinates {
+        Coordinates::Wgs84WithPackageHeights if is_json => {
+            "; as the package has them (--crs EPSG:4979 carries them to the ellipsoid)"
+        }
+        _ => "",
     };
     format!(
-        "coordinates: {}\nheights: {}\nto be shown with it: {}",
-        in_line(coordinates),
+        "coordinates: {}\nheights: {}{hint}{}",
+        crs_text(coordinates, format, manifest),
         in_line(heights),
-        in_line(&manifest.attribution.join("; ")),
+        credits_line(manifest),
     )
 }
 
+/// So many nodes are named; a list of defects has them all.
+const MOST_NODES: usize = 5;
 /// A line of bridges and tunnels, and of what is to be known of them; nothing where there is none.
 pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     if facts.spans == 0 {
@@ -79,8 +120,16 @@ pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     let count = |number| Digits::of_notes().count(number);
     let reasons =
         facts.reasons.iter().map(|(reason, number)| format!(", {reason} {}", count(*number)));
+    let nodes: Vec<String> =
+        facts.ground_nodes.iter().take(MOST_NODES).map(i64::to_string).collect();
+    let more = if facts.ground_nodes.len() > MOST_NODES { " …" } else { "" };
+    let nodes = match &nodes[..] {
+        [] => String::new(),
+        [one] => format!(" (ground_way_on_deck: node {one})"),
+        some => format!(" (ground_way_on_deck: nodes {}{more})", some.join(" ")),
+    };
     format!(
-        "\nbridges and tunnels: {} with {} crossings; their heights are estimates{}",
+        "\nbridges and tunnels: {} with {} crossings; their heights are estimates{}{nodes}",
         count(facts.spans),
         count(facts.crossings),
         reasons.collect::<String>(),

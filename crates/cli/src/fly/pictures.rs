@@ -54,7 +54,8 @@ impl Pictures {
         let (folder, target) = (self.folder.path(), self.folder.claim().target());
         // An early end would leave half of them there.
         interrupt::spare(&[folder]);
-        fs::rename(folder, target).map_err(|error| {
+        let opened = self.folder.open_to_others();
+        opened.and_then(|()| fs::rename(folder, target)).map_err(|error| {
             Failure::new(
                 ExitCode::Failed,
                 anyhow::anyhow!("cannot move the pictures to {}: {error}", target.display()),

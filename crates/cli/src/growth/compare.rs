@@ -81,7 +81,7 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
 }
 
 /// Everything that growth depends on, but for cell and error bound, which are what is studied.
-fn properties(manifest: &Manifest) -> [Property; 18] {
+fn properties(manifest: &Manifest) -> [Property; 19] {
     // All fields by name, so that a new setting cannot be forgotten here.
     let SettingsRecord {
         max_error_m: _,
@@ -97,6 +97,7 @@ fn properties(manifest: &Manifest) -> [Property; 18] {
         dem_vertical_crs,
         vertical_crs,
         vertical_shift_m,
+        vertical_unit,
         scale_latitude_deg,
         bounds_deg,
         polygon,
@@ -127,6 +128,7 @@ fn properties(manifest: &Manifest) -> [Property; 18] {
         ("its vertical CRS", given(dem_vertical_crs.as_deref(), "as in its files")),
         ("vertical CRS", given(vertical_crs.as_deref(), "that of the elevation data")),
         ("vertical shift", format!("{vertical_shift_m} m")),
+        ("vertical unit", given(vertical_unit.as_deref(), "that of the elevation data")),
         ("values without data", no_data(nodata)),
         ("height range", height_range(*height_range_m)),
         ("voids filled", format!("with data within {fill_voids} cells")),

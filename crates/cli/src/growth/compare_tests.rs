@@ -33,7 +33,7 @@ fn what_is_not_alike_is_said() {
     };
     let mut base = corniche_testing::package::manifest();
     base.inputs = vec![input("dem", &"1".repeat(64)), input("osm", &"2".repeat(64))];
-    let changes: [(&str, Change); 21] = [
+    let changes: [(&str, Change); 22] = [
         ("", |manifest| manifest.settings.max_error_m = 1.0),
         ("extract", |manifest| manifest.inputs[1].sha256 = "3".repeat(64)),
         ("elevation data", |manifest| manifest.inputs[0].sha256 = "3".repeat(64)),
@@ -47,6 +47,7 @@ fn what_is_not_alike_is_said() {
         ("voids filled", |manifest| manifest.settings.fill_voids = 0),
         ("values without data", |manifest| manifest.settings.nodata = vec![-32767.0, 0.0]),
         ("height range", |manifest| manifest.settings.height_range_m = Some([-500.0, 9000.0])),
+        ("vertical unit", |manifest| manifest.settings.vertical_unit = Some("foot".to_owned())),
         ("band of the elevation data", |manifest| manifest.settings.dem_band = Some(2)),
         ("operations between datums", |manifest| {
             manifest.datum_operations.push(DatumOperationRecord {

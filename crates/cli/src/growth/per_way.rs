@@ -11,15 +11,18 @@ use crate::{
     exit::ExitCode,
     export::MEMORY_BYTES,
     failure::Failure,
-    messages,
-    output::{Output, failed},
+    output::{Complete, Output, failed},
     progress::Progress,
     table::Digits,
 };
 
-/// Writes the file that was begun at `path`: a line for each way by its id, then for each class what of the growth table belongs to no
+/// Fills the file that was begun at `path`, and says what is in it: a line for each way by its id, then for each class what of the growth table belongs to no
 /// way, if there is such. So the columns add up to that table.
-pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> Result<(), Failure> {
+pub(crate) fn fill(
+    package: &FilePackage,
+    path: &Path,
+    mut output: Output,
+) -> Result<(Complete, String), Failure> {
     let manifest = package.manifest();
     let cannot = |error: std::io::Error| failed(path, &error);
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
@@ -41,9 +44,7 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
         let empty = ",".repeat(manifest.levels.len() + 3);
         output.write_all(format!(",{class},,{points}{empty}\n").as_bytes()).map_err(cannot)?;
     }
-    output.finish()?;
-    messages::note(&note(path, ways, off_ground, Digits::of_notes()));
-    Ok(())
+    Ok((output.end()?, note(path, ways, off_ground, Digits::of_notes())))
 }
 
 fn note(path: &Path, ways: u64, off_ground: i64, digits: Digits) -> String {

@@ -30,7 +30,7 @@ pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, Failure> {
 fn built_in(files: &[(&str, &'static [u8])]) -> Result<Vec<PageFile>, Failure> {
     if files.is_empty() {
         return Err(Failure::unusable(
-            "this program was built without the page of the viewer, which a released one has; run scripts/web in the repository \
+            "this program was built without the page of the viewer; run scripts/web in the repository \
              and give --page target/web/site, or build the program with CORNICHE_PAGE=target/web/site",
         ));
     }

@@ -90,8 +90,12 @@ impl Operation {
 
     /// An operation for heights: PROJ may not replace a missing grid by an approximation.
     pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
-        let found = Self::new(from, to, Some(area_deg));
-        Self { is_exact: true, key: format!("{} exact", found.key), ..found }
+        Self::new(from, to, Some(area_deg)).exactly()
+    }
+
+    /// The same, which fails where PROJ knows nothing better than to take one datum for another.
+    pub(crate) fn exactly(self) -> Self {
+        Self { is_exact: true, key: format!("{} exact", self.key), ..self }
     }
 
     /// Replaces each height at its position by its image, in the unit and direction of the systems' third axes;
@@ -174,7 +178,7 @@ impl Operation {
             )
         };
         if self.area_deg.is_none() {
-            return made(true);
+            return made(!self.is_exact);
         }
         match made(false) {
             Err(_) if !self.is_exact => {

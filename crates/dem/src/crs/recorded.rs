@@ -7,7 +7,7 @@ use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::crs::{compound, datum_operation, scale};
-use crate::{DemError, DemProjection};
+use crate::{DemError, DemProjection, library_error};
 
 /// The working CRS of a package, from what the package records of it: without the elevation files.
 #[derive(Debug, Clone)]
@@ -54,6 +54,26 @@ impl RecordedCrs {
         DemProjection::new(&self.working, wgs84_bounds, wgs84_bounds)
     }
 
+    /// Working metres to coordinates of another projected CRS, such as "EPSG:2056", for data within a rectangle in degrees.
+    ///
+    /// # Errors
+    /// When PROJ does not know it, it is not projected, or PROJ knows no operation.
+    pub fn projected(&self, text: &str, wgs84_bounds: Bounds) -> Result<ProjectedCrs, DemError> {
+        library_error::quiet();
+        let (crs, _) = compound::from_text("--crs", text)?;
+        if !crs.is_projected() {
+            return Err(DemError::NotProjected { text: text.to_owned() });
+        }
+        // Beyond the area for which a datum was made, its operation is better than to take it for another one.
+        let operation = |area_deg| {
+            let found = Operation::out_of_working(&self.working, &crs, area_deg).exactly();
+            // PROJ reports at the first use whether it knows the operation.
+            found.apply(&mut [[0.0; 2]]).map(|()| found)
+        };
+        let from_working = operation(Some(wgs84_bounds)).or_else(|_| operation(None))?;
+        Ok(ProjectedCrs { crs, from_working })
+    }
+
     /// The operations that carry positions between the package's datum and that of WGS84, over the rectangle of all elevation files in
     /// working metres and in degrees; none where the datum is that of WGS84.
     ///
@@ -79,6 +99,29 @@ impl RecordedCrs {
         let back = Operation::out_of_working(&self.working, &Crs::wgs84()?, Some(wgs84_bounds));
         let scales = scale::scales(&back, points_m)?;
         Ok(scales.into_iter().map(|scale| scale.map(|scale| scale.along)).collect())
+    }
+}
+
+/// A projected CRS other than the package's own, and the way there.
+#[derive(Debug, Clone)]
+pub struct ProjectedCrs {
+    crs: Crs,
+    from_working: Operation,
+}
+
+impl ProjectedCrs {
+    /// Its WKT2, without heights.
+    #[must_use]
+    pub fn wkt(&self) -> &str {
+        &self.crs.wkt
+    }
+
+    /// Replaces positions in working metres by its coordinates; NaN where there are none.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn from_working(&self, positions: &mut [[f64; 2]]) -> Result<(), DemError> {
+        self.from_working.apply(positions)
     }
 }
 

@@ -6,7 +6,7 @@ use corniche_geom::Bounds;
 
 use crate::crs::height_operation::HeightOperation;
 use crate::crs::horizontal::Crs;
-use crate::crs::recorded::RecordedCrs;
+use crate::crs::recorded::{ProjectedCrs, RecordedCrs};
 use crate::crs::vertical::VerticalCrs;
 use crate::crs::wkt::quoted;
 use crate::{DemError, library_error};
@@ -96,11 +96,21 @@ impl RecordedHeights {
                 && quoted(&horizontal.wkt).is_some_and(|name| quoted(&vertical.wkt) == Some(name));
             return is_its_own.then(|| vertical.wkt.to_string());
         }
-        let registered = registered_in_metres(vertical);
-        let upwards = registered.unwrap_or_else(|| vertical.metres_upwards_wkt());
+        Some(self.compound(&horizontal.wkt))
+    }
+
+    /// The same together with another projected CRS; `None` for ellipsoidal heights, which WKT has no words for there.
+    #[must_use]
+    pub fn wkt_with(&self, crs: &ProjectedCrs) -> Option<String> {
+        (!self.vertical.is_ellipsoidal).then(|| self.compound(crs.wkt()))
+    }
+
+    fn compound(&self, horizontal: &str) -> String {
+        let registered = registered_in_metres(&self.vertical);
+        let upwards = registered.unwrap_or_else(|| self.vertical.metres_upwards_wkt());
         let name = |wkt| quoted(wkt).unwrap_or("unnamed");
-        let both = format!("{} + {}", name(&horizontal.wkt), name(&upwards));
-        Some(format!("COMPOUNDCRS[\"{both}\",{},{upwards}]", horizontal.wkt))
+        let both = format!("{} + {}", name(horizontal), name(&upwards));
+        format!("COMPOUNDCRS[\"{both}\",{horizontal},{upwards}]")
     }
 
     /// Replaces heights in metres, at positions in working metres, by heights above the ellipsoid of WGS84; NaN where there

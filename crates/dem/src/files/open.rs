@@ -38,8 +38,25 @@ pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
             DemError::NoDriver { path: own(), advice }
         } else if path.is_dir() {
             DemError::NotAFile { path: own() }
+        } else if let Some(fault) = fault_of_hgt(path) {
+            fault
         } else {
             DemError::Open { path: own(), source: source.into() }
         }
     })
 }
+
+/// What is wrong with a file of SRTM that GDAL does not open: it has nothing but samples, so its size says their number and its name their place.
+fn fault_of_hgt(path: &Path) -> Option<DemError> {
+    if !path.extension()?.eq_ignore_ascii_case("hgt") {
+        return None;
+    }
+    let (path, bytes) = (path.to_path_buf(), std::fs::metadata(path).ok()?.len());
+    if HGT_BYTES.contains(&bytes) {
+        return Some(DemError::HgtName { path });
+    }
+    Some(DemError::HgtSize { path, bytes })
+}
+
+/// Sizes of whole files: 2 bytes for each of 1201², 1801 × 3601 and 3601² samples.
+const HGT_BYTES: [u64; 3] = [2_884_802, 12_970_802, 25_934_402];

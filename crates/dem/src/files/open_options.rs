@@ -7,6 +7,8 @@ pub struct OpenOptions {
     pub band: Option<u32>,
     /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
     pub dem_crs: Option<String>,
+    /// The unit of heights, whatever bands and vertical CRSs say of it; `None` takes theirs, and refuses a band's that is not known.
+    pub vertical_unit: Option<String>,
     /// Stored values that mean "no height", besides the one that the file declares.
     pub nodata: Vec<f64>,
     /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A file that names

@@ -81,7 +81,9 @@ impl Source {
             crs_from_pixel,
             crs,
             band: number,
-            has_height_unit: vertical.is_some() || !band.unit().trim().is_empty(),
+            has_height_unit: vertical.is_some()
+                || options.vertical_unit.is_some()
+                || !band.unit().trim().is_empty(),
             values: StoredValues::of(path, (number, &band), vertical.as_ref(), options)?,
             vertical,
             is_striped: band.block_size().0 == columns,

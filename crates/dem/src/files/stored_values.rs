@@ -65,7 +65,7 @@ impl StoredValues {
             is_signed_byte: pixel_type.as_deref() == Some("SIGNEDBYTE"),
             scale,
             offset,
-            unit_m: m_per_value(path, &band.unit(), vertical)?,
+            unit_m: m_per_value(path, &band.unit(), vertical, options.vertical_unit.as_deref())?,
             // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers
             // all types. A nodata mask of the whole dataset is another thing: its item NODATA_VALUES, which no band has.
             has_mask: !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata,
@@ -115,12 +115,18 @@ fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
     }
 }
 
-/// Metres upwards to a value: by the band's unit, by the vertical CRS, or metres where neither says.
+/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or metres where none of them says.
 fn m_per_value(
     path: &Path,
     band_unit: &str,
     vertical: Option<&VerticalCrs>,
+    given: Option<&str>,
 ) -> Result<f64, DemError> {
+    if let Some(given) = given {
+        let metres = unit_m(given.trim());
+        let metres = metres.ok_or_else(|| DemError::UnitName { text: given.to_owned() })?;
+        return Ok(vertical.map_or(metres, |vertical| metres.copysign(vertical.m_per_value())));
+    }
     let named =
         match band_unit.trim() {
             "" => None,
@@ -150,8 +156,10 @@ fn unit_m(name: &str) -> Option<f64> {
         "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
         "mm" | "millimetre" | "millimeter" => 0.001,
         "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
-        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot"
-        | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
+        "us-ft" | "us-foot" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet"
+        | "us foot" | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => {
+            1200.0 / 3937.0
+        }
         _ => return None,
     })
 }

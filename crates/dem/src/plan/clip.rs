@@ -20,6 +20,9 @@ use crate::{Dem, DemError};
 
 /// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
 const ON_NODE: f64 = 1e-6;
+/// Room around the data, as a share of their size and in degrees.
+const ROOM: f64 = 0.01;
+const LEAST_ROOM_DEG: f64 = 1e-3;
 /// Samples around those under the nodes asked for, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
@@ -33,7 +36,7 @@ pub(crate) fn nodes_of(
     origin_m: [f64; 2],
     cell: Cell,
 ) -> Result<[NodeIndex; 2], DemError> {
-    let [west, south, east, north] = continuous(bounds_deg);
+    let [west, south, east, north] = around_the_earth_as(area_deg, continuous(bounds_deg));
     let mut points = rim_and_inside([west, north], [east, south]);
     let operation = Operation::into_working(&Crs::wgs84()?, working, Some(area_deg));
     operation.around(None).apply(&mut points)?;
@@ -71,6 +74,7 @@ fn nodes_around(bounds_m: Bounds, origin_m: [f64; 2], cell: Cell) -> [NodeIndex;
 pub(crate) struct Asked {
     pub(crate) nodes: [NodeIndex; 2],
     text: String,
+    bounds_deg: Option<[f64; 4]>,
 }
 
 impl Asked {
@@ -84,7 +88,8 @@ impl Asked {
         let mut asked: Option<Self> = None;
         if let Some(bounds_deg) = options.bounds_deg {
             let nodes = nodes_of(bounds_deg, working, area_deg, *origin_m, *cell)?;
-            asked = Some(Self { nodes, text: format!("--bounds {}", bounds_text(bounds_deg)) });
+            let text = format!("--bounds {}", bounds_text(bounds_deg));
+            asked = Some(Self { nodes, text, bounds_deg: Some(bounds_deg) });
         }
         if let Some(polygon) = &options.polygon {
             let image = Image::new(polygon, working, area_deg, cell.shorter_m())?;
@@ -94,8 +99,9 @@ impl Asked {
                 Some(bounds) => Self {
                     nodes: common(bounds.nodes, own),
                     text: format!("what {} and {text} have in common", bounds.text),
+                    ..bounds
                 },
-                None => Self { nodes: own, text },
+                None => Self { nodes: own, text, bounds_deg: None },
             });
         }
         Ok(asked)
@@ -117,6 +123,23 @@ fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     [west, south, if west > east { east + 360.0 } else { east }, north]
 }
 
+/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of the data there, with some room on all
+/// sides. Others stay.
+fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -> [f64; 4] {
+    if east - west < 360.0 {
+        return [west, south, east, north];
+    }
+    let room = |size_deg: f64| ROOM * size_deg + LEAST_ROOM_DEG;
+    let aside = room(area_deg.width()).min((360.0 - area_deg.width()) / 2.0).max(0.0);
+    let up = room(area_deg.height());
+    // Farther to the north and the south than data the working CRS may end.
+    let [low, high] = [(area_deg.min_y - up).max(-90.0), (area_deg.max_y + up).min(90.0)];
+    let is_beside = north <= low || south >= high;
+    let [south, north] =
+        if is_beside { [south, north] } else { [south, north].map(|lat| lat.clamp(low, high)) };
+    [area_deg.min_x - aside, south, area_deg.max_x + aside, north]
+}
+
 /// Bounds as they are given on the command line.
 fn bounds_text(bounds_deg: [f64; 4]) -> String {
     bounds_deg.map(|deg| deg.to_string()).join(",")
@@ -130,7 +153,7 @@ pub(crate) fn cut(
     around_the_earth: Option<i64>,
     dem: &Dem,
 ) -> Result<[NodeIndex; 2], DemError> {
-    let Asked { nodes: asked, text } = asked;
+    let Asked { nodes: asked, text, bounds_deg } = asked;
     let common = common(*asked, whole);
     let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
     if let Some(columns) = around_the_earth {
@@ -148,7 +171,12 @@ pub(crate) fn cut(
         return Ok(common);
     }
     let [west, south, east, north] = dem.wgs84_bounds.to_array();
-    Err(DemError::BoundsBesideData { asked: text.clone(), west, south, east, north })
+    let swapped = bounds_deg
+        .map(|[one, two, three, four]| [two, one, four, three])
+        .filter(|own| own[0] < east && own[2] > west && own[1] < north && own[3] > south)
+        .map(|own| format!("; {} has some", bounds_text(own)))
+        .unwrap_or_default();
+    Err(DemError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
 }
 
 /// The rectangle of nodes that two have in common; its corners change places where there is none.
@@ -271,6 +299,12 @@ pub(crate) fn parts_of_file(
 }
 
 impl GridPlan {
+    /// This plan with all nodes of the elevation files, whatever was asked of them.
+    #[must_use]
+    pub fn of_whole_data(&self) -> Self {
+        Self { clip: None, polygon: None, ..self.clone() }
+    }
+
     /// This plan, without the nodes that are not corners of cells which the polygon enters. Its bounds stay.
     ///
     /// # Errors

@@ -160,7 +160,7 @@ fn bad_files_are_refused_as_described() {
         ("nasty/dem/libtiff-test_ifd_loop_to_self.tif", "georeference"),
         ("nasty/derived-dem/1x1.tif", "2 × 2"),
         ("nasty/derived-dem/1x512.tif", "2 × 2"),
-        ("nasty/derived-dem/N47E009.hgt", "not a raster"),
+        ("nasty/derived-dem/N47E009.hgt", "has 1441207 bytes; whole .hgt files have 2884802"),
         ("nasty/derived-dem/truncated-half.tif", "cut off"),
         ("nasty/derived-dem/truncated-header-6-bytes.tif", "not a raster"),
         ("nasty/derived-dem/zero-bytes.tif", "0 bytes"),

@@ -1,7 +1,7 @@
 //! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to the last bit.
 
 use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions};
-use corniche_geom::{NodeIndex, NodeWindow, Projection};
+use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
 
 use crate::fixture::{Raster, all, check_words, folder, in_utm, open, options, sample_blocks};
 
@@ -162,6 +162,42 @@ fn bounds_may_cross_180_degrees() {
     // Wholly beyond 180 degrees of the whole: told within ±180.
     let part = check(&dem, &options(), [-179.9, -16.4, -179.7, -16.2]);
     assert!((-179.95..-179.85).contains(&part.wgs84_bounds.min_x), "{:?}", part.wgs84_bounds);
+}
+
+/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie and whatever their working CRS is.
+#[test]
+fn bounds_around_the_earth_leave_out_no_longitude() {
+    let folder = folder();
+    let ground = |[x, y]: [f64; 2]| (x.rem_euclid(360.0) + y) as f32;
+    for (name, west) in [("at-180.tif", 179.5), ("at-0.tif", -0.5), ("east.tif", 120.0)] {
+        let raster = Raster::new(4326, [100, 60], [west, 0.01, 0.0, -16.0, 0.0, -0.01]);
+        let dem = open(&[raster.write(folder.path(), name, ground)]);
+        let polar = PlanOptions {
+            crs: Some("EPSG:3031".to_owned()),
+            cell: Some(Cell::from(1000.0)),
+            ..options()
+        };
+        for asked in [options(), in_utm(), polar] {
+            let whole = dem.plan(&asked).unwrap();
+            for bounds_deg in [[-180.0, -90.0, 180.0, 90.0], [-180.0, -17.0, 180.0, -15.0]] {
+                let part = dem.plan(&with(bounds_deg, asked.clone())).unwrap();
+                assert_eq!(
+                    (part.south_west, part.north_east),
+                    (whole.south_west, whole.north_east)
+                );
+            }
+            let part = dem.plan(&with([-180.0, -16.4, 180.0, -16.2], asked.clone())).unwrap();
+            let widths = [&part, &whole].map(|plan| plan.wgs84_bounds.width());
+            assert!(widths[0] > widths[1] - 0.03, "{widths:?}");
+            // Around a pole the ground is the rectangle around a turned image, which is larger.
+            if asked.crs.as_deref() != Some("EPSG:3031") {
+                assert!(widths[0] < widths[1] + 0.03, "{widths:?}");
+                assert!(part.wgs84_bounds.height() < 0.3, "{:?}", part.wgs84_bounds);
+            }
+            let beside = dem.plan(&with([-180.0, 10.0, 180.0, 20.0], asked)).unwrap_err();
+            assert!(matches!(beside, DemError::BoundsBesideData { .. }), "{beside}");
+        }
+    }
 }
 
 #[test]

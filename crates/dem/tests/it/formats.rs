@@ -159,10 +159,14 @@ fn srtm_squares_lie_where_their_name_says() {
         other.resize(length, 0);
         let path = folder.path().join("N46E009.hgt");
         fs::write(&path, other).unwrap();
-        check_refused(&[path], &given, &["N46E009.hgt", "not a raster"]);
+        check_refused(
+            &[path],
+            &given,
+            &["N46E009.hgt", &format!("has {length} bytes"), "whole .hgt files"],
+        );
     }
     let anonymous = [srtm(folder.path(), "heights.hgt")];
-    check_refused(&anonymous, &given, &["heights.hgt", "not a raster"]);
+    check_refused(&anonymous, &given, &["heights.hgt", "does not say where it lies"]);
 }
 
 #[test]

@@ -293,8 +293,13 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     // Rings that are not closed, an inner one of a second polygon, too.
     let closed = "[[9,47],[9.1,47],[9.1,47.1],[9,47]]";
     let open = "[[9,47],[9.1,47],[9.1,47.1]]";
-    let advice =
-        ["a.geojson", "feature 1", "[9.0, 47.0]", "[9.1, 47.1]", "repeat its first position"];
+    let advice = [
+        "a.geojson",
+        "feature 1",
+        "begins at 9, 47",
+        "ends at 9.1, 47.1",
+        "repeat its first position",
+    ];
     refuse(&json("Polygon", &format!("[{open}]")), &advice);
     refuse(&json("MultiPolygon", &format!("[[{closed}],[{closed},{open}]]")), &advice);
     // A bow tie.

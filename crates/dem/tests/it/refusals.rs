@@ -16,6 +16,9 @@ fn errors_name_the_file_and_what_to_do() {
     fs::write(path("noise.tif"), b"no raster at all").unwrap();
     let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 25934402\n";
     fs::write(path("pointer.hgt"), pointer).unwrap();
+    fs::write(path("N47E009.hgt"), vec![1; 1_400_000]).unwrap();
+    fs::write(path("alps.hgt"), vec![1; 2_884_802]).unwrap();
+    fs::write(path("N47E010.hgt"), vec![1; 2_884_803]).unwrap();
     fs::write(path("page.tif"), "\n<!DOCTYPE html>\n<html>404 Not Found</html>").unwrap();
     let report = "<?xml version=\"1.0\"?><ows:ExceptionReport version=\"2.0.0\"/>";
     fs::write(path("report.tif"), report).unwrap();
@@ -27,6 +30,9 @@ fn errors_name_the_file_and_what_to_do() {
         ("noise.tif", "not a raster"),
         ("pointer.hgt", "a Git LFS pointer"),
         ("pointer.hgt", "git lfs pull"),
+        ("N47E009.hgt", "has 1400000 bytes; whole .hgt files have 2884802"),
+        ("N47E010.hgt", "has 2884803 bytes"),
+        ("alps.hgt", "call it like N47E009.hgt"),
         ("page.tif", "an HTML page; its download failed"),
         ("report.tif", "an error report of a server"),
         ("bare.tif", "--dem-crs"),

@@ -151,10 +151,32 @@ fn units_scale_and_offset_make_metres() {
         let expected = [Some(100.0 * unit_m), Some(101.75 * unit_m), None, Some(0.0)];
         check(unit, path, &given, &expected);
     }
+    // What is no unit of length, or the wrong one, is said from outside.
+    for unit in ["masl", "unspecified", "m a.s.l.", "feet above sea", "ft"] {
+        let path = row(folder.path(), "said.tif", raster(), &[1_i16, 2]);
+        let aux = format!(
+            "<PAMDataset><PAMRasterBand band=\"1\"><UnitType>{unit}</UnitType></PAMRasterBand></PAMDataset>"
+        );
+        fs::write(folder.path().join("said.tif.aux.xml"), aux).unwrap();
+        if unit != "ft" {
+            check_refused(
+                std::slice::from_ref(&path),
+                &given,
+                &["said.tif", unit, "--vertical-unit"],
+            );
+        }
+        for (said, unit_m) in [("metre", 1.0), ("us-foot", survey_m), ("decimetre", 0.1)] {
+            let given = OpenOptions { vertical_unit: Some(said.to_owned()), ..given.clone() };
+            check(unit, path.clone(), &given, &[Some(unit_m), Some(2.0 * unit_m)]);
+        }
+    }
+    let odd = OpenOptions { vertical_unit: Some("masl".to_owned()), ..given.clone() };
+    let path = row(folder.path(), "odd.tif", raster(), &[1_i16, 2]);
+    check_refused(&[path], &odd, &["--vertical-unit", "masl", "us-foot"]);
     let path = row(folder.path(), "fathoms.tif", raster(), &[1_i16, 2]);
     let aux = "<PAMDataset><PAMRasterBand band=\"1\"><UnitType>fathom</UnitType></PAMRasterBand></PAMDataset>";
     fs::write(folder.path().join("fathoms.tif.aux.xml"), aux).unwrap();
-    check_refused(&[path], &given, &["fathoms.tif", "fathom", "convert them to metres"]);
+    check_refused(&[path], &given, &["fathoms.tif", "fathom", "--vertical-unit metre"]);
     let flat = raster().tagged(|dataset| dataset.rasterband(1).unwrap().set_scale(0.0).unwrap());
     check_refused(
         &[row(folder.path(), "flat.tif", flat, &[1_i16, 2])],

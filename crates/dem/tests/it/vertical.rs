@@ -219,6 +219,16 @@ fn a_band_whose_unit_contradicts_its_vertical_system_is_refused() {
     aux("metre");
     let words = ["both.tif", "\"metre\"", "NAVD88 height (ftUS)"];
     check_refused(std::slice::from_ref(&path), &OpenOptions::default(), &words);
+    // Whoever says it is right, and what the system says of up and down stays.
+    for (system, unit, m_per_value) in
+        [("EPSG:32632+6360", "metre", 1.0), ("EPSG:32632+6358", "decimetre", -0.1)]
+    {
+        let path = compound(system).write(folder.path(), "both.tif", plane);
+        let said = OpenOptions { vertical_unit: Some(unit.to_owned()), ..OpenOptions::default() };
+        let truth = |at: [f64; 2]| plane(at) * m_per_value;
+        check_heights(unit, &[path], &said, (Space::Working, MILLIMETRE), truth);
+    }
+    let path = compound("EPSG:32632+6360").write(folder.path(), "both.tif", plane);
     aux("ft");
     let truth = |at: [f64; 2]| plane(at) * 1200.0 / 3937.0;
     let given = OpenOptions::default();

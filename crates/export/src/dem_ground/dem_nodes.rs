@@ -5,10 +5,10 @@ use std::{
     rc::Rc,
 };
 
-use corniche_dem::Reader;
+use corniche_dem::{Reader, SampleSurface};
 use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
 
-use crate::{elevation::Elevation, error::ExportError};
+use crate::{elevation::Elevation, error::ExportError, piece::Vertex};
 
 /// Cells along each side of a block.
 const BLOCK_CELLS: i64 = 64;
@@ -20,7 +20,11 @@ type Block = Rc<[f32]>;
 
 /// The surface over the nodes of a package's grid, as its elevation files have them: bilinear in each cell.
 pub(crate) struct DemNodes<'a> {
+    elevation: Elevation<'a>,
     reader: Reader<'a>,
+    /// The surface of the files' own samples, which may be others than the nodes.
+    samples: SampleSurface<'a>,
+    frame: GridFrame,
     /// Lattice steps from node to node, east and north.
     steps: [f64; 2],
     kept: HashMap<[i64; 2], Block>,
@@ -31,11 +35,19 @@ pub(crate) struct DemNodes<'a> {
 impl<'a> DemNodes<'a> {
     pub(crate) fn new(elevation: Elevation<'a>, frame: &GridFrame) -> Self {
         Self {
+            elevation,
             reader: elevation.dem.reader(elevation.plan),
+            samples: elevation.dem.sample_surface(elevation.plan),
+            frame: *frame,
             steps: frame.node_steps(frame.max_level()).map(|steps| steps as f64),
             kept: HashMap::new(),
             order: VecDeque::new(),
         }
+    }
+
+    /// The elevation files.
+    pub(crate) fn elevation(&self) -> Elevation<'a> {
+        self.elevation
     }
 
     /// Lattice steps from node to node, east and north.
@@ -65,6 +77,18 @@ impl<'a> DemNodes<'a> {
         let beyond = if north > 0.0 { row(j + 1)? } else { 0.0 };
         let height_m = mix(south, beyond, north);
         Ok(height_m.is_finite().then_some(height_m))
+    }
+
+    /// How far a line is from the surface of the files' own samples, at most, over the whole line, metres; `None` where no part of it lies on that.
+    /// Of its vertices each second one is the middle of a straight part.
+    pub(crate) fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ExportError> {
+        let place = |vertex: &Vertex| {
+            let [x, y] = self.frame.position_of_fraction_m(vertex.at);
+            [x, y, vertex.z_m]
+        };
+        let line: Vec<[f64; 3]> = line.iter().map(place).collect();
+        let found = self.samples.largest_distance_m(&line);
+        found.map_err(|source| ExportError::Elevation(Box::new(source)))
     }
 
     /// The height of a node; NaN where there is none.

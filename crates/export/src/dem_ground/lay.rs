@@ -6,8 +6,8 @@
 //!   └──────┴──────┴──────┘      x  the middle of what lies in a cell: a vertex
 //! ```
 //!
-//! Along a straight line the bilinear surface of a cell is a parabola. With a vertex in its middle, the line is off the parabola by an eighth of
-//! its second difference at most, at a quarter and at three quarters of the way.
+//! Along a straight line the bilinear surface of a cell is a parabola, which a vertex in its middle follows nearly. How far the line is from the
+//! surface of the files' own samples is measured, since nodes need not be samples.
 
 use crate::{dem_ground::DemNodes, error::ExportError, piece::Vertex};
 
@@ -19,8 +19,8 @@ const SAME_PLACE_STEPS: f64 = 1e-3;
 pub(crate) struct DemLine {
     /// Two at least.
     pub(crate) vertices: Vec<Vertex>,
-    /// How far the line is from the surface, at most, metres.
-    pub(crate) tolerance_m: f64,
+    /// How far the line is from the surface of the files' own samples, at most, metres; `None` where nothing of it lies on that.
+    pub(crate) tolerance_m: Option<f64>,
     /// Whether its first vertex is that of the whole line, and its last the last.
     pub(crate) has_end: [bool; 2],
 }
@@ -42,11 +42,10 @@ pub(crate) fn lay(nodes: &mut DemNodes<'_>, line: &[Vertex]) -> Result<Vec<DemLi
             let is_end = index == ends;
             let middle_m = nodes.height_m(*middle)?;
             let end_m = nodes.height_m(*end)?;
-            if let (Some(from_m), Some(middle_m), Some(end_m)) = (before, middle_m, end_m) {
-                let bend_m = (from_m - 2.0 * middle_m + end_m).abs() / 8.0;
+            if let (Some(_), Some(middle_m), Some(end_m)) = (before, middle_m, end_m) {
                 let inner = Vertex { at: *middle, z_m: middle_m, is_source: false };
                 let is_source = is_end && to.is_source;
-                laid.go_on(inner, Vertex { at: *end, z_m: end_m, is_source }, bend_m);
+                laid.go_on(inner, Vertex { at: *end, z_m: end_m, is_source });
             } else {
                 let is_source = is_end && to.is_source;
                 laid.interrupt(end_m.map(|z_m| Vertex { at: *end, z_m, is_source }));
@@ -59,6 +58,9 @@ pub(crate) fn lay(nodes: &mut DemNodes<'_>, line: &[Vertex]) -> Result<Vec<DemLi
     laid.lines.retain(|line| line.vertices.len() >= 2);
     if let Some(line) = laid.lines.last_mut().filter(|_| reaches_end) {
         line.has_end[1] = true;
+    }
+    for line in &mut laid.lines {
+        line.tolerance_m = nodes.farthest_m(&line.vertices)?;
     }
     Ok(laid.lines)
 }
@@ -82,7 +84,7 @@ impl Laid {
         if let Some(z_m) = height_m.filter(|_| !self.is_open) {
             self.lines.push(DemLine {
                 vertices: vec![Vertex { z_m, ..from }],
-                tolerance_m: 0.0,
+                tolerance_m: None,
                 has_end: [is_first, false],
             });
         }
@@ -90,10 +92,9 @@ impl Laid {
         Ok(height_m)
     }
 
-    fn go_on(&mut self, middle: Vertex, end: Vertex, bend_m: f64) {
+    fn go_on(&mut self, middle: Vertex, end: Vertex) {
         if let Some(line) = self.lines.last_mut() {
             line.vertices.extend([middle, end]);
-            line.tolerance_m = line.tolerance_m.max(bend_m);
         }
     }
 
@@ -101,56 +102,36 @@ impl Laid {
     fn interrupt(&mut self, next: Option<Vertex>) {
         self.is_open = next.is_some();
         let line =
-            |vertex| DemLine { vertices: vec![vertex], tolerance_m: 0.0, has_end: [false; 2] };
+            |vertex| DemLine { vertices: vec![vertex], tolerance_m: None, has_end: [false; 2] };
         self.lines.extend(next.map(line));
     }
 }
 
 /// How far a line on a package's triangles is from the ground of the elevation files, at most, over the whole line, metres; `None` where no part of
 /// it lies on such ground.
-///
-/// On what lies in one cell and on one triangle, the difference is a parabola: it is largest at an end or at its apex.
 pub(crate) fn off_dem_m(
     nodes: &mut DemNodes<'_>,
     line: &[Vertex],
 ) -> Result<Option<f64>, ExportError> {
-    let mut most_m: Option<f64> = None;
-    let steps = nodes.steps();
+    let mut divided: Vec<Vertex> = line.first().copied().into_iter().collect();
     for [from, to] in line.array_windows::<2>() {
         let run = [to.at[0] - from.at[0], to.at[1] - from.at[1]];
         let axis = usize::from(run[1].abs() > run[0].abs());
-        let mut off_m = |at: [f64; 2]| -> Result<Option<f64>, ExportError> {
+        let on_line = |at: [f64; 2]| {
             let share = (at[axis] - from.at[axis]) / run[axis];
             let share = if share.is_finite() { share } else { 0.0 };
-            let height_m = nodes.height_m(at)?;
-            Ok(height_m.map(|height_m| height_m - from.z_m - share * (to.z_m - from.z_m)))
+            Vertex { at, z_m: from.z_m + share * (to.z_m - from.z_m), is_source: false }
         };
-        let mut before = off_m(from.at)?;
-        for [middle, end] in places_between(from.at, to.at, steps) {
-            let (middle_m, end_m) = (off_m(middle)?, off_m(end)?);
-            if let (Some(from_m), Some(middle_m), Some(end_m)) = (before, middle_m, end_m) {
-                let own_m = largest(from_m, middle_m, end_m);
-                most_m = Some(most_m.map_or(own_m, |most_m| most_m.max(own_m)));
-            }
-            before = end_m;
-        }
+        divided.extend(
+            places_between(from.at, to.at, nodes.steps()).into_flattened().into_iter().map(on_line),
+        );
     }
-    Ok(most_m)
-}
-
-/// The largest size of a parabola between two places, from its values there and in the middle.
-fn largest(from: f64, middle: f64, to: f64) -> f64 {
-    let square = 2.0 * (from - 2.0 * middle + to);
-    let slope = 4.0 * middle - 3.0 * from - to;
-    let apex = -slope / (2.0 * square);
-    let at_apex =
-        if apex > 0.0 && apex < 1.0 { from + apex * (slope + apex * square) } else { from };
-    [from, middle, to, at_apex].into_iter().fold(0.0, |most, value| most.max(value.abs()))
+    nodes.farthest_m(&divided)
 }
 
 /// What lies between two places, cell by cell: the middle and the end of each part. The last end is the second place. The places are the same in both
 /// directions.
-fn places_between(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+pub(crate) fn places_between(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let is_turned = from > to;
     let [low, high] = if is_turned { [to, from] } else { [from, to] };
     let mut places = vec![low];

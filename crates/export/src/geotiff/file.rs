@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use corniche_store::LackOfRoom;
 use flate2::Crc;
 use gdal::{
     Dataset, DatasetOptions, DriverManager, GdalOpenFlags, Metadata as _,
@@ -11,7 +12,7 @@ use gdal::{
 };
 
 use super::grid::{BLOCK, RasterSize};
-use crate::{error::ExportError, gdal_settings::GdalSettings};
+use crate::{error::ExportError, gdal_settings::GdalSettings, plain_text::plain_text};
 
 const DRIVER: &str = "GTiff";
 /// GDAL's settings while a file is written and read again: all that it says is in the file itself, and pixels that are points are taken for points.
@@ -133,7 +134,8 @@ impl<T: Pixel> RasterFile<T> {
         corniche_dem::quiet();
         corniche_dem::forget();
         let settings = GdalSettings::set(&SETTINGS);
-        let created = create::<T>(path, size, facts).map_err(|error| failed(path, error))?;
+        let created =
+            create::<T>(path, size, facts).map_err(|error| ExportError::write(path, error))?;
         let (dataset, crs) = created.ok_or(ExportError::NoDriver { driver: DRIVER })?;
         Ok(Self {
             path: path.to_path_buf(),
@@ -154,7 +156,7 @@ impl<T: Pixel> RasterFile<T> {
             let mut raster = self.dataset.rasterband(band + 1)?;
             raster.write_block(place.into(), &mut Buffer::new((BLOCK, BLOCK), block))
         };
-        write().map_err(|error| failed(&self.path, error))
+        write().map_err(|error| ExportError::write(&self.path, error))
     }
 
     /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
@@ -162,21 +164,19 @@ impl<T: Pixel> RasterFile<T> {
         let Self { path, dataset, crs, size, written, .. } = self;
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_dem::forget();
-        dataset.close().map_err(|error| failed(&path, error))?;
+        dataset.close().map_err(|error| ExportError::write(&path, error))?;
         if let Some(source) = corniche_dem::failure() {
-            return Err(ExportError::Write { path, source });
+            return Err(ExportError::write(&path, source));
         }
         let again = read_again::<T>(&path, size, &written, &crs);
         // A file that is cut off may not even be opened.
-        match again {
-            Ok(Some(is_same_crs)) => Ok(is_same_crs),
-            Ok(None) | Err(_) => Err(ExportError::RasterNotWhole { path }),
+        if let Ok(Some(is_same_crs)) = again {
+            Ok(is_same_crs)
+        } else {
+            let room = LackOfRoom::at(&path);
+            Err(ExportError::RasterNotWhole { path, room })
         }
     }
-}
-
-fn failed(path: &Path, error: GdalError) -> ExportError {
-    ExportError::Write { path: path.to_path_buf(), source: error.into() }
 }
 
 /// The file, and its CRS; `None` without the driver.
@@ -202,7 +202,7 @@ fn create<T: Pixel>(
     dataset.set_spatial_ref(&crs)?;
     dataset.set_geo_transform(&facts.crs_from_pixel)?;
     for (key, value) in &facts.metadata {
-        dataset.set_metadata_item(key, value, "")?;
+        dataset.set_metadata_item(key, &plain_text(value), "")?;
     }
     for (number, description) in (1..).zip(&facts.descriptions) {
         let mut band = dataset.rasterband(number)?;

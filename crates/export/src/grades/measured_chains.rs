@@ -1,23 +1,28 @@
 //! The chains of a network with heights of the elevation files, and smooth lines along them.
 
 use std::{
-    collections::{HashMap, HashSet},
+    collections::{HashMap, HashSet, VecDeque},
     ops::Range,
-    sync::Arc,
 };
 
 use corniche_geom::{IndexLists, LatticePoint};
-use corniche_network::{Breaks, ChainNumber, Chains, Link, Network, NodeNumber};
+use corniche_network::{
+    Breaks, Chain, ChainLengths, ChainNumber, Chains, Link, Network, NodeNumber,
+};
 use corniche_roads::Structure;
-use corniche_spans::{Decks, Spans, crossings};
+use corniche_spans::Decks;
 use corniche_work::{Observer, Stage};
 
 use super::{
     junctions::{Leg, Legs, node_heights},
     smooth_line::{SmoothLine, Station, stations},
     smoothing::Smoothing,
+    span_decks::SpanDecks,
 };
-use crate::{dem_ground::DemNodes, error::ExportError, measures::between, places::Places};
+use crate::{
+    dem_ground::DemNodes, elevation::Elevation, error::ExportError, measures::between,
+    places::Places, span_facts::SpanFacts,
+};
 
 /// Chains are told of after so many.
 const TOLD_CHAINS: usize = 1024;
@@ -28,10 +33,8 @@ pub(crate) struct MeasuredChains<'a> {
     places: &'a Places<'a>,
     chains: Chains,
     smoothing: Smoothing,
-    lengths_m: Vec<f64>,
-    /// Where each link begins, along its chain.
-    link_starts_m: Vec<f64>,
-    /// Where the stations of each chain begin, and the end of all. Bridges and tunnels have none.
+    lengths: ChainLengths,
+    /// Where the stations of each chain begin, and the end of all. Bridges and tunnels have none, and chains that have no part in what reaches the data.
     starts: Vec<usize>,
     /// The ground at all stations, NaN where there is none.
     grounds_m: Vec<f32>,
@@ -42,7 +45,9 @@ pub(crate) struct MeasuredChains<'a> {
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
     /// Bridges and tunnels, whose supports are as high as the ground there.
-    decks: Decks,
+    decks: SpanDecks,
+    /// The nodes of chains that reach the data.
+    is_reached: Vec<bool>,
     /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
     ring_starts_m: HashMap<usize, f64>,
 }
@@ -80,8 +85,26 @@ impl Along {
 }
 
 impl<'a> MeasuredChains<'a> {
-    /// Reads the ground along all chains, and finds one height for each junction.
+    /// Reads the ground along all chains that reach the package's data, beyond its bounds, too, and finds one height for each of their junctions.
     pub(crate) fn measure(
+        network: &'a Network,
+        places: &'a Places<'a>,
+        nodes: &mut DemNodes<'_>,
+        smoothing: Smoothing,
+        observer: &dyn Observer,
+    ) -> Result<Self, ExportError> {
+        // What lies beyond the bounds has a part in what lies within.
+        let Elevation { dem, plan } = nodes.elevation();
+        if plan.clip.is_none() {
+            return Self::measure_on(network, places, nodes, smoothing, observer);
+        }
+        let whole = plan.of_whole_data();
+        let frame = &places.manifest().frame;
+        let mut nodes = DemNodes::new(Elevation { dem, plan: &whole }, frame);
+        Self::measure_on(network, places, &mut nodes, smoothing, observer)
+    }
+
+    fn measure_on(
         network: &'a Network,
         places: &'a Places<'a>,
         nodes: &mut DemNodes<'_>,
@@ -90,25 +113,17 @@ impl<'a> MeasuredChains<'a> {
     ) -> Result<Self, ExportError> {
         let chains = Chains::of(network, Breaks::JunctionsAndStructures);
         let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
-        let spans = Spans::find(network, &chains, &distance_m);
-        let crossings = crossings(network, &chains, &distance_m).map_err(ExportError::Spans)?;
-        let wanted: Vec<[f64; 2]> = Decks::places(&spans, &crossings).collect();
-        let mut by_block: Vec<usize> = (0..wanted.len()).collect();
-        by_block.sort_by_key(|&place| nodes.block_of(wanted[place]));
-        let mut grounds_m = vec![None; wanted.len()];
-        for some in by_block.chunks(TOLD_CHAINS) {
-            observer.check()?;
-            for &place in some {
-                grounds_m[place] = nodes.height_m(wanted[place])?;
-            }
-        }
-        let decks = Decks::solve(Arc::new(spans), &crossings, &grounds_m);
+        let lengths = chains.lengths(network, &distance_m);
+        let manifest = places.manifest();
+        let data = manifest.frame.lattice_bounds(manifest.data_nodes());
+        let measured = (network, &chains, &lengths);
+        let decks = SpanDecks::solve(measured, (places, &data), nodes, observer)?;
         let mut measured = Self {
             network,
             places,
             smoothing,
-            lengths_m: Vec::with_capacity(chains.len()),
-            link_starts_m: Vec::with_capacity(chains.link_count()),
+            lengths,
+            is_reached: vec![false; network.node_count()],
             starts: vec![0],
             grounds_m: Vec::new(),
             above_m: Vec::new(),
@@ -118,15 +133,15 @@ impl<'a> MeasuredChains<'a> {
             decks,
             chains,
         };
+        let is_needed = measured.find_needed();
         let mut order = Vec::with_capacity(measured.chains.len());
         for number in measured.chains.numbers() {
-            let along = measured.along(number);
-            let mut length_m = 0.0;
-            for &link in measured.chains.get(number).links {
-                measured.link_starts_m.push(length_m);
-                length_m += measured.link_m(link);
+            if !is_needed[number.0] {
+                measured.starts.push(measured.starts[number.0]);
+                continue;
             }
-            measured.lengths_m.push(length_m);
+            let along = measured.along(number);
+            let length_m = measured.lengths.chains_m[number.0];
             if measured.is_ring(number) {
                 let node = measured.chains.get(number).ends[0];
                 measured.ring_nodes.insert(network.index_of(node));
@@ -152,7 +167,7 @@ impl<'a> MeasuredChains<'a> {
         }
         measured.nodes_m = node_heights(&measured, observer)?;
         // Lines are held where bridges and tunnels begin: else both sides of a short bridge would be smoothed apart, and the bridge be steep.
-        for (node, height_m) in measured.decks.supports() {
+        for &(node, height_m) in measured.decks.supports() {
             measured.nodes_m[network.index_of(node)] = height_m;
         }
         measured.above_m = vec![f32::NAN; count];
@@ -164,6 +179,45 @@ impl<'a> MeasuredChains<'a> {
         }
         observer.end(Stage::ExportChains);
         Ok(measured)
+    }
+
+    /// Whether a chain has a part in what reaches the data: its edge does, or lines are smoothed into it from a node of one that does.
+    fn find_needed(&mut self) -> Vec<bool> {
+        let mut is_needed = vec![false; self.chains.len()];
+        let mut along_m = vec![f64::INFINITY; self.network.node_count()];
+        let mut waiting = VecDeque::new();
+        let edges = Chains::of(self.network, Breaks::Junctions);
+        for edge in edges.numbers().map(|number| edges.get(number)) {
+            if !self.reaches(&edge) {
+                continue;
+            }
+            for &link in edge.links {
+                let (number, _) = self.chains.of_link(link);
+                if std::mem::replace(&mut is_needed[number.0], true) {
+                    continue;
+                }
+                for node in self.chains.get(number).ends.map(|node| self.network.index_of(node)) {
+                    self.is_reached[node] = true;
+                    along_m[node] = 0.0;
+                    waiting.push_back(node);
+                }
+            }
+        }
+        let ends_at = self.chains.ends_at(self.network, |_| true);
+        while let Some(node) = waiting.pop_front() {
+            for &end in ends_at.of(node) {
+                let number = end as usize / 2;
+                is_needed[number] = true;
+                let other = self.chains.get(ChainNumber(number)).ends[1 - end as usize % 2];
+                let other = self.network.index_of(other);
+                let other_m = along_m[node] + self.lengths.chains_m[number];
+                if other_m < along_m[other] && other_m <= self.smoothing.length_m {
+                    along_m[other] = other_m;
+                    waiting.push_back(other);
+                }
+            }
+        }
+        is_needed
     }
 
     fn read_ground(
@@ -227,7 +281,7 @@ impl<'a> MeasuredChains<'a> {
         let grounds_m: Vec<f64> =
             self.grounds_m[own.clone()].iter().copied().map(f64::from).collect();
         let last = grounds_m.len() - 1;
-        let spacing_m = self.lengths_m[number.0] / last as f64;
+        let spacing_m = self.lengths.chains_m[number.0] / last as f64;
         if self.is_ring(number) && grounds_m.iter().all(|height_m| height_m.is_finite()) {
             let smooth_m = self.smoothing.solve_ring(spacing_m, &grounds_m[..last]);
             for (k, &ground_m) in grounds_m.iter().enumerate() {
@@ -292,7 +346,7 @@ impl<'a> MeasuredChains<'a> {
             return [self.decks.height_m(number, at_m).unwrap_or(f64::NAN); 2];
         }
         let last = own.len().max(2) - 1;
-        let (length_m, start_m) = (self.lengths_m[number.0], self.start_m(number));
+        let (length_m, start_m) = (self.lengths.chains_m[number.0], self.start_m(number));
         let at_m = if at_m < start_m { at_m - start_m + length_m } else { at_m - start_m };
         let place = (at_m / length_m * last as f64).clamp(0.0, last as f64);
         let station = (place.floor() as usize).min(last - 1);
@@ -337,7 +391,7 @@ impl<'a> MeasuredChains<'a> {
         let along = Along { distances_m: self.distances(points.iter().copied()), points };
         let own_m = along.length_m();
         // Its own points, and the stations of the chain between them.
-        let from_m = self.link_starts_m[self.chains.place_of(number, index)];
+        let [from_m, _] = self.lengths.links_m[self.chains.place_of(number, index)];
         let stations = self.distances_within(number, [from_m, from_m + own_m]);
         let mut distances_m = along.distances_m.clone();
         let inner = stations.len() - 1;
@@ -371,14 +425,25 @@ impl<'a> MeasuredChains<'a> {
         own_m
     }
 
-    /// The smooth line of some links in a row, bridges and tunnels too: distances from their beginning, and heights; `None` where one is not known.
-    pub(crate) fn profile(&self, links: &[Link]) -> Option<Vec<[f64; 2]>> {
+    /// The smooth line of some links in a row: distances from their beginning, and heights; `None` where one is not known. Of bridges and tunnels, by
+    /// the numbers of their links, the lines are given, since the ground can be in the way of their decks; of others the decks are taken.
+    pub(crate) fn profile(
+        &self,
+        links: &[Link],
+        given: &HashMap<usize, Vec<[f64; 2]>>,
+    ) -> Option<Vec<[f64; 2]>> {
         let mut profile: Vec<[f64; 2]> = Vec::new();
         let mut begin_m = 0.0;
-        for &link in links {
+        for (place, &link) in links.iter().enumerate() {
             let (number, index) = self.chains.of_link(link);
-            let from_m = self.link_starts_m[self.chains.place_of(number, index)];
+            let [from_m, _] = self.lengths.links_m[self.chains.place_of(number, index)];
             let own_m = self.link_m(link);
+            if let Some(given) = given.get(&place) {
+                let own = given.iter().map(|&[at_m, height_m]| [begin_m + at_m, height_m]);
+                profile.extend(own.skip(usize::from(!profile.is_empty())));
+                begin_m += own_m;
+                continue;
+            }
             let is_turned = self.chains.get(number).links[index].is_against != link.is_against;
             let mut own: Vec<[f64; 2]> = self
                 .distances_within(number, [from_m, from_m + own_m])
@@ -410,7 +475,8 @@ impl<'a> MeasuredChains<'a> {
             return [from_m].into_iter().chain(bends_m).chain([to_m]).collect();
         }
         let last = self.stations_of(number).len().max(2) - 1;
-        let (spacing_m, start_m) = (self.lengths_m[number.0] / last as f64, self.start_m(number));
+        let (spacing_m, start_m) =
+            (self.lengths.chains_m[number.0] / last as f64, self.start_m(number));
         let first = ((from_m - start_m) / spacing_m).floor() as i64 + 1;
         let between = (first..).map(|k| start_m + k as f64 * spacing_m);
         let between = between.take_while(|&at_m| at_m < to_m);
@@ -424,7 +490,18 @@ impl<'a> MeasuredChains<'a> {
 
     /// Bridges and tunnels, whose supports are as high as the ground there.
     pub(crate) fn decks(&self) -> &Decks {
-        &self.decks
+        self.decks.decks()
+    }
+
+    /// What is told of bridges and tunnels.
+    pub(crate) fn span_facts(&self) -> &SpanFacts {
+        self.decks.facts()
+    }
+
+    /// Whether an edge of the network reaches the package's data.
+    pub(crate) fn reaches(&self, chain: &Chain<'_>) -> bool {
+        let manifest = self.places.manifest();
+        self.network.reaches(chain, &manifest.frame.lattice_bounds(manifest.data_nodes()))
     }
 
     /// The smooth line of a link, in the direction of its way.
@@ -453,7 +530,7 @@ impl Legs for MeasuredChains<'_> {
 
     fn is_alone(&self, node: usize) -> bool {
         let degree = self.network.degree_at(node);
-        degree < 2 || (degree == 2 && self.ring_nodes.contains(&node))
+        !self.is_reached[node] || degree < 2 || (degree == 2 && self.ring_nodes.contains(&node))
     }
 
     fn smoothing(&self) -> Smoothing {
@@ -462,7 +539,7 @@ impl Legs for MeasuredChains<'_> {
 
     fn leg(&self, Leg { chain, is_last }: Leg) -> (f64, Box<dyn Iterator<Item = f32> + '_>) {
         let grounds_m = &self.grounds_m[self.stations_of(ChainNumber(chain))];
-        let spacing_m = self.lengths_m[chain] / (grounds_m.len().max(2) - 1) as f64;
+        let spacing_m = self.lengths.chains_m[chain] / (grounds_m.len().max(2) - 1) as f64;
         if is_last {
             (spacing_m, Box::new(grounds_m.iter().rev().copied()))
         } else {

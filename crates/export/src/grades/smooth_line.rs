@@ -34,8 +34,6 @@ pub(crate) struct SmoothGrades {
     pub(crate) descent_m: f64,
     /// Steepest grade over [`GRADE_LENGTH_M`] or more, rise over run without sign; `None` where no line is as long.
     pub(crate) steepest: Option<f64>,
-    /// The largest distance of the smooth line from the ground, metres.
-    pub(crate) most_off_m: f64,
 }
 
 impl SmoothLine {
@@ -65,6 +63,39 @@ impl SmoothLine {
             ground_m,
         };
         Self { stations: heights_m.iter().zip(smooth_m).enumerate().map(station).collect() }
+    }
+
+    /// A line that is as it is: a deck, which has nothing to be smoothed. Its stations are nowhere in plan.
+    pub(crate) fn itself(profile: &[[f64; 2]]) -> Self {
+        let station = |&[along_m, height_m]: &[f64; 2]| Station {
+            at: [f64::NAN; 2],
+            along_m,
+            height_m,
+            ground_m: height_m,
+        };
+        Self { stations: profile.iter().map(station).collect() }
+    }
+
+    /// How far it is from a line with the same distances at most, metres, between the stations and vertices of both, too.
+    pub(crate) fn most_off_m(&self, profile: &[[f64; 2]]) -> f64 {
+        let (Some(first), Some(last)) = (self.stations.first(), self.stations.last()) else {
+            return 0.0;
+        };
+        // Both are straight between stations and vertices: they are farthest apart at one of them.
+        let is_along =
+            |[along_m, _]: &&[f64; 2]| *along_m >= first.along_m && *along_m <= last.along_m;
+        let at_vertices = profile.iter().filter(is_along);
+        let at_vertices = at_vertices.map(|&[along_m, height_m]| self.height_m(along_m) - height_m);
+        let mut after = 1;
+        let at_stations = self.stations.iter().filter_map(|station| {
+            while profile.get(after)?[0] < station.along_m {
+                after += 1;
+            }
+            let [from, to] = [profile[after - 1], profile[after]];
+            (from[0] <= station.along_m)
+                .then(|| station.height_m - between(from, to, station.along_m))
+        });
+        at_vertices.chain(at_stations).fold(0.0, |most_m, off_m| most_m.max(off_m.abs()))
     }
 
     /// What lies between two distances; empty where it is nothing.
@@ -135,10 +166,6 @@ impl SmoothGrades {
                 let rise_m = to.height_m - from.height_m;
                 all.ascent_m += rise_m.max(0.0);
                 all.descent_m += (-rise_m).max(0.0);
-            }
-            for station in &line.stations {
-                let off_m = (station.height_m - station.ground_m).abs();
-                all.most_off_m = all.most_off_m.max(off_m);
             }
             let grades = [all.steepest, steepest(&line.profile(), GRADE_LENGTH_M)];
             all.steepest = grades.into_iter().flatten().reduce(f64::max);

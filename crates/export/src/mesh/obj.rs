@@ -14,7 +14,7 @@ use super::{
     weld::Welding,
     writer::{About, MeshWriter},
 };
-use crate::surfaces::SurfaceKind;
+use crate::{surfaces::SurfaceKind, vector::text_in_line};
 
 pub(crate) struct ObjWriter {
     up: UpAxis,
@@ -91,7 +91,7 @@ impl MeshWriter for ObjWriter {
     fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
         let mut into = into;
         for (name, text) in &about.facts {
-            writeln!(into, "# {name}: {}", text.replace(['\n', '\r'], " "))?;
+            writeln!(into, "# {name}: {}", text_in_line(text))?;
         }
         if let Some(file) = &self.material_file {
             writeln!(into, "mtllib {file}")?;

@@ -8,8 +8,10 @@ use crate::{bounds::DegreeBounds, feature_request::Coordinates};
 pub struct QuantizedMeshRequest {
     /// The grid of tiles.
     pub tiling: Tiling,
-    /// The finest level; `None` is the first one whose error is not above the package's.
+    /// The finest level; `None` is the first one whose error is not above the package's, or whose cells are the package's.
     pub max_level: Option<u8>,
+    /// The most files that may be written.
+    pub max_files: u64,
     /// Only tiles that meet these degrees, and those above them; `None` takes all.
     pub bounds: Option<DegreeBounds>,
     /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.

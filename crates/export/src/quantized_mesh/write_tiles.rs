@@ -1,13 +1,14 @@
 //! A package is written as quantized-mesh terrain tiles into an empty folder.
 
 use std::{
+    borrow::Cow,
     collections::BTreeSet,
     fs,
     io::{self, Write as _},
     path::Path,
 };
 
-use corniche_geom::{Bounds, TILE_CELLS, wgs84::radii_m};
+use corniche_geom::{TILE_CELLS, wgs84::radii_m};
 use corniche_tileset::{FilePackage, LevelRecord, Manifest};
 use corniche_tin::TriangulateError;
 use corniche_work::{Observer, Stage, workers::make_all};
@@ -22,49 +23,47 @@ use super::{
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
     node_heights::NodeHeights,
+    planned_levels::QuantizedMeshPlan,
     quantized_mesh_request::QuantizedMeshRequest,
     raster::{Looked, TileRaster},
     summary::{QuantizedMeshLevel, QuantizedMeshSummary},
     surfaces::{KEPT_BYTES, Surfaces},
-    tiling::{FINEST, Nodes, TerrainTile, Tiling},
+    tiling::{Nodes, TerrainTile, Tiling},
 };
-use crate::{error::ExportError, feature_request::Coordinates, places::Places, read};
+use crate::{error::ExportError, feature_request::Coordinates, places::Places};
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.
 const CELLS: [i64; 2] = [16, 64];
 /// The package's cells along one of a tile, at most, as long as tiles have few enough cells.
 const PACKAGE_CELLS: f64 = 2.0;
-/// The most tiles of the finest level. Some hundred bytes are kept for each.
-const MOST_TILES: i64 = 4_000_000;
 /// From how many of the package's tiles in a row on a tile is made without others beside it.
 const WIDE_TILES: i64 = 4;
 /// Parts of a cell on borders and where the ground ends, the fewest and the most.
 const PARTS: [f64; 2] = [4.0, 32.0];
 
-/// Writes a package as terrain tiles into an empty folder. After an error what is in it is of no use.
+/// Writes a package as terrain tiles into an empty folder, as planned. After an error what is in it is of no use.
 ///
 /// # Errors
 /// When heights cannot be told above the ellipsoid, the package has no ground or is damaged, or something cannot be written.
 pub fn export_quantized_mesh(
     package: &FilePackage,
-    request: &QuantizedMeshRequest,
+    (request, plan): (&QuantizedMeshRequest, QuantizedMeshPlan),
     folder: &Path,
     observer: &dyn Observer,
 ) -> Result<QuantizedMeshSummary, ExportError> {
     let manifest = package.manifest();
-    within_grid(manifest, request.tiling)?;
-    let finest = finest_level(manifest, request);
+    let (finest, candidates) = (plan.finest(), plan.candidates);
     let heights = heights_in_words(manifest, request.coordinates)?;
-    let candidates = candidates(package, request, finest)?;
     let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
     let stores = (&surfaces, &node_heights);
-    let job = Job { package, stores, request, folder, observer };
+    let job = Job { package, stores, request, finest };
+    let writer = Writer { job: &job, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
     // Which tiles have ground is told by those of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
-        let made = job.make(&candidates, Emptiness::IsLeftOut, &[])?;
+        let made = writer.make(&candidates, Emptiness::IsLeftOut, &[])?;
         let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
         (made, tiles)
     };
@@ -77,7 +76,7 @@ pub fn export_quantized_mesh(
     let above = in_curve_order(&above);
     let done = candidates.len() as u64;
     observer.reached(Stage::ExportTiles, done, done + above.len() as u64);
-    let coarser = job.make(&above, Emptiness::IsWritten, &available)?;
+    let coarser = writer.make(&above, Emptiness::IsWritten, &available)?;
     observer.end(Stage::ExportTiles);
     let mut levels: Vec<QuantizedMeshLevel> =
         (0..=finest).map(|level| job.empty_level(level)).collect();
@@ -101,29 +100,6 @@ pub fn export_quantized_mesh(
     Ok(summary)
 }
 
-/// Fails where the data reach beyond the grid's latitudes: a part would be left out.
-fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), ExportError> {
-    let [south, north] = [0, 1].map(|row| tiling.lat_deg(0, row));
-    let data = manifest.wgs84_bounds;
-    let beyond = [data.min_y, data.max_y].into_iter().find(|lat| !(south..=north).contains(lat));
-    match beyond {
-        Some(lat) => Err(ExportError::BeyondGrid { lat, north }),
-        None => Ok(()),
-    }
-}
-
-/// The level that is asked for. Otherwise the first one whose error is at most the package's, or whose coarsest raster is finer than the package: where the
-/// ground is flat, no level has an error as small.
-fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
-    let of_package = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
-    let is_fine_enough = |level: &u8| {
-        let [side_m, cell_m] = side_and_cell_m(manifest, request.tiling, *level);
-        request.tiling.level_error_m(*level) <= of_package || side_m <= cell_m * CELLS[0] as f64
-    };
-    let by_error = || (0..=FINEST).find(is_fine_enough).unwrap_or(FINEST);
-    request.max_level.unwrap_or_else(by_error).min(FINEST)
-}
-
 fn heights_in_words(manifest: &Manifest, coordinates: Coordinates) -> Result<String, ExportError> {
     let places = Places::new(manifest, coordinates)?;
     let datum = &manifest.vertical.datum;
@@ -133,49 +109,11 @@ fn heights_in_words(manifest: &Manifest, coordinates: Coordinates) -> Result<Str
     })
 }
 
-/// Tiles that may have ground: those around the package's finest ones.
-fn candidates(
-    package: &FilePackage,
-    request: &QuantizedMeshRequest,
-    level: u8,
-) -> Result<BTreeSet<TerrainTile>, ExportError> {
-    let manifest = package.manifest();
-    let tiling = request.tiling;
-    let is_wanted = |x: i64, y: i64| {
-        let corner =
-            |beside| [tiling.lon_deg(level, x + beside), tiling.lat_deg(level, y + beside)];
-        request.bounds.is_none_or(|bounds| bounds.overlaps([0, 1].map(corner)))
-    };
-    let mut found = BTreeSet::new();
-    let mut count = 0;
-    let package_level = manifest.frame.max_level();
-    let ids = read::tiles(package, package_level, request.bounds.as_ref())?;
-    for id in ids {
-        let mut around = Bounds::EMPTY;
-        for place in read::places_deg(manifest, id) {
-            around.include(place);
-        }
-        // Sides bend a little between these places.
-        let margin = 0.01 * (around.max_x - around.min_x).max(around.max_y - around.min_y);
-        let columns =
-            [around.min_x - margin, around.max_x + margin].map(|lon| tiling.column_of(level, lon));
-        let rows =
-            [around.min_y - margin, around.max_y + margin].map(|lat| tiling.row_of(level, lat));
-        let last = columns[1].min(columns[0] + tiling.columns(level) - 1);
-        count += (last - columns[0] + 1) * (rows[1] - rows[0] + 1);
-        if count > MOST_TILES {
-            return Err(ExportError::TooManyTiles { level, most: MOST_TILES });
-        }
-        for x in (columns[0]..=last).map(|x| x.rem_euclid(tiling.columns(level))) {
-            let wanted = (rows[0]..=rows[1]).filter(|&y| is_wanted(x, y));
-            found.extend(wanted.map(|y| TerrainTile { z: level, x: x as u32, y: y as u32 }));
-        }
-    }
-    Ok(found)
-}
-
 /// The tiles, all above them, and the roots, which a viewer asks for in any case.
-fn with_ancestors(tiling: Tiling, tiles: &BTreeSet<TerrainTile>) -> BTreeSet<TerrainTile> {
+pub(crate) fn with_ancestors(
+    tiling: Tiling,
+    tiles: &BTreeSet<TerrainTile>,
+) -> BTreeSet<TerrainTile> {
     let mut all: BTreeSet<TerrainTile> = tiling.roots().collect();
     for tile in tiles {
         let mut next = Some(*tile);
@@ -214,53 +152,127 @@ struct Made {
     deviation: Deviation,
 }
 
+/// A tile as it is written.
+struct Encoded {
+    triangles: u64,
+    deviation: Deviation,
+    bytes: Vec<u8>,
+}
+
 struct Job<'a> {
     package: &'a FilePackage,
     stores: (&'a Surfaces, &'a NodeHeights),
     request: &'a QuantizedMeshRequest,
+    /// The finest level.
+    finest: u8,
+}
+
+struct Writer<'a> {
+    job: &'a Job<'a>,
     folder: &'a Path,
     observer: &'a dyn Observer,
 }
 
-impl<'a> Job<'a> {
+impl Writer<'_> {
     fn make(
         &self,
         tiles: &[TerrainTile],
         emptiness: Emptiness,
         available: &[Vec<Block>],
     ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
-        let (package, stores) = (self.package, self.stores);
-        let coordinates = self.request.coordinates;
-        let wide = tiles.partition_point(|tile| !self.is_wide(tile.z));
+        let (job, manifest) = (self.job, self.job.package.manifest());
+        let wide = tiles.partition_point(|tile| !is_wide(manifest, job.request.tiling, tile.z));
         let mut made = Vec::with_capacity(tiles.len());
-        for (part, threads) in [(&tiles[..wide], self.request.threads), (&tiles[wide..], 1)] {
+        for (part, threads) in [(&tiles[..wide], job.request.threads), (&tiles[wide..], 1)] {
             made.extend(make_all(
                 (self.observer, Stage::ExportTiles),
                 threads,
                 part,
-                || Ok(Ground::new(package, stores, Places::new(package.manifest(), coordinates)?)),
+                || job.ground(),
                 |ground, tile| self.tile(*tile, ground, emptiness, available),
             )?);
         }
         Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
     }
 
-    /// Whether a level's tiles lie on so many of the package's that one is made after the other, to save memory.
-    fn is_wide(&self, level: u8) -> bool {
-        let manifest = self.package.manifest();
-        let [side_m, cell_m] = side_and_cell_m(manifest, self.request.tiling, level);
-        side_m > cell_m * (TILE_CELLS * WIDE_TILES) as f64
+    fn tile(
+        &self,
+        tile: TerrainTile,
+        ground: &Ground<'_>,
+        emptiness: Emptiness,
+        available: &[Vec<Block>],
+    ) -> Result<Option<Made>, ExportError> {
+        let encoded = self.job.tile(tile, ground, emptiness, available)?;
+        let Some(Encoded { triangles, deviation, bytes }) = encoded else { return Ok(None) };
+        let bytes = self.write(tile, &bytes).map_err(ExportError::WriteTiles)?;
+        Ok(Some(Made { triangles, bytes, deviation }))
+    }
+
+    fn write(&self, TerrainTile { z, x, y }: TerrainTile, bytes: &[u8]) -> io::Result<u64> {
+        let column = self.folder.join(z.to_string()).join(x.to_string());
+        fs::create_dir_all(&column)?;
+        let path = column.join(format!("{y}.terrain"));
+        let bytes = packed(self.job.request, bytes)?;
+        fs::write(path, &bytes)?;
+        Ok(bytes.len() as u64)
+    }
+}
+
+/// A file's bytes, compressed where that is asked for.
+fn packed<'a>(request: &QuantizedMeshRequest, bytes: &'a [u8]) -> io::Result<Cow<'a, [u8]>> {
+    if !request.gzip {
+        return Ok(bytes.into());
+    }
+    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+    packed.write_all(bytes)?;
+    Ok(packed.finish()?.into())
+}
+
+/// The mean size of the files of some tiles of the finest level with ground, which are made for it; `None` where none of them has any.
+pub(crate) fn mean_bytes(
+    package: &FilePackage,
+    (request, finest): (&QuantizedMeshRequest, u8),
+    tiles: &[TerrainTile],
+) -> Result<Option<f64>, ExportError> {
+    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
+    let job = Job { package, stores: (&surfaces, &node_heights), request, finest };
+    let ground = job.ground()?;
+    let (mut files, mut bytes) = (0_u32, 0.0);
+    for tile in tiles {
+        if let Some(encoded) = job.tile(*tile, &ground, Emptiness::IsLeftOut, &[])? {
+            files += 1;
+            bytes += packed(request, &encoded.bytes).map_err(ExportError::WriteTiles)?.len() as f64;
+        }
+    }
+    Ok((files > 0).then(|| bytes / f64::from(files)))
+}
+
+impl<'a> Job<'a> {
+    fn ground(&self) -> Result<Ground<'a>, ExportError> {
+        let places = Places::new(self.package.manifest(), self.request.coordinates)?;
+        Ok(Ground::new(self.package, self.stores, places))
+    }
+
+    /// The error to which a level is meshed: that which a viewer assumes. The finest level has all that the package has where its raster is as fine as
+    /// that: nothing finer comes after it.
+    fn error_m(&self, level: u8) -> f64 {
+        let (manifest, tiling) = (self.package.manifest(), self.request.tiling);
+        let assumed_m = tiling.level_error_m(level);
+        let of_package_m = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
+        let [side_m, cell_m] = side_and_cell_m(manifest, tiling, level);
+        let has_all = level == self.finest && has_cells_of(side_m, cell_m);
+        if has_all && of_package_m > 0.0 { assumed_m.min(of_package_m) } else { assumed_m }
     }
 
     fn tile(
         &self,
         tile: TerrainTile,
-        ground: &Ground<'a>,
+        ground: &Ground<'_>,
         emptiness: Emptiness,
         available: &[Vec<Block>],
-    ) -> Result<Option<Made>, ExportError> {
+    ) -> Result<Option<Encoded>, ExportError> {
         let tiling = self.request.tiling;
-        let error_m = tiling.level_error_m(tile.z);
+        let error_m = self.error_m(tile.z);
         let nodes = nodes(self.package.manifest(), tiling, tile.z);
         let raster = TileRaster::sample(nodes, tile, ground)?;
         let level = self.sampled_level(error_m);
@@ -292,23 +304,7 @@ impl<'a> Job<'a> {
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available, tile);
         let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
-        let bytes = self.write(tile, &bytes).map_err(ExportError::WriteTiles)?;
-        Ok(Some(Made { triangles: mesh.triangles.len() as u64, bytes, deviation }))
-    }
-
-    fn write(&self, TerrainTile { z, x, y }: TerrainTile, bytes: &[u8]) -> io::Result<u64> {
-        let column = self.folder.join(z.to_string()).join(x.to_string());
-        fs::create_dir_all(&column)?;
-        let path = column.join(format!("{y}.terrain"));
-        if !self.request.gzip {
-            fs::write(path, bytes)?;
-            return Ok(bytes.len() as u64);
-        }
-        let mut packed = GzEncoder::new(Vec::new(), Compression::default());
-        packed.write_all(bytes)?;
-        let packed = packed.finish()?;
-        fs::write(path, &packed)?;
-        Ok(packed.len() as u64)
+        Ok(Some(Encoded { triangles: mesh.triangles.len() as u64, deviation, bytes }))
     }
 
     /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.
@@ -361,8 +357,19 @@ fn follow(
     }
 }
 
+/// Whether a level's tiles lie on so many of the package's that one is made after the other, to save memory.
+pub(crate) fn is_wide(manifest: &Manifest, tiling: Tiling, level: u8) -> bool {
+    let [side_m, cell_m] = side_and_cell_m(manifest, tiling, level);
+    side_m > cell_m * (TILE_CELLS * WIDE_TILES) as f64
+}
+
+/// Whether the finest raster of tiles with such a side has cells no longer than the package's.
+pub(crate) fn has_cells_of(side_m: f64, cell_m: f64) -> bool {
+    side_m <= cell_m * CELLS[1] as f64
+}
+
 /// The length of a side of a level's tiles and that of the package's cells, in the middle of the data.
-fn side_and_cell_m(manifest: &Manifest, tiling: Tiling, level: u8) -> [f64; 2] {
+pub(crate) fn side_and_cell_m(manifest: &Manifest, tiling: Tiling, level: u8) -> [f64; 2] {
     let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
     let [parallel_m, meridian_m] = radii_m(lat);
     let row = tiling.row_of(level, lat);

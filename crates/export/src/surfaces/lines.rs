@@ -3,7 +3,7 @@
 use std::{collections::HashMap, sync::Arc};
 
 use corniche_geom::{LatticePoint, Polyline, TileId, Work};
-use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, MetNodes, RoadAttributes, Structure};
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
 use corniche_work::Recent;
@@ -257,6 +257,7 @@ fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
             fixed,
             node_ids: Vec::new(),
             same_places: Vec::new(),
+            met: MetNodes::default(),
         };
         line.stretch.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
     }

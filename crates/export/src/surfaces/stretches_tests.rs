@@ -27,7 +27,12 @@ fn piece(vertices: Vec<Vertex>) -> Piece {
         attributes: RoadAttributes::default(),
         vertices,
         goes_on: [false, true],
-        heights: PieceHeights { tolerance_m: 0.0, ground_m: None, on_deck: false },
+        heights: PieceHeights {
+            tolerance_m: Some(0.0),
+            ground_m: None,
+            on_deck: false,
+            has_deck: false,
+        },
     }
 }
 

@@ -15,6 +15,7 @@ use gdal::{
 use crate::{
     error::ExportError,
     gdal_settings::GdalSettings,
+    plain_text::{plain_text, without_nul},
     vector::{
         cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
@@ -70,9 +71,11 @@ impl VectorFile {
         corniche_dem::quiet();
         corniche_dem::forget();
         let settings = GdalSettings::set(&SETTINGS);
+        let layer = layer.plain();
         let no_driver = |_| ExportError::NoDriver { driver: format.driver() };
         let driver = DriverManager::get_driver_by_name(format.driver()).map_err(no_driver)?;
-        let dataset = create(path, format, &layer, &driver).map_err(|error| failed(path, error))?;
+        let dataset = create(path, format, &layer, &driver)
+            .map_err(|error| ExportError::write(path, error))?;
         Ok(Self {
             path: path.to_path_buf(),
             format,
@@ -119,7 +122,7 @@ impl VectorFile {
             }),
             _ => self.dataset.layer(0).and_then(|layer| write_all(&layer, of, &records)),
         };
-        written.map_err(|error| failed(&self.path, error))
+        written.map_err(|error| ExportError::write(&self.path, error))
     }
 
     /// Ends the file and reads it again: GDAL does not report everything that fails when a file is closed.
@@ -135,28 +138,33 @@ impl VectorFile {
                 None => Ok(()),
             };
             let styled = told.and_then(|()| geopackage::add_style(&dataset, layer.name));
-            styled.map_err(|error| failed(&path, error))?;
+            styled.map_err(|error| ExportError::write(&path, error))?;
         }
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_dem::forget();
-        dataset.close().map_err(|error| failed(&path, error))?;
+        dataset.close().map_err(|error| ExportError::write(&path, error))?;
         if let Some(source) = corniche_dem::failure() {
-            return Err(ExportError::Write { path, source });
+            return Err(ExportError::write(&path, source));
         }
         whole::check(&path, format, written)
     }
 }
 
 impl Layer {
+    /// The same with texts that all formats take.
+    fn plain(mut self) -> Self {
+        let facts = self.metadata.iter_mut().map(|(_, text)| text);
+        for text in facts.chain([&mut self.description, &mut self.attribution]) {
+            *text = plain_text(text).into_owned();
+        }
+        self
+    }
+
     /// The description with what is known of heights, and the credits.
     fn about(&self, heights: &str) -> String {
         let parts = [self.description.as_str(), heights, &self.attribution];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
     }
-}
-
-fn failed(path: &Path, error: GdalError) -> ExportError {
-    ExportError::Write { path: path.to_path_buf(), source: error.into() }
 }
 
 fn create(
@@ -178,8 +186,8 @@ fn create(
     let options: Vec<&str> = options.iter().map(String::as_str).collect();
     let created = dataset.create_layer(LayerOptions {
         name: layer.name,
-        // RFC 7946 has one CRS and no place to name it.
-        srs: (format != VectorFormat::GeoJson).then_some(&crs),
+        // RFC 7946 has one CRS and no place to name it. For others GDAL writes the member `crs` of the GeoJSON of before.
+        srs: (format != VectorFormat::GeoJson || crs.is_projected()).then_some(&crs),
         ty: match layer.shapes {
             ShapeKind::Lines => OGRwkbGeometryType::wkbMultiLineString25D,
             ShapeKind::PlanLines => OGRwkbGeometryType::wkbMultiLineString,
@@ -235,7 +243,7 @@ fn write_all(layer: &GdalLayer<'_>, of: &Layer, records: &[Record]) -> Result<()
                 }
                 Value::Integer(number) => feature.set_field_integer64(index, *number)?,
                 Value::Real(number) => feature.set_field_double(index, *number)?,
-                Value::Text(text) => feature.set_field_string(index, text)?,
+                Value::Text(text) => feature.set_field_string(index, &without_nul(text))?,
             }
         }
         feature.set_geometry(geometry(&record.shape, of.shapes)?)?;
@@ -269,6 +277,11 @@ fn multi_polygon(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Geometry, GdalError>
     Ok(all)
 }
 
+/// A height as it can be written. GDAL 3.6 takes trailing zeros from their exponents: 4.5e-10 becomes 4.5E-1 in texts.
+fn written_height(height: f64) -> f64 {
+    if height.abs() < 1e-9 { 0.0 } else { height }
+}
+
 fn multi_line(lines: &[Vec<[f64; 3]>], kind: ShapeKind) -> Result<Geometry, GdalError> {
     let [of_all, of_part] = match kind {
         ShapeKind::PlanLines => {
@@ -283,10 +296,14 @@ fn multi_line(lines: &[Vec<[f64; 3]>], kind: ShapeKind) -> Result<Geometry, Gdal
         for (index, &[x, y, z]) in line.iter().enumerate().rev() {
             match kind {
                 ShapeKind::PlanLines => part.set_point_2d(index, (x, y)),
-                _ => part.set_point(index, (x, y, z)),
+                _ => part.set_point(index, (x, y, written_height(z))),
             }
         }
         all.add_geometry(part)?;
     }
     Ok(all)
 }
+
+#[cfg(test)]
+#[path = "file_tests.rs"]
+mod tests;

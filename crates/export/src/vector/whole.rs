@@ -6,6 +6,7 @@ use std::{
     path::Path,
 };
 
+use corniche_store::LackOfRoom;
 use gdal::{
     Dataset, DatasetOptions, GdalOpenFlags,
     errors::GdalError,
@@ -52,6 +53,7 @@ pub(crate) fn check(
     }
     Err(ExportError::NotWhole {
         path: path.to_path_buf(),
+        room: LackOfRoom::at(path),
         written: written.features,
         found: found.features,
     })

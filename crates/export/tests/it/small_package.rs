@@ -51,7 +51,7 @@ fn export_pieces(
     observer: &dyn Observer,
 ) -> Result<ExportSummary, ExportError> {
     let request = request(memory_bytes);
-    let what = (&request, RoadFeatures::Pieces);
+    let what = (&request, RoadFeatures::Pieces, None);
     export_roads(package, what, RoadHeights::default(), path, observer)
 }
 

@@ -253,3 +253,88 @@ fn without_credentials_the_variables_that_hold_them_are_named() {
     let bucket = Storage::new(settings).unwrap().bucket("maps").unwrap();
     assert_eq!(bucket.get("a").unwrap().as_deref(), Some(&b"content"[..]));
 }
+
+/// A page of a list: keys, and the token of the next page.
+fn page(keys: impl Iterator<Item = usize>, token: Option<usize>) -> String {
+    let entry = |key| {
+        format!(
+            "<Contents><Key>store/{key}</Key><LastModified>2026-11-22T10:00:00Z</LastModified><ETag>&quot;1&quot;</ETag><Size>1</Size></Contents>"
+        )
+    };
+    let next = token.map_or_else(
+        || "<IsTruncated>false</IsTruncated>".to_owned(),
+        |token| format!("<IsTruncated>true</IsTruncated><NextContinuationToken>{token}</NextContinuationToken>"),
+    );
+    format!("<ListBucketResult>{next}{}</ListBucketResult>", keys.map(entry).collect::<String>())
+}
+
+/// Names and tags that no request can be made with end in an error, or count as none.
+#[test]
+fn answers_that_no_request_can_be_made_with_are_refused() {
+    let server = Server::start();
+    let bucket = bucket(&server);
+    let long = "x".repeat(70_000);
+    let sound = page(1..2, None);
+    for (part, other, said) in [
+        ("<Key>store/1", format!("<Key>store/{long}"), "the name of an object"),
+        (
+            "<IsTruncated>false</IsTruncated>",
+            format!(
+                "<IsTruncated>true</IsTruncated><NextContinuationToken>{long}</NextContinuationToken>"
+            ),
+            "the name of a page",
+        ),
+    ] {
+        let says = sound.replace(part, &other);
+        server.break_with(move |_| Some(Fault::Says(says.clone())));
+        let told = told(&bucket.list("store").unwrap_err());
+        assert!(told.contains("cannot be right") && told.contains(said), "{told}");
+    }
+    for tag in ["a&#13;&#10;b", "a&#127;"] {
+        let says = sound.replace("&quot;1&quot;", tag);
+        server.break_with(move |_| Some(Fault::Says(says.clone())));
+        assert_eq!(bucket.list("store").unwrap().0[0].etag, None);
+    }
+}
+
+/// A list of many pages is read to its end; one that has none is given up, and so is an answer of gigabytes.
+#[test]
+fn lists_that_do_not_end_are_given_up() {
+    let server = Server::start();
+    let bucket = bucket(&server);
+    let pages = |page_of: fn(usize) -> String| {
+        let mut number = 0;
+        server.break_with(move |_| {
+            number += 1;
+            Some(Fault::Says(page_of(number - 1)))
+        });
+    };
+    pages(|n| page(100 * n..100 * (n + 1), (n < 9).then_some(n)));
+    assert_eq!(bucket.list("store").unwrap().0.len(), 1000);
+    let endless: [fn(usize) -> String; 5] = [
+        // One token, with new names and without; new tokens with the same names, with none, and with new ones.
+        |n| page(100 * n..100 * (n + 1), Some(7)),
+        |_| page(0..3, Some(7)),
+        |n| page(0..3, Some(n)),
+        |n| page(0..0, Some(n)),
+        |n| page(1000 * n..1000 * (n + 1), Some(n)),
+    ];
+    for page_of in endless {
+        pages(page_of);
+        server.take_log();
+        let told = told(&bucket.list("store").unwrap_err());
+        assert!(told.contains("does not end"), "{told}");
+        assert!(server.take_log().len() <= 102);
+    }
+    for is_claimed in [true, false] {
+        server.break_with(move |_| Some(Fault::Zeros { bytes: 3 << 30, is_claimed }));
+        let listed = told(&bucket.list("store").unwrap_err());
+        assert!(listed.contains("sends more than"), "{listed}");
+        let got = told(&bucket.get("store").unwrap_err());
+        // An object whose length is not told is not read at all.
+        assert!(
+            got.contains(if is_claimed { "sends more than" } else { "Content-Length" }),
+            "{got}"
+        );
+    }
+}

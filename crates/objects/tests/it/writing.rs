@@ -77,7 +77,7 @@ fn a_small_object_is_created_once() {
 
 #[test]
 fn a_file_is_sent_as_a_whole_in_one_request_or_in_parts() {
-    for (size, requests) in SIZES.into_iter().zip([1, 5]) {
+    for (size, requests) in SIZES.into_iter().zip([2, 6]) {
         let sent = Sent::new(size);
         assert_eq!(sent.upload(Existing::Keep).unwrap(), size as u64);
         sent.check_whole();
@@ -181,5 +181,30 @@ fn the_upload_of_a_killed_process_is_ended_by_the_next() {
         fs::write(&note, text).unwrap();
         sent.upload(Existing::Replace).unwrap();
         assert!(sent.server.content("package") == Some(sent.bytes.clone()), "{text:?}");
+    }
+}
+
+/// A server that says it has stored something, and has not, or not all of it.
+#[test]
+fn what_is_said_to_be_stored_is_looked_for() {
+    let lies = [
+        (None, "it is not there"),
+        (Some(0), "it has 0 bytes"),
+        (Some(20_000), "it has 20000 bytes"),
+    ];
+    for size in SIZES {
+        for existing in [Existing::Keep, Existing::Replace] {
+            for (left, said) in lies {
+                let sent = Sent::new(size);
+                sent.server
+                    .break_with(move |request| is_end(request).then_some(Fault::Forgotten(left)));
+                let told = told(&sent.upload(existing).unwrap_err());
+                assert!(
+                    told.contains("says that it has stored it, but") && told.contains(said),
+                    "{told}"
+                );
+                sent.check_clean();
+            }
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use corniche_areas::{
     Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
 };
-use corniche_geom::{LatticePoint, split_at_seam, wgs84};
+use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::Sorted;
 use rayon::prelude::*;
 
@@ -201,7 +201,7 @@ fn try_making(
             return Err(AreaLoss::MissingWays);
         }
     }
-    let area_m2 = assembled.polygons.iter().map(area_m2).sum();
+    let area_m2 = assembled.polygons.iter().map(|polygon| area_m2(polygon, placing)).sum();
     let mut polygons = Vec::with_capacity(assembled.polygons.len());
     for polygon in &assembled.polygons {
         polygons.extend(over_seam::placed(polygon, placing)?);
@@ -239,10 +239,10 @@ fn leave_out_holes(assembled: &mut Assembled, ways: &[Line]) {
 }
 
 /// The true area of a polygon whose points are in 1e-7 degrees.
-fn area_m2(polygon: &Polygon) -> f64 {
+fn area_m2(polygon: &Polygon, placing: Placing<'_>) -> f64 {
     let of_ring = |points: &[LatticePoint]| {
         let ring_deg: Vec<[f64; 2]> = points.iter().copied().map(degrees_of).collect();
-        wgs84::area_m2(&ring_deg)
+        (placing.ring_area_m2)(&ring_deg)
     };
     polygon.rings().map(|ring| of_ring(ring.points())).sum()
 }

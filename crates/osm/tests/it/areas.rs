@@ -34,6 +34,7 @@ fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
         others: &[],
         table: &frc_table,
         place: &to_lattice,
+        ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
         node_ids: false,
         pool: &pool,

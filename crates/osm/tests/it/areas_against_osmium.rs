@@ -81,6 +81,7 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, Area
         others: &[],
         table: &default_table(),
         place: &to_lattice,
+        ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
         node_ids: false,
         pool: &pool,

@@ -44,6 +44,7 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         others: &[],
         table: &frc_table,
         place: &to_lattice,
+        ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
         node_ids: false,
         pool: &pool,

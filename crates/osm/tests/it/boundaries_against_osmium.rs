@@ -82,6 +82,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             others: &[],
             table: &default_table(),
             place: &to_lattice,
+            ring_area_m2: &corniche_geom::wgs84::area_m2,
             seam: None,
             node_ids: false,
             pool: &pool,

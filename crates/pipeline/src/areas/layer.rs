@@ -100,7 +100,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
         told: &LayerContext<'_>,
     ) -> Result<AreaTotals, BuildError> {
         let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
-        if let Some(sea) = self.sea.close(&mut summary, on_defect)? {
+        if let Some(sea) = self.sea.close(&mut summary, on_defect) {
             let split = self.splitting.split_object(count, sea);
             self.take(split)?;
         }
@@ -114,7 +114,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
             let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
             on_defect(corniche_osm::Defect::LostArea { is_relation, id, loss });
         }
-        let (splitting, store) = (&self.splitting.0, self.store);
+        let (splitting, store) = (&self.splitting.plan, self.store);
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {

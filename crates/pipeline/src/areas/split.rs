@@ -6,18 +6,23 @@ use corniche_areas::{
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_tileset::{AreaRecord, AreaRings};
 
+use super::extent::AreaExtent;
 use crate::{heights::data_tiles::DataTiles, layers::plan_splitting::PlanSplitting};
 
 /// How areas are split.
-pub(crate) struct AreaSplitting<'a>(pub(crate) PlanSplitting<'a>);
+pub(crate) struct AreaSplitting<'a> {
+    pub(crate) plan: PlanSplitting<'a>,
+    /// Areas end where it does.
+    pub(crate) extent: &'a AreaExtent,
+}
 
 impl AreaSplitting<'_> {
     /// The parts of an area by tile. On coarse levels, polygons smaller than a cell are left out.
     pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
-        let PlanSplitting { frame, data, clip, polygon } = self.0;
+        let PlanSplitting { frame, data, polygon, .. } = self.plan;
         let mut parts = Vec::new();
         for level in 0..=frame.max_level() {
-            let step = self.0.step(level);
+            let step = self.plan.step(level);
             let mut coarse = Vec::new();
             for polygon in &area.polygons {
                 coarse.extend(coarsen(polygon, step)?);
@@ -26,14 +31,11 @@ impl AreaSplitting<'_> {
                 let [east, north] = frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
-            // Before other cuts: lines of bounds are not on the lattice of coarse levels.
-            if let Some(region) = polygon {
+            // Before other cuts: the data's rectangle is not on the lattice of coarse levels.
+            for region in polygon.into_iter().chain(&self.extent.region) {
                 coarse = inside(coarse, region, step)?;
             }
-            let mut coarse = cut_out(&coarse, &frame.tile_lattice_bounds(TileId::ROOT))?;
-            if let Some(clip) = &clip {
-                coarse = cut_out(&coarse, clip)?;
-            }
+            let coarse = cut_out(&coarse, &self.extent.bounds)?;
             let mut tiles = Vec::new();
             let wanted = Wanted { frame, data: data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;

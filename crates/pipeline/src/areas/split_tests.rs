@@ -1,6 +1,9 @@
 //! The parts of an area add up on every level, and neighbours share their borders.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::LazyLock,
+};
 
 use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};
 use corniche_geom::{LatticePoint, NodeIndex};
@@ -14,10 +17,18 @@ fn frame() -> GridFrame {
     GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
+/// The whole root tile.
+fn root() -> &'static AreaExtent {
+    static WHOLE: LazyLock<AreaExtent> =
+        LazyLock::new(|| AreaExtent::of_rectangle(frame().tile_lattice_bounds(TileId::ROOT)));
+    &WHOLE
+}
+
 fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(frame, south_west, north_east);
-    AreaSplitting(PlanSplitting { frame, data, clip: None, polygon: None })
+    let plan = PlanSplitting { frame, data, clip: None, polygon: None };
+    AreaSplitting { plan, extent: root() }
 }
 
 /// A star around a place, with a hole.
@@ -77,7 +88,7 @@ fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
             let covered = [id, neighbour]
                 .map(|id| seam.covered(of(id)).into_values().next().unwrap_or_default());
             let mut broken = seam.broken(covered.each_ref().map(Vec::as_slice));
-            let step = splitting(frame).0.step(id.z());
+            let step = splitting(frame).plan.step(id.z());
             let whole: Vec<Polygon> =
                 area.polygons.iter().flat_map(|polygon| coarsen(polygon, step).unwrap()).collect();
             let outline = seam.covered(&[record(area, &whole)]).into_values().flatten();
@@ -91,7 +102,7 @@ fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
 #[test]
 fn steps_are_powers_of_two_that_double_from_level_to_level() {
     let frame = frame();
-    let steps: Vec<i64> = (0..=2).map(|level| splitting(&frame).0.step(level)).collect();
+    let steps: Vec<i64> = (0..=2).map(|level| splitting(&frame).plan.step(level)).collect();
     let metres: Vec<f64> = steps.iter().map(|&step| step as f64 * frame.lattice_step_m()).collect();
     assert!(metres[2] <= 0.1 && metres[2] > 0.05, "{metres:?}");
     assert!(metres[1] <= 20.0 / 4.0 && metres[1] > 20.0 / 8.0, "{metres:?}");
@@ -131,7 +142,7 @@ proptest! {
             let sum: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
             // All of it is inside the root unless the star reaches beyond 5120 m.
             let around: i128 = 4 * radii.iter().map(|&radius| i128::from(radius)).sum::<i128>();
-            let off = i128::from(splitting.0.step(level)) * around;
+            let off = i128::from(splitting.plan.step(level)) * around;
             let reach = 3000 + 1500;
             prop_assert!(reach < 5120 && (sum - whole).abs() <= off, "{level}: {sum} of {whole}");
             assert_seams_hold(&area, &tiles);
@@ -156,11 +167,11 @@ proptest! {
         let outside = LatticeRegion::new(&[vec![square, triangle]]).unwrap();
         let whole: BTreeMap<_, _> = by_level(&splitting(&frame), &area);
         let [within, beside] = [&inside, &outside].map(|region| {
-            let plan = PlanSplitting { polygon: Some(region), ..splitting(&frame).0 };
-            by_level(&AreaSplitting(plan), &area)
+            let plan = PlanSplitting { polygon: Some(region), ..splitting(&frame).plan };
+            by_level(&AreaSplitting { plan, extent: root() }, &area)
         });
         for (level, tiles) in &whole {
-            let step = splitting(&frame).0.step(*level);
+            let step = splitting(&frame).plan.step(*level);
             let mut sums = [0; 2];
             for (part, sum) in [&within, &beside].into_iter().zip(&mut sums) {
                 let Some(tiles) = part.get(level) else { continue };

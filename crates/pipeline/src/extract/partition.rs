@@ -11,7 +11,7 @@
 use std::{path::PathBuf, sync::atomic::Ordering};
 
 use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_geom::{LatticeBounds, LatticeRegion, Projection};
+use corniche_geom::{Bounds, LatticeBounds, LatticeRegion, Projection};
 use corniche_osm::{
     ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
 };
@@ -21,7 +21,12 @@ use corniche_work::Stage;
 use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
 use crate::{
     BuildError, Defect, Observer, RoadSettings,
-    areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
+    areas::{
+        extent::{AreaExtent, ExtentParts, Outline},
+        layer::AreaLayer,
+        sea::SeaPlace,
+        split::AreaSplitting,
+    },
     artifacts::{self, Kind},
     heights::data_tiles::DataTiles,
     layers::{
@@ -65,6 +70,12 @@ pub(crate) struct ExtractInput<'a> {
     pub(crate) node_bounds: LatticeBounds,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
+    /// The same in degrees.
+    pub(crate) bounds_deg: Option<[f64; 4]>,
+    /// The outline of the elevation files, where they fill no rectangle.
+    pub(crate) outline: Option<&'a Outline>,
+    /// The rectangle around all elevation files, degrees.
+    pub(crate) area_deg: Bounds,
     /// The polygon that was asked for.
     pub(crate) polygon: Option<&'a LatticeRegion>,
     pub(crate) pool: &'a rayon::ThreadPool,
@@ -117,8 +128,11 @@ fn read(
     told: &LayerContext<'_>,
 ) -> Result<Found, BuildError> {
     let (store, scratch) = places;
-    let mut areas =
-        input.areas.map(|table| (table, LayerWriter::new(area_layer(input, places), told)));
+    let extent = area_extent(input, told.observer)?;
+    let mut areas = input
+        .areas
+        .zip(extent.as_ref())
+        .map(|(table, extent)| (table, LayerWriter::new(area_layer(input, extent, places), told)));
     let writer = |&layer| (layer, LayerWriter::new(lines_layer(input, layer, places), told));
     let mut lines: Vec<_> = input.lines.iter().map(writer).collect();
     let mut roads = LayerWriter::new(road_layer(input, places), told);
@@ -172,14 +186,42 @@ fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
     PlanSplitting { frame: input.levels.frame(), data, clip, polygon }
 }
 
+/// Where areas can lie, if any are wanted.
+fn area_extent(
+    input: &ExtractInput<'_>,
+    observer: &dyn Observer,
+) -> Result<Option<AreaExtent>, BuildError> {
+    if input.areas.is_none() {
+        return Ok(None);
+    }
+    let boxes: Result<Option<Vec<[f64; 4]>>, _> =
+        input.osm.iter().map(|path| corniche_osm::header_bounds_deg(path)).collect();
+    let boxes_deg = boxes.map_err(BuildError::Osm)?.unwrap_or_default();
+    let parts = ExtentParts {
+        frame: input.levels.frame(),
+        projection: input.projection,
+        nodes: input.node_bounds,
+        data: input.outline,
+        area_deg: input.area_deg,
+        bounds_deg: input.bounds_deg,
+        boxes_deg: &boxes_deg,
+    };
+    Ok(Some(AreaExtent::new(&parts).unwrap_or_else(|error| {
+        observer.warning(&format!(
+            "the sea and areas go to the edges of the data's rectangle: bounds and boxes of the extracts cannot be overlaid with it ({error})"
+        ));
+        AreaExtent::of_rectangle(input.node_bounds)
+    })))
+}
+
 fn area_layer<'a>(
     input: &ExtractInput<'a>,
+    extent: &'a AreaExtent,
     places: (&'a dyn Artifacts, &'a dyn Scratch),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
-    let splitting = AreaSplitting(plan_splitting(input));
-    let sea =
-        SeaPlace { osm: input.osm, data: input.data_bounds, frame, projection: input.projection };
+    let splitting = AreaSplitting { plan: plan_splitting(input), extent };
+    let sea = SeaPlace { extent, frame, projection: input.projection };
     AreaLayer::new((splitting, sea), places, input.memory_bytes)
 }
 

@@ -116,6 +116,9 @@ impl World {
             node_bounds: frame.tile_lattice_bounds(TileId::ROOT),
             polygon: None,
             clip: None,
+            bounds_deg: None,
+            outline: None,
+            area_deg: Bounds { min_x: -0.05, min_y: -0.05, max_x: 0.05, max_y: 0.05 },
             pool: &pool,
             memory_bytes,
         };

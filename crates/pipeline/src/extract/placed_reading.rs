@@ -11,7 +11,7 @@ use corniche_roads::FrcTable;
 use corniche_store::Scratch;
 
 use super::kept::not_read;
-use crate::{BuildError, Observer};
+use crate::{BuildError, Observer, true_areas::degrees_ring_m2};
 
 /// How extracts are read for a package.
 pub(crate) struct PlacedReading<'a> {
@@ -49,6 +49,7 @@ impl PlacedReading<'_> {
             others,
             table: self.table,
             place: &place,
+            ring_area_m2: &|ring_deg| degrees_ring_m2(ring_deg, self.projection),
             seam: self.projection.seam().map(|seam| seam.on_lattice(self.frame)),
             node_ids: self.node_ids,
             pool: self.pool,

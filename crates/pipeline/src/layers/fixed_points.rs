@@ -2,7 +2,7 @@
 
 use corniche_drape::ClippedPart;
 use corniche_geom::LatticePoint;
-use corniche_roads::Road;
+use corniche_roads::{MetNodes, Road};
 
 /// The index of the point of a line that a point of its part is; `None` for a cut.
 pub(crate) fn point_of_line(
@@ -43,6 +43,16 @@ pub(crate) fn road_of_part(road: &Road, part: ClippedPart) -> Road {
         is_kept.then_some((index as u32, node_id))
     };
     let stops: Vec<(u32, Option<i64>)> = (0..=last).filter_map(stop).collect();
+    let met = |index: usize| {
+        let of_road = point_of_line(points, &part, index)? as u32;
+        let met = &road.met.nodes;
+        let found = met.binary_search_by_key(&of_road, |(at, _)| *at).ok()?;
+        Some((index as u32, met[found].1))
+    };
+    let met: Vec<(u32, i64)> = match road.met.nodes[..] {
+        [] => Vec::new(),
+        _ => (0..=last).filter_map(met).collect(),
+    };
     Road {
         way_id: road.way_id,
         class: road.class,
@@ -50,6 +60,7 @@ pub(crate) fn road_of_part(road: &Road, part: ClippedPart) -> Road {
         fixed: stops.iter().map(|(index, _)| *index).collect(),
         node_ids: stops.iter().map(|(_, node_id)| *node_id).collect(),
         same_places: road.same_places.clone(),
+        met: MetNodes { nodes: met, same_places: road.met.same_places.clone() },
         line: part.line,
     }
 }

@@ -45,6 +45,11 @@ pub(crate) trait TileLayer {
     /// Takes the parts of the next object.
     fn take(&mut self, split: SplitOf<Self>) -> Result<(), BuildError>;
 
+    /// Takes a road that is left out, but may carry bridges and tunnels; see [`LayerSink::take_carrier`].
+    fn take_carrier(&mut self, _object: ObjectOf<Self>) -> Result<(), BuildError> {
+        Ok(())
+    }
+
     /// Keeps what all `count` objects made.
     fn finish(
         self,
@@ -181,6 +186,15 @@ impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L>
         self.batch.push(object);
         if (self.batch.len() >= BATCH_OBJECTS || self.batch_points >= BATCH_POINTS)
             && let Err(error) = self.split_batch()
+        {
+            self.fail(error);
+        }
+    }
+
+    fn take_carrier(&mut self, object: ObjectOf<L>) {
+        if self.done.is_ok()
+            && let Some(layer) = &mut self.layer
+            && let Err(error) = layer.take_carrier(object)
         {
             self.fail(error);
         }

@@ -9,7 +9,7 @@ use crate::{heights::data_tiles::DataTiles, points_step::points_step};
 pub(crate) struct PlanSplitting<'a> {
     pub(crate) frame: &'a GridFrame,
     pub(crate) data: DataTiles,
-    /// The bounds that were asked for: areas end there, and tiles that do not touch them get no lines.
+    /// The bounds that were asked for: tiles that do not touch them get no lines.
     pub(crate) clip: Option<LatticeBounds>,
     /// The polygon that was asked for: areas and lines end at its outline.
     pub(crate) polygon: Option<&'a LatticeRegion>,

@@ -6,7 +6,7 @@ use corniche_areas::LineClass;
 use corniche_drape::{ClippedPart, clip_region};
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::ClassedLine;
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, simplify};
 use corniche_tileset::LineRecord;
 
 use crate::{
@@ -101,6 +101,7 @@ impl LineSplitting<'_> {
             fixed: object.fixed.clone(),
             node_ids: Vec::new(),
             same_places: Vec::new(),
+            met: MetNodes::default(),
         };
         let step = self.plan.step(level);
         let on_lattice = |part: i64| (part + step / 2).div_euclid(step) * step;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_dem::{Dem, FileDatums, GridPlan, Polygon};
+use corniche_dem::{Dem, DemProjection, FileDatums, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
 use corniche_tileset::ReliefLevels;
 
@@ -30,6 +30,8 @@ pub(crate) struct Opened {
     pub(crate) max_error_m: f64,
     /// Longitudes and latitudes over the data.
     pub(crate) coordinates: CoordinateTable,
+    /// WGS84 ⇄ the grid's working CRS.
+    pub(crate) projection: DemProjection,
     /// Photos of the ground.
     pub(crate) photo: PhotoSource,
     /// Which levels have relief sections.
@@ -65,7 +67,8 @@ impl Opened {
         });
         match checked {
             Ok((planned, mut file_datums)) => {
-                let Planned { source, grid, levels, max_error_m, coordinates } = planned;
+                let Planned { source, grid, levels, max_error_m, coordinates, projection } =
+                    planned;
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
@@ -83,6 +86,7 @@ impl Opened {
                     levels,
                     max_error_m,
                     coordinates,
+                    projection,
                     photo,
                     relief,
                     file_datums,
@@ -122,7 +126,8 @@ impl Opened {
         // This fails for files that are too far apart for one package.
         let coordinates = coordinates(&dem, &grid)?;
         let source = GroundSource::Dem(Box::new(dem));
-        Ok(Planned { source, grid, levels, max_error_m, coordinates })
+        let projection = source.projection(&grid)?;
+        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
     }
 
     /// What follows from a package whose terrain is taken.
@@ -148,7 +153,8 @@ impl Opened {
             grid = grid.within(polygon)?;
         }
         let source = GroundSource::Package(Box::new(terrain));
-        Ok(Planned { source, grid, levels, max_error_m, coordinates })
+        let projection = source.projection(&grid)?;
+        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
     }
 }
 
@@ -159,6 +165,7 @@ struct Planned {
     levels: Levels,
     max_error_m: f64,
     coordinates: CoordinateTable,
+    projection: DemProjection,
 }
 
 /// The tolerance of the finest level: given, or derived from the cell.

@@ -77,7 +77,11 @@ impl OpenedPhotos {
         Ok(Self {
             grid: photos.on(grid, levels)?,
             quality: settings.quality,
-            credits: photos.credits(),
+            credits: photos
+                .credits()
+                .iter()
+                .map(|text| corniche_tileset::to_credit(text))
+                .collect(),
             blocks: photos.file_blocks()?,
             datums,
         })

@@ -12,7 +12,7 @@ use super::pieces::{RoadPiece, Run};
 use crate::{
     BuildError,
     artifacts::{self, Kind},
-    true_lengths::{cut_um, share},
+    true_lengths::TrueLengths,
 };
 
 /// A line of a bridge or a tunnel on the ground of a tile.
@@ -51,18 +51,6 @@ impl GroundLine {
     pub(crate) fn structure(&self) -> Structure {
         if self.is_tunnel { Structure::Tunnel } else { Structure::Bridge }
     }
-
-    /// The ground at a distance along the road; `None` where the line does not reach.
-    pub(crate) fn height_m(&self, along_um: u64) -> Option<f64> {
-        let after = self.vertices.partition_point(|vertex| vertex.along_um < along_um);
-        let to = self.vertices.get(after)?;
-        if to.along_um == along_um {
-            return Some(to.height_m);
-        }
-        let from = self.vertices.get(after.checked_sub(1)?)?;
-        let share = (along_um - from.along_um) as f64 / (to.along_um - from.along_um) as f64;
-        Some(from.height_m + share * (to.height_m - from.height_m))
-    }
 }
 
 /// A part of a run of a bridge or a tunnel, and where each segment of the run begins along its road.
@@ -77,7 +65,7 @@ pub(crate) fn line_of(
     (ordinal, road): (u32, &RoadPiece),
     PartOfRun { run, starts_um, part }: &PartOfRun<'_>,
     (line, begun): (&DrapedLine, usize),
-    surface: &Surface,
+    (surface, lengths): (&Surface, &TrueLengths<'_>),
 ) -> Option<GroundLine> {
     let points = part.line.points();
     // The point of the part that was passed last.
@@ -96,7 +84,7 @@ pub(crate) fn line_of(
         }
         let of_run = *part.segments.get(segment)?;
         let ends = [run.line.points()[of_run], run.line.points()[of_run + 1]];
-        let own_um = cut_um(share(ends, at), *run.segments_um.get(of_run)?);
+        let own_um = lengths.along_um(ends, at, *run.segments_um.get(of_run)?);
         let along_um = starts_um[of_run] + own_um;
         // Which triangle it is must not depend on where the line comes from.
         let Some(triangle) = surface.locate(at) else { continue };

@@ -14,7 +14,7 @@ use super::{
     pieces::{RoadPiece, Run, TilePieces},
 };
 use crate::levels::Levels;
-use crate::true_lengths::{gaps_um, pieces_um, starts_um};
+use crate::true_lengths::{TrueLengths, starts_um};
 
 /// Sums over the roads of a class on a level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,6 +78,7 @@ pub(crate) struct TileToLayOn<'a> {
     pub(crate) clip: Option<LatticeBounds>,
     /// Whether bridges and tunnels become spans.
     pub(crate) spans: bool,
+    pub(crate) lengths: &'a TrueLengths<'a>,
 }
 
 /// What becomes of a tile's roads if it is a finest tile without ground.
@@ -86,12 +87,13 @@ pub(crate) fn lost_pieces(
     bounds: &LatticeBounds,
     owned: OwnedBorders,
     clip: Option<LatticeBounds>,
+    lengths: &TrueLengths<'_>,
 ) -> Vec<(u32, RoadFate)> {
     let within = clip.unwrap_or(*bounds);
     let lost = |run: &Run| -> u64 {
         corniche_drape::clip_parts_within(&run.line, bounds, owned, &within)
             .iter()
-            .flat_map(|part| pieces_um(&run.line, part, &run.segments_um))
+            .flat_map(|part| lengths.pieces_um(&run.line, part, &run.segments_um))
             .map(|[from, to]| to - from)
             .sum()
     };
@@ -153,7 +155,7 @@ impl Laid {
         on: &TileToLayOn<'_>,
         levels: &Levels,
     ) -> RoadFate {
-        let &TileToLayOn { id, surface, owned, clip, spans } = on;
+        let &TileToLayOn { id, surface, owned, clip, spans, lengths } = on;
         let is_span = spans && road.attributes.structure != Structure::Ground;
         let bounds = levels.frame().tile_lattice_bounds(id);
         let is_finest = id.z() == levels.frame().max_level();
@@ -168,17 +170,17 @@ impl Laid {
                 let draped = corniche_drape::drape(&part.line, surface);
                 if is_finest {
                     let pieces: Vec<[u64; 2]> =
-                        pieces_um(&run.line, &part, &run.segments_um).collect();
-                    let void_um = gaps_um(&pieces, &draped.gaps);
+                        lengths.pieces_um(&run.line, &part, &run.segments_um).collect();
+                    let void_um = lengths.gaps_um(&part, &pieces, &draped.gaps);
                     let all_um: u64 = pieces.iter().map(|[from, to]| to - from).sum();
                     fate.merge(&RoadFate { kept_um: all_um - void_um, void_um });
                 }
                 if is_span {
                     let own = PartOfRun { run, starts_um: &starts_um, part: &part };
                     let lines = draped.lines.iter().zip(draped.starts.iter().copied());
-                    self.ground_lines.extend(
-                        lines.filter_map(|line| line_of((ordinal, road), &own, line, surface)),
-                    );
+                    self.ground_lines.extend(lines.filter_map(|line| {
+                        line_of((ordinal, road), &own, line, (surface, lengths))
+                    }));
                 }
                 for line in draped.lines {
                     let (way_id, class, part) = (road.way_id, road.class, *next_part);

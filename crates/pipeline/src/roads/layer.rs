@@ -1,7 +1,5 @@
 //! The roads of the extract: for each tile of each level the pieces that it needs, and the true lengths of all.
 
-use std::collections::BTreeSet;
-
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
@@ -9,7 +7,7 @@ use corniche_store::{Artifacts, Scratch};
 use corniche_work::Stage;
 
 use super::{
-    near_spans,
+    near_spans::{NearRoad, NearRoadsWriter},
     pieces::{RoadPiece, TilePiecesWriter},
     split::{RoadSplitting, SplitRoad},
     totals::{LengthsWriter, RoadTotals},
@@ -24,7 +22,7 @@ use crate::{
 };
 
 /// Roads are near a node of a bridge or a tunnel within this, in true metres: their directions there count.
-const NEAR_M: f64 = 20.0;
+pub(crate) const NEAR_M: f64 = 20.0;
 
 /// Roads as they come in.
 pub(crate) struct RoadLayer<'a> {
@@ -33,11 +31,8 @@ pub(crate) struct RoadLayer<'a> {
     totals: RoadTotals,
     lengths: LengthsWriter<'a>,
     pieces: PartsByTile<'a, u32>,
-    /// The finest tiles with bridges or tunnels, by their place in the package, where these become spans.
-    span_tiles: BTreeSet<u64>,
-    /// Pairs of nodes that lie at one place.
-    same_places: Vec<[i64; 2]>,
-    memory_bytes: u64,
+    /// Where bridges and tunnels become spans: what may be near them.
+    near_spans: Option<NearRoadsWriter<'a>>,
 }
 
 impl<'a> RoadLayer<'a> {
@@ -46,6 +41,7 @@ impl<'a> RoadLayer<'a> {
         (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
         memory_bytes: u64,
     ) -> Self {
+        let spans = splitting.spans;
         Self {
             splitting,
             store,
@@ -54,10 +50,8 @@ impl<'a> RoadLayer<'a> {
                 ..RoadTotals::default()
             },
             lengths: LengthsWriter::new(store),
-            pieces: PartsByTile::new(scratch, memory_bytes),
-            span_tiles: BTreeSet::new(),
-            same_places: Vec::new(),
-            memory_bytes,
+            pieces: PartsByTile::new(scratch, memory_bytes / 4 * 3),
+            near_spans: spans.then(|| NearRoadsWriter::new(scratch, memory_bytes / 4)),
         }
     }
 }
@@ -71,7 +65,7 @@ impl TileSplitting for RoadSplitting<'_> {
     }
 
     fn split_object(&self, number: u64, road: Road) -> Self::Split {
-        let mut road = self.split(&road);
+        let mut road = self.split(number as u32, &road);
         let pieces = std::mem::take(&mut road.pieces).into_iter();
         let piece = |(id, piece): (TileId, RoadPiece)| (id, number as u32, piece.to_bytes());
         (road, pieces.map(piece).collect())
@@ -91,6 +85,12 @@ impl<'a> TileLayer for RoadLayer<'a> {
         &self.splitting
     }
 
+    fn take_carrier(&mut self, road: Road) -> Result<(), BuildError> {
+        let Some(near_spans) = &mut self.near_spans else { return Ok(()) };
+        let is_reached = self.splitting.reaches(&road);
+        near_spans.push(NearRoad::of(&road, None, &[], is_reached))
+    }
+
     fn take(&mut self, (road, pieces): SplitOf<Self>) -> Result<(), BuildError> {
         self.totals.roads += 1;
         let length_um = road.length.length_um;
@@ -102,8 +102,9 @@ impl<'a> TileLayer for RoadLayer<'a> {
                 self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
             self.totals.bounds = Some([all.min, all.max]);
         }
-        self.span_tiles.extend(&road.span_tiles);
-        self.same_places.extend(&road.same_places);
+        if let Some((near, near_spans)) = road.near.zip(self.near_spans.as_mut()) {
+            near_spans.push(near)?;
+        }
         self.lengths.push(road.length)?;
         pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
     }
@@ -124,10 +125,9 @@ impl<'a> TileLayer for RoadLayer<'a> {
             },
             |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
         )?;
-        if self.splitting.spans {
+        if let Some(near_spans) = self.near_spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);
-            let spans = (&self.span_tiles, &self.same_places[..]);
-            near_spans::keep(spans, self.store, reach, (told.pool, self.memory_bytes))?;
+            near_spans.finish((self.store, told.observer), reach)?;
         }
         Ok((self.totals, summary))
     }

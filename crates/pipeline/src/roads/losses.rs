@@ -1,5 +1,6 @@
 //! Which roads were kept at the finest level, which were lost, and why.
 
+use corniche_roads::Structure;
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
 use corniche_tileset::RoadLoss;
 
@@ -53,6 +54,8 @@ impl Lengths {
 pub(crate) struct Sums {
     pub(crate) roads_kept: u64,
     pub(crate) roads_kept_um: u64,
+    /// What of that is carried by what, in the order of [`Structure::ALL`].
+    pub(crate) kept_by_structure_um: [u64; Structure::ALL.len()],
     pub(crate) lost: Vec<RoadLoss>,
     /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
     pub(crate) lost_by_tiles: Vec<RoadLoss>,
@@ -101,6 +104,7 @@ impl<'a> LossFold<'a> {
                 let (outside_um, void_um) = (outside_um + beside_um, void_um - beside_um);
                 let road = Lengths { kept_um, outside_um, void_um, beyond_um };
                 folded.add(&road);
+                folded.kept_by_structure_um[length.structure as usize] += kept_um;
                 road.report(length.way_id, observer);
             }
         }
@@ -167,6 +171,7 @@ impl Fates<'_> {
 struct Folded {
     roads_kept: u64,
     roads_kept_um: u64,
+    kept_by_structure_um: [u64; Structure::ALL.len()],
     /// Count and micrometres, in the order of [`Loss::ALL`].
     lost: [(u64, u64); Loss::ALL.len()],
 }
@@ -190,6 +195,7 @@ impl Folded {
         Sums {
             roads_kept: self.roads_kept,
             roads_kept_um: self.roads_kept_um,
+            kept_by_structure_um: self.kept_by_structure_um,
             // Without bounds nothing is lost by them, and they are not named.
             lost: Loss::ALL
                 .into_iter()

@@ -32,7 +32,8 @@ fn stored(lengths: &[RoadLength]) -> (MemoryStore, RoadTotals) {
 }
 
 fn road(way_id: i64, outside_um: u64) -> RoadLength {
-    RoadLength { way_id, length_um: 1_000_000, outside_um, padding_um: 0, beyond_um: 0 }
+    let structure = Structure::ALL[way_id as usize % 3];
+    RoadLength { way_id, structure, length_um: 1_000_000, outside_um, padding_um: 0, beyond_um: 0 }
 }
 
 fn fate(kept_um: u64, void_um: u64) -> RoadFate {
@@ -140,6 +141,11 @@ proptest! {
         prop_assert_eq!(&folded(&lengths, &[merged]), &one_tile);
         let kept_um: u64 = fates.iter().map(|(_, fate)| fate.kept_um).sum();
         prop_assert_eq!(one_tile.0.roads_kept_um, kept_um);
+        for (number, &structure) in Structure::ALL.iter().enumerate() {
+            let of_structure = lengths.iter().zip(&of_road).filter(|(road, _)| road.structure == structure);
+            let kept_um: u64 = of_structure.map(|(_, fate)| fate.kept_um).sum();
+            prop_assert_eq!(one_tile.0.kept_by_structure_um[number], kept_um);
+        }
         let kept = of_road.iter().filter(|fate| fate.kept_um > 2_000).count() as u64;
         let lost: u64 = one_tile.0.lost.iter().map(|loss| loss.roads).sum();
         prop_assert_eq!((one_tile.0.roads_kept, lost), (kept, lengths.len() as u64 - kept));

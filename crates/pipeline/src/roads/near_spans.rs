@@ -1,43 +1,40 @@
 //! The roads of which bridges and tunnels are known: themselves, and the pieces of others that can carry, touch or cross them.
+//!
+//! They are taken from whole roads, wherever these lie and whatever their classes, so what is known of a bridge does not depend on bounds, tiles and
+//! classes. Left out are bridges and tunnels that depend on none that reaches the data and what was asked of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use corniche_geom::{LatticePoint, Polyline};
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
-use corniche_spans::Vicinity;
-use corniche_store::Artifacts;
-use rayon::prelude::*;
+use corniche_geom::{LatticePoint, Polyline, TileId};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
+use corniche_spans::{SpanLine, Vicinity, connected};
+use corniche_store::{Artifacts, Scratch};
 use serde::{Deserialize, Serialize};
 
-use super::pieces::{RoadPiece, TilePieces};
 use crate::{
-    BuildError,
+    BuildError, Observer,
     artifacts::{self, Kind},
+    layers::parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
 };
 
 /// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
 const BLOCK_ROADS: usize = 4096;
-/// What a segment takes in memory, half of it room that lists have left, and what a road takes without them, bytes.
-const SEGMENT_BYTES: u64 = 160;
-const ROAD_BYTES: u64 = 320;
-/// Tiles whose pieces are read side by side.
-const TILES_AT_ONCE: usize = 8;
 
 /// A piece of a road.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NearRoad {
-    /// The number of its road.
-    pub(crate) ordinal: u32,
+    /// The number of its road; `None` of a way whose class is off or not known, which is no road of the package.
+    pub(crate) ordinal: Option<u32>,
     pub(crate) way_id: i64,
     pub(crate) class: FunctionalRoadClass,
     /// Which of [`Structure::ALL`] it is on.
     structure: u8,
     layer: i8,
     highway: String,
-    /// How far along its road it begins, micrometres.
-    pub(crate) from_um: u64,
+    /// Whether its way reaches the data, and what was asked of it.
+    pub(crate) is_reached: bool,
     points: Vec<LatticePoint>,
-    /// The true lengths of its segments, micrometres.
+    /// The true lengths of its segments, micrometres; of roads on the ground none.
     pub(crate) segments_um: Vec<u64>,
     /// Its nodes at which roads may join: which points they are, and their ids.
     nodes: Vec<(u32, i64)>,
@@ -46,6 +43,36 @@ pub(crate) struct NearRoad {
 }
 
 impl NearRoad {
+    /// A whole road.
+    pub(crate) fn of(
+        road: &Road,
+        ordinal: Option<u32>,
+        segments_um: &[u64],
+        is_reached: bool,
+    ) -> Self {
+        let fixed = road.fixed.iter().zip(&road.node_ids);
+        let mut nodes: Vec<(u32, i64)> =
+            fixed.filter_map(|(&index, id)| Some((index, (*id)?))).collect();
+        nodes.extend(&road.met.nodes);
+        nodes.sort_unstable();
+        nodes.dedup();
+        let structure = road.attributes.structure;
+        let is_span = structure != Structure::Ground;
+        Self {
+            ordinal,
+            way_id: road.way_id,
+            class: road.class,
+            structure: structure as u8,
+            layer: road.attributes.layer,
+            highway: road.attributes.highway.clone(),
+            is_reached,
+            points: road.line.points().to_vec(),
+            segments_um: if is_span { segments_um.to_vec() } else { Vec::new() },
+            nodes,
+            same_places: [&road.same_places[..], &road.met.same_places].concat(),
+        }
+    }
+
     /// The same as a road. Its ends stay, where they are nodes and where not.
     pub(crate) fn road(&self) -> Option<Road> {
         let last = self.points.len().checked_sub(1)? as u32;
@@ -64,94 +91,130 @@ impl NearRoad {
             fixed: stops.keys().copied().collect(),
             node_ids: stops.values().copied().collect(),
             same_places: self.same_places.clone(),
+            met: MetNodes::default(),
         })
     }
-}
 
-/// A segment of a road.
-struct Segment {
-    /// Where along the road it begins and ends, micrometres.
-    along_um: [u64; 2],
-    ends: [LatticePoint; 2],
-    nodes: [Option<i64>; 2],
-}
+    fn is_span(&self) -> bool {
+        self.structure != Structure::Ground as u8
+    }
 
-/// What was found of a road.
-struct Found {
-    way_id: i64,
-    class: FunctionalRoadClass,
-    structure: Structure,
-    layer: i8,
-    highway: String,
-    /// What lies on several tiles is there more than once.
-    segments: Vec<Segment>,
-}
+    fn segments(&self) -> impl Iterator<Item = [LatticePoint; 2]> + '_ {
+        self.points.array_windows().copied()
+    }
 
-/// Gathers the roads near all bridges and tunnels from the finest tiles with such, and keeps them. What lies within `reach` lattice steps of a
-/// node of theirs is near. So many bytes of them are in memory at once, beside what some tiles have of them: of the rest the tiles are read again.
-pub(crate) fn keep(
-    (tiles, same_places): (&BTreeSet<u64>, &[[i64; 2]]),
-    store: &dyn Artifacts,
-    reach: f64,
-    (pool, memory_bytes): (&rayon::ThreadPool, u64),
-) -> Result<(), BuildError> {
-    let tiles: Vec<u64> = tiles.iter().copied().collect();
-    let mut blocks = BlocksWriter { store, block: Vec::new(), number: 0 };
-    let mut same_places = Some(same_places.to_vec());
-    let mut next = Some(0);
-    while let Some(first) = next {
-        let mut some = SomeRoads::default();
-        for tiles in tiles.chunks(TILES_AT_ONCE) {
-            let found: Result<Vec<_>, BuildError> = pool.install(|| {
-                tiles.par_iter().map(|&tile| in_tile((tile, first), store, reach)).collect()
-            });
-            for (ordinal, own) in found?.into_iter().flatten() {
-                some.add(ordinal, own);
-                some.shrink(memory_bytes);
+    /// The pieces of a road on the ground that its wanted segments make, those that follow each other together.
+    fn pieces(&self, is_wanted: impl Fn([LatticePoint; 2]) -> bool) -> Vec<Self> {
+        let wanted: Vec<bool> = self.segments().map(is_wanted).collect();
+        let mut pieces = Vec::new();
+        let mut first = 0;
+        for run in wanted.chunk_by(PartialEq::eq) {
+            let last = first + run.len();
+            if run[0] {
+                let of_run = |&(index, id): &(u32, i64)| {
+                    let at = (index as usize).checked_sub(first)?;
+                    (at <= run.len()).then_some((at as u32, id))
+                };
+                pieces.push(Self {
+                    points: self.points[first..=last].to_vec(),
+                    nodes: self.nodes.iter().filter_map(of_run).collect(),
+                    highway: self.highway.clone(),
+                    segments_um: Vec::new(),
+                    same_places: Vec::new(),
+                    ..*self
+                });
             }
+            first = last;
         }
-        for (ordinal, found) in some.roads {
-            for mut road in joined(ordinal, found) {
-                road.same_places = same_places.take().unwrap_or_default();
-                blocks.push(road)?;
-            }
-        }
-        next = some.rest;
+        pieces
     }
-    blocks.finish()
 }
 
-/// Roads in their order, as many as have room.
-#[derive(Default)]
-struct SomeRoads {
-    roads: BTreeMap<u32, Found>,
-    segments: u64,
-    /// The first road that has no room.
-    rest: Option<u32>,
+/// Where among all roads a road comes: those of a way stay in their order.
+type RoadPlace = (i64, u64);
+
+/// Takes all roads of the extract in any order, and keeps those near bridges and tunnels.
+pub(crate) struct NearRoadsWriter<'a> {
+    count: u64,
+    /// All on bridges and in tunnels; what is known of them is in memory later, too.
+    of_spans: Vec<(RoadPlace, NearRoad)>,
+    others: PartsByTile<'a, RoadPlace>,
+    same_places: Vec<[i64; 2]>,
 }
 
-impl SomeRoads {
-    fn add(&mut self, ordinal: u32, own: Found) {
-        if self.rest.is_some_and(|rest| ordinal >= rest) {
-            return;
+impl<'a> NearRoadsWriter<'a> {
+    pub(crate) fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+        let others = PartsByTile::new(scratch, memory_bytes);
+        Self { count: 0, of_spans: Vec::new(), others, same_places: Vec::new() }
+    }
+
+    pub(crate) fn push(&mut self, mut road: NearRoad) -> Result<(), BuildError> {
+        self.same_places.append(&mut road.same_places);
+        let place = (road.way_id, self.count);
+        self.count += 1;
+        if road.is_span() {
+            self.of_spans.push((place, road));
+            return Ok(());
         }
-        self.segments += own.segments.len() as u64;
-        match self.roads.get_mut(&ordinal) {
-            Some(known) => known.segments.extend(own.segments),
-            None => drop(self.roads.insert(ordinal, own)),
+        self.others.push(TileId::ROOT, place, part_bytes(&road))
+    }
+
+    /// Counts bridges and tunnels of more ways as reached.
+    pub(crate) fn reach(&mut self, is_reached: impl Fn(i64) -> bool) {
+        for (_, road) in &mut self.of_spans {
+            road.is_reached |= is_reached(road.way_id);
         }
     }
 
-    /// Leaves out the last roads until there is room for the others; one has room always.
-    fn shrink(&mut self, memory_bytes: u64) {
-        let bytes =
-            |segments: u64, roads: usize| segments * SEGMENT_BYTES + roads as u64 * ROAD_BYTES;
-        while bytes(self.segments, self.roads.len()) > memory_bytes && self.roads.len() > 1 {
-            let Some((ordinal, last)) = self.roads.pop_last() else { return };
-            self.segments -= last.segments.len() as u64;
-            self.rest = Some(ordinal);
-        }
+    /// Keeps what lies near bridges and tunnels that reach what was asked for, or that others depend on which do. What lies within `reach` lattice steps of
+    /// a node of theirs is near.
+    pub(crate) fn finish(
+        self,
+        (store, observer): (&dyn Artifacts, &dyn Observer),
+        reach: f64,
+    ) -> Result<(), BuildError> {
+        let Self { mut of_spans, others, same_places, .. } = self;
+        of_spans.sort_unstable_by_key(|(place, _)| *place);
+        let of_spans = needed(of_spans, &same_places);
+        let segments = of_spans.iter().flat_map(|(_, road)| road.segments());
+        let nodes = of_spans
+            .iter()
+            .flat_map(|(_, road)| road.nodes.iter().map(|&(index, _)| road.points[index as usize]));
+        let near = Vicinity::new(segments, nodes, reach);
+        let mut blocks = BlocksWriter { store, block: Vec::new(), number: 0, same_places };
+        let mut of_spans = of_spans.into_iter().peekable();
+        let damaged = || artifacts::damaged(Kind::SpanRoads.item(0), &"it makes no sense");
+        others.for_each_tile(
+            observer,
+            |(): &mut (), _, place, bytes| {
+                let other: NearRoad = part_of_bytes(&bytes).ok_or_else(damaged)?;
+                while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
+                    blocks.push(road)?;
+                }
+                let pieces = other.pieces(|ends| near.may_meet(ends));
+                pieces.into_iter().try_for_each(|piece| blocks.push(piece))
+            },
+            |_, ()| Ok(()),
+        )?;
+        of_spans.try_for_each(|(_, road)| blocks.push(road))?;
+        blocks.put()
     }
+}
+
+/// The bridges and tunnels that reach what was asked for, and those on which they may depend.
+fn needed(all: Vec<(RoadPlace, NearRoad)>, same_places: &[[i64; 2]]) -> Vec<(RoadPlace, NearRoad)> {
+    if all.iter().all(|(_, road)| road.is_reached) {
+        return all;
+    }
+    let lines: Vec<SpanLine<'_>> =
+        all.iter().map(|(_, road)| SpanLine { points: &road.points, nodes: &road.nodes }).collect();
+    let groups = connected(&lines, same_places);
+    let mut is_needed = vec![false; all.len()];
+    for ((_, road), &group) in all.iter().zip(&groups) {
+        is_needed[group] |= road.is_reached;
+    }
+    let needed = all.into_iter().zip(groups).filter(|(_, group)| is_needed[*group]);
+    needed.map(|(road, _)| road).collect()
 }
 
 /// Puts roads into the store, block by block.
@@ -159,11 +222,14 @@ struct BlocksWriter<'a> {
     store: &'a dyn Artifacts,
     block: Vec<NearRoad>,
     number: u64,
+    /// Not told yet.
+    same_places: Vec<[i64; 2]>,
 }
 
 impl BlocksWriter<'_> {
     fn push(&mut self, road: NearRoad) -> Result<(), BuildError> {
-        self.block.push(road);
+        let same_places = std::mem::take(&mut self.same_places);
+        self.block.push(NearRoad { same_places, ..road });
         if self.block.len() == BLOCK_ROADS { self.put() } else { Ok(()) }
     }
 
@@ -172,10 +238,6 @@ impl BlocksWriter<'_> {
         self.number += 1;
         self.block.clear();
         Ok(())
-    }
-
-    fn finish(mut self) -> Result<(), BuildError> {
-        self.put()
     }
 }
 
@@ -195,104 +257,6 @@ pub(crate) fn for_each(
         }
     }
     Ok(())
-}
-
-/// What a finest tile has of bridges, tunnels and roads near them, from a road on.
-fn in_tile(
-    (tile, first): (u64, u32),
-    store: &dyn Artifacts,
-    reach: f64,
-) -> Result<Vec<(u32, Found)>, BuildError> {
-    let id = artifacts::tile_of(Kind::RoadPieces.item(tile))?;
-    let pieces = TilePieces::load(store, id)?;
-    let (of_spans, others): (Vec<_>, Vec<_>) = pieces
-        .roads
-        .into_iter()
-        .partition(|(_, road)| road.attributes.structure != Structure::Ground);
-    let of_spans: Vec<(u32, Found)> =
-        of_spans.into_iter().map(|(ordinal, road)| (ordinal, Found::of(road, |_| true))).collect();
-    let segments = || of_spans.iter().flat_map(|(_, found)| &found.segments);
-    let nodes = segments().flat_map(|segment| {
-        let both = segment.ends.into_iter().zip(segment.nodes);
-        both.filter_map(|(at, node)| node.map(|_| at))
-    });
-    let near = Vicinity::new(segments().map(|segment| segment.ends), nodes, reach);
-    let near_ones =
-        others.into_iter().filter(|(ordinal, _)| *ordinal >= first).map(|(ordinal, road)| {
-            let found = Found::of(road, |ends| near.may_meet(ends));
-            (ordinal, found)
-        });
-    let near_ones: Vec<(u32, Found)> =
-        near_ones.filter(|(_, found)| !found.segments.is_empty()).collect();
-    let all = of_spans.into_iter().chain(near_ones);
-    Ok(all.filter(|(ordinal, _)| *ordinal >= first).collect())
-}
-
-impl Found {
-    /// The segments of a road that are wanted.
-    fn of(mut road: RoadPiece, is_wanted: impl Fn([LatticePoint; 2]) -> bool) -> Self {
-        let mut segments = Vec::new();
-        for run in std::mem::take(&mut road.runs) {
-            let mut from_um = run.from_um;
-            let mut nodes = run.nodes.iter().peekable();
-            let mut node_at = |index: usize| {
-                while nodes.next_if(|(at, _)| (*at as usize) < index).is_some() {}
-                nodes.peek().filter(|(at, _)| *at as usize == index).map(|(_, id)| *id)
-            };
-            for (index, (&ends, &length_um)) in
-                run.line.points().array_windows().zip(&run.segments_um).enumerate()
-            {
-                let to_um = from_um + length_um;
-                let nodes = [node_at(index), node_at(index + 1)];
-                if is_wanted(ends) {
-                    segments.push(Segment { along_um: [from_um, to_um], ends, nodes });
-                }
-                from_um = to_um;
-            }
-        }
-        Self {
-            way_id: road.way_id,
-            class: road.class,
-            structure: road.attributes.structure,
-            layer: road.attributes.layer,
-            highway: road.attributes.highway.clone(),
-            segments,
-        }
-    }
-}
-
-/// The pieces of a road that its segments make, those that follow each other together.
-fn joined(ordinal: u32, mut found: Found) -> Vec<NearRoad> {
-    found.segments.sort_unstable_by_key(|segment| segment.along_um);
-    found.segments.dedup_by_key(|segment| segment.along_um);
-    let mut pieces: Vec<NearRoad> = Vec::new();
-    let mut before = None;
-    for segment in &found.segments {
-        let ([from_um, to_um], [from, to]) = (segment.along_um, segment.ends);
-        if before != Some((from_um, from)) {
-            pieces.push(NearRoad {
-                ordinal,
-                way_id: found.way_id,
-                class: found.class,
-                structure: found.structure as u8,
-                layer: found.layer,
-                highway: found.highway.clone(),
-                from_um,
-                points: vec![from],
-                segments_um: Vec::new(),
-                nodes: segment.nodes[0].map(|id| (0, id)).into_iter().collect(),
-                same_places: Vec::new(),
-            });
-        }
-        if let Some(piece) = pieces.last_mut() {
-            let index = piece.points.len() as u32;
-            piece.nodes.extend(segment.nodes[1].map(|id| (index, id)));
-            piece.points.push(to);
-            piece.segments_um.push(to_um - from_um);
-        }
-        before = Some((to_um, to));
-    }
-    pieces
 }
 
 #[cfg(test)]

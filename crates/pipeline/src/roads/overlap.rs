@@ -24,11 +24,7 @@ pub(crate) fn check_overlap(
         return Ok(());
     }
     let roads_deg = bounds_deg(roads_m, projection).map_err(BuildError::Project)?;
-    Err(BuildError::NoOverlap {
-        osm: osm.to_vec(),
-        roads_deg: roads_deg.to_array(),
-        heights_deg: data_deg.to_array(),
-    })
+    Err(BuildError::NoOverlap { osm: osm.to_vec(), roads_deg, heights_deg: *data_deg })
 }
 
 /// A rectangle of the working CRS by its corners in degrees, where it is turned: two of them would not do.

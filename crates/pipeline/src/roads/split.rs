@@ -5,16 +5,16 @@ use std::{borrow::Cow, sync::Arc};
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
-use corniche_tileset::pmtiles_order;
 
 use super::{
+    near_spans::NearRoad,
     pieces::{RoadPiece, Run},
     totals::RoadLength,
 };
 use crate::layers::fixed_points::road_of_part;
 use crate::levels::Levels;
 use crate::tiles_near::for_each_tile_near;
-use crate::true_lengths::{TrueLengths, pieces_um, starts_um};
+use crate::true_lengths::{TrueLengths, starts_um};
 
 /// What splitting needs.
 pub(crate) struct RoadSplitting<'a> {
@@ -39,20 +39,25 @@ pub(crate) struct SplitRoad {
     pub(crate) bounds: Option<LatticeBounds>,
     /// The pieces with their tiles, on all levels.
     pub(crate) pieces: Vec<(TileId, RoadPiece)>,
-    /// The finest of these tiles, by their place in the package, if it is a bridge or a tunnel that becomes a span.
-    pub(crate) span_tiles: Vec<u64>,
-    /// Pairs of its nodes that lie at one place, where spans are wanted.
-    pub(crate) same_places: Vec<[i64; 2]>,
+    /// Where spans are wanted, what they may need of it.
+    pub(crate) near: Option<NearRoad>,
 }
 
 impl RoadSplitting<'_> {
     /// The pieces of a road for every level that shows its class, and its true lengths.
-    pub(crate) fn split(&self, road: &Road) -> SplitRoad {
-        let segments_um = self.lengths.segments_um(&road.line);
+    pub(crate) fn split(&self, ordinal: u32, road: &Road) -> SplitRoad {
+        let is_span = self.spans && road.attributes.structure != Structure::Ground;
+        let segments_um = if is_span {
+            // A deck of bounds is that without: no table of their extent comes in.
+            self.lengths.projected_segments_um(&road.line)
+        } else {
+            self.lengths.segments_um(&road.line)
+        };
         let length_um: u64 = segments_um.iter().sum();
+        let mut near = self.spans.then(|| NearRoad::of(road, Some(ordinal), &segments_um, false));
         let parts = self.parts(road, segments_um);
         let length_in = |bounds: &LatticeBounds| -> u64 {
-            parts.iter().map(|part| part.length_in_um(bounds)).sum()
+            parts.iter().map(|part| part.length_in_um(bounds, self.lengths)).sum()
         };
         let clip = self.clip.as_ref();
         let all_um = || parts.iter().flat_map(|part| &part.segments_um).sum();
@@ -69,6 +74,9 @@ impl RoadSplitting<'_> {
             let on_nodes_um = length_in(&clip.map_or(*nodes, |clip| clip.intersection(nodes)));
             inside_um.saturating_sub(on_nodes_um)
         };
+        if let Some(near) = &mut near {
+            near.is_reached = inside_um > 0;
+        }
         let attributes = Arc::new(road.attributes.clone());
         let mut pieces = Vec::new();
         for level in self.levels.numbers() {
@@ -76,14 +84,11 @@ impl RoadSplitting<'_> {
                 self.split_level(&parts, &attributes, level, &mut pieces);
             }
         }
-        let finest = self.levels.frame().max_level();
-        let is_span = self.spans && road.attributes.structure != Structure::Ground;
-        let of_spans = pieces.iter().filter(|(id, _)| is_span && id.z() == finest);
         SplitRoad {
-            span_tiles: of_spans.map(|(id, _)| pmtiles_order(*id)).collect(),
-            same_places: if self.spans { road.same_places.clone() } else { Vec::new() },
+            near,
             length: RoadLength {
                 way_id: road.way_id,
+                structure: road.attributes.structure,
                 length_um,
                 outside_um,
                 padding_um,
@@ -92,6 +97,20 @@ impl RoadSplitting<'_> {
             class: road.class,
             bounds,
             pieces,
+        }
+    }
+
+    /// Whether a road reaches the data, and what was asked of it.
+    pub(crate) fn reaches(&self, road: &Road) -> bool {
+        let data = self.clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds));
+        let is_inside = |line: &Polyline| {
+            !corniche_drape::clip_parts(line, &data, OwnedBorders::ALL).is_empty()
+        };
+        match self.polygon {
+            None => is_inside(&road.line),
+            Some(region) => corniche_drape::clip_region(&road.line, region)
+                .iter()
+                .any(|part| is_inside(&part.line)),
         }
     }
 
@@ -104,7 +123,10 @@ impl RoadSplitting<'_> {
         if parts.first().is_some_and(|part| part.line == road.line) {
             return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
         }
-        parts.into_iter().map(|part| RoadPart::cut(road, part, &segments_um)).collect()
+        parts
+            .into_iter()
+            .map(|part| RoadPart::cut(road, part, &segments_um, self.lengths))
+            .collect()
     }
 
     /// The pieces of one level.
@@ -183,8 +205,8 @@ struct RoadPart<'r> {
 
 impl RoadPart<'_> {
     /// What was cut out of a road, whose segments have these lengths.
-    fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
-        let pieces: Vec<[u64; 2]> = pieces_um(&road.line, &part, segments_um).collect();
+    fn cut(road: &Road, part: ClippedPart, segments_um: &[u64], lengths: &TrueLengths<'_>) -> Self {
+        let pieces: Vec<[u64; 2]> = lengths.pieces_um(&road.line, &part, segments_um).collect();
         let before_um: u64 =
             part.segments.first().map_or(0, |&first| segments_um[..first].iter().sum());
         Self {
@@ -194,11 +216,11 @@ impl RoadPart<'_> {
         }
     }
 
-    fn length_in_um(&self, bounds: &LatticeBounds) -> u64 {
+    fn length_in_um(&self, bounds: &LatticeBounds, lengths: &TrueLengths<'_>) -> u64 {
         let line = &self.road.line;
         corniche_drape::clip_parts(line, bounds, OwnedBorders::ALL)
             .iter()
-            .flat_map(|part| pieces_um(line, part, &self.segments_um))
+            .flat_map(|part| lengths.pieces_um(line, part, &self.segments_um))
             .map(|[from, to]| to - from)
             .sum()
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_drape::Neighbours;
 use corniche_geom::{Bounds, CoordinateTable, GridFrame, HeightGrid, NodeIndex, TILE_CELLS};
-use corniche_roads::{ClassFilter, FrcTable, RoadAttributes};
+use corniche_roads::{ClassFilter, FrcTable, MetNodes, RoadAttributes};
 use corniche_testing::FlatProjection;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad};
 use corniche_tin::{Placement, Surface, TinSpec};
@@ -17,7 +17,6 @@ use crate::{
         lay::{ClassSums, Laid, RoadFate, TileToLayOn, lost_pieces},
         pieces::TilePieces,
     },
-    true_lengths::gaps_um,
 };
 
 /// A package's frame and settings.
@@ -96,9 +95,10 @@ fn lay_whole(on: &mut OnTile, road: &Road, ordinal: u32, world: &World, id: Tile
     for part in corniche_drape::clip_parts(&line, &bounds, owned) {
         let draped = corniche_drape::drape(&part.line, &surface);
         if is_finest {
-            let pieces: Vec<[u64; 2]> = pieces_um(&line, &part, &segments_um).collect();
+            let lengths = world.lengths();
+            let pieces: Vec<[u64; 2]> = lengths.pieces_um(&line, &part, &segments_um).collect();
             let all_um: u64 = pieces.iter().map(|[from, to]| to - from).sum();
-            let void_um = gaps_um(&pieces, &draped.gaps);
+            let void_um = lengths.gaps_um(&part, &pieces, &draped.gaps);
             fate.void_um += void_um;
             fate.kept_um += all_um - void_um;
             lost.void_um += all_um;
@@ -225,6 +225,7 @@ impl World {
             fixed: vec![0, last / 2, last],
             node_ids: Vec::new(),
             same_places: Vec::new(),
+            met: MetNodes::default(),
         }
     }
 }
@@ -241,7 +242,7 @@ proptest! {
             RoadSplitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, node_bounds: world.data_bounds, clip: None, polygon: None, spans: false };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
-            for (id, piece) in splitting.split(road).pieces {
+            for (id, piece) in splitting.split(0, road).pieces {
                 by_tile.entry(id).or_default().roads.push((ordinal, piece));
             }
         }
@@ -256,7 +257,7 @@ proptest! {
                 continue;
             }
             let (surface, owned) = (world.surface(id), world.owned(id));
-            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None, spans: false }, &world.levels);
+            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None, spans: false, lengths: &lengths }, &world.levels);
             let bounds = world.levels.frame().tile_lattice_bounds(id);
             let is_finest = id.z() == world.levels.frame().max_level();
             let found = OnTile {
@@ -265,7 +266,7 @@ proptest! {
                 attributes: laid.attributes,
                 fates: laid.fates,
                 classes: laid.classes,
-                lost: if is_finest { lost_pieces(&pieces, &bounds, owned, None) } else { Vec::new() },
+                lost: if is_finest { lost_pieces(&pieces, &bounds, owned, None, &lengths) } else { Vec::new() },
             };
             let mut wanted = OnTile::default();
             for (ordinal, road) in (0..).zip(&roads) {
@@ -330,6 +331,7 @@ impl Large {
             fixed: vec![0, last],
             node_ids: Vec::new(),
             same_places: Vec::new(),
+            met: MetNodes::default(),
         };
         let lengths = self.lengths();
         RoadSplitting {
@@ -341,7 +343,7 @@ impl Large {
             polygon: None,
             spans: false,
         }
-        .split(&road)
+        .split(0, &road)
     }
 }
 

@@ -4,6 +4,7 @@ use std::{cmp::Reverse, collections::BTreeMap};
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
+use corniche_roads::Structure;
 use corniche_store::Artifacts;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +21,8 @@ pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct RoadLength {
     pub(crate) way_id: i64,
+    /// What carries it.
+    pub(crate) structure: Structure,
     /// The length of the whole road, micrometres.
     pub(crate) length_um: u64,
     /// How much of it lies outside the tiles of the data's rectangle, measured by itself.

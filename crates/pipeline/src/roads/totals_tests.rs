@@ -9,6 +9,7 @@ fn lengths_come_back_block_by_block() {
     let store = MemoryStore::default();
     let length = |k: u64| RoadLength {
         way_id: -(k as i64),
+        structure: Structure::ALL[k as usize % 3],
         length_um: 3 * k,
         outside_um: k,
         padding_um: k / 3,

@@ -1,21 +1,16 @@
 //! Runs of a bridge of 400 m over ground of any shape.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::sync::Arc;
 
-use corniche_geom::{
-    Bounds, CoordinateTable, GridFrame, LatticeBounds, NodeIndex, Polyline, TileId,
-};
-use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_store::{Artifacts, MemoryStore};
+use corniche_geom::{GridFrame, NodeIndex, Polyline, TileId};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
+use corniche_store::{MemoryScratch, MemoryStore};
 use corniche_testing::FlatProjection;
 
 use super::*;
 use crate::{
-    artifacts::Kind,
-    roads::{
-        near_spans,
-        pieces::{RoadPiece, Run, TilePiecesWriter},
-    },
+    Silent,
+    roads::near_spans::{NearRoad, NearRoadsWriter},
     spans::span_network::SpanInputs,
 };
 
@@ -34,50 +29,38 @@ impl World {
         let frame = GridFrame::new([0.0, 0.0], 8.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
         let metre = (1.0 / frame.lattice_step_m()).round() as i64;
         let point = |metres: i64| LatticePoint::new(metres * metre, 1000 * metre);
-        let piece = |way_id, structure, ends: [(i64, i64); 2]| RoadPiece {
-            way_id,
-            class: FunctionalRoadClass::new(3).unwrap(),
-            attributes: Arc::new(RoadAttributes { structure, ..RoadAttributes::default() }),
-            source_points: 0,
-            simplified_points: 0,
-            runs: vec![Run {
-                line: Polyline::new(ends.map(|(metres, _)| point(metres)).to_vec()).unwrap(),
-                segments_um: vec![(ends[1].0 - ends[0].0) as u64 * 1_000_000],
-                from_um: 0,
-                nodes: vec![(0, ends[0].1), (1, ends[1].1)],
-            }],
-        };
-        let roads = [
-            piece(1, Structure::Ground, [(500, 1), (600, 2)]),
-            piece(2, Structure::Bridge, [(600, 2), (1000, 3)]),
-            piece(3, Structure::Ground, [(1000, 3), (1100, 4)]),
-        ];
         let store = MemoryStore::default();
-        let mut writer = TilePiecesWriter::default();
-        for (ordinal, road) in (0..).zip(&roads) {
-            writer.push(ordinal, &road.to_bytes());
+        let scratch = MemoryScratch::default();
+        let mut near = NearRoadsWriter::new(&scratch, 1 << 20);
+        for (ordinal, (way_id, structure, ends)) in (0..).zip([
+            (1, Structure::Ground, [(500, 1), (600, 2)]),
+            (2, Structure::Bridge, [(600, 2), (1000, 3)]),
+            (3, Structure::Ground, [(1000, 3), (1100, 4)]),
+        ]) {
+            let road = Road {
+                way_id,
+                class: FunctionalRoadClass::new(3).unwrap(),
+                attributes: RoadAttributes { structure, ..RoadAttributes::default() },
+                line: Polyline::new(ends.map(|(metres, _)| point(metres)).to_vec()).unwrap(),
+                fixed: vec![0, 1],
+                node_ids: ends.map(|(_, id)| Some(id)).to_vec(),
+                same_places: Vec::new(),
+                met: MetNodes::default(),
+            };
+            let length_um = (ends[1].0 - ends[0].0) as u64 * 1_000_000;
+            near.push(NearRoad::of(&road, Some(ordinal), &[length_um], true)).unwrap();
         }
-        let key = Kind::RoadPieces.of_tile(TileId::ROOT);
-        store.put(key, &writer.into_bytes()).unwrap();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        near_spans::keep((&BTreeSet::from([key.item]), &[]), &store, 100.0, (&pool, u64::MAX))
-            .unwrap();
+        near.finish((&store, &Silent), 100.0).unwrap();
         let projection = FlatProjection::new([1e5; 2]);
-        let bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 2048.0, max_y: 2048.0 };
-        let coordinates = CoordinateTable::sample(&projection, bounds, 0.01).unwrap();
-        let within: LatticeBounds = frame.tile_lattice_bounds(TileId::ROOT);
         let inputs = SpanInputs {
-            osm: &[],
             store: &store,
             frame: &frame,
-            coordinates: &coordinates,
-            within,
+            projection: &projection,
+            whole: frame.tile_lattice_bounds(TileId::ROOT),
         };
         let network = SpanNetwork::load(&inputs).unwrap();
-        let places = network.places();
-        let along: Vec<(u32, u64)> =
-            places.iter().map(|place| place.map(|at| (at.ordinal, at.along_um)).unwrap()).collect();
-        assert_eq!(along, [(1, 0), (1, 400_000_000)]);
+        let places: Vec<LatticePoint> = network.places().iter().map(|place| place.at).collect();
+        assert_eq!(places, [point(600), point(1000)]);
         let grounds_m = [Some(100.0), Some(140.0)];
         let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
         Self { network, decks, metre }

@@ -10,12 +10,15 @@ use std::{
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_spans::{Decks, SpanKind, SpanProblem, SpanReason};
-use corniche_tileset::{SpanRun, SpansSection, encode_spans, pmtiles_order};
+use corniche_tileset::{
+    OuterGround, SpanRun, SpansSection, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
+};
 use corniche_tin::{Placement, Surface, Tin};
 
 use super::{
+    outer_ground::{AskedPlace, OuterGrounds},
     runs::runs_of,
-    span_network::{OnRoad, SpanInputs, SpanNetwork},
+    span_network::{SpanInputs, SpanNetwork},
     totals::SpanTotals,
 };
 use crate::{
@@ -26,9 +29,6 @@ use crate::{
     workers,
 };
 
-/// Ends of lines are where they are to within this, micrometres: a few steps of the lattice.
-const NEAR_END_UM: u64 = 5_000;
-
 /// Where the ground is on the wrong side of a bridge or a tunnel by more than this on the finest level, it is told, metres.
 const MOST_WITHIN_M: f64 = 1.0;
 
@@ -36,8 +36,10 @@ const MOST_WITHIN_M: f64 = 1.0;
 pub(crate) struct SpanSolving<'a> {
     pub(crate) of: SpanInputs<'a>,
     pub(crate) quantum_m: f64,
-    /// The TIN of a coarse tile; `None` where it has no ground.
+    /// The TIN of a tile; `None` where it has no ground.
     pub(crate) tin: &'a TinOfTile<'a>,
+    /// The ground where the package has none, or not that of whole tiles.
+    pub(crate) outer: &'a dyn OuterGrounds,
     pub(crate) threads: usize,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -58,19 +60,44 @@ impl SpanSolving<'_> {
         let all = by_level.values().map(Vec::len).sum::<usize>();
         observer.begin(Stage::Spans, Some(all as u64));
         let finest = frame.max_level();
-        let grounds_m = self.finest_grounds(
-            &network.places(),
-            by_level.get(&finest).map_or(&[][..], Vec::as_slice),
-        )?;
+        let places = network.places();
+        let needed: Vec<usize> =
+            (0..places.len()).filter(|&index| places[index].span.is_some()).collect();
+        let points: Vec<LatticePoint> = needed.iter().map(|&index| places[index].at).collect();
+        let own_m = self.grounds_of(finest, &points)?;
+        let asked: Vec<AskedPlace> = needed
+            .iter()
+            .zip(&own_m)
+            .map(|(&index, own_m)| AskedPlace {
+                at: places[index].at,
+                has_own: own_m.is_some(),
+                span: places[index].span.unwrap_or_default(),
+            })
+            .collect();
+        let outer_m = self.outer.heights_m(&network, &asked)?;
+        let mut grounds_m = vec![None; places.len()];
+        for ((&index, &own_m), &outer_m) in needed.iter().zip(&own_m).zip(&outer_m) {
+            grounds_m[index] = outer_m.or(own_m);
+        }
         let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
-        let joints = network.joints();
+        // Of the joints, which come first, those that the package has ground at have that of the level, too.
+        let joints = network.spans.joints().len();
+        let joints = needed.partition_point(|&index| index < joints);
+        let on_level = |level: u8| -> Result<Vec<Option<f64>>, BuildError> {
+            let mut of_level_m = vec![None; network.spans.joints().len()];
+            let own_m = self.grounds_of(level, &points[..joints])?;
+            for ((&index, own_m), outer_m) in needed.iter().zip(own_m).zip(&outer_m) {
+                of_level_m[index] = own_m.or(*outer_m);
+            }
+            Ok(of_level_m)
+        };
         let mut within: BTreeSet<SpanProblem> = BTreeSet::new();
         for (level, tiles) in by_level {
             let of_level;
             let decks = if level == finest {
                 &decks
             } else {
-                of_level = decks.on(&self.grounds_of(level, &joints)?);
+                of_level = decks.on(&on_level(level)?);
                 &of_level
             };
             workers::in_order_unless_cancelled(
@@ -89,43 +116,12 @@ impl SpanSolving<'_> {
             )?;
         }
         observer.end(Stage::Spans);
-        Ok(SpanTotals::of(&decks, within))
-    }
-
-    /// The ground of the finest level at places along bridges and tunnels, whose lines there lie in `tiles`.
-    fn finest_grounds(
-        &self,
-        places: &[Option<OnRoad>],
-        tiles: &[TileId],
-    ) -> Result<Vec<Option<f64>>, BuildError> {
-        let mut wanted: Vec<(OnRoad, usize)> = Vec::with_capacity(places.len());
-        wanted.extend(
-            places.iter().enumerate().filter_map(|(index, place)| Some(((*place)?, index))),
-        );
-        wanted.sort_unstable();
-        let mut grounds_m = vec![None; places.len()];
-        for &id in tiles {
-            self.observer.check()?;
-            for line in ground_lines::get(self.of.store, id)? {
-                let ordinal = line.ordinal;
-                let [Some(first), Some(last)] = [line.vertices.first(), line.vertices.last()]
-                else {
-                    continue;
-                };
-                // Lengths are rounded: what is as near as this to an end is at it.
-                let [from_um, to_um] = [first.along_um, last.along_um];
-                let begin = OnRoad { ordinal, along_um: from_um.saturating_sub(NEAR_END_UM) };
-                let own = &wanted[wanted.partition_point(|(place, _)| *place < begin)..];
-                for &(place, index) in own {
-                    if place.ordinal != ordinal || place.along_um > to_um + NEAR_END_UM {
-                        break;
-                    }
-                    let height_m = line.height_m(place.along_um.clamp(from_um, to_um));
-                    grounds_m[index] = grounds_m[index].or(height_m);
-                }
-            }
-        }
-        Ok(grounds_m)
+        let outer = asked.iter().zip(outer_m);
+        let outer =
+            outer.filter_map(|(place, height_m)| Some(OuterGround::new(place.at, height_m?)));
+        let is_without = |&&index: &&usize| grounds_m[index].is_none();
+        let without_ground = needed.iter().filter(is_without).count() as u64;
+        Ok(SpanTotals::of(&network, &decks, within, (outer.collect(), without_ground)))
     }
 
     /// The ground of a level at points of the lattice.
@@ -167,7 +163,7 @@ impl SpanSolving<'_> {
         })
     }
 
-    /// Keeps the runs of a tile. Returns which of its bridges and tunnels the ground has, not they.
+    /// Keeps the runs of a tile. Returns which of its bridges and tunnels the ground has, not they, and which have more points than a tile can hold.
     fn put_section(
         &self,
         (network, decks): (&SpanNetwork, &Decks),
@@ -192,9 +188,11 @@ impl SpanSolving<'_> {
                     SpanKind::Bridge => SpanReason::DeckInGround,
                     SpanKind::Tunnel => SpanReason::TunnelAboveGround,
                 };
-                within.push(SpanProblem { reason, way_id: line.way_id });
+                within.push(SpanProblem::of_way(reason, line.way_id));
             }
         }
+        let too_long = left_out(&mut runs);
+        within.extend(too_long.map(|way_id| SpanProblem::of_way(SpanReason::TooIntricate, way_id)));
         let points = runs.iter().map(|run| run.points.len() as u64).sum();
         let counts = [runs.len() as u64, points];
         let tile = (SectionLayer::Spans, pmtiles_order(id));
@@ -204,3 +202,28 @@ impl SpanSolving<'_> {
         Ok(within)
     }
 }
+
+/// Takes the runs of the ways with the most points away until readers accept what is left. Returns these ways.
+fn left_out(runs: &mut Vec<SpanRun>) -> impl Iterator<Item = i64> + use<> {
+    let mut of_ways: BTreeMap<i64, usize> = BTreeMap::new();
+    for run in runs.iter() {
+        *of_ways.entry(run.way_id).or_default() += run.points.len();
+    }
+    let mut all: Vec<(usize, i64)> =
+        of_ways.into_iter().map(|(way_id, points)| (points, way_id)).collect();
+    all.sort_unstable();
+    let mut points: usize = all.iter().map(|(points, _)| points).sum();
+    let mut left_out = BTreeSet::new();
+    while points > MAX_SPAN_POINTS
+        && let Some((own, way_id)) = all.pop()
+    {
+        points -= own;
+        left_out.insert(way_id);
+    }
+    runs.retain(|run| !left_out.contains(&run.way_id));
+    left_out.into_iter()
+}
+
+#[cfg(test)]
+#[path = "solving_tests.rs"]
+mod tests;

@@ -8,6 +8,7 @@ use crate::{
     context::Context,
     inputs::{InputKind, Inputs},
     plan::PhotoSource,
+    spans::totals::SpanTotals,
 };
 
 /// Hashes the inputs that are not hashed yet.
@@ -30,6 +31,13 @@ pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildEr
             what: format!("the hash of {}", inputs.name(index)),
             step: "hashes",
         })?);
+    }
+    // What spans need beyond the bounds was hashed when that was known.
+    let spans: Option<SpanTotals> = artifacts::get(context.store, Kind::SpanTotals.item(0))?;
+    for (index, record) in spans.into_iter().flat_map(|spans| spans.inputs) {
+        if let Some(own) = records.get_mut(index as usize) {
+            *own = record;
+        }
     }
     Inputs::in_order(&mut records);
     if let Some(terrain) = context.source.package() {

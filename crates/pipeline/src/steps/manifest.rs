@@ -9,6 +9,7 @@ use corniche_tileset::{
 
 use super::sums::TileSums;
 use crate::{
+    areas::extent::Outline,
     context::Context,
     heights::pyramid::HeightSums,
     layers::{
@@ -26,6 +27,8 @@ use crate::{
 pub(crate) struct Outcome<'a> {
     pub(crate) context: &'a Context<'a>,
     pub(crate) inputs: Vec<InputRecord>,
+    /// The outline of the elevation files, where they fill no rectangle.
+    pub(crate) outline: Option<Outline>,
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
     pub(crate) areas: Option<AreaTotals>,
@@ -72,6 +75,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
         clip: manifest_texts::clip(plan),
+        outline: outcome.outline.as_ref().map(manifest_texts::outline),
         resampling: plan.resampling_text.clone(),
         nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
@@ -192,8 +196,13 @@ fn lines(outcome: &Outcome<'_>, layer: ClassedLayer) -> Option<LinesRecord> {
 }
 
 fn spans(outcome: &Outcome<'_>) -> Option<SpansRecord> {
-    let counts = outcome.spans.as_ref()?.counts();
-    Some(SpansRecord { counts, levels: line_levels(outcome, SectionLayer::Spans) })
+    let (_, kept) = outcome.roads?;
+    let totals = outcome.spans.as_ref()?;
+    Some(SpansRecord {
+        counts: totals.counts(kept),
+        levels: line_levels(outcome, SectionLayer::Spans),
+        outer_grounds: totals.outer.clone(),
+    })
 }
 
 fn line_levels(outcome: &Outcome<'_>, layer: SectionLayer) -> Vec<LineLevelRecord> {

@@ -88,6 +88,7 @@ pub(crate) fn make(
     let manifest = manifest::of(&Outcome {
         context,
         inputs: hashes::records(context)?,
+        outline: context.data_outline()?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
         areas: LayerTotals::get(SectionLayer::Areas, context.store)?,

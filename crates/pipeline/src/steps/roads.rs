@@ -8,7 +8,6 @@ use crate::{
     context::Context,
     extract::partition::{ExtractInput, partition},
     roads::{overlap::check_overlap, totals::RoadTotals},
-    true_lengths::TrueLengths,
 };
 
 /// What is known of all roads, which must be there; `None` without an extract.
@@ -45,24 +44,27 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         return Ok(());
     }
     let pool = pool(context)?;
-    let projection = context.source.projection(context.grid)?;
     let frame = *context.frame();
+    let outline = context.data_outline()?;
     let input = ExtractInput {
         osm,
         settings: &context.settings.roads,
         areas: context.settings.areas.as_ref(),
         lines: &context.settings.lines,
         data: context.data(),
-        projection: &projection,
+        projection: context.projection,
         levels: context.levels,
-        lengths: &TrueLengths::new(frame, context.coordinates, &projection),
+        lengths: &context.lengths(),
         data_bounds: context.data().bounds(&frame),
         node_bounds: context.node_bounds(),
         clip: context.clip(),
+        bounds_deg: context.settings.terrain.plan.bounds_deg,
+        outline: outline.as_ref(),
+        area_deg: context.grid.area_deg(),
         polygon: context.polygon(),
         pool: &pool,
         memory_bytes: context.memory().sorting,
     };
     let totals = partition(&input, context.store, scratch, context.observer)?;
-    check_overlap(&totals, osm, &frame, &projection, context.grid)
+    check_overlap(&totals, osm, &frame, context.projection, context.grid)
 }

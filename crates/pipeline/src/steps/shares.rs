@@ -55,8 +55,9 @@ fn read(
         path,
         others,
         table: &context.settings.roads.table,
-        // Places on the lattice are the business of the step that makes roads.
+        // Places on the lattice and areas are the business of the step that makes roads.
         place: &|positions_deg| vec![None; positions_deg.len()],
+        ring_area_m2: &|_| 0.0,
         seam: None,
         node_ids: false,
         pool: &pool(context)?,

@@ -1,7 +1,7 @@
 //! What a merge does first: the heights of bridges and tunnels on each level, and their runs by tile.
 
-use corniche_geom::TileId;
-use corniche_tileset::{Sections, decode};
+use corniche_geom::{LatticePoint, TileId};
+use corniche_tileset::{OuterGround, Sections, decode};
 use corniche_tin::Tin;
 
 use crate::{
@@ -12,7 +12,13 @@ use crate::{
         SectionLayer,
         tile_section::{SectionOfTile, TileSection},
     },
-    spans::{solving::SpanSolving, span_network::SpanInputs, totals::SpanTotals},
+    spans::{
+        outer_ground::{OuterGrounds, WholeDem, whole_rectangle},
+        solving::SpanSolving,
+        span_network::SpanInputs,
+        totals::SpanTotals,
+    },
+    terrain::ground::GroundSource,
 };
 
 /// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
@@ -25,32 +31,45 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
     let kept: Option<SpanTotals> = artifacts::get(context.store, key)?;
     let is_kept = kept.is_some();
     let totals = kept.map_or_else(|| solve(context), Ok)?;
+    if let Some(terrain) = context.source.package().filter(|_| totals.without_ground > 0) {
+        context.observer.warning(&totals.told_without_ground(terrain.path()));
+    }
     if !is_kept {
         artifacts::put(context.store, key, &totals)?;
     }
-    for (reason, way_id) in totals.problems {
-        context.observer.defect(&Defect::Span { way_id, reason });
+    for (reason, way_id, node_id) in totals.problems {
+        context.observer.defect(&Defect::Span { way_id, node_id, reason });
     }
     Ok(())
 }
 
 fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
-    let data = context.node_bounds();
-    let inputs = SpanInputs {
-        osm: &context.settings.osm,
-        store: context.store,
-        frame: context.frame(),
-        coordinates: context.coordinates,
-        within: context.clip().map_or(data, |clip| clip.intersection(&data)),
+    let grid = context.grid;
+    let data = grid.clip.map_or(grid.data_bounds, |clip| clip.whole_data_bounds);
+    let whole = whole_rectangle(context.frame(), &data);
+    let projection = context.source.projection(grid)?;
+    let inputs =
+        SpanInputs { store: context.store, frame: context.frame(), projection: &projection, whole };
+    let (threads, observer) = (context.threads(), context.observer);
+    let quantum_m = context.levels.quantum_m();
+    let tin = |id| tin_of(context, id);
+    let solve = |outer: &dyn OuterGrounds| {
+        SpanSolving { of: inputs, quantum_m, tin: &tin, outer, threads, observer }.solve()
     };
-    let solving = SpanSolving {
-        of: inputs,
-        quantum_m: context.levels.quantum_m(),
-        tin: &|id| tin_of(context, id),
-        threads: context.threads(),
-        observer: context.observer,
-    };
-    solving.solve()
+    match context.source {
+        GroundSource::Package(terrain) => {
+            let recorded = terrain.manifest().spans.as_ref();
+            solve(&recorded.map_or(&[][..], |spans| &spans.outer_grounds))
+        }
+        GroundSource::Dem(dem) => {
+            let levels = context.levels;
+            let dem = WholeDem { dem, plan: grid, levels, whole, threads, observer };
+            let mut totals = solve(&dem)?;
+            let places: Vec<LatticePoint> = totals.outer.iter().map(OuterGround::at).collect();
+            totals.inputs = context.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
+            Ok(totals)
+        }
+    }
 }
 
 /// The TIN of a tile, out of its payload; `None` where it has no ground. TINs by themselves are only with the parts that made them.

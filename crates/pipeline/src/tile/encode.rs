@@ -52,7 +52,8 @@ pub(crate) fn with_ground(
         let surface = Surface::new(&meshed.tin, placement);
         let clip = context.clip();
         let spans = context.settings.roads.spans;
-        let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip, spans };
+        let lengths = &context.lengths();
+        let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip, spans, lengths };
         Laid::of_tile(&pieces, &on, levels)
     };
     let fates = std::mem::take(&mut laid.fates);
@@ -126,7 +127,7 @@ pub(crate) fn without_ground(
         return Ok(record);
     }
     let bounds = context.frame().tile_lattice_bounds(id);
-    record.fates = lost_pieces(&pieces, &bounds, owned()?, context.clip());
+    record.fates = lost_pieces(&pieces, &bounds, owned()?, context.clip(), &context.lengths());
     Ok(record)
 }
 

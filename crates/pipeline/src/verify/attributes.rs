@@ -9,7 +9,7 @@ use corniche_geom::TileId;
 use corniche_roads::RoadAttributes;
 use corniche_tileset::TilePayload;
 
-use super::checks::{CheckId, Findings};
+use super::checks::{CheckId, Findings, or_none};
 
 /// What one tile says of a way: 24 bytes, so that all ways of a country can be held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,8 @@ pub(crate) fn of_tile(
     for &(way_id, class) in &ways {
         findings.look(CheckId::Classes, least_class.is_some_and(|least| class <= least), || {
             format!(
-                "tile {id} has way {way_id} of class {class}, its level shows up to {least_class:?}"
+                "tile {id} has way {way_id} of class {class}, its level shows up to {}",
+                or_none(least_class)
             )
         });
     }
@@ -42,7 +43,11 @@ pub(crate) fn of_tile(
     findings.look(CheckId::Attributes, named == here, || {
         let missing = here.iter().find(|way| !named.contains(way));
         let needless = named.iter().find(|way| !here.contains(way));
-        format!("tile {id}: a way without attributes: {missing:?}; attributes without a way: {needless:?}")
+        format!(
+            "tile {id}: a way without attributes: {}; attributes without a way: {}",
+            or_none(missing),
+            or_none(needless)
+        )
     });
     let attributes: BTreeMap<i64, u64> =
         payload.attributes.iter().map(|record| (record.way_id, hash(&record.attributes))).collect();

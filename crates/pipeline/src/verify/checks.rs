@@ -77,6 +77,7 @@ checks! {
     Classes "roads.classes" Package "a way has one class, and a level has no road of a class that it does not show"
     Attributes "roads.attributes" Package "a way has one set of attributes, and exactly the ways of a tile have them there"
     Length "P6.length" Package "GEO roads of the finest level are as long as the manifest says"
+    Structures "P6.structures" Package "the GEO roads of the finest level on the ground, those of bridges and those of tunnels are each as long as the manifest says, together as long as all"
     RoadSums "P6.roads" Package "the roads read are the roads kept plus the roads lost, by reason"
     SampleSums "P6.samples" Package "the nodes are those with data, those that were filled and those that are void, together"
     LevelSums "levels.sums" Package "tiles, triangles, vertices, bytes and errors of each level are those of its tiles"
@@ -199,6 +200,11 @@ pub(crate) struct Findings {
     checks: Vec<Check>,
 }
 
+/// A value in an example of what is broken, where there may be none.
+pub(crate) fn or_none<T: ToString>(value: Option<T>) -> String {
+    value.map_or_else(|| "none".to_owned(), |value| value.to_string())
+}
+
 impl Findings {
     /// Counts one more thing that was looked at.
     pub(crate) fn look(&mut self, id: CheckId, holds: bool, example: impl FnOnce() -> String) {
@@ -240,6 +246,11 @@ impl IntoIterator for Findings {
     fn into_iter(self) -> Self::IntoIter {
         self.checks.into_iter()
     }
+}
+
+/// A record as examples of broken checks show it.
+pub(crate) fn as_json(record: &impl serde::Serialize) -> String {
+    serde_json::to_string(record).unwrap_or_else(|error| error.to_string())
 }
 
 #[cfg(test)]

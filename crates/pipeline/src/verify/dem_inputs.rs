@@ -6,12 +6,13 @@ use corniche_dem::{Dem, DemError, GridPlan, OpenOptions};
 use corniche_tileset::{InputRecord, Manifest};
 
 use super::{
-    checks::{Check, CheckId},
+    checks::{Check, CheckId, as_json},
     error::VerifyError,
     verify_settings::VerifySettings,
 };
 use crate::{
     Observer,
+    areas::data_outline::data_outline,
     inputs::{InputKind, Inputs},
     manifest_texts, settings_record,
 };
@@ -60,7 +61,14 @@ pub(crate) fn open(
     }
     checks.push(sizes);
     let plan = dem.plan(&terrain.plan)?;
-    checks.push(check_plan(&plan, manifest));
+    let mut check = check_plan(&plan, manifest);
+    let outline = data_outline(&dem, &plan, &dem.projection(&plan)?)?;
+    // Packages of before have none.
+    let recorded = manifest.data_outline();
+    check.look(recorded.is_none() || outline == recorded, || {
+        "the outline of the elevation files is not the one that is recorded".to_owned()
+    });
+    checks.push(check);
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
 }
 
@@ -92,26 +100,33 @@ fn are_same(said: &[InputRecord], found: &[InputRecord]) -> bool {
 fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     let mut check = Check::new(CheckId::DemPlan);
     let vertical = &manifest.vertical;
-    let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
-        let (said, found) = (format!("{said:?}"), format!("{found:?}"));
+    let mut same = |what: &str, said: String, found: String| {
         check.look(said == found, || {
             format!("{what} is recorded as {said}, but comes out as {found}")
         });
     };
-    same("frame", &manifest.frame, &plan.frame);
-    same("crs", &manifest.crs, &plan.crs);
-    same("metres_per_unit", &manifest.metres_per_unit, &plan.metres_per_unit);
-    same("point_scale", &manifest.point_scale, &plan.point_scale);
+    same("frame", as_json(&manifest.frame), as_json(&plan.frame));
+    same("crs", as_json(&manifest.crs), as_json(&plan.crs));
+    same("metres_per_unit", as_json(&manifest.metres_per_unit), as_json(&plan.metres_per_unit));
+    same("point_scale", as_json(&manifest.point_scale), as_json(&plan.point_scale));
     let scale = (plan.scale.center, plan.scale.least, plan.scale.largest);
     let said = (manifest.scale.center, manifest.scale.least, manifest.scale.largest);
-    same("scale", &said, &scale);
-    same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
-    same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
-    same("clip", &manifest.clip, &manifest_texts::clip(plan));
-    same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
-    same("resampling", &manifest.resampling, &plan.resampling_text);
-    same("vertical.datum", &vertical.datum.as_str(), &manifest_texts::datum(plan));
-    same("vertical.treatment", &vertical.treatment, &plan.vertical);
+    same("scale", as_json(&said), as_json(&scale));
+    same("data_bounds", as_json(&manifest.data_bounds), as_json(&plan.data_bounds));
+    same("wgs84_bounds", as_json(&manifest.wgs84_bounds), as_json(&plan.wgs84_bounds));
+    same("clip", as_json(&manifest.clip), as_json(&manifest_texts::clip(plan)));
+    same(
+        "nodes_are_samples",
+        as_json(&manifest.nodes_are_samples),
+        as_json(&plan.nodes_are_samples()),
+    );
+    same("resampling", as_json(&manifest.resampling), as_json(&plan.resampling_text));
+    same(
+        "vertical.datum",
+        as_json(&vertical.datum.as_str()),
+        as_json(&manifest_texts::datum(plan)),
+    );
+    same("vertical.treatment", as_json(&vertical.treatment), as_json(&plan.vertical));
     if manifest_texts::has_comparable_operations(manifest) {
         let found = manifest_texts::datum_operations(&plan.datum_operations);
         check.look(manifest.datum_operations == found, || {

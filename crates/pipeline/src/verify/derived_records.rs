@@ -2,7 +2,7 @@
 
 use corniche_tileset::Manifest;
 
-use super::checks::{CheckId, Findings};
+use super::checks::{CheckId, Findings, or_none};
 use crate::{Loss, inputs::InputKind, levels::Levels, manifest_texts, settings_record};
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
@@ -18,10 +18,11 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
 fn levels(manifest: &Manifest, findings: &mut Findings) {
     let Some(levels) = Levels::recorded(manifest) else {
         findings.look(CheckId::LevelRecords, false, || {
+            let cells = manifest.settings.class_max_cell_m.iter().map(|&cell_m| or_none(cell_m));
             format!(
-                "no classes can be shown by {:?} and a least class of {:?}",
-                manifest.settings.class_max_cell_m,
-                manifest.levels.last().and_then(|level| level.least_class)
+                "no classes can be shown by cells of {} m and a least class of {}",
+                cells.collect::<Vec<_>>().join(", "),
+                or_none(manifest.levels.last().and_then(|level| level.least_class))
             )
         });
         return;
@@ -48,7 +49,11 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
         });
         let least = levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number);
         findings.look(CheckId::LevelRecords, record.least_class == least, || {
-            format!("level {level} shows classes up to {:?}, not {least:?}", record.least_class)
+            format!(
+                "level {level} shows classes up to {}, not {}",
+                or_none(record.least_class),
+                or_none(least)
+            )
         });
     }
 }
@@ -68,7 +73,7 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
     let has_roads = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
     let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
     look(credits || !has_roads, &|| {
-        format!("no credit for the extract: {:?}", manifest.attribution)
+        format!("no credit for the extract: {}", manifest.attribution.join("; "))
     });
     let reasons = Loss::ALL.map(Loss::reason);
     for loss in &manifest.counts.roads_lost {

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use corniche_dem::listed_files;
+use corniche_store::LackOfRoom;
 use corniche_tileset::{OpenError, SourceError};
 use corniche_work::Interrupted;
 
@@ -22,8 +24,9 @@ pub enum VerifyError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(
-        "these are not the elevation files that the package was made from; give {expected:?}, the same files in the \
-         same order"
+        "these are not the elevation files that the package was made from; give {}, the same files in the \
+         same order",
+        listed_files(.expected)
     )]
     OtherDem { expected: Vec<String> },
     #[error(
@@ -40,7 +43,10 @@ pub enum VerifyError {
         "{path:?} changed while it was read; run the same command again when no program writes to the file"
     )]
     Changed { path: PathBuf },
-    #[error("{paths:?} is not what the package was made from; give {expected:?}, the same files")]
+    #[error(
+        "{} is not what the package was made from; give {}, the same files",
+        listed_files(.paths), listed_files(.expected)
+    )]
     OtherOsm { paths: Vec<PathBuf>, expected: Vec<String> },
     #[error(
         "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
@@ -59,7 +65,8 @@ pub enum VerifyError {
     #[error("the package was made without a polygon; leave --polygon out")]
     NoPolygon,
     #[error(
-        "{paths:?} are not the photos that the package was made from; give {expected:?}, the same files in the same order"
+        "{} are not the photos that the package was made from; give {}, the same files in the same order",
+        listed_files(.paths), listed_files(.expected)
     )]
     OtherPhotos { paths: Vec<PathBuf>, expected: Vec<String> },
     #[error("the package was made without photos; leave --photo out")]
@@ -78,7 +85,8 @@ pub enum VerifyError {
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: std::io::Error },
     #[error(
-        "intermediate results could not be kept in the folder for temporary files (disk full?)"
+        "intermediate results could not be kept in the folder for temporary files{}",
+        LackOfRoom::advice(LackOfRoom::of(.0))
     )]
     Work(#[source] std::io::Error),
     #[error("interrupted")]

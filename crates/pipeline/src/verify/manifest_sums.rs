@@ -8,6 +8,9 @@ use super::checks::{CheckId, Findings};
 /// a millimetre.
 pub(crate) const LENGTH_SHARE: f64 = 1e-5;
 
+/// And each line may differ by this, because both of its ends may be cuts, which are put on a lattice of a millimetre.
+pub(crate) const CUT_M: f64 = 0.002;
+
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let counts = &manifest.counts;
     let samples = &counts.samples;

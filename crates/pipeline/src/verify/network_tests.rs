@@ -1,7 +1,7 @@
 //! Parts of roads know the nodes of the whole road.
 
-use corniche_geom::Polyline;
-use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+use corniche_geom::{LatticePoint, Polyline};
+use corniche_roads::{FunctionalRoadClass, MetNodes, RoadAttributes};
 
 use super::*;
 
@@ -25,6 +25,7 @@ fn parts_of_a_road_keep_its_nodes_and_end_at_none() {
         fixed: vec![0, 1, 3, 6],
         node_ids: vec![Some(100), Some(101), Some(103), Some(106)],
         same_places: Vec::new(),
+        met: MetNodes::default(),
     };
     let data = LatticeBounds { min: at(0, -100), max: at(100, 100) };
     let parts: Vec<Road> = corniche_drape::clip_parts(&road.line, &data, OwnedBorders::ALL)

@@ -9,7 +9,9 @@ use super::{
     decoded_tiles::DecodedTiles,
     geo_against_sv, relief,
     report::GapFigures,
-    roads_of_parent, roads_on_tin, seams,
+    roads_of_parent,
+    roads_on_tin::{self, RoadLengths},
+    seams,
     tile_place::TilePlace,
     tile_sums::{Kept, TileSums},
     tin_against_parent::{self, Level},
@@ -21,7 +23,7 @@ pub(crate) struct Found {
     pub(crate) kept: Option<Kept>,
     pub(crate) findings: Findings,
     pub(crate) gaps: GapFigures,
-    pub(crate) length_m: f64,
+    pub(crate) lengths: RoadLengths,
     pub(crate) ways: Vec<(i64, WayFacts)>,
     pub(crate) sums: TileSums,
     pub(crate) sv_tail_bytes: u64,
@@ -34,7 +36,7 @@ impl Found {
             kept: None,
             findings: Findings::default(),
             gaps: GapFigures { level: id.z(), ..GapFigures::default() },
-            length_m: 0.0,
+            lengths: RoadLengths::default(),
             ways: Vec::new(),
             sums: TileSums::default(),
             sv_tail_bytes: 0,
@@ -71,7 +73,7 @@ pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Leve
     let ground = &*tiles.ground(id);
     let on_tin =
         roads_on_tin::verify_on_tin(payload, &terrain.tin, ground, manifest, &mut findings);
-    (found.gaps, found.length_m) = (on_tin.gaps, on_tin.length_m);
+    (found.gaps, found.lengths) = (on_tin.gaps, on_tin.lengths);
     check_vertices(id, terrain, quantum_m, &mut findings);
     let has_relief = payload.relief.is_some();
     let settings = &manifest.settings;

@@ -9,10 +9,12 @@ use corniche_store::Artifacts;
 use corniche_tileset::{InputRecord, Manifest, pmtiles_order};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
     error::VerifyError,
-    georeference, grid, osm_layers,
+    georeference,
+    given_files::GivenFiles,
+    grid, osm_layers,
     osm_tile::{Found, Laying, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
@@ -22,7 +24,7 @@ use crate::{
     BuildError, Observer, Silent, Stage,
     extract::partition::{ExtractInput, partition},
     heights::data_tiles::DataTiles,
-    inputs::{InputKind, Inputs, OtherInputs},
+    inputs::{InputKind, Inputs},
     levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
@@ -33,7 +35,7 @@ use crate::{
         totals::RoadTotals,
     },
     settings_record,
-    spans::span_network::SpanInputs,
+    spans::{outer_ground::whole_rectangle, span_network::SpanInputs},
     true_lengths::TrueLengths,
     workers,
 };
@@ -41,27 +43,25 @@ use crate::{
 pub(crate) fn verify(
     tiles: &DecodedTiles<'_>,
     osm: &VerifyOsm,
+    files: &GivenFiles<Vec<PathBuf>>,
     settings: &VerifySettings,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let others = OtherInputs { osm: &osm.paths, polygon: None, photo: &[] };
-    let inputs = Inputs::find(&[], others)?;
-    let compared = compare_all(tiles, osm, settings, &inputs, findings, observer);
-    VerifyError::unless_changed(&inputs, compared)
+    let compared = compare_all(tiles, osm, settings, &files.found, findings, observer);
+    VerifyError::unless_changed(&files.inputs, compared)
 }
 
 fn compare_all(
     tiles: &DecodedTiles<'_>,
     osm: &VerifyOsm,
     request: &VerifySettings,
-    inputs: &Inputs,
+    paths: &[PathBuf],
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let package = tiles.package;
     let manifest = package.manifest();
-    let paths = check_inputs(manifest, osm, inputs, findings, observer)?;
     let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
@@ -87,8 +87,9 @@ fn compare_all(
         .num_threads(request.threads)
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let outline = manifest.data_outline();
     let input = ExtractInput {
-        osm: &paths,
+        osm: paths,
         settings: &settings,
         areas: area_table,
         lines: &lines,
@@ -99,6 +100,9 @@ fn compare_all(
         data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
         node_bounds: frame.lattice_bounds(manifest.data_nodes()),
         clip: grid::clip_of(manifest),
+        bounds_deg: manifest.settings.bounds_deg,
+        outline: outline.as_ref(),
+        area_deg: manifest.area_deg(),
         polygon: polygon.as_ref(),
         pool: &pool,
         memory_bytes: osm.memory_bytes,
@@ -106,7 +110,7 @@ fn compare_all(
     let roads = partition(&input, store, &scratch, observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
     let spans = settings.spans;
-    let laying = Laying { tiles, levels: &levels, data: [first, last], spans };
+    let laying = Laying { tiles, levels: &levels, data: [first, last], spans, lengths: &lengths };
     let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
@@ -117,15 +121,10 @@ fn compare_all(
         osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
     }
     if settings.spans {
-        let data = input.node_bounds;
-        let inputs = SpanInputs {
-            osm: &paths,
-            store,
-            frame: &frame,
-            coordinates: &manifest.coordinates,
-            within: input.clip.map_or(data, |clip| clip.intersection(&data)),
-        };
-        osm_layers::compare_spans(tiles, inputs, request.threads, findings, observer)?;
+        let whole = whole_rectangle(&frame, &manifest.whole_data_bounds());
+        let inputs = SpanInputs { store, frame: &frame, projection: &projection, whole };
+        let spans = (inputs, &losses);
+        osm_layers::compare_spans(tiles, spans, request.threads, findings, observer)?;
     }
     if let Some(region) = &polygon {
         polygon_cut::verify(package, region, request.threads, findings, observer)?;
@@ -250,28 +249,31 @@ fn lay(
 fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings: &mut Findings) {
     let said = &manifest.counts;
     let wanted = road_counts(said.samples, roads, losses);
-    let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
-        let (said, found) = (format!("{said:?}"), format!("{found:?}"));
+    let mut same = |what: &str, said: String, found: String| {
         findings.look(CheckId::OsmCounts, said == found, || {
             format!("{what}: {said} are recorded, {found} are in the extract")
         });
     };
-    same("roads_in", &said.roads_in, &wanted.roads_in);
-    same("roads_kept", &said.roads_kept, &wanted.roads_kept);
-    same("defects", &said.defects, &wanted.defects);
-    same("unknown_highways", &said.unknown_highways, &wanted.unknown_highways);
-    same("blobs_passed_over", &said.blobs_passed_over, &wanted.blobs_passed_over);
-    same("tags_taken_otherwise", &said.tags_taken_otherwise, &wanted.tags_taken_otherwise);
-    same("highways_in", &said.highways_in, &wanted.highways_in);
-    same("highways_left_out", &said.highways_left_out, &wanted.highways_left_out);
-    same("left_out", &said.left_out, &wanted.left_out);
-    same("roads_in_um", &said.roads_in_um, &wanted.roads_in_um);
-    same("roads_kept_um", &said.roads_kept_um, &wanted.roads_kept_um);
+    same("roads_in", as_json(&said.roads_in), as_json(&wanted.roads_in));
+    same("roads_kept", as_json(&said.roads_kept), as_json(&wanted.roads_kept));
+    same("defects", as_json(&said.defects), as_json(&wanted.defects));
+    same("unknown_highways", as_json(&said.unknown_highways), as_json(&wanted.unknown_highways));
+    same("blobs_passed_over", as_json(&said.blobs_passed_over), as_json(&wanted.blobs_passed_over));
+    same(
+        "tags_taken_otherwise",
+        as_json(&said.tags_taken_otherwise),
+        as_json(&wanted.tags_taken_otherwise),
+    );
+    same("highways_in", as_json(&said.highways_in), as_json(&wanted.highways_in));
+    same("highways_left_out", as_json(&said.highways_left_out), as_json(&wanted.highways_left_out));
+    same("left_out", as_json(&said.left_out), as_json(&wanted.left_out));
+    same("roads_in_um", as_json(&said.roads_in_um), as_json(&wanted.roads_in_um));
+    same("roads_kept_um", as_json(&said.roads_kept_um), as_json(&wanted.roads_kept_um));
     // Packages of before count otherwise what is lost in the padding of tiles.
     let is_of_before = said.roads_lost == losses.lost_by_tiles;
     let lost = if is_of_before { &losses.lost_by_tiles } else { &wanted.roads_lost };
-    same("roads_lost", &said.roads_lost, lost);
-    same("classes", &said.classes, &wanted.classes);
+    same("roads_lost", as_json(&said.roads_lost), as_json(lost));
+    same("classes", as_json(&said.classes), as_json(&wanted.classes));
 }
 
 /// Compares the numbers of source points and simplified points of each level and class.

@@ -9,7 +9,7 @@ use corniche_tileset::{
 };
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
     each_tile::{compare_in_order, each_tile},
     error::VerifyError,
@@ -22,6 +22,7 @@ use crate::{
         layer_totals::{AreaTotals, LineTotals},
         tile_section::TileSection,
     },
+    roads::losses,
     settings_record,
     spans::{solving::SpanSolving, span_network::SpanInputs},
 };
@@ -68,7 +69,7 @@ pub(crate) fn compare_areas(
     let found = AreaTotals::get(how.layer, store)?.map(|totals| totals.counts());
     let recorded = package.manifest().areas.as_ref().map(|areas| areas.counts.clone());
     findings.look(CheckId::OsmAreaCounts, found == recorded, || {
-        format!("{recorded:?} are recorded, {found:?} are in the extract")
+        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
     });
     Ok(())
 }
@@ -96,7 +97,7 @@ pub(crate) fn compare_lines(
     let found = LineTotals::get(how.layer, store)?.map(|totals| totals.counts());
     let recorded = package.manifest().lines(layer).map(|of| of.counts.clone());
     findings.look(checks.osm_counts, found == recorded, || {
-        format!("{recorded:?} are recorded, {found:?} are in the extract")
+        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
     });
     Ok(())
 }
@@ -104,7 +105,7 @@ pub(crate) fn compare_lines(
 /// Solves bridges and tunnels again on the ground of the package, and compares them with those of each tile.
 pub(crate) fn compare_spans(
     tiles: &DecodedTiles<'_>,
-    of: SpanInputs<'_>,
+    (of, kept): (SpanInputs<'_>, &losses::Sums),
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
@@ -113,9 +114,11 @@ pub(crate) fn compare_spans(
     let manifest = package.manifest();
     let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
     let tin = |id| Ok(tiles.of(id).terrain().map(|terrain| terrain.tin.clone()));
-    let solving = SpanSolving { of, quantum_m, tin: &tin, threads, observer };
+    let outer = manifest.spans.as_ref().map_or(&[][..], |spans| &spans.outer_grounds);
+    let outer = &outer;
+    let solving = SpanSolving { of, quantum_m, tin: &tin, outer, threads, observer };
     let counts = match solving.solve() {
-        Ok(totals) => totals.counts(),
+        Ok(totals) => totals.counts(kept),
         Err(BuildError::Encode(error)) => {
             findings.look(CheckId::OsmSpans, false, || error.to_string());
             return Ok(());
@@ -134,7 +137,7 @@ pub(crate) fn compare_spans(
     compare(package, of.store, threads, &how, findings, observer)?;
     let recorded = manifest.spans.as_ref().map(|spans| &spans.counts);
     findings.look(CheckId::OsmSpanCounts, recorded == Some(&counts), || {
-        format!("{recorded:?} are recorded, {counts:?} are in the extract")
+        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&counts))
     });
     Ok(())
 }

@@ -20,6 +20,7 @@ use crate::{
         lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
         pieces::TilePieces,
     },
+    true_lengths::TrueLengths,
 };
 
 /// What is needed to lay roads again.
@@ -30,6 +31,7 @@ pub(crate) struct Laying<'a> {
     pub(crate) data: [TileId; 2],
     /// Whether the package has spans.
     pub(crate) spans: bool,
+    pub(crate) lengths: &'a TrueLengths<'a>,
 }
 
 /// What a worker found in a tile.
@@ -57,16 +59,21 @@ pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> F
     let (Some(payload), Some(terrain)) = (payload, terrain) else {
         if id.z() == frame.max_level() {
             let owned = laying.owned_borders(id, !pieces.roads.is_empty());
-            found.fates =
-                lay::lost_pieces(pieces, &frame.tile_lattice_bounds(id), owned, clip_of(manifest));
+            found.fates = lay::lost_pieces(
+                pieces,
+                &frame.tile_lattice_bounds(id),
+                owned,
+                clip_of(manifest),
+                laying.lengths,
+            );
         }
         return found;
     };
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
     let owned = laying.owned_borders(id, !pieces.roads.is_empty());
-    let (clip, spans) = (clip_of(manifest), laying.spans);
-    let on = TileToLayOn { id, surface: &surface, owned, clip, spans };
+    let (clip, spans, lengths) = (clip_of(manifest), laying.spans, laying.lengths);
+    let on = TileToLayOn { id, surface: &surface, owned, clip, spans, lengths };
     let mut laid = Laid::of_tile(pieces, &on, laying.levels);
     laid.sort();
     compare(payload, &laid, &mut found.findings);

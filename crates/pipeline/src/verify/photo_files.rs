@@ -17,42 +17,35 @@ use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
     georeference,
+    given_files::GivenFiles,
     photo_against_files::look_at,
     temporary_store::TemporaryStore,
     verify_settings::VerifySettings,
 };
 use crate::{
-    Observer, Stage,
-    heights::data_tiles::DataTiles,
-    inputs::{InputKind, Inputs, OtherInputs},
-    photos::rasters,
-    terrain::recorded_grid,
-    workers,
+    Observer, Stage, heights::data_tiles::DataTiles, inputs::InputKind, photos::rasters,
+    terrain::recorded_grid, workers,
 };
 
 pub(crate) fn verify(
     package: &FilePackage,
+    files: &GivenFiles<()>,
     settings: &VerifySettings,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let others = OtherInputs { photo: &settings.photo, osm: &[], polygon: None };
-    let inputs = Inputs::find(&[], others)?;
-    let compared = compare_all(package, settings, &inputs, findings, observer);
-    VerifyError::unless_changed(&inputs, compared)
+    let compared = compare_all(package, settings, findings, observer);
+    VerifyError::unless_changed(&files.inputs, compared)
 }
 
 fn compare_all(
     package: &FilePackage,
     settings: &VerifySettings,
-    inputs: &Inputs,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let record = manifest.settings.photo.ok_or(VerifyError::NoPhotos)?;
-    let given = inputs.hash(observer)?;
-    check_inputs(manifest, &settings.photo, &given, findings)?;
+    let Some(record) = manifest.settings.photo else { return Ok(()) };
     // If one of them fails, the check `manifest.crs` or `manifest.grid` is broken, and photos have no place.
     let (Ok(crs), Ok(())) = (georeference::recorded(manifest), recorded_grid::check(manifest))
     else {
@@ -67,12 +60,15 @@ fn compare_all(
 }
 
 /// Fails unless the files have the content that is recorded, in the same order: the first lies on top. Names do not count.
-fn check_inputs(
+pub(crate) fn check_inputs(
     manifest: &Manifest,
     paths: &[PathBuf],
     given: &[InputRecord],
     findings: &mut Findings,
 ) -> Result<(), VerifyError> {
+    if manifest.settings.photo.is_none() {
+        return Err(VerifyError::NoPhotos);
+    }
     for kind in [InputKind::Photo, InputKind::PhotoPart] {
         let of_kind = |records: &[InputRecord]| {
             let records = records.iter().filter(|record| kind.is_of(record));

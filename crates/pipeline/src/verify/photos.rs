@@ -9,7 +9,7 @@ use corniche_tileset::{
 };
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{CheckId, Findings, as_json},
     each_tile::each_tile,
     error::VerifyError,
 };
@@ -66,7 +66,7 @@ pub(crate) fn verify(
         sums.into_iter().map(|(level, [tiles, bytes])| PhotoLevelRecord { level, tiles, bytes });
     let sums: Vec<PhotoLevelRecord> = sums.collect();
     findings.look(CheckId::PhotoSums, sums == manifest.photos, || {
-        format!("{sums:?} in the tiles, {:?} are recorded", manifest.photos)
+        format!("{} in the tiles, {} are recorded", as_json(&sums), as_json(&manifest.photos))
     });
     Ok(())
 }

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{GridFrame, TileId, wgs84};
-use corniche_roads::FunctionalRoadClass;
+use corniche_geom::{GridFrame, TileId};
+use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::{Placement, Surface, Tin};
 
@@ -19,10 +19,36 @@ use super::{
 #[derive(Default)]
 pub(crate) struct OnTin {
     pub(crate) gaps: GapFigures,
-    /// True length in plan of the lines.
-    pub(crate) length_m: f64,
+    /// True length in plan of the lines, and how many there are.
+    pub(crate) lengths: RoadLengths,
     /// Where the vertices of each line lie, as a reader computes them; `None` for a line that is none.
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
+}
+
+/// How long roads are by what carries them, in the order of [`Structure::ALL`].
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RoadLengths {
+    /// True metres in plan.
+    pub(crate) by_structure_m: [f64; Structure::ALL.len()],
+    /// How many lines that is: each part of a way in a tile is one.
+    pub(crate) lines: [u64; Structure::ALL.len()],
+}
+
+impl RoadLengths {
+    /// Adds those of another tile.
+    pub(crate) fn add(&mut self, other: Self) {
+        for (own, other) in self.by_structure_m.iter_mut().zip(other.by_structure_m) {
+            *own += other;
+        }
+        for (own, other) in self.lines.iter_mut().zip(other.lines) {
+            *own += other;
+        }
+    }
+
+    /// The length of all.
+    pub(crate) fn length_m(&self) -> f64 {
+        self.by_structure_m.iter().sum()
+    }
 }
 
 /// What roads of a section are sorted by: class, way id, part.
@@ -68,10 +94,15 @@ pub(crate) fn verify_on_tin(
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
     let place = TilePlace::of(frame, id);
-    let lon_lat = |[u, v, _]: [f64; 3]| {
-        manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m([u, v]))
-    };
+    let position_m = |[u, v, _]: [f64; 3]| frame.position_of_fraction_m([u, v]);
+    let structures: BTreeMap<i64, Structure> = payload
+        .attributes
+        .iter()
+        .map(|record| (record.way_id, record.attributes.structure))
+        .collect();
     for road in &payload.roads_geo {
+        let structure = structures.get(&road.way_id).copied().unwrap_or_default() as usize;
+        found.lengths.lines[structure] += 1;
         let name = || format!("way {} part {} in tile {id}", road.way_id, road.part);
         let positions = match corniche_drape::positions(&road.line, &surface) {
             Ok(positions) => positions,
@@ -88,7 +119,8 @@ pub(crate) fn verify_on_tin(
         for pair in positions.windows(2) {
             if counts_for_sums(id, frame) {
                 // The same formula as the build's: beside a pole it is off the geodesic by more than the sums may differ.
-                found.length_m += wgs84::short_distance_m(lon_lat(pair[0]), lon_lat(pair[1]));
+                let ends = [pair[0], pair[1]].map(position_m);
+                found.lengths.by_structure_m[structure] += manifest.coordinates.line_length_m(ends);
             }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             found.gaps.edges += 1;

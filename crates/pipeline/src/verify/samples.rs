@@ -7,7 +7,7 @@ use corniche_geom::{GridFrame, TileId};
 use corniche_tileset::{Manifest, SampleErrorRecord, SampleSums};
 
 use super::{
-    checks::{Check, CheckId},
+    checks::{Check, CheckId, as_json},
     decoded_tiles::DecodedTiles,
     error::VerifyError,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
@@ -116,7 +116,7 @@ pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     for (record, sums) in manifest.levels.iter().zip(sums) {
         let (said, found) = (record.sample_error, sums.record());
         stated.look(agree(said, found, quantum_m), || {
-            format!("level {} says {said:?}, found {found:?}", record.level)
+            format!("level {} says {}, found {}", record.level, as_json(&said), as_json(&found))
         });
     }
     if manifest.nodes_are_samples

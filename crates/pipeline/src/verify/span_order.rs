@@ -3,6 +3,8 @@
 use corniche_geom::{LatticePoint, TooMuchWork, Work};
 use corniche_spans::SpanKind;
 
+/// Points of runs are rounded to the lattice. So a run that ends on another one may end so many steps beyond it.
+const ROUNDING_STEPS: f64 = 2.0;
 /// A crossing that is kept counts for so many steps of work: it takes memory, too.
 const STEPS_OF_A_CROSSING: usize = 64;
 
@@ -11,9 +13,11 @@ const STEPS_OF_A_CROSSING: usize = 64;
 pub(crate) struct Piece {
     pub(crate) way_id: i64,
     pub(crate) kind: SpanKind,
-    /// How it is ordered: [`SpanKind::layer`].
+    /// OSM's `layer`, which orders it among its kind.
     pub(crate) layer: i8,
     pub(crate) ends: [LatticePoint; 2],
+    /// Whether the run ends there.
+    pub(crate) is_end: [bool; 2],
     pub(crate) heights_m: [f64; 2],
 }
 
@@ -26,7 +30,7 @@ pub(crate) struct OrderedCrossing {
     pub(crate) free_m: f64,
 }
 
-/// Where pieces of the same kind and of different layers cross. Pieces that share a point are joined there, and do not cross.
+/// Where pieces of the same kind and of different layers cross. Pieces that share a point are joined there, and do not cross, nor do runs that end on one another.
 ///
 /// # Errors
 /// When more of them lie over each other than in any real tile.
@@ -73,6 +77,14 @@ impl Piece {
             // A line that passes through a point of another one crosses it once.
             ((of_from < 0.0) != (of_to < 0.0)).then(|| of_from / (of_from - of_to))
         };
+        let ends_on = |of: &Self, line: [[f64; 2]; 2]| {
+            let length = (line[1][0] - line[0][0]).hypot(line[1][1] - line[0][1]);
+            let is_on = |end: [f64; 2]| across(line, end).abs() <= ROUNDING_STEPS * length;
+            of.is_end.iter().zip(of.ends).any(|(is_end, at)| *is_end && is_on(at.in_steps()))
+        };
+        if ends_on(self, [c, d]) || ends_on(other, [a, b]) {
+            return None;
+        }
         let shares = [share([c, d], [a, b])?, share([a, b], [c, d])?];
         let height_m = |[from_m, to_m]: [f64; 2], share: f64| from_m + share * (to_m - from_m);
         let both = [(self, shares[0]), (other, shares[1])];

@@ -308,11 +308,13 @@ impl Tile<'_> {
         let of_run = |run: &SpanRun| {
             let kind = SpanKind::of(run.structure);
             let tagged = ways.get(&run.way_id).map_or(0, |(_, layer)| *layer);
-            let pairs = run.points.array_windows().map(move |[from, to]| {
+            let last = run.points.len().saturating_sub(2);
+            let pairs = run.points.array_windows().enumerate().map(move |(index, [from, to])| {
                 let kind = kind?;
+                let is_end = [index == 0, index == last];
                 let heights_m = [self.height_m(from)?, self.height_m(to)?];
-                let (ends, layer) = ([from.at, to.at], kind.layer(tagged));
-                Some(Piece { way_id: run.way_id, kind, layer, ends, heights_m })
+                let (ends, layer) = ([from.at, to.at], tagged);
+                Some(Piece { way_id: run.way_id, kind, layer, ends, is_end, heights_m })
             });
             pairs.flatten().collect::<Vec<_>>()
         };

@@ -1,6 +1,6 @@
 //! Where `verify` keeps what does not fit in memory.
 
-use std::{sync::Arc, time::Duration};
+use std::{io, sync::Arc, time::Duration};
 
 use corniche_store::{LocalScratch, LocalStore, StoreError, StoredPlan, SystemDisk};
 use tempfile::TempDir;
@@ -16,7 +16,7 @@ pub(crate) struct TemporaryStore {
 
 impl TemporaryStore {
     pub(crate) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
-        let folder = tempfile::tempdir().map_err(VerifyError::Work)?;
+        let folder = private_folder().map_err(VerifyError::Work)?;
         observer.temporary(folder.path());
         // Nothing is gone on from here, so it is bound to nothing, and nothing has to be durable.
         let plan = StoredPlan { hash: [0; 32], bytes: Vec::new() };
@@ -30,6 +30,14 @@ impl TemporaryStore {
     }
 }
 
+/// A folder that its owner alone can look into.
+fn private_folder() -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    builder.tempdir()
+}
+
 impl Drop for TemporaryStore {
     /// Nothing has to reach the disk any more.
     fn drop(&mut self) {
@@ -40,3 +48,7 @@ impl Drop for TemporaryStore {
 fn failed(error: StoreError) -> VerifyError {
     VerifyError::Work(error.into())
 }
+
+#[cfg(all(test, unix))]
+#[path = "temporary_store_tests.rs"]
+mod tests;

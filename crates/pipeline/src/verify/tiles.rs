@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::{SvTail, SvTails};
+use corniche_roads::Structure;
+use corniche_tileset::{Manifest, SvTail, SvTails};
 
 use super::{
     attributes::Ways,
@@ -11,10 +12,10 @@ use super::{
     decoded_tiles::DecodedTiles,
     each_tile::check_readable,
     error::VerifyError,
-    manifest_sums::LENGTH_SHARE,
+    manifest_sums::{CUT_M, LENGTH_SHARE},
     one_tile::{Found, look_at},
     report::{GapFigures, VerifyReport},
-    roads_on_tin::counts_for_sums,
+    roads_on_tin::{RoadLengths, counts_for_sums},
     seams,
     tile_sums::{Kept, TileSums, check_growth, check_levels},
 };
@@ -35,7 +36,7 @@ pub(crate) fn verify(
     let mut findings = Findings::default();
     let mut kept = BTreeMap::new();
     let mut gaps: BTreeMap<u8, GapFigures> = BTreeMap::new();
-    let mut finest_length_m = 0.0;
+    let mut finest = RoadLengths::default();
     let mut ways = Ways::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
     let mut sv_tails = SvTails::new();
@@ -63,7 +64,7 @@ pub(crate) fn verify(
                 level.largest_m = level.largest_m.max(found.gaps.largest_m);
             }
             if counts_for_sums(id, &frame) {
-                finest_length_m += found.length_m;
+                finest.add(found.lengths);
             }
             ways.add(id, found.ways, &mut findings);
             sums.entry(id.z()).or_default().add(found.sums);
@@ -77,7 +78,8 @@ pub(crate) fn verify(
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
     check_heights(manifest.vertical.range_m, &kept, &mut findings);
-    check_length(finest_length_m, manifest.counts.roads_kept_um, &mut findings);
+    check_length(finest.length_m(), manifest.counts.roads_kept_um, &mut findings);
+    check_structures(&finest, manifest, &mut findings);
     check_levels(package, &ids, &kept, &sums, &mut findings);
     check_growth(&manifest.growth, &sums, &mut findings);
     let sv_tails = sv_tails.list();
@@ -111,6 +113,29 @@ fn check_length(found_m: f64, recorded_um: u64, findings: &mut Findings) {
     findings.look(CheckId::Length, holds, || {
         format!("{found_m} m lie in the tiles, {expected_m} m are recorded")
     });
+}
+
+/// Compares the lengths of roads on the ground, of bridges and of tunnels on the finest level with the recorded ones, which make up all that was kept.
+fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Findings) {
+    let Some(spans) = &manifest.spans else { return };
+    let (all_um, [bridges_um, tunnels_um]) =
+        (manifest.counts.roads_kept_um, [spans.counts.bridges_um, spans.counts.tunnels_um]);
+    for (number, structure) in Structure::ALL.iter().enumerate() {
+        let (name, recorded_um) = match structure {
+            Structure::Ground => (
+                "roads on the ground",
+                i128::from(all_um) - i128::from(bridges_um) - i128::from(tunnels_um),
+            ),
+            Structure::Bridge => ("bridges", i128::from(bridges_um)),
+            Structure::Tunnel => ("tunnels", i128::from(tunnels_um)),
+        };
+        let (found_m, recorded_m) = (found.by_structure_m[number], recorded_um as f64 / 1e6);
+        let allowed_m = LENGTH_SHARE * recorded_m + CUT_M * found.lines[number] as f64;
+        let holds = (found_m - recorded_m).abs() <= allowed_m;
+        findings.look(CheckId::Structures, holds, || {
+            format!("{found_m} m of {name} lie in the tiles, {recorded_m} m are recorded")
+        });
+    }
 }
 
 /// Compares all neighbours, and gives the number of borders compared.

@@ -6,7 +6,7 @@ use corniche_tileset::Terrain;
 use corniche_tin::normal_shift;
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
     error::VerifyError,
     relief,
@@ -48,8 +48,9 @@ pub(crate) fn verify(
     });
     let sums = pyramid.sums(&patches);
     let (said, found) = (manifest.counts.samples, sums.samples);
-    findings
-        .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));
+    findings.look(CheckId::DemCounts, said == found, || {
+        format!("recorded {}, found {}", as_json(&said), as_json(&found))
+    });
     let (said_m, found_m) = (manifest.vertical.range_m, sums.range_m.map(f64::from));
     let same_range = said_m.map(f64::to_bits) == found_m.map(f64::to_bits);
     findings.look(CheckId::DemCounts, same_range, || {

@@ -28,3 +28,4 @@ mod verify_roads;
 mod verify_sees;
 mod verify_spans;
 mod voids;
+mod whole_spans;

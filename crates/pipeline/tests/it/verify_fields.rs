@@ -227,6 +227,7 @@ const LEFT_OUT: &[Change] = &[
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:4326"), By(C::Crs)),
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:32632"), By(C::DemPlan)),
     change("/settings/dem_band", |_| json!(2), Unseen(NO_OTHER_BAND)),
+    change("/settings/vertical_unit", |_| json!("foot"), By(C::Nodes)),
 ];
 
 fn operation_of(from: &str, to: &str) -> Value {

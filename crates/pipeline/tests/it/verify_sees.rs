@@ -29,7 +29,9 @@ fn no_check_is_broken_when_nothing_was_changed() {
     // It has no photos, areas, boundaries and spans; `verify_photos.rs`, `verify_areas.rs` and `verify_spans.rs` have some.
     let mut others = report.checks.iter().filter(|check| {
         let id = check.id.id();
-        !["photo.", "areas.", "boundaries.", "spans."].iter().any(|start| id.starts_with(start))
+        !["photo.", "areas.", "boundaries.", "spans.", "P6.structures"]
+            .iter()
+            .any(|start| id.starts_with(start))
     });
     assert!(others.all(|check| check.checked > 0), "{:#?}", report.checks);
 }

@@ -8,9 +8,10 @@ use corniche_geom::{LatticePoint, TileId};
 use corniche_pipeline::{CheckId, Needs, Silent, build};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{
-    FilePackage, Manifest, Sections, SpanHeight, SpanRun, Writer, decode_spans, encode_spans,
-    payload_sizes, with_spans,
+    FilePackage, Manifest, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun, Writer,
+    decode_spans, encode_spans, payload_sizes, with_spans,
 };
+use corniche_tin::{Placement, Surface};
 use tempfile::TempDir;
 
 use crate::support::{
@@ -194,4 +195,85 @@ fn the_class_of_a_run_is_that_of_its_way() {
         last.class = FunctionalRoadClass::new(8).unwrap();
     });
     assert_eq!(apart.broken(), (vec![CheckId::SpanEnds], true));
+}
+
+/// What carries the roads of a package is told by its tiles. It is compared with what the manifest says of bridges and tunnels, and with what is left
+/// for the ground.
+#[test]
+fn metres_that_the_manifest_has_of_the_wrong_structure_are_seen() {
+    let mut apart = Apart::sound();
+    let told = |apart: &mut Apart, change: &dyn Fn(&mut SpanCounts)| {
+        let before = apart.manifest.clone();
+        change(&mut apart.manifest.spans.as_mut().unwrap().counts);
+        let report = report_on(&apart.put_together(), Against::Itself);
+        apart.manifest = before;
+        let mut broken: Vec<(CheckId, u64)> = Vec::new();
+        broken.extend(report.checks.iter().filter(|of| !of.holds()).map(|of| (of.id, of.broken)));
+        let structures = report.checks.iter().find(|of| of.id == CheckId::Structures).unwrap();
+        assert_eq!(structures.checked, 3, "the ground, bridges and tunnels");
+        broken
+    };
+    assert!(told(&mut apart, &|_| ()).is_empty());
+    let metres = 30_000_000;
+    let moved = told(&mut apart, &|counts| {
+        counts.bridges_um -= metres;
+        counts.tunnels_um += metres;
+    });
+    assert_eq!(moved, [(CheckId::Structures, 2)], "bridges as tunnels");
+    let moved = told(&mut apart, &|counts| counts.bridges_um -= metres);
+    assert_eq!(moved, [(CheckId::Structures, 2)], "bridges as roads on the ground");
+    let swapped = told(&mut apart, &|counts| {
+        (counts.bridges_um, counts.tunnels_um) = (counts.tunnels_um, counts.bridges_um);
+    });
+    assert_eq!(swapped, [(CheckId::Structures, 2)]);
+    let more_than_all = told(&mut apart, &|counts| counts.bridges_um = u64::from(u32::MAX) << 8);
+    assert_eq!(more_than_all, [(CheckId::Structures, 2)]);
+}
+
+/// The true lengths by structure are those of the lines in the tiles, measured here as chords of an ellipsoid's plane at each segment.
+#[test]
+fn bridges_and_tunnels_are_as_long_as_their_lines() {
+    let Apart { manifest, folder, .. } = Apart::sound();
+    let package = FilePackage::open(&folder.path().join("sound.pmtiles")).unwrap();
+    let frame = &manifest.frame;
+    let mut found_m = [0.0; 3];
+    for id in package.tile_ids().unwrap() {
+        let payload = package.payload(id, Sections::ALL).unwrap().unwrap();
+        let Some(terrain) = payload.terrain.as_ref().filter(|_| id.z() == frame.max_level()) else {
+            continue;
+        };
+        let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
+        let surface = Surface::new(&terrain.tin, placement);
+        for road in &payload.roads_geo {
+            let of_way = |record: &&RoadRecord| record.way_id == road.way_id;
+            let record = payload.attributes.iter().find(of_way).unwrap();
+            let places: Vec<[f64; 2]> = corniche_drape::positions(&road.line, &surface)
+                .unwrap()
+                .into_iter()
+                .map(|[u, v, _]| frame.position_of_fraction_m([u, v]))
+                .map(|at| manifest.coordinates.wgs84_from_working(at))
+                .collect();
+            found_m[record.attributes.structure as usize] +=
+                places.array_windows().map(|[a, b]| plane_m(*a, *b)).sum::<f64>();
+        }
+    }
+    let counts = &manifest.spans.as_ref().unwrap().counts;
+    let [bridges_m, tunnels_m, all_m] =
+        [counts.bridges_um, counts.tunnels_um, manifest.counts.roads_kept_um]
+            .map(|um| um as f64 / 1e6);
+    let told_m = [all_m - bridges_m - tunnels_m, bridges_m, tunnels_m];
+    assert!(found_m.iter().all(|m| *m > 50.0), "{found_m:?}");
+    for (found_m, told_m) in found_m.into_iter().zip(told_m) {
+        assert!((found_m - told_m).abs() < 1e-4 * told_m, "{found_m} m, {told_m} m are told");
+    }
+}
+
+/// The distance of two near places in degrees, by the radii of curvature of WGS84 half-way between them.
+fn plane_m([west, south]: [f64; 2], [east, north]: [f64; 2]) -> f64 {
+    let (axis_m, squared) = (6_378_137.0, 0.006_694_379_990_14);
+    let middle = f64::midpoint(south, north).to_radians();
+    let bend = 1.0 - squared * middle.sin().powi(2);
+    let north_m = axis_m * (1.0 - squared) / bend.powf(1.5) * (north - south).to_radians();
+    let east_m = axis_m / bend.sqrt() * middle.cos() * (east - west).to_radians();
+    east_m.hypot(north_m)
 }

@@ -26,7 +26,7 @@ const PAGE: &str = "<!doctype html><title>A map</title>";
 /// How long is waited for clients that do not read.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// How many clients there are at once.
-const CONNECTIONS: usize = 16;
+pub(crate) const CONNECTIONS: usize = 16;
 
 /// More than is read at once.
 const PACKAGE_BYTES: usize = 700_001;
@@ -49,10 +49,10 @@ impl OnDisk for Told {
     }
 }
 
-struct Running {
-    address: SocketAddr,
+pub(crate) struct Running {
+    pub(crate) address: SocketAddr,
     package: PathBuf,
-    bytes: Vec<u8>,
+    pub(crate) bytes: Vec<u8>,
     answered: Arc<Mutex<Vec<Answered>>>,
     is_stopped: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -68,7 +68,7 @@ impl Drop for Running {
     }
 }
 
-fn start() -> Running {
+pub(crate) fn start() -> Running {
     start_at("127.0.0.1")
 }
 
@@ -526,29 +526,30 @@ fn a_version_is_told_by_its_bytes_and_not_by_times_alone() {
     assert_eq!(tag(&server), before, "the first one again");
 }
 
-/// As many clients as connections ask for far more than buffers hold, and read nothing: others are answered all the same, soon.
+/// As many clients as connections ask for far more than buffers hold, and read nothing: others are answered, and their answers end before the end.
 #[test]
 fn clients_that_do_not_read_are_not_waited_for() {
     let server = start();
     let file = File::options().write(true).open(&server.package).unwrap();
     file.set_len(64 << 20).unwrap();
-    let begun = Instant::now();
     let deaf: Vec<TcpStream> = (0..CONNECTIONS)
         .map(|_| {
             let mut stream = TcpStream::connect(server.address).unwrap();
-            write!(stream, "GET {PACKAGE} HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).unwrap();
+            let asked = format!("GET {PACKAGE} HTTP/1.1\r\nHost: {}\r\n", server.address);
+            write!(stream, "{asked}Connection: close\r\n\r\n").unwrap();
             stream
         })
         .collect();
     assert_eq!(server.get("/", &[]).status, 200);
-    // Then what they asked for has ended before its end.
-    thread::sleep(PATIENCE);
+    // A busy machine may fill the buffers of the last one late: who reads before it was given up gets all.
+    thread::sleep(PATIENCE * 10);
     for mut stream in deaf {
         stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
-        let got = io::copy(&mut stream, &mut io::sink()).unwrap_or(0);
-        assert!(got < 64 << 20, "{got}");
+        match io::copy(&mut stream, &mut io::sink()) {
+            Ok(got) => assert!(got < 64 << 20, "{got}"),
+            Err(error) => assert_eq!(error.kind(), io::ErrorKind::ConnectionReset, "{error}"),
+        }
     }
-    assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
 }
 
 /// The system asks for more only when much of its buffer is free, which must not be so large that a slow client takes too long for that.

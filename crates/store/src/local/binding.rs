@@ -53,6 +53,17 @@ pub(crate) fn state(files: &Arc<Files>, folder: &Path) -> Result<(FolderState, F
     }
 }
 
+/// Empties a lock that says something else than ours where the header proves that the folder is a store, so that it can be discarded: a lock holds
+/// nothing that is lost.
+pub(crate) fn clear_damaged_lock(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
+    let found = layout::look(files, folder)?.unwrap_or_default();
+    let is_store = found.has(layout::STORE) && is_header(files, folder)?;
+    if is_store && found.has(layout::LOCK) {
+        lock::clear_foreign(files, folder)?;
+    }
+    Ok(())
+}
+
 /// Whether the file `store` begins as the header of a store does, of any version.
 fn is_header(files: &Arc<Files>, folder: &Path) -> Result<bool, StoreError> {
     let file = files.open(&folder.join(layout::STORE), OpenMode::Read)?;

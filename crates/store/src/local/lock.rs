@@ -107,6 +107,18 @@ fn signature_of(file: &OpenFile) -> Result<Signature, StoreError> {
     })
 }
 
+/// Empties the lock in a folder if what it says is not ours and nobody holds it.
+pub(crate) fn clear_foreign(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
+    if signature(files, folder)? != Signature::Foreign {
+        return Ok(());
+    }
+    let file = files.open(&folder.join(layout::LOCK), OpenMode::Change)?;
+    if !file.try_lock(Hold::Alone)? {
+        return Err(StoreError::Locked { path: folder.to_owned(), owner: read_owner(&file) });
+    }
+    file.set_length(0)
+}
+
 /// Writes into a lock that is held: that a store is here, unless it says so, and who works here.
 ///
 /// Others that share it may read and sign it meanwhile. So the mark is never cut off, and the file gets shorter only once the new text is there.

@@ -3,5 +3,6 @@
 mod common;
 mod faults;
 mod local_store;
+mod long_names;
 mod own_files;
 mod parts;

@@ -121,6 +121,19 @@ pub(crate) fn all() -> Vec<Case> {
     let bounds_at = |x: f64| json!({ "min_x": x, "min_y": 0, "max_x": 2.0 * x, "max_y": 1000 });
     let mut table = metadata()["corniche"]["coordinates"].clone();
     table["bounds"] = bounds_at(1e17);
+    // Tables that are in order by themselves, and spread small data over the globe.
+    let spread = |factor: f64, offset: f64| {
+        let mut table = metadata()["corniche"]["coordinates"].clone();
+        let Some(samples) = table["samples_deg"].as_array_mut() else { return table };
+        let first: Vec<f64> = (0..2).filter_map(|axis| samples[0][axis].as_f64()).collect();
+        for sample in samples {
+            for axis in 0..2 {
+                let off = sample[axis].as_f64().unwrap_or_default() - first[axis];
+                sample[axis] = json!((first[axis] + offset + factor * off).clamp(-89.0, 170.0));
+            }
+        }
+        table
+    };
     let lie = |name, pointer, value: Value, reason| {
         refused(name, with_values(&[(pointer, value)]), reason)
     };
@@ -140,6 +153,9 @@ pub(crate) fn all() -> Vec<Case> {
         read("a raster of 2^40 nodes", on_grid(package::frame().root_corner(), 12, &[])),
         read("degrees of a micrometre", around_the_earth("EPSG:4326")),
         read("degrees of a micrometre in another datum", around_the_earth("EPSG:4230")),
+        read("a table over half the globe", with_values(&[("/coordinates", spread(1e5, 0.0))])),
+        read("a table of a hundred degrees", with_values(&[("/coordinates", spread(3e3, 0.0))])),
+        read("a table of other degrees", with_values(&[("/coordinates", spread(-400.0, 20.0))])),
         lie("data at 10^17 m", "/data_bounds", bounds_at(1e17), "data_bounds"),
         lie("data beside the grid", "/data_bounds", bounds_at(1e9), "data_bounds"),
         lie("an origin of 10^17 m", "/frame/origin_m/0", json!(1e17), "frame.origin_m"),

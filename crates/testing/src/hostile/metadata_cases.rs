@@ -159,7 +159,10 @@ pub(crate) fn all() -> Vec<Case> {
     let read = |name, bytes, limit_mib| Case { name, bytes, outcome: Outcome::Read, limit_mib };
     cases.push(read("a million brackets under a foreign key", with_metadata(deep.as_bytes()), 16));
     let texts = format!("[\"\"{}]", ",\"\"".repeat(5_500_000));
-    cases.push(read("five million empty texts", with_attribution(&texts), 320));
+    cases.push(limited(
+        320,
+        refused("five million empty texts", with_attribution(&texts), "bytes of attribution"),
+    ));
     let mut long = metadata();
     long["corniche"]["point_scale"] = json!("HERE");
     let long = long.to_string().replace("\"HERE\"", &format!("0.{}", "7".repeat(8_000_000)));

@@ -2,7 +2,7 @@
 
 use corniche_tileset::{
     AreaCounts, AreaTableRecord, AreasRecord, InputRecord, LineCounts, LinesRecord, Manifest,
-    SettingsRecord,
+    SettingsRecord, SpanCounts, SpansRecord,
 };
 
 use crate::{
@@ -60,23 +60,27 @@ impl Parts {
     }
 }
 
-/// The sound package's metadata, in a system that PROJ knows and with an extract, areas and boundaries, so that no command stops before it has
-/// read tiles.
+/// The sound package's metadata, in a system that PROJ knows and with an extract, areas, boundaries and spans, so that no command stops before it
+/// has read tiles.
 pub(crate) fn metadata() -> serde_json::Value {
     let (kind, name) = ("osm".to_owned(), "pass.osm.pbf".to_owned());
     let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
     let (table, sha256) = ("default".to_owned(), "0".repeat(64));
     let areas = AreaCounts { objects: 0, kept: vec![], lost: vec![] };
     let boundaries = LineCounts { ways: 0, kept: vec![], lost: vec![] };
+    let (bridges, tunnels, crossings, reasons) = (0, 0, 0, vec![]);
+    let spans = SpanCounts { bridges, tunnels, bridges_um: 0, tunnels_um: 0, crossings, reasons };
     let sound = package::manifest();
     package::metadata(&Manifest {
         crs_wkt: "EPSG:32632".to_owned(),
         inputs: vec![extract],
         areas: Some(AreasRecord { counts: areas, levels: vec![] }),
         boundaries: Some(LinesRecord { counts: boundaries, levels: vec![] }),
+        spans: Some(SpansRecord { counts: spans, levels: vec![], outer_grounds: vec![] }),
         settings: SettingsRecord {
             areas: Some(AreaTableRecord { table, sha256 }),
             boundaries: true,
+            spans: true,
             ..sound.settings.clone()
         },
         ..sound

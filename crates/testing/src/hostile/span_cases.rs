@@ -1,11 +1,16 @@
 //! Hostile packages with a wrong section of spans.
 
-use crate::{payload::Section, pmtiles::put_varint};
+use std::iter;
+
+use corniche_geom::TileId;
+use corniche_tileset::{SpansSection, limits::MAX_SPAN_POINTS, with_spans};
+
+use crate::{package, payload::Section, pmtiles::put_varint, random::Random};
 
 use super::{
     case::{Case, Outcome, refused},
     parts::{planes, raw_sections, zstd_section},
-    tile_cases::with_sections,
+    tile_cases::{with_sections, with_tile},
 };
 
 const SPANS: u16 = 13;
@@ -45,6 +50,75 @@ fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
     columns
 }
 
+/// A column of these numbers.
+fn numbers(values: &[u64]) -> Vec<u8> {
+    let all = values.iter().fold(0, |all, value| all | value);
+    let width = (64 - all.leading_zeros()).div_ceil(8);
+    let plane = |plane| values.iter().map(move |value| (value >> (8 * plane)) as u8);
+    iter::once(width as u8).chain((0..width).flat_map(plane)).collect()
+}
+
+/// How many points the spans of a tile of [`attacks`] have: some, as many as may be, and more.
+const ATTACK_POINTS: [usize; 4] = [1 << 14, MAX_SPAN_POINTS, 1 << 20, 1 << 22];
+/// How they follow each other.
+const ATTACK_PATTERNS: usize = 5;
+/// How they are shared out among runs.
+const ATTACK_RUNS: usize = 5;
+/// How many [`attack`]s there are.
+pub const ATTACKS: usize = ATTACK_POINTS.len() * ATTACK_PATTERNS * ATTACK_RUNS;
+
+/// One of [`ATTACKS`] packages whose spans follow no road: many points in few bytes, all over a tile. Those that have no more than may be are read.
+#[must_use]
+pub fn attack(number: usize) -> Case {
+    let (number, sharing) = (number / ATTACK_RUNS, number % ATTACK_RUNS);
+    let (number, pattern) = (number / ATTACK_PATTERNS, number % ATTACK_PATTERNS);
+    let count = ATTACK_POINTS[number % ATTACK_POINTS.len()];
+    let bounds = package::frame().tile_lattice_bounds(TileId::ROOT);
+    let side = bounds.max.u - bounds.min.u;
+    let mut random = Random::new(number as u64);
+    let place = |k: usize| {
+        let along = side * k as i64 / count as i64;
+        match pattern {
+            // Along the tile, across it, forth and back over a fiftieth of it, anywhere, and between two corners.
+            0 => [along, side / 2 + (k % 2) as i64],
+            1 => [along, side * (k % 2) as i64],
+            2 => [along, side / 2 + side / 55 * (k % 2) as i64],
+            3 => [0, 1].map(|_| random.below(side)),
+            _ => [side * (k % 2) as i64 + (k % 7) as i64, side * (k % 2) as i64],
+        }
+    };
+    // From the tile's north-western corner.
+    let points: Vec<[i64; 2]> = (0..count).map(place).map(|[east, south]| [east, -south]).collect();
+    let step = |axis: usize| {
+        let before = iter::once(0).chain(points.iter().map(|point| point[axis]));
+        let steps = points.iter().zip(before).map(|(point, before)| point[axis] - before);
+        numbers(&steps.map(|by| ((by << 1) ^ (by >> 63)) as u64).collect::<Vec<_>>())
+    };
+    // One run, runs of two, of a hundred, as many as may be, and one way's.
+    let points_of_run = [count, 2, 128, count.div_ceil(1 << 20).max(2), 128][sharing];
+    let runs = count / points_of_run;
+    let ways = vec![u64::from(sharing != 4) * 2; runs];
+    let columns = [
+        numbers(&vec![0; runs]),
+        numbers(&ways),
+        numbers(&vec![points_of_run as u64 - 2; runs]),
+        step(0),
+        step(1),
+        numbers(&(0..count as u64).map(|k| if k == 0 { 600 } else { k % 3 }).collect::<Vec<_>>()),
+        numbers(&[]),
+    ];
+    // Beside roads: without any, no bridge is drawn.
+    let spans = SpansSection::from_bytes(section(runs as u64, &columns));
+    let tile = package::encoded(TileId::ROOT);
+    let bytes = with_tile(with_spans(&tile, TileId::ROOT, spans).unwrap().0);
+    let outcome = if count > MAX_SPAN_POINTS {
+        Outcome::Refused("points of a section")
+    } else {
+        Outcome::Read
+    };
+    Case { name: "spans that follow no road", bytes, outcome, limit_mib: 64 }
+}
+
 /// A package whose tile has ground and this section.
 fn beside_ground(raw: &[u8]) -> Vec<u8> {
     // Short ones do not become smaller.
@@ -61,7 +135,6 @@ pub(crate) fn all() -> Vec<Case> {
         let bytes = beside_ground(&section(runs as u64, &columns(runs, points)));
         Case { name, bytes, outcome: Outcome::Read, limit_mib: 512 }
     };
-    let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     // Two runs of three points with another column.
     let with = |at: usize, column: Vec<u8>| {
         let mut columns = columns(2, 3);
@@ -78,18 +151,22 @@ pub(crate) fn all() -> Vec<Case> {
     let empty = |runs| beside_ground(&section(runs, &vec![vec![0]; 7]));
     let whole = section(2, &columns(2, 3));
     vec![
-        read("a million runs of two points", 1 << 20, 2),
-        read("four million points of a run", 1, 1 << 22),
+        read("a hundred thousand runs of two points", MAX_SPAN_POINTS / 2, 2),
+        read("a quarter of a million points of a run", 1, MAX_SPAN_POINTS),
         refused("more runs than may be", empty((1 << 20) + 1), "number of runs"),
         refused("2^64 - 1 runs", empty(u64::MAX), "number of runs"),
         // Points take memory once their steps are known to have bytes.
-        limited(16, refused("a million runs, no bytes", empty(1 << 20), "segment without length")),
+        refused(
+            "a hundred thousand runs, no bytes",
+            empty(MAX_SPAN_POINTS as u64 / 2),
+            "segment without length",
+        ),
         refused("runs of 2^64 points", with(LENGTHS, column(8, 2, 255)), "points of a section"),
         refused(
             "runs of a few points too many",
             {
                 let mut columns = columns(1, 2);
-                columns[LENGTHS] = vec![3, 255, 255, 63];
+                columns[LENGTHS] = vec![3, 255, 255, 3];
                 beside_ground(&section(1, &columns))
             },
             "points of a section",

@@ -10,6 +10,7 @@ use corniche_roads::FrcTable;
 use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest, SpansRecord};
 use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::credits::MOST_CREDITS_BYTES;
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
 use crate::tile_order::pmtiles_order;
@@ -64,6 +65,9 @@ impl Manifest {
             let are_corners = clip.nodes.iter().all(is_node) && low.i < high.i && low.j < high.j;
             that(are_corners, "clip.nodes", clip.nodes)?;
         }
+        let corners = self.outline.iter().flatten().flatten().flatten();
+        let farthest = corners.flatten().map(|part| part.unsigned_abs()).max().unwrap_or_default();
+        that(farthest <= MAX_LATTICE_STEPS as u64, "outline", farthest)?;
         bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_COORDINATE_M; 2])?;
         let samples_deg = self.coordinates.samples_deg().as_flattened();
         let farthest_deg = samples_deg.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -112,6 +116,12 @@ impl Manifest {
         ClassedLayer::ALL.into_iter().try_for_each(|layer| self.check_lines(layer))?;
         self.check_spans()?;
         self.check_sv_tails()?;
+        if self.crs_wkt.contains('\0') {
+            return Err("crs_wkt holds a NUL, which cannot be".to_owned());
+        }
+        // With what parts one from the next.
+        let credits: usize = self.attribution.iter().map(|credit| credit.len() + 2).sum();
+        that(credits <= MOST_CREDITS_BYTES, "the number of bytes of attribution", credits)?;
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
         all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
@@ -151,7 +161,15 @@ impl Manifest {
     }
 
     fn check_spans(&self) -> Result<(), String> {
-        let Some(SpansRecord { counts, levels }) = &self.spans else { return Ok(()) };
+        let Some(SpansRecord { counts, levels, outer_grounds }) = &self.spans else {
+            return Ok(());
+        };
+        for pair in outer_grounds.windows(2) {
+            that(pair[0].at() < pair[1].at(), "spans.outer_grounds (their order)", pair)?;
+        }
+        for ground in outer_grounds {
+            that(ground.height_m.is_finite(), "spans.outer_grounds", ground)?;
+        }
         let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
         let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);

@@ -1,7 +1,7 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, NodeIndex};
+use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, LatticePoint, NodeIndex};
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +41,10 @@ pub struct Manifest {
     /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip: Option<ClipRecord>,
+    /// The outline of the elevation files on the lattice: polygons, each of its outer ring and its holes, of [u, v]. Left out where they fill the rectangle of
+    /// their nodes, and in packages of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outline: Option<Vec<Vec<Vec<[i64; 2]>>>>,
     /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
     pub resampling: String,
     /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
@@ -100,6 +104,33 @@ impl Manifest {
     #[must_use]
     pub fn area_deg(&self) -> Bounds {
         self.clip.as_ref().map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
+    }
+
+    /// The outline of the elevation files: polygons, each of its outer ring and its holes; `None` where they fill their rectangle.
+    #[must_use]
+    pub fn data_outline(&self) -> Option<Vec<Vec<Vec<LatticePoint>>>> {
+        let ring =
+            |ring: &Vec<[i64; 2]>| ring.iter().map(|&[u, v]| LatticePoint { u, v }).collect();
+        let polygon = |rings: &Vec<Vec<[i64; 2]>>| rings.iter().map(ring).collect();
+        self.outline.as_ref().map(|polygons| polygons.iter().map(polygon).collect())
+    }
+
+    /// Whether a longitude and a latitude lie in the rectangle of the data, in which longitudes may run on past 180 degrees.
+    #[must_use]
+    pub fn covers_deg(&self, [lon, lat]: [f64; 2]) -> bool {
+        let is_inside = |turn: f64| self.wgs84_bounds.contains([lon + turn, lat]);
+        [0.0, 360.0, -360.0].into_iter().any(is_inside)
+    }
+
+    /// What the data covers, for whoever named a place outside; and that the two numbers of the place would fit the other way around, where they would.
+    #[must_use]
+    pub fn covered_text(&self, [lon, lat]: [f64; 2]) -> String {
+        let swapped = if !self.covers_deg([lon, lat]) && self.covers_deg([lat, lon]) {
+            format!("; longitude comes first: {lat},{lon} lies inside")
+        } else {
+            String::new()
+        };
+        format!("{}{swapped}", self.wgs84_bounds.degrees_text())
     }
 
     /// South-western and north-eastern node of the data's rectangle.
@@ -219,6 +250,9 @@ pub struct SettingsRecord {
     pub vertical_crs: Option<String>,
     /// `--vertical-shift`; 0 when not given.
     pub vertical_shift_m: f64,
+    /// `--vertical-unit`, if given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertical_unit: Option<String>,
     /// `--crs`, if given.
     pub crs: Option<String>,
     /// `--cell`, if given.
@@ -388,12 +422,50 @@ pub struct InputRecord {
 }
 
 /// The bridges and tunnels of a package, whose heights are estimates.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpansRecord {
     /// What was found in the extract.
     pub counts: SpanCounts,
     /// The runs off the ground that tiles have, by level; levels without any are left out.
     pub levels: Vec<LineLevelRecord>,
+    /// Ground on which they are carried and which the package does not have: where bounds cut them, that of the finest tiles without bounds. Ascending.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outer_grounds: Vec<OuterGround>,
+}
+
+/// The ground at a place of the lattice: u, v, and its height in metres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "(i64, i64, f64)", into = "(i64, i64, f64)")]
+pub struct OuterGround {
+    at: LatticePoint,
+    /// Its height, metres.
+    pub height_m: f64,
+}
+
+impl OuterGround {
+    /// The ground at a place.
+    #[must_use]
+    pub const fn new(at: LatticePoint, height_m: f64) -> Self {
+        Self { at, height_m }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub const fn at(&self) -> LatticePoint {
+        self.at
+    }
+}
+
+impl From<(i64, i64, f64)> for OuterGround {
+    fn from((u, v, height_m): (i64, i64, f64)) -> Self {
+        Self { at: LatticePoint::new(u, v), height_m }
+    }
+}
+
+impl From<OuterGround> for (i64, i64, f64) {
+    fn from(OuterGround { at, height_m }: OuterGround) -> Self {
+        (at.u, at.v, height_m)
+    }
 }
 
 /// Bridges and tunnels, each with all ways that it connects.
@@ -403,7 +475,7 @@ pub struct SpanCounts {
     pub bridges: u64,
     /// Tunnels.
     pub tunnels: u64,
-    /// The true length of all bridges in plan, as far as there is data, micrometres.
+    /// The true length in plan of the ways of bridges that are kept at the finest level, micrometres: a part of `roads_kept_um`.
     #[serde(default)]
     pub bridges_um: u64,
     /// The same of all tunnels.

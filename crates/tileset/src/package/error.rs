@@ -78,6 +78,17 @@ pub enum OpenError {
 }
 
 impl OpenError {
+    /// What is wrong with a manifest, in no more of its words than are read.
+    pub(crate) fn manifest(reason: impl std::fmt::Display) -> Self {
+        const MOST_CHARS: usize = 500;
+        let mut reason = reason.to_string();
+        if let Some((end, _)) = reason.char_indices().nth(MOST_CHARS) {
+            reason.truncate(end);
+            reason.push_str(" …");
+        }
+        Self::Manifest { reason }
+    }
+
     /// Whether nothing is known to be wrong with the package: the network or a server failed, and the same may succeed later.
     #[must_use]
     pub fn may_pass(&self) -> bool {

@@ -282,7 +282,7 @@ impl Manifest {
 }
 
 fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
-    let failed = |error: serde_json::Error| OpenError::Manifest { reason: error.to_string() };
+    let failed = |error: serde_json::Error| OpenError::manifest(error);
     // The text is read three times, each time with more of its fields, and never into a tree of JSON values: such a tree
     // can take a hundred times the memory of the text.
     let object: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
@@ -297,7 +297,7 @@ fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
         return Err(OpenError::Version { found: version.corniche.format_version });
     }
     let metadata: Metadata<Manifest> = parse(metadata).map_err(failed)?;
-    metadata.corniche.check().map_err(|reason| OpenError::Manifest { reason })?;
+    metadata.corniche.check().map_err(OpenError::manifest)?;
     Ok(metadata.corniche)
 }
 

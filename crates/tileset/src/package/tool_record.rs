@@ -78,8 +78,8 @@ impl ToolRecord {
             four.copy_from_slice(&bytes[at..at + 4]);
             i32::from_le_bytes(four)
         };
-        let texts: Metadata<IgnoredAny> = serde_json::from_slice(metadata)
-            .map_err(|error| OpenError::Manifest { reason: error.to_string() })?;
+        let texts: Metadata<IgnoredAny> =
+            serde_json::from_slice(metadata).map_err(OpenError::manifest)?;
         Ok(Self {
             addressed_tiles: count(72),
             tile_entries: count(80),

@@ -51,10 +51,15 @@ pub(crate) struct Head {
 
 /// Takes the points of a line from the `room` that its section has left.
 pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<(), Damage> {
+    take_points_of(MAX_POINTS, room, points)
+}
+
+/// Does the same in a section that may have so many points.
+pub(crate) fn take_points_of(most: usize, room: &mut usize, points: usize) -> Result<(), Damage> {
     *room = room.checked_sub(points).ok_or(Damage::TooLarge {
         what: "points of a section",
-        length: MAX_POINTS as u64 + 1,
-        limit: MAX_POINTS as u64,
+        length: most as u64 + 1,
+        limit: most as u64,
     })?;
     Ok(())
 }

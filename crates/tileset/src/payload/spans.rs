@@ -10,8 +10,8 @@ use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_LINES, MAX_POINTS};
-use crate::payload::class_table::take_points;
+use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
+use crate::payload::class_table::take_points_of;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope;
@@ -71,11 +71,11 @@ pub(crate) fn decode(
     let count = cursor.bounded(MAX_LINES, "number of runs")?;
     let [codes, ways, lengths] =
         [cursor.planes(count)?, cursor.planes(count)?, cursor.planes(count)?];
-    let mut room = MAX_POINTS;
+    let mut room = MAX_SPAN_POINTS;
     let mut points_of = Vec::with_capacity(count);
     for length in lengths.iter() {
         let points = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(2);
-        take_points(&mut room, points)?;
+        take_points_of(MAX_SPAN_POINTS, &mut room, points)?;
         points_of.push(points);
     }
     let points = decode_points(cursor, points_of.iter().copied(), corner)?;

@@ -29,7 +29,8 @@ pub enum FlightError {
     )]
     OtherCrs { flight: String, package: String },
     #[error(
-        "its metres_per_unit of {factors:?} cannot be used as factors; give those of the package that the flight was recorded on"
+        "its metres_per_unit of {}, {} cannot be used as factors; give those of the package that the flight was recorded on",
+        .factors[0], .factors[1]
     )]
     Factors { factors: [f64; 2] },
 }

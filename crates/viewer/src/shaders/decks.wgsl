@@ -24,7 +24,7 @@ struct DeckIn {
     @location(2) mitres: vec4<f32>,
     // x: thickness of the slab, true metres; y: world metres across the road for each true metre.
     @location(3) slab_width_factor: vec2<f32>,
-    // Lowest four bits: class; three bits: look; one bit each if the deck comes down to the ground at its start and at its end.
+    // Lowest four bits: class; three bits: look; one bit each if the deck comes down to the ground at its start and at its end; one bit for a ribbon.
     @location(4) class_and_look: u32,
     // The road's own width, as `road_with` takes it.
     @location(5) own_width: f32,
@@ -49,6 +49,14 @@ struct DeckFragment {
     @location(7) @interpolate(flat) part_m: f32,
     // Whether the deck is so short that the more important road is drawn above, as on the ground.
     @location(8) @interpolate(flat) is_short: u32,
+}
+
+// How thick a ribbon is, world metres: a road that is laid on nothing. Ground hides it, but for so much that what lies exactly on the ground is seen.
+const RIBBON_M = 0.05;
+const OVER_RIBBON_M = 0.25;
+
+fn is_ribbon(class_and_look: u32) -> bool {
+    return (class_and_look & 512u) != 0u;
 }
 
 // So many times farther than class 0 is wider, because carriageways lie beside each other.
@@ -133,7 +141,7 @@ fn vertex(in: DeckIn) -> DeckFragment {
     let end = out.start + out.start_to_end;
     let reached_m = length_m + before_m + after_m;
     out.size = vec3(half_width_at(road, out.start, along), half_width_at(road, end, along),
-        in.slab_width_factor.x * vertical_scale);
+        select(in.slab_width_factor.x * vertical_scale, RIBBON_M, is_ribbon(in.class_and_look)));
     out.mitres = vec4(
         select(mitre_within(in.mitres.xy, -direction, out.size.x, reached_m), -direction, before_m > 0.0),
         select(mitre_within(in.mitres.zw, direction, out.size.y, reached_m), direction, after_m > 0.0),
@@ -153,7 +161,7 @@ fn vertex(in: DeckIn) -> DeckFragment {
     let across = vec2(-direction.y, direction.x) * side;
     let plan = out.start.xy + out.start_to_end.xy * at_end + (outward + across) * (widest_m + pad_m);
     let low = min(out.start.z, end.z) - out.size.z - pad_m;
-    let high = max(out.start.z, end.z) + highest_ground_m(widest_m) + pad_m;
+    let high = max(out.start.z, end.z) + highest_ground_m(widest_m, in.class_and_look) + pad_m;
     out.clip = frame.clip_from_relative * vec4(plan, select(low, high, (corner & 4u) != 0u), 1.0);
     if is_from_above() {
         // As for volumes.
@@ -163,8 +171,8 @@ fn vertex(in: DeckIn) -> DeckFragment {
 }
 
 // How much higher than the road ground may be that is painted as the road.
-fn highest_ground_m(half_width_m: f32) -> f32 {
-    return 2.0 * half_width_m * frame.scale.y;
+fn highest_ground_m(half_width_m: f32, class_and_look: u32) -> f32 {
+    return select(2.0 * half_width_m, OVER_RIBBON_M, is_ribbon(class_and_look)) * frame.scale.y;
 }
 
 const NONE = 0u;
@@ -343,7 +351,7 @@ fn seen_at(in: DeckFragment) -> Seen {
     out.share = near.share;
     if out.face == NONE && near.share <= 1.0 {
         let above_m = out.position.z - near.road_z;
-        if above_m >= -in.size.z && above_m <= highest_ground_m(near.half_width_m) {
+        if above_m >= -in.size.z && above_m <= highest_ground_m(near.half_width_m, in.class_and_look) {
             out.face = TOP;
         }
     }

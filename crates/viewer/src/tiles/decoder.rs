@@ -15,7 +15,7 @@ use super::{
     LayerLine, LineLayer, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale,
     TileGeometry, TileLines, geometry::LineGround,
 };
-use crate::options::RoadMethod;
+use crate::options::{Mapping, RoadMethod};
 
 /// The lines of people's own files take too much work on a tile.
 #[derive(Debug, thiserror::Error)]
@@ -51,6 +51,7 @@ pub struct TileDecoder {
     photos: Layer,
     areas: Layer,
     boundaries: Layer,
+    mapping: Mapping,
     /// They do not go to other instances.
     #[serde(skip)]
     overlays: Arc<Overlays>,
@@ -64,6 +65,7 @@ impl Default for TileDecoder {
             photos: Layer::Read,
             areas: Layer::Read,
             boundaries: Layer::Read,
+            mapping: Mapping::default(),
             overlays: Arc::default(),
         }
     }
@@ -97,6 +99,12 @@ impl TileDecoder {
             boundaries: Layer::of(style.has_boundaries()),
             ..self
         }
+    }
+
+    /// Lays roads as geometry on the ground, or not.
+    #[must_use]
+    pub fn with_mapping(self, mapping: Mapping) -> Self {
+        Self { mapping, ..self }
     }
 
     /// Lays lines of people's own files on the tiles.
@@ -180,8 +188,14 @@ impl TileDecoder {
         };
         let spans = self.spans(payload, id, manifest)?;
         let spans = spans.as_deref();
-        let tile =
-            TileGeometry::from_payload(&decoded, spans, frame, quantum_m, (margin_m, scale))?;
+        let tile = TileGeometry::from_payload(
+            &decoded,
+            spans,
+            frame,
+            quantum_m,
+            (margin_m, scale),
+            self.mapping,
+        )?;
         let methods = self.line_methods();
         let boundaries = match self.boundaries {
             Layer::Read => decode_lines(payload, id, ClassedLayer::Boundaries)?,

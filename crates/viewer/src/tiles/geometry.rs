@@ -8,13 +8,13 @@ use corniche_tin::{Placement, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AreaVolumes, BadAreas, BadRoads, DeckPieces, GroundLine, GroundMesh, InNet, LayerLine,
-    LineLayer, LineLayers, LineMethods, OffGround, PhotoImage, PlanLine, PlanScale, RoadSegments,
-    RoadVolumes, ShadingSlopes, TileLines,
+    AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundLine, GroundMesh, InNet,
+    LayerLine, LineLayer, LineLayers, LineMethods, OffGround, PhotoImage, PlanLine, PlanScale,
+    RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
     line_layers::{TileGround, lay},
     relief::Relief,
 };
-use crate::lod::GroundSummary;
+use crate::{lod::GroundSummary, options::Mapping};
 
 /// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -144,7 +144,26 @@ impl TileGeometry {
         let (on_ground, net) = InNet::<GroundLine>::all_of(&lines.ground, &decks);
         let (in_plan, net_in_plan) =
             InNet::<PlanLine>::all_of(&lines.plan, &decks, lines.width_margin_m);
-        let net = if lines.ground.is_empty() { net_in_plan } else { net };
+        let mut net = if lines.ground.is_empty() { net_in_plan } else { net };
+        let in_tile = (bounds, reference_m);
+        let (roads, volumes, decks) = match lines.mapping {
+            Mapping::OnTriangles => (
+                RoadSegments::of_lines(&on_ground, &decks, reference_m, scale, |piece| {
+                    relief.bed(piece, wide.as_ref())
+                }),
+                RoadVolumes::new(&in_plan, &decks, reference_m, scale, |ends_m| {
+                    relief.near(ends_m)
+                }),
+                DeckPieces::of_decks(&lines.decks, &net, in_tile, scale, work),
+            ),
+            Mapping::Unmapped => {
+                let straight: Vec<DeckLine> = lines.ground.iter().map(DeckLine::unmapped).collect();
+                // They are the lines that end there.
+                net.ends.clear();
+                let ribbons = DeckPieces::of_decks(&straight, &net, in_tile, scale, work);
+                (RoadSegments::default(), RoadVolumes::default(), ribbons.as_ribbons())
+            }
+        };
         Self {
             id,
             reference_m,
@@ -155,13 +174,9 @@ impl TileGeometry {
             areas: AreaVolumes::default(),
             lines: LineLayers::default(),
             most_width_factor,
-            roads: RoadSegments::of_lines(&on_ground, &decks, reference_m, scale, |piece| {
-                relief.bed(piece, wide.as_ref())
-            }),
-            volumes: RoadVolumes::new(&in_plan, &decks, reference_m, scale, |ends_m| {
-                relief.near(ends_m)
-            }),
-            decks: DeckPieces::of_decks(&lines.decks, &net, (bounds, reference_m), scale, work),
+            roads,
+            volumes,
+            decks,
             width_margin_m: lines.width_margin_m,
             size_m: [bounds.width(), bounds.height()],
             wide_ways: wide_ways(lines),
@@ -170,7 +185,7 @@ impl TileGeometry {
 
     /// Decodes a tile's payload: its terrain, the sections of roads that were read, and these spans of it; `None` if the
     /// package tells nothing of bridges and tunnels. `width_margin_m` is that of the
-    /// tile's level, `scale` that of the tile.
+    /// tile's level, `scale` that of the tile. Roads that are not mapped take no notice of bridges and tunnels.
     ///
     /// # Errors
     /// When a road does not fit the ground, or placing them takes too much work.
@@ -180,8 +195,10 @@ impl TileGeometry {
         frame: &GridFrame,
         quantum_m: f64,
         (width_margin_m, scale): (f64, PlanScale),
+        mapping: Mapping,
     ) -> Result<Self, BadRoads> {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
+        let spans = spans.filter(|_| mapping == Mapping::OnTriangles);
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(
@@ -191,7 +208,7 @@ impl TileGeometry {
             (frame, quantum_m),
             width_margin_m,
         )?;
-        let lines = TileLines { scale, ..lines };
+        let lines = TileLines { scale, mapping, ..lines };
         let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
         let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
         let work = Work::new(MOST_TILE_STEPS);

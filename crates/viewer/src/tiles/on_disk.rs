@@ -9,7 +9,10 @@ use corniche_tileset::{AnySource, FilePackage, Manifest, OpenError};
 use super::{
     LoadTileError, MapPackage, Overlays, PackageTiles, TileCatalog, TileGeometry, TileSource,
 };
-use crate::{lod::GroundSummary, options::RoadMethod};
+use crate::{
+    lod::GroundSummary,
+    options::{Mapping, RoadMethod},
+};
 
 /// A package in a file, or elsewhere where threads can wait for its tiles.
 #[derive(Debug)]
@@ -50,6 +53,12 @@ impl PackageSource {
 }
 
 impl PackageSource {
+    /// See [`TileDecoder::with_mapping`](super::TileDecoder::with_mapping).
+    #[must_use]
+    pub fn with_mapping(self, mapping: Mapping) -> Self {
+        Self(self.0.with_mapping(mapping))
+    }
+
     /// See [`PackageTiles::with_overlays`].
     #[must_use]
     pub fn with_overlays(self, overlays: Arc<Overlays>) -> Self {

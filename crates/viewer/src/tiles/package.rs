@@ -12,7 +12,10 @@ use super::{
     LoadTileError, MapPackage, Overlays, ShadingSlopes, TileCatalog, TileDecoder, TileGeometry,
     TileLines,
 };
-use crate::{lod::GroundSummary, options::RoadMethod};
+use crate::{
+    lod::GroundSummary,
+    options::{Mapping, RoadMethod},
+};
 
 /// What summaries and slopes are read from.
 const GROUND_ALONE: Sections = Sections::TERRAIN.and(Sections::RELIEF).and(Sections::SPANS);
@@ -53,6 +56,12 @@ impl<S: ByteSource> PackageTiles<S> {
     #[must_use]
     pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
         Self { decoder: self.decoder.for_look(method, style), ..self }
+    }
+
+    /// See [`TileDecoder::with_mapping`].
+    #[must_use]
+    pub fn with_mapping(self, mapping: Mapping) -> Self {
+        Self { decoder: self.decoder.with_mapping(mapping), ..self }
     }
 
     /// Lays lines of people's own files on the tiles.

@@ -13,6 +13,7 @@ mod look;
 mod parts;
 mod records;
 mod segments;
+mod unmapped;
 mod volumes;
 
 pub(crate) use self::{

@@ -27,3 +27,4 @@ mod package;
 pub(crate) mod reference;
 mod road_widths;
 mod short_parts;
+mod unmapped;

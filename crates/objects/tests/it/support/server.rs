@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    io::{self, BufReader},
+    io::{self, BufReader, Write as _},
     net::{Shutdown, TcpListener, TcpStream},
     sync::{Arc, Mutex, MutexGuard},
     thread,
@@ -27,6 +27,12 @@ pub(crate) enum Fault {
     Ignore(&'static str),
     /// The answer leads elsewhere.
     Redirect,
+    /// It is said to be done, and what was stored has this many bytes of it left; `None`: it is not there.
+    Forgotten(Option<usize>),
+    /// The answer has this body.
+    Says(String),
+    /// The answer has so many bytes, which it claims to have or not.
+    Zeros { bytes: u64, is_claimed: bool },
 }
 
 /// Which fault a request has, if any.
@@ -141,7 +147,20 @@ impl Server {
                 state.done(&request)
             }
         };
+        match &fault {
+            Some(Fault::Forgotten(None)) => drop(state.objects.remove(&request.path)),
+            Some(Fault::Forgotten(Some(left))) => {
+                if let Some(object) = state.objects.get_mut(&request.path) {
+                    object.bytes.truncate(*left);
+                }
+            }
+            Some(Fault::Says(body)) => answer = Answer::new(200, body.clone()),
+            _ => {}
+        }
         drop(state);
+        if let Some(Fault::Zeros { bytes, is_claimed }) = fault {
+            return zeros(stream, bytes, is_claimed);
+        }
         match &fault {
             Some(Fault::Lost) => return Err(cut()),
             Some(Fault::CutBody(bytes)) => most = *bytes,
@@ -151,6 +170,20 @@ impl Server {
         answer.send(&mut stream.try_clone()?, &request.method, most)?;
         if most < answer.body.len() { Err(cut()) } else { Ok(()) }
     }
+}
+
+/// Sends an answer of zeros and ends the connection, also where the client takes no more of it.
+fn zeros(mut stream: &TcpStream, bytes: u64, is_claimed: bool) -> io::Result<()> {
+    let length = if is_claimed { format!("Content-Length: {bytes}\r\n") } else { String::new() };
+    let head = format!(
+        "HTTP/1.1 200 OK\r\n{length}ETag: \"0\"\r\nLast-Modified: Sun, 22 Nov 2026 10:00:00 GMT\r\n"
+    );
+    stream.write_all(format!("{head}Connection: close\r\n\r\n").as_bytes())?;
+    let block = vec![b' '; 1 << 16];
+    for _ in 0..bytes / (1 << 16) {
+        stream.write_all(&block)?;
+    }
+    Err(io::ErrorKind::ConnectionAborted.into())
 }
 
 impl State {

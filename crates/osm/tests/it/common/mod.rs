@@ -123,6 +123,7 @@ pub(crate) fn request<'a>(
         others: &[],
         table,
         place,
+        ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
         node_ids: false,
         pool,

@@ -8,7 +8,7 @@ use super::{
     CLASS_BIT, FIRST_ON_GROUND, LAST_ON_GROUND, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
     is_height,
 };
-use crate::limits::{MAX_LINES, MAX_POINTS, MAX_TRIANGLES};
+use crate::limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES};
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
 use crate::payload::number_codes::put_planes;
@@ -137,7 +137,7 @@ fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
     if !points().all(is_known) {
         return Err("a height that no ground has");
     }
-    if runs.len() > MAX_LINES || points().count() > MAX_POINTS {
+    if runs.len() > MAX_LINES || points().count() > MAX_SPAN_POINTS {
         return Err("more spans than readers accept");
     }
     Ok(())

@@ -162,7 +162,8 @@ pub(crate) fn instance(piece: &DeckPiece) -> Instance {
     let [[g, h], [i, j]] = piece.mitres.map(|mitre| mitre.map(f32::to_bits));
     let [slab, width] = [piece.slab_m, piece.width_factor].map(f32::to_bits);
     let [start, end] = piece.lands.map(u32::from);
-    let flags = piece.look.number() << 4 | start << 7 | end << 8;
+    let is_ribbon = u32::from(piece.slab_m <= 0.0);
+    let flags = piece.look.number() << 4 | start << 7 | end << 8 | is_ribbon << 9;
     let class = u32::from(piece.class.number()) | flags;
     let own_width = own_width_value(piece.own_width).to_bits();
     let [dash_start, dash_rate] = piece.dash.numbers().map(f32::to_bits);

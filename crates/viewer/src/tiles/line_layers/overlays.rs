@@ -1,7 +1,9 @@
 //! Lines of people's own files, as the tiles of each level need them.
 
+use std::sync::OnceLock;
+
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, simplify};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, simplify};
 
 use super::LayerLine;
 
@@ -10,13 +12,21 @@ const TOLERANCE_CELLS: f64 = 0.25;
 /// Segments in a run whose rectangle is known.
 const RUN: usize = 64;
 
-/// Lines of people's own files, prepared for each level of a package.
+/// Lines of people's own files, prepared for each level of a package once a tile of it is asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
-    /// The lines of each level.
-    levels: Vec<Vec<LevelLine>>,
+    /// The lines of the files, without points that lie on the ones before.
+    lines: Vec<Road>,
+    levels: Vec<Level>,
     /// The files that they come from, by the styles of the lines.
     names: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Level {
+    /// Lines are simplified by so many steps of the lattice.
+    tolerance: f64,
+    lines: OnceLock<Vec<LevelLine>>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +37,7 @@ struct LevelLine {
 }
 
 impl Overlays {
-    /// Prepares lines. Those that are not two different points long are left out.
+    /// Takes lines. Those that are not two different points long are left out.
     #[must_use]
     pub fn new(lines: &[LayerLine], frame: &GridFrame) -> Self {
         let levels = (0..=frame.max_level()).map(|level| {
@@ -36,10 +46,10 @@ impl Overlays {
             } else {
                 TOLERANCE_CELLS * frame.level_cell(level).shorter_m()
             };
-            let tolerance = tolerance_m / frame.lattice_step_m();
-            lines.iter().filter_map(|line| LevelLine::new(line, tolerance)).collect()
+            Level { tolerance: tolerance_m / frame.lattice_step_m(), lines: OnceLock::new() }
         });
-        Self { levels: levels.collect(), names: Vec::new() }
+        let lines = lines.iter().filter_map(as_road).collect();
+        Self { lines, levels: levels.collect(), names: Vec::new() }
     }
 
     /// The same lines, with the names of the files that they come from: one for each style.
@@ -58,38 +68,51 @@ impl Overlays {
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.levels.iter().all(Vec::is_empty)
+        self.lines.is_empty()
     }
 
     /// The parts of lines in a tile and so many steps of the lattice around it.
     #[must_use]
     pub fn near(&self, id: TileId, frame: &GridFrame, margin: i64) -> Vec<LayerLine> {
         let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
-        let lines = self.levels.get(usize::from(id.z())).into_iter().flatten();
-        lines.flat_map(|line| line.near(&around)).collect()
+        let level = self.levels.get(usize::from(id.z()));
+        let lines = level.map_or(&[][..], |level| self.of_level(level));
+        lines.iter().flat_map(|line| line.near(&around)).collect()
+    }
+
+    /// The lines of a level, simplified when they are asked for first.
+    fn of_level<'a>(&self, Level { tolerance, lines }: &'a Level) -> &'a [LevelLine] {
+        let simplified = || self.lines.iter().map(|line| LevelLine::new(line, *tolerance));
+        lines.get_or_init(|| simplified().collect())
     }
 }
 
+/// A line as what can be simplified: its style is the class. `None` if it is not two different points long.
+fn as_road(line: &LayerLine) -> Option<Road> {
+    let mut points = line.points.clone();
+    points.dedup();
+    let path = Polyline::new(points).ok()?;
+    let last = path.points().len() as u32 - 1;
+    Some(Road {
+        way_id: line.id,
+        class: FunctionalRoadClass::new(line.style)?,
+        attributes: RoadAttributes::default(),
+        line: path,
+        fixed: vec![0, last],
+        node_ids: Vec::new(),
+        same_places: Vec::new(),
+        met: MetNodes::default(),
+    })
+}
+
 impl LevelLine {
-    fn new(line: &LayerLine, tolerance: f64) -> Option<Self> {
-        let mut points = line.points.clone();
-        points.dedup();
-        let path = Polyline::new(points).ok()?;
-        let last = path.points().len() as u32 - 1;
-        let road = Road {
-            way_id: line.id,
-            class: FunctionalRoadClass::new(line.style)?,
-            attributes: RoadAttributes::default(),
-            line: path,
-            fixed: vec![0, last],
-            node_ids: Vec::new(),
-            same_places: Vec::new(),
-        };
-        let points = simplify(&road, tolerance).points().to_vec();
+    fn new(road: &Road, tolerance: f64) -> Self {
+        let points = simplify(road, tolerance).points().to_vec();
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {
             LatticeBounds::of(&points[first..points.len().min(first + RUN + 1)])
         });
-        Some(Self { runs: runs.collect(), line: LayerLine { points, ..line.clone() } })
+        let (id, style) = (road.way_id, road.class.number());
+        Self { runs: runs.collect(), line: LayerLine { id, style, points } }
     }
 
     /// The parts that have a segment whose rectangle touches these bounds.

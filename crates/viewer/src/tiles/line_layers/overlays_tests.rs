@@ -58,7 +58,7 @@ fn coarse_levels_have_fewer_points() {
     });
     let overlays = Overlays::new(&[line(points(&wave.collect::<Vec<_>>()))], &frame());
     let counts: Vec<usize> =
-        overlays.levels.iter().map(|lines| lines[0].line.points.len()).collect();
+        overlays.levels.iter().map(|level| overlays.of_level(level)[0].line.points.len()).collect();
     assert!(counts[0] <= counts[1] && counts[1] < counts[2], "{counts:?}");
     assert_eq!(counts[2], 400);
 }

@@ -7,6 +7,7 @@ use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
 use super::{super::PlanScale, DashPlace, DeckLine, RoadLook, deck_line::deck_lines, look::tagged};
+use crate::options::Mapping;
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,6 +83,8 @@ pub struct TileLines {
     pub width_margin_m: f64,
     /// How many working metres there are to a true metre; 1 by default.
     pub scale: PlanScale,
+    /// Whether the roads on the ground are drawn on it.
+    pub mapping: Mapping,
 }
 
 /// Why a road of a tile cannot be drawn: the package is damaged.

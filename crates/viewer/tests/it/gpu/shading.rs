@@ -4,7 +4,7 @@ use corniche_geom::{HeightGrid, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{Relief, TilePayload};
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, Mapping, RoadMethod, RoadOptions, Wireframe,
     for_tests::PlanScale,
     gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers},
     tiles::TileGeometry,
@@ -96,8 +96,9 @@ fn draw_beneath(
     style.light.gentle = look.gentle;
     let scale = PlanScale::uniform([1.0; 2]);
     let geometry = |payload: &TilePayload| {
-        TileGeometry::from_payload(payload, None, &frame(), QUANTUM_M, (WIDTH_MARGIN_M, scale))
-            .unwrap()
+        let margin = (WIDTH_MARGIN_M, scale);
+        let mapping = Mapping::OnTriangles;
+        TileGeometry::from_payload(payload, None, &frame(), QUANTUM_M, margin, mapping).unwrap()
     };
     let above = parent.map(|parent| SlopeChain::new(gpu, &geometry(parent), None));
     let buffers: Vec<TileBuffers> = payloads

@@ -22,15 +22,15 @@ use super::{
     },
 };
 
-const SIDE: u8 = 1;
-const UNDERSIDE: u8 = 2;
+pub(crate) const SIDE: u8 = 1;
+pub(crate) const UNDERSIDE: u8 = 2;
 /// Heights that differ by less count as the same, metres.
 const SAME_M: f64 = 0.25;
 /// A pixel is left out if what is seen changes within so many pixels.
 const BAND_PX: f64 = 0.3;
 
 /// A bridge: class and points relative to the middle of the root, with heights.
-type Deck = (u8, Vec<[f64; 3]>);
+pub(crate) type Deck = (u8, Vec<[f64; 3]>);
 
 /// Decks of class 5 are slip roads, those of class 6 carriageways.
 fn look_of(number: u8) -> RoadLook {
@@ -60,11 +60,13 @@ fn scene(height_m: impl Fn(f64, f64) -> f64, decks: &[Deck], style: Style) -> Sc
 }
 
 /// What the reference knows of a deck: its points, divided as the manual of the format of tiles says, and half its width at each.
-struct Slab {
+pub(crate) struct Slab {
     class: u8,
     points: Vec<DVec3>,
     half_m: Vec<f64>,
     thick_m: f64,
+    /// How high ground over it may be that is painted as the road; `None`: twice half the width.
+    most_above_m: Option<f64>,
 }
 
 /// The place of a deck that is nearest to another in plan.
@@ -76,7 +78,7 @@ struct Nearest {
 }
 
 impl Slab {
-    fn new((number, points): &Deck, look: Look<'_>) -> Self {
+    pub(crate) fn new((number, points): &Deck, look: Look<'_>) -> Self {
         let at = |[x, y, z]: [f64; 3]| (center() + DVec2::new(x, y)).extend(z);
         let mut divided = vec![at(points[0])];
         for pair in points.windows(2) {
@@ -92,7 +94,12 @@ impl Slab {
                 half_width(look, (*number, OwnWidth::Unknown, look_of(*number)), 1.0, distance_m).0
             })
             .collect();
-        Self { class: *number, points: divided, half_m, thick_m }
+        Self { class: *number, points: divided, half_m, thick_m, most_above_m: None }
+    }
+
+    /// The same road as a thin ribbon, which ground hides.
+    pub(crate) fn into_ribbon(self) -> Self {
+        Self { thick_m: 0.05, most_above_m: Some(0.25), ..self }
     }
 
     fn nearest(&self, at: DVec2) -> Nearest {
@@ -134,9 +141,30 @@ impl Slab {
             }
             let steps = 300;
             let depth = |k: i32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(steps);
-            let inside = (0..=steps).find(|&k| self.holds(start + way * depth(k)));
-            if let Some(k) = inside {
-                let [mut before, mut within] = [depth((k - 1).max(0)), depth(k)];
+            // What is thinner than a step is found where the ray comes to its other side.
+            let height_m = |depth: f64| {
+                let at = start + way * depth;
+                at.z - self.nearest(at.truncate()).height_m
+            };
+            let through = |k: i32| {
+                let mut ends = [depth(k - 1), depth(k)];
+                let from_above = height_m(ends[0]) > 0.0;
+                if from_above == (height_m(ends[1]) > 0.0) {
+                    return None;
+                }
+                for _ in 0..50 {
+                    let middle = f64::midpoint(ends[0], ends[1]);
+                    ends[usize::from((height_m(middle) > 0.0) != from_above)] = middle;
+                }
+                let below = ends[usize::from(from_above)];
+                self.holds(start + way * below).then_some(below)
+            };
+            let inside = (0..=steps).find_map(|k| {
+                let held = self.holds(start + way * depth(k)).then(|| depth(k));
+                Some((k, held.or_else(|| if k > 0 { through(k) } else { None })?))
+            });
+            if let Some((k, mut within)) = inside {
+                let mut before = depth((k - 1).max(0));
                 if k == 0 {
                     before = (within - (range[1] - range[0]) * 1e-3).max(0.0);
                 }
@@ -156,17 +184,17 @@ impl Slab {
 }
 
 /// The reference for one drawing.
-struct DeckOracle<'a> {
-    slabs: Vec<Slab>,
-    style: &'a Style,
-    camera: &'a Camera,
-    drawing: &'a Drawing,
+pub(crate) struct DeckOracle<'a> {
+    pub(crate) slabs: Vec<Slab>,
+    pub(crate) style: &'a Style,
+    pub(crate) camera: &'a Camera,
+    pub(crate) drawing: &'a Drawing,
 }
 
 #[derive(Debug, Default)]
-struct Found {
-    compared: usize,
-    wrong: usize,
+pub(crate) struct Found {
+    pub(crate) compared: usize,
+    pub(crate) wrong: usize,
     in_band: usize,
     sides: usize,
     undersides: usize,
@@ -201,7 +229,8 @@ impl DeckOracle<'_> {
                 let place = start + way * depth;
                 let near = slab.nearest(place.truncate());
                 let above_m = place.z - near.height_m;
-                if near.share <= 1.0 && above_m >= -slab.thick_m && above_m <= 2.0 * near.half_m {
+                let most_m = slab.most_above_m.unwrap_or(2.0 * near.half_m);
+                if near.share <= 1.0 && above_m >= -slab.thick_m && above_m <= most_m {
                     seen.push((depth, true, road(near.share)));
                 }
             }
@@ -214,7 +243,7 @@ impl DeckOracle<'_> {
         roads.map(|(.., label)| *label).max().unwrap_or(label)
     }
 
-    fn compare(&self) -> Found {
+    pub(crate) fn compare(&self) -> Found {
         let labels = self.drawing.decks.as_ref().expect("decks were drawn");
         let mut found = Found::default();
         for (index, at) in self.drawing.pixels() {

@@ -12,6 +12,7 @@ use corniche_roads::RoadAttributes;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
 use corniche_viewer::{
+    Mapping,
     for_tests::PlanScale,
     tiles::{LoadTileError, TileCatalog, TileGeometry, TileSource},
 };
@@ -176,6 +177,7 @@ impl TileSource for Country {
             &self.frame,
             QUANTUM_M,
             (margin_m, PlanScale::default()),
+            Mapping::OnTriangles,
         )
         .map_err(|error| LoadTileError { id, source: error.into() })
     }

@@ -8,7 +8,7 @@ use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
-    FrameView, RoadOptions, Wireframe,
+    FrameView, Mapping, RoadOptions, Wireframe,
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -237,6 +237,11 @@ impl Tile {
     /// The same tile with these bridges; its roads on the ground end where they begin.
     pub(crate) fn with_decks(&self, decks: Vec<DeckLine>) -> Self {
         self.with_lines(TileLines { decks, ..self.lines.clone() })
+    }
+
+    /// The same tile with its roads laid on nothing.
+    pub(crate) fn unmapped(&self) -> Self {
+        self.with_lines(TileLines { mapping: Mapping::Unmapped, ..self.lines.clone() })
     }
 
     fn with_lines(&self, lines: TileLines) -> Self {

@@ -1,0 +1,94 @@
+//! The edge of a region without holes, clockwise.
+
+use corniche_geom::{LatticePoint, LatticeRegion};
+
+use crate::Ring;
+
+/// The edge of a region, and what lies in it.
+pub(crate) struct RegionEdge {
+    /// Clockwise.
+    corners: Vec<LatticePoint>,
+    region: LatticeRegion,
+}
+
+/// How far along the edge a point lies: on which of its sides, and there by the product of the side with the way to the point.
+pub(crate) type AlongEdge = (usize, i128);
+
+impl RegionEdge {
+    /// The edge of what a counter-clockwise ring surrounds; `None` where that is nothing.
+    pub(crate) fn new(outer: &Ring) -> Option<Self> {
+        let corners: Vec<LatticePoint> = outer.points().iter().rev().copied().collect();
+        let region = LatticeRegion::new(&[vec![corners.clone()]])?;
+        Some(Self { corners, region })
+    }
+
+    /// The corners clockwise.
+    pub(crate) fn corners(&self) -> &[LatticePoint] {
+        &self.corners
+    }
+
+    pub(crate) fn region(&self) -> &LatticeRegion {
+        &self.region
+    }
+
+    fn side(&self, index: usize) -> [LatticePoint; 2] {
+        [self.corners[index], self.corners[(index + 1) % self.corners.len()]]
+    }
+
+    /// How far inside a point lies, steps; 0 on the edge, negative outside.
+    pub(crate) fn distance(&self, point: LatticePoint) -> f64 {
+        let (_, distance) = self.nearest_side(point);
+        if self.region.contains(point) { distance } else { -distance }
+    }
+
+    pub(crate) fn nearest_on_edge(&self, point: LatticePoint) -> LatticePoint {
+        let (index, _) = self.nearest_side(point);
+        let [from, to] = self.side(index);
+        let share = share(from, to, point);
+        let at = |from: i64, to: i64| from + (share * (to - from) as f64).round() as i64;
+        LatticePoint::new(at(from.u, to.u), at(from.v, to.v))
+    }
+
+    /// How far along the edge a point on it lies, be it rounded to the lattice.
+    pub(crate) fn along(&self, point: LatticePoint) -> AlongEdge {
+        let (index, _) = self.nearest_side(point);
+        let [from, to] = self.side(index);
+        let along = dot(from, to, point);
+        if along >= dot(from, to, to) {
+            ((index + 1) % self.corners.len(), 0)
+        } else {
+            (index, along.max(0))
+        }
+    }
+
+    /// The nearest side and how far away it is; of several the first.
+    fn nearest_side(&self, point: LatticePoint) -> (usize, f64) {
+        let mut nearest = (0, f64::INFINITY);
+        for index in 0..self.corners.len() {
+            let [from, to] = self.side(index);
+            let share = share(from, to, point);
+            let away =
+                |from: i64, to: i64, at: i64| (at - from) as f64 - share * (to - from) as f64;
+            let distance = away(from.u, to.u, point.u).hypot(away(from.v, to.v, point.v));
+            if distance < nearest.1 {
+                nearest = (index, distance);
+            }
+        }
+        nearest
+    }
+}
+
+/// How far along a side the nearest point of it lies, as a share.
+fn share(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> f64 {
+    (dot(from, to, point) as f64 / dot(from, to, to) as f64).clamp(0.0, 1.0)
+}
+
+fn dot(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> i128 {
+    i128::from(to.u - from.u) * i128::from(point.u - from.u)
+        + i128::from(to.v - from.v) * i128::from(point.v - from.v)
+}
+
+pub(crate) fn squared_distance(a: LatticePoint, b: LatticePoint) -> i128 {
+    let [east, north] = [a.u - b.u, a.v - b.v].map(i128::from);
+    east * east + north * north
+}

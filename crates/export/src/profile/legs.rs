@@ -1,0 +1,126 @@
+//! The legs of a profile: the ways, or parts of ways, or lines of a file, that are followed one after the other.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use corniche_geom::LatticePoint;
+use corniche_roads::{RoadAttributes, Structure};
+
+use crate::grades::SmoothLine;
+
+/// Smooth lines of two legs are held at the node between them: they are as high there, but for rounding, unless one of them only touches a deck.
+const SAME_HEIGHT_M: f64 = 0.01;
+
+/// Lines to follow, one after the other, on whatever ground.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Course {
+    /// The lines.
+    pub legs: Vec<CourseLeg>,
+    /// What is known of the ways whose parts they are, by id.
+    pub ways: BTreeMap<i64, RoadAttributes>,
+    /// Whether they are parts of ways, whose bridges and tunnels are known.
+    pub is_of_ways: bool,
+    /// Where a file has their beginning, longitude and latitude, for whoever swapped them.
+    pub begins_deg: Option<[f64; 2]>,
+}
+
+/// A line to follow.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CourseLeg {
+    /// The way that it is a part of, or its number.
+    pub way_id: i64,
+    /// Whether it goes against its way.
+    pub is_against: bool,
+    /// Its points on the lattice of the package.
+    pub points: Vec<LatticePoint>,
+}
+
+impl Course {
+    /// Lines that are no ways, with the numbers by which they are told and their names, if they have some.
+    pub fn of_lines(
+        lines: impl IntoIterator<Item = (i64, Option<String>, Vec<LatticePoint>)>,
+    ) -> Self {
+        let mut course = Self::default();
+        for (way_id, name, points) in lines {
+            let name = name.unwrap_or_default();
+            course
+                .ways
+                .entry(way_id)
+                .or_insert_with(|| RoadAttributes { name, ..RoadAttributes::default() });
+            course.legs.push(CourseLeg { way_id, is_against: false, points });
+        }
+        course
+    }
+}
+
+/// What a stretch of a profile follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileLeg {
+    /// The way, or the number of the line.
+    pub way_id: i64,
+    /// Where it begins and ends, true distances in plan from the beginning of the profile, metres.
+    pub range_m: [f64; 2],
+    /// OSM's `name`, or the name of the line; empty without.
+    pub name: String,
+    /// OSM's `ref`; empty without.
+    pub reference: String,
+    /// OSM's `highway`; empty for lines of a file.
+    pub highway: String,
+    /// What carries it.
+    pub structure: Structure,
+}
+
+impl ProfileLeg {
+    /// A leg with what is known of its way.
+    pub(crate) fn new(way_id: i64, range_m: [f64; 2], way: Option<&RoadAttributes>) -> Self {
+        let text =
+            |text: fn(&RoadAttributes) -> &String| way.map(text).cloned().unwrap_or_default();
+        Self {
+            way_id,
+            range_m,
+            name: text(|way| &way.name),
+            reference: text(|way| &way.reference),
+            highway: text(|way| &way.highway),
+            structure: way.map(|way| way.structure).unwrap_or_default(),
+        }
+    }
+}
+
+/// The legs of a part without gaps, as numbers with where they begin and end, from the distance of each of its points and the number of its leg; what
+/// lies between two points belongs to the leg of the second.
+pub(crate) fn legs_of(distances_m: &[f64], numbers: &[usize]) -> Vec<(usize, [f64; 2])> {
+    let mut legs: Vec<(usize, [f64; 2])> = Vec::new();
+    for (&[begin_m, end_m], &number) in distances_m.array_windows().zip(numbers.iter().skip(1)) {
+        match legs.last_mut() {
+            Some((before, range_m)) if *before == number => range_m[1] = end_m,
+            _ => legs.push((number, [begin_m, end_m])),
+        }
+    }
+    legs
+}
+
+/// Runs, each with its smooth line, of which one that begins where the one before ends, and as high, goes on with it: so grades are taken over the
+/// whole profile, not leg by leg.
+pub(crate) fn joined_runs(
+    runs: Vec<Range<usize>>,
+    smooth: Vec<SmoothLine>,
+) -> (Vec<Range<usize>>, Vec<SmoothLine>) {
+    if smooth.is_empty() {
+        return (runs, smooth);
+    }
+    let mut joined: (Vec<Range<usize>>, Vec<SmoothLine>) = (Vec::new(), Vec::new());
+    for (run, line) in runs.into_iter().zip(smooth) {
+        if let (Some(before), Some(whole)) = (joined.0.last_mut(), joined.1.last_mut())
+            && before.end == run.start + 1
+            && let (Some(end), Some(begin)) = (whole.stations.last(), line.stations.first())
+            && (end.height_m - begin.height_m).abs() <= SAME_HEIGHT_M
+        {
+            before.end = run.end;
+            let end_m = end.along_m;
+            whole.stations.extend(line.stations.into_iter().filter(|at| at.along_m > end_m));
+        } else {
+            joined.0.push(run);
+            joined.1.push(line);
+        }
+    }
+    joined
+}

@@ -1,0 +1,381 @@
+//! The way from place to place, or along a whole road.
+
+use corniche_geom::LatticePoint;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{
+    graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays},
+    road_list::MatchedRoad,
+};
+use crate::{
+    error::ExportError,
+    profile::{Course, CourseLeg},
+    road_query::{NamedWays, RoadQuery},
+};
+
+/// A road is looked for as far as this from a place, metres.
+const MOST_OFF_M: f64 = 500.0;
+/// So far a road may be interrupted by others, such as a roundabout or a square without its number, metres.
+const MOST_GAP_M: f64 = 300.0;
+/// Roads with one number or name, of which one ends so near to another, are one: the carriageways of a road, metres.
+const BESIDE_M: f64 = 100.0;
+/// Roads that are so much farther from a place than the nearest one may be meant as well, metres: the two carriageways of a road.
+const HARDLY_FARTHER_M: f64 = 25.0;
+/// One of several roads is meant if it is so much of them all.
+const MOST_OF_THEM: f64 = 0.9;
+/// Pairs of ends are looked at if they are as far apart as this share of those that are farthest.
+const ALMOST_FARTHEST: f64 = 0.95;
+/// From so many ends the way to others is looked for.
+const MOST_STARTS: usize = 8;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RouteRequest {
+    /// The level whose roads are followed; `None` is the finest.
+    pub level: Option<u8>,
+    /// The road, if one is named.
+    pub road: Option<RoadQuery>,
+    /// Longitude and latitude of both ends; without them the whole road that is named.
+    pub ends_deg: Option<[[f64; 2]; 2]>,
+    /// Classes of roads that are followed.
+    pub classes: Vec<FunctionalRoadClass>,
+}
+
+/// A way through a network.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    /// What is followed.
+    pub course: Course,
+    /// True length in plan, metres.
+    pub length_m: f64,
+    /// What of it are roads other than the one that is named, metres.
+    pub others_m: f64,
+    /// True length in plan of all ways of the road, if one is named as a whole, metres.
+    pub road_m: Option<f64>,
+    /// Other roads that have the same number or name, in words.
+    pub same_name: Vec<String>,
+    /// How far both ends are from the places that were given, metres.
+    pub off_m: [f64; 2],
+}
+
+/// Looks for ways in a graph.
+pub(crate) struct Finder<'a> {
+    pub(crate) graph: &'a RoadGraph<'a>,
+    pub(crate) roads: &'a NamedWays,
+    pub(crate) road: Option<&'a RoadQuery>,
+}
+
+/// A stretch of an edge, from one distance to another; against its way where the first is the larger one.
+#[derive(Clone, Copy)]
+struct Stretch {
+    edge: usize,
+    from_m: f64,
+    to_m: f64,
+}
+
+impl Finder<'_> {
+    /// The shortest way between two places.
+    pub(crate) fn between(&self, ends_deg: [[f64; 2]; 2]) -> Result<Route, ExportError> {
+        let [from_deg, to_deg] = ends_deg;
+        let (from, to) = (self.near(from_deg)?, self.near(to_deg)?);
+        // A road beside the nearest one costs what it is farther away, twice: there and back.
+        let cost_m = |place: &PlaceOnLink, of: &[PlaceOnLink]| 2.0 * (place.off_m - of[0].off_m);
+        let mut starts = Vec::with_capacity(2 * from.len());
+        for place in &from {
+            let edge = &self.graph.edges[place.edge];
+            let begun_m = cost_m(place, &from);
+            starts.push((edge.ends[0], begun_m + edge.weight_m(place.along_m)));
+            starts.push((edge.ends[1], begun_m + edge.weight_m(edge.length_m - place.along_m)));
+        }
+        let ways = self.graph.shortest(&starts, |_| true);
+        let mut best: Option<(f64, Vec<Stretch>, [f64; 2])> = None;
+        let mut look = |cost_m: f64, stretches: Vec<Stretch>, off_m: [f64; 2]| {
+            if cost_m.is_finite() && best.as_ref().is_none_or(|(least_m, ..)| cost_m < *least_m) {
+                best = Some((cost_m, stretches, off_m));
+            }
+        };
+        for goal in &to {
+            let edge = &self.graph.edges[goal.edge];
+            let own_m = cost_m(goal, &to);
+            for start in from.iter().filter(|start| start.edge == goal.edge) {
+                let run_m = edge.weight_m((goal.along_m - start.along_m).abs());
+                let stretch =
+                    Stretch { edge: goal.edge, from_m: start.along_m, to_m: goal.along_m };
+                look(
+                    cost_m(start, &from) + own_m + run_m,
+                    vec![stretch],
+                    [start.off_m, goal.off_m],
+                );
+            }
+            for (end, end_m) in [(0, 0.0), (1, edge.length_m)] {
+                let node = edge.ends[end];
+                let far_m = ways.far_m[node] + own_m + edge.weight_m((goal.along_m - end_m).abs());
+                if !far_m.is_finite() {
+                    continue;
+                }
+                let start = ways.from[node] as usize;
+                let place = &from[start / 2];
+                let first_m = if start.is_multiple_of(2) {
+                    0.0
+                } else {
+                    self.graph.edges[place.edge].length_m
+                };
+                let first = Stretch { edge: place.edge, from_m: place.along_m, to_m: first_m };
+                let last = Stretch { edge: goal.edge, from_m: end_m, to_m: goal.along_m };
+                let mut stretches = vec![first];
+                stretches.extend(self.to_node(&ways, node));
+                stretches.push(last);
+                look(far_m, stretches, [place.off_m, goal.off_m]);
+            }
+        }
+        let Some((_, stretches, off_m)) = best else {
+            return Err(ExportError::NotConnected { of: self.of_text(), ends: ends_deg });
+        };
+        let route = self.route(&stretches)?;
+        if route.course.legs.is_empty() {
+            return Err(ExportError::OnePlace);
+        }
+        Ok(Route { off_m, ..route })
+    }
+
+    /// The way along the whole road that is named, from its western to its eastern end.
+    pub(crate) fn whole(&self) -> Result<Route, ExportError> {
+        let mut matched = self.matched();
+        let all_m: f64 = matched.iter().map(|road| road.length_m).sum();
+        let is_clear = |road: &MatchedRoad| road.length_m >= MOST_OF_THEM * all_m;
+        if matched.is_empty() {
+            return Err(ExportError::NothingToFollow { of: self.of_text() });
+        }
+        let others = matched.split_off(1);
+        let same_name: Vec<String> = others.iter().map(|road| road.text(self.graph)).collect();
+        let road = &matched[0];
+        if !is_clear(road) {
+            let query = self.road.map(RoadQuery::text).unwrap_or_default();
+            let roads = std::iter::once(road.text(self.graph)).chain(same_name).collect();
+            return Err(ExportError::SeveralRoads { query, roads });
+        }
+        let mut best: Option<(f64, Vec<Stretch>)> = None;
+        for (from, tos) in self.end_pairs(road) {
+            let ways = self.graph.shortest(&[(from, 0.0)], |_| true);
+            for to in tos {
+                let far_m = ways.far_m[to];
+                if far_m.is_finite() && best.as_ref().is_none_or(|(least_m, _)| far_m < *least_m) {
+                    best = Some((far_m, self.to_node(&ways, to)));
+                }
+            }
+        }
+        let Some((_, stretches)) = best else {
+            return Err(ExportError::NothingToFollow { of: self.of_text() });
+        };
+        let route = self.route(&stretches)?;
+        Ok(Route { road_m: Some(road.length_m), same_name, ..route })
+    }
+
+    fn of_text(&self) -> String {
+        self.road.map_or_else(|| "roads".to_owned(), |road| format!("roads with {}", road.text()))
+    }
+
+    fn near(&self, place_deg: [f64; 2]) -> Result<Vec<PlaceOnLink>, ExportError> {
+        let near = self.graph.near(place_deg, HARDLY_FARTHER_M);
+        let [lon, lat] = place_deg;
+        let (of, covered) = (self.of_text(), self.graph.covered_text(place_deg));
+        match near.first().map(|place| place.off_m) {
+            Some(off_m) if off_m <= MOST_OFF_M => Ok(near),
+            Some(off_m) => Err(ExportError::FarFromRoads { of, lon, lat, off_m, covered }),
+            None => Err(ExportError::NoRoadNear { of, lon, lat, covered }),
+        }
+    }
+
+    /// The edges by which a node is reached, from the beginning on.
+    fn to_node(&self, ways: &ShortestWays, node: usize) -> Vec<Stretch> {
+        let mut stretches = Vec::new();
+        let mut at = node;
+        while ways.by[at] != NONE {
+            let (number, end) = (ways.by[at] as usize / 2, ways.by[at] as usize % 2);
+            let edge = &self.graph.edges[number];
+            let [to_m, from_m] = if end == 0 { [0.0, edge.length_m] } else { [edge.length_m, 0.0] };
+            stretches.push(Stretch { edge: number, from_m, to_m });
+            at = edge.ends[1 - end];
+        }
+        stretches.reverse();
+        stretches
+    }
+
+    /// What belongs together of the ways that are meant, the longest first: what is connected, also over a short stretch of other roads, and what lies
+    /// beside it.
+    fn matched(&self) -> Vec<MatchedRoad> {
+        let graph = self.graph;
+        let mut sets: Vec<usize> = (0..graph.node_count()).collect();
+        let wanted = || (0..graph.edges.len()).filter(|&edge| graph.edges[edge].is_wanted);
+        for edge in wanted() {
+            let [one, other] = graph.edges[edge].ends;
+            unite(&mut sets, one, other);
+        }
+        // From all of them at once, over other roads: where two meet there is a gap between them.
+        let starts: Vec<(usize, f64)> =
+            wanted().flat_map(|edge| graph.edges[edge].ends).map(|node| (node, 0.0)).collect();
+        let ways = graph.shortest(&starts, |edge| !edge.is_wanted);
+        for edge in graph.edges.iter().filter(|edge| !edge.is_wanted) {
+            let [one, other] = edge.ends;
+            let gap_m = ways.far_m[one] + ways.far_m[other] + edge.weight_m(edge.length_m);
+            if gap_m <= edge.weight_m(MOST_GAP_M) {
+                let [one, other] = [one, other].map(|node| starts[ways.from[node] as usize].0);
+                unite(&mut sets, one, other);
+            }
+        }
+        let is_dead_end = |node: usize| self.wanted_at(node) == 1;
+        let ends: Vec<usize> =
+            starts.iter().map(|(node, _)| *node).filter(|&node| is_dead_end(node)).collect();
+        for node in ends {
+            for place in graph.near(self.place_deg(node), BESIDE_M) {
+                unite(&mut sets, node, graph.edges[place.edge].ends[0]);
+            }
+        }
+        let mut roads: Vec<(usize, MatchedRoad)> = Vec::new();
+        let mut by_set: Vec<(usize, usize)> =
+            wanted().map(|edge| (root(&mut sets, graph.edges[edge].ends[0]), edge)).collect();
+        by_set.sort_unstable();
+        for own in by_set.chunk_by(|one, other| one.0 == other.0) {
+            let edges: Vec<usize> = own.iter().map(|(_, edge)| *edge).collect();
+            let length_m = edges.iter().map(|&edge| graph.edges[edge].length_m).sum();
+            roads.push((own[0].1, MatchedRoad { edges, length_m }));
+        }
+        roads.sort_by(|one, other| {
+            other.1.length_m.total_cmp(&one.1.length_m).then(one.0.cmp(&other.0))
+        });
+        roads.into_iter().map(|(_, road)| road).collect()
+    }
+
+    /// How many ends of edges that are meant a node has.
+    fn wanted_at(&self, node: usize) -> usize {
+        let is_wanted = |end: &&u32| self.graph.edges[**end as usize / 2].is_wanted;
+        self.graph.ends_at(node).iter().filter(is_wanted).count()
+    }
+
+    fn place(&self, node: usize) -> [f64; 2] {
+        let end = self.graph.ends_at(node)[0] as usize;
+        let points = self.graph.points(&self.graph.edges[end / 2]);
+        let point = if end.is_multiple_of(2) { points.first() } else { points.last() };
+        point.map_or([f64::NAN; 2], |point| point.in_steps())
+    }
+
+    fn place_deg(&self, node: usize) -> [f64; 2] {
+        self.graph.places.wgs84(self.place(node))
+    }
+
+    /// Ends of a road between which it may lie as a whole: nodes at which it begins, with those at which it then ends. Those that are farthest apart,
+    /// or almost; they lie to the east of their beginning.
+    fn end_pairs(&self, road: &MatchedRoad) -> Vec<(usize, Vec<usize>)> {
+        let nodes = road.nodes(self.graph);
+        let places: Vec<[f64; 2]> = nodes.iter().map(|&node| self.place(node)).collect();
+        let far_m =
+            |one: usize, other: usize| self.graph.places.distance_m(places[one], places[other]);
+        let dead_ends: Vec<usize> =
+            (0..nodes.len()).filter(|&at| self.wanted_at(nodes[at]) == 1).collect();
+        let farthest_from = |from: usize| {
+            let all = 0..nodes.len();
+            all.max_by(|&one, &other| far_m(from, one).total_cmp(&far_m(from, other))).unwrap_or(0)
+        };
+        let one = farthest_from(0);
+        let other = farthest_from(one);
+        let mut ends = dead_ends;
+        let mut most_m = 0.0_f64;
+        for (k, &end) in ends.iter().enumerate() {
+            most_m = ends[k + 1..].iter().map(|&to| far_m(end, to)).fold(most_m, f64::max);
+        }
+        // A road may end in a roundabout of its own, or be a ring.
+        if ALMOST_FARTHEST * far_m(one, other) > most_m {
+            ends.extend([one, other]);
+            most_m = far_m(one, other);
+        }
+        ends.sort_unstable();
+        ends.dedup();
+        let mut pairs: Vec<(usize, Vec<usize>)> = Vec::new();
+        for &from in &ends {
+            let is_east = |to: usize| (places[from], from) < (places[to], to);
+            let is_far = |to: usize| far_m(from, to) >= ALMOST_FARTHEST * most_m;
+            let tos = ends.iter().copied().filter(|&to| is_east(to) && is_far(to));
+            let tos: Vec<usize> = tos.map(|to| nodes[to]).collect();
+            if !tos.is_empty() {
+                pairs.push((nodes[from], tos));
+            }
+        }
+        pairs.truncate(MOST_STARTS);
+        pairs
+    }
+
+    /// Stretches one after the other, as a course.
+    fn route(&self, stretches: &[Stretch]) -> Result<Route, ExportError> {
+        let (mut legs, mut length_m, mut others_m, mut gap_m) = (Vec::new(), 0.0, 0.0, 0.0);
+        for stretch in stretches {
+            let edge = &self.graph.edges[stretch.edge];
+            let own_m = (stretch.to_m - stretch.from_m).abs();
+            let points = self.points(*stretch);
+            if points.len() < 2 {
+                continue;
+            }
+            length_m += own_m;
+            if edge.is_wanted {
+                gap_m = 0.0;
+            } else {
+                others_m += own_m;
+                gap_m += own_m;
+                if gap_m > MOST_GAP_M {
+                    let [lon, lat] = self.graph.places.wgs84(points[0].in_steps());
+                    let query = self.road.map(RoadQuery::text).unwrap_or_default();
+                    return Err(ExportError::RoadInterrupted { query, lon, lat });
+                }
+            }
+            let way_id = self.graph.network.way_of(edge.link).way_id;
+            let is_against = stretch.from_m > stretch.to_m;
+            legs.push(CourseLeg { way_id, is_against, points });
+        }
+        let way = |leg: &CourseLeg| {
+            self.roads.known.get(&leg.way_id).map(|way| (leg.way_id, way.clone()))
+        };
+        let ways = legs.iter().filter_map(way).collect();
+        let course = Course { legs, ways, is_of_ways: true, begins_deg: None };
+        let (road_m, same_name, off_m) = (None, Vec::new(), [0.0; 2]);
+        Ok(Route { course, length_m, others_m, road_m, same_name, off_m })
+    }
+
+    /// The points of a stretch, in its direction.
+    fn points(&self, Stretch { edge, from_m, to_m }: Stretch) -> Vec<LatticePoint> {
+        let mut points = self.graph.points(&self.graph.edges[edge]);
+        let along_m = self.graph.along(&points);
+        let at = |at_m: f64| {
+            let after = along_m.partition_point(|own_m| *own_m < at_m).min(points.len() - 1);
+            let before = after.saturating_sub(1);
+            let run_m = along_m[after] - along_m[before];
+            let share = if run_m > 0.0 { (at_m - along_m[before]) / run_m } else { 1.0 };
+            let [from, to] = [before, after].map(|index| points[index].in_steps());
+            let [u, v] = [0, 1].map(|axis| (from[axis] + share * (to[axis] - from[axis])).round());
+            LatticePoint::new(u as i64, v as i64)
+        };
+        let [low_m, high_m] = [from_m.min(to_m), from_m.max(to_m)];
+        let [first, last] = [at(low_m), at(high_m)];
+        let inner =
+            points.iter().zip(&along_m).filter(|(_, at_m)| **at_m > low_m && **at_m < high_m);
+        let inner: Vec<LatticePoint> = inner.map(|(point, _)| *point).collect();
+        points = [vec![first], inner, vec![last]].concat();
+        points.dedup();
+        if from_m > to_m {
+            points.reverse();
+        }
+        points
+    }
+}
+
+/// The set of a node, as the smallest of its nodes.
+fn root(sets: &mut [usize], mut node: usize) -> usize {
+    while sets[node] != node {
+        sets[node] = sets[sets[node]];
+        node = sets[node];
+    }
+    node
+}
+
+fn unite(sets: &mut [usize], one: usize, other: usize) {
+    let (one, other) = (root(sets, one), root(sets, other));
+    sets[one.max(other)] = one.min(other);
+}

@@ -1,0 +1,196 @@
+//! The connections that are open, and which of them gives way where there are too many: the one on which nothing was asked for longest.
+//!
+//! What is idle follows from what was read and answered alone: a connection is busy from the head of a request until the body of its answer has been
+//! taken. So one on which a client says half a request and then nothing is idle, too.
+
+use std::{
+    collections::BTreeMap,
+    io,
+    pin::Pin,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    task::{Context, Poll},
+    time::Instant,
+};
+
+use bytes::Bytes;
+use hyper::body::{Body as HttpBody, Frame, SizeHint};
+use tokio::sync::Notify;
+
+use crate::body::Body;
+
+/// All that are open, by their numbers.
+#[derive(Debug, Default)]
+pub(crate) struct Connections(Mutex<Open>);
+
+#[derive(Debug, Default)]
+struct Open {
+    by_number: BTreeMap<u64, Arc<Connection>>,
+    next: u64,
+}
+
+/// How a connection that was told to end does so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// Nothing is being answered on it.
+    Now,
+    /// Once what is being answered has been taken.
+    AfterAnswer,
+    /// It has become busy.
+    Not,
+}
+
+impl Connections {
+    fn open(&self) -> MutexGuard<'_, Open> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds one and returns its number.
+    pub(crate) fn add(&self, connection: &Arc<Connection>) -> u64 {
+        let mut open = self.open();
+        open.next += 1;
+        let number = open.next;
+        open.by_number.insert(number, Arc::clone(connection));
+        number
+    }
+
+    pub(crate) fn remove(&self, number: u64) {
+        self.open().by_number.remove(&number);
+    }
+
+    /// Tells the one to end that has been idle for longest and was not told yet, if there is one.
+    pub(crate) fn close_idlest(&self) {
+        let open = self.open();
+        let idle = open.by_number.values();
+        let idle = idle.filter_map(|one| Some((one.idle_since()?, one)));
+        if let Some((_, idlest)) = idle.min_by_key(|(since, _)| *since) {
+            idlest.tell(Told::GiveWay);
+        }
+    }
+
+    /// Tells all to end: idle ones at once, the others after their answers.
+    pub(crate) fn end_all(&self) {
+        self.open().by_number.values().for_each(|one| one.tell(Told::End));
+    }
+}
+
+/// An open connection.
+#[derive(Debug)]
+pub(crate) struct Connection {
+    state: Mutex<State>,
+    /// Whether what was answered waits for its reader.
+    is_waiting: Arc<AtomicBool>,
+    told: Notify,
+}
+
+#[derive(Debug)]
+struct State {
+    /// Answers that were begun and not taken yet.
+    answers: usize,
+    /// Since when it is as it is.
+    since: Instant,
+    told: Option<Told>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Told {
+    GiveWay,
+    End,
+}
+
+impl Connection {
+    /// One on which nothing was asked yet.
+    pub(crate) fn new(is_waiting: Arc<AtomicBool>) -> Self {
+        let state = State { answers: 0, since: Instant::now(), told: None };
+        Self { state: Mutex::new(state), is_waiting, told: Notify::new() }
+    }
+
+    /// Since when nothing is answered; `None` if something is, or it was told to end.
+    fn idle_since(&self) -> Option<Instant> {
+        let state = self.state();
+        (self.is_idle(&state) && state.told.is_none()).then_some(state.since)
+    }
+
+    fn is_idle(&self, state: &State) -> bool {
+        state.answers == 0 && !self.is_waiting.load(Ordering::Relaxed)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn tell(&self, what: Told) {
+        self.state().told = Some(what);
+        self.told.notify_one();
+    }
+
+    /// Ends when it is told to end.
+    pub(crate) async fn is_told(&self) {
+        self.told.notified().await;
+    }
+
+    /// How it ends, once it was told to.
+    pub(crate) fn end(&self) -> End {
+        let mut state = self.state();
+        match state.told {
+            Some(_) if self.is_idle(&state) => End::Now,
+            Some(Told::End) => End::AfterAnswer,
+            Some(Told::GiveWay) | None => {
+                state.told = None;
+                End::Not
+            }
+        }
+    }
+
+    /// Something is answered from now on, until what this returns is dropped.
+    pub(crate) fn begin_answer(self: &Arc<Self>) -> Answering {
+        let mut state = self.state();
+        (state.answers, state.since) = (state.answers + 1, Instant::now());
+        Answering(Arc::clone(self))
+    }
+}
+
+/// An answer that has been begun.
+pub(crate) struct Answering(Arc<Connection>);
+
+impl Answering {
+    /// The body, which ends the answer when it has been taken.
+    pub(crate) fn with_body(self, body: Body) -> AnswerBody {
+        AnswerBody { body, _answering: self }
+    }
+}
+
+impl Drop for Answering {
+    fn drop(&mut self) {
+        let mut state = self.0.state();
+        (state.answers, state.since) = (state.answers.saturating_sub(1), Instant::now());
+    }
+}
+
+/// The body of an answer. While there is some of it, its connection is busy.
+pub(crate) struct AnswerBody {
+    body: Body,
+    _answering: Answering,
+}
+
+impl HttpBody for AnswerBody {
+    type Data = Bytes;
+    type Error = io::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, io::Error>>> {
+        Pin::new(&mut self.body).poll_frame(context)
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}

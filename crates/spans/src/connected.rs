@@ -1,0 +1,112 @@
+//! Which roads on bridges and in tunnels may depend on each other: those that share a node, and those that may cross.
+
+use std::collections::HashMap;
+
+use corniche_geom::{LatticePoint, Work};
+use rstar::{
+    AABB, RTree,
+    primitives::{GeomWithData, Rectangle},
+};
+
+/// A line is looked at in so many boxes at most.
+const MOST_BOXES: usize = 256;
+/// Pairs of boxes that are looked at, at least and for each box.
+const MOST_PAIRS: u64 = 1 << 22;
+const MOST_PAIRS_OF_BOX: u64 = 1 << 8;
+
+/// A road on a bridge or in a tunnel.
+#[derive(Debug, Clone, Copy)]
+pub struct SpanLine<'a> {
+    /// Its points.
+    pub points: &'a [LatticePoint],
+    /// Its nodes at which roads may join: which points they are, and their ids.
+    pub nodes: &'a [(u32, i64)],
+}
+
+/// The number of the group of each line. Lines of different groups do not share a node and do not cross; pairs of nodes in `same_places` are one.
+///
+/// Of lines that lie over each other more than any real ones all are one group.
+#[must_use]
+pub fn connected(lines: &[SpanLine<'_>], same_places: &[[i64; 2]]) -> Vec<usize> {
+    let mut groups = Groups::new(lines.len());
+    let mut first_at: HashMap<i64, usize> = HashMap::new();
+    for (number, line) in lines.iter().enumerate() {
+        for &(_, id) in line.nodes {
+            let first = *first_at.entry(id).or_insert(number);
+            groups.join(first, number);
+        }
+    }
+    for pair in same_places {
+        if let [Some(&one), Some(&other)] = pair.map(|id| first_at.get(&id)) {
+            groups.join(one, other);
+        }
+    }
+    let boxes: Vec<GeomWithData<Rectangle<[f64; 2]>, usize>> =
+        lines.iter().enumerate().flat_map(|(number, line)| boxes_of(number, line.points)).collect();
+    let work = Work::new(MOST_PAIRS + MOST_PAIRS_OF_BOX * boxes.len() as u64);
+    let tree = RTree::bulk_load(boxes.clone());
+    for own in &boxes {
+        let (low, high) = (own.geom().lower(), own.geom().upper());
+        let mut looked = 0;
+        for other in tree.locate_in_envelope_intersecting(&AABB::from_corners(low, high)) {
+            groups.join(own.data, other.data);
+            looked += 1;
+        }
+        work.add(looked);
+        if work.check().is_err() {
+            return vec![0; lines.len()];
+        }
+    }
+    (0..lines.len()).map(|number| groups.first_of(number)).collect()
+}
+
+/// Boxes around the segments of a line.
+fn boxes_of(
+    number: usize,
+    points: &[LatticePoint],
+) -> impl Iterator<Item = GeomWithData<Rectangle<[f64; 2]>, usize>> + '_ {
+    let segments = points.len().saturating_sub(1);
+    let step = segments.div_ceil(MOST_BOXES).max(1);
+    (0..segments).step_by(step).map(move |first| {
+        let own = points[first..=(first + step).min(segments)].iter().map(|point| point.in_steps());
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for at in own {
+            for axis in [0, 1] {
+                low[axis] = low[axis].min(at[axis]);
+                high[axis] = high[axis].max(at[axis]);
+            }
+        }
+        GeomWithData::new(Rectangle::from_corners(low, high), number)
+    })
+}
+
+/// Numbers in groups; each group is known by its smallest.
+#[derive(Debug)]
+struct Groups(Vec<usize>);
+
+impl Groups {
+    /// So many numbers, each alone.
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// The smallest number of a group.
+    fn first_of(&mut self, number: usize) -> usize {
+        let mut first = number;
+        while self.0[first] != first {
+            self.0[first] = self.0[self.0[first]];
+            first = self.0[first];
+        }
+        first
+    }
+
+    /// Makes one group of those of two numbers.
+    fn join(&mut self, one: usize, other: usize) {
+        let (one, other) = (self.first_of(one), self.first_of(other));
+        self.0[one.max(other)] = one.min(other);
+    }
+}
+
+#[cfg(test)]
+#[path = "connected_tests.rs"]
+mod tests;
