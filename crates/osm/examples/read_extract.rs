@@ -44,6 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         place: &to_lattice,
         ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
+        square_steps: i64::MAX,
         node_ids: false,
         pool: &pool,
         memory_bytes: memory_mib.parse::<u64>()? << 20,

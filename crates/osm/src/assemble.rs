@@ -11,6 +11,7 @@ use crate::{
     read_request::Placing,
     records::Stop,
     self_crossings::self_crossings,
+    to_and_fro::goes_to_and_fro,
     way_bytes::{LeftOutWay, WayKind},
 };
 
@@ -62,7 +63,7 @@ pub(crate) fn assemble(
             WayKind::Road(class, attributes) => {
                 let (node_ids, is_carrier) = (&*node_ids, false);
                 let what = What { way_id, class, attributes, node_ids, is_carrier };
-                assemble_way(what, stops, &mut points, placing.seam)
+                assemble_way(what, stops, &mut points, placing)
             }
             WayKind::LeftOut(LeftOutWay { reason, highway, carrier }) => {
                 let length_um = length_um(stops.iter().map(|stop| stop.location));
@@ -72,7 +73,7 @@ pub(crate) fn assemble(
                     let attributes = RoadAttributes { highway: highway.clone(), ..of_tags };
                     let (class, node_ids) = (FunctionalRoadClass::LEAST, &*node_ids);
                     let what = What { way_id, class, attributes, node_ids, is_carrier: true };
-                    roads = assemble_way(what, stops, &mut points, placing.seam).roads;
+                    roads = assemble_way(what, stops, &mut points, placing).roads;
                 }
                 let left_out = Some((reason, highway, length_um));
                 Assembled { roads, left_out, ..Assembled::default() }
@@ -150,7 +151,7 @@ fn assemble_way(
     way: What<'_>,
     stops: &[Stop],
     points: &mut impl Iterator<Item = Option<LatticePoint>>,
-    seam: Option<Seam>,
+    placing: Placing<'_>,
 ) -> Assembled {
     let way_id = way.way_id;
     let mut assembled = Assembled::default();
@@ -193,16 +194,20 @@ fn assemble_way(
         assembled.defects.push(Defect::TooFewNodes { way_id, nodes: stops.len() as u32 });
         return assembled;
     }
-    let (mut crossings, mut roads) = (0, 0);
+    let (mut crossings, mut roads, mut is_to_and_fro) = (0, 0, false);
     for piece in pieces {
         let count = piece.len() as u32;
-        let parts = split_at_seam(piece, seam);
+        let parts = split_at_seam(piece, placing.seam);
         let before = assembled.roads.len();
         assembled.roads.extend(parts.into_iter().filter_map(|part| road(&way, part)));
         let own = &assembled.roads[before..];
+        is_to_and_fro |= own.iter().any(|road| goes_to_and_fro(&road.line, placing.square_steps));
         crossings += own.iter().map(|road| self_crossings(road.line.points())).sum::<u32>();
         strays += if own.is_empty() { count } else { 0 };
         roads += u32::from(!own.is_empty());
+    }
+    if is_to_and_fro {
+        return Assembled { defects: vec![Defect::ToAndFro { way_id }], ..Assembled::default() };
     }
     // Nearly every way is one road, which needs no copy of the texts.
     if let Some((last, others)) = assembled.roads.split_last_mut() {

@@ -90,6 +90,11 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
+    /// The way goes to and fro over one place more often than a road can; it is left out.
+    ToAndFro {
+        /// The way.
+        way_id: i64,
+    },
     /// Neighbouring points of the way are the same; they are merged.
     DuplicatePoints {
         /// The way.
@@ -180,6 +185,7 @@ impl Defect {
             Self::Split { .. } => "split by gaps",
             Self::StrayPoints { .. } => "stray points",
             Self::NoLine { .. } => "no line left",
+            Self::ToAndFro { .. } => "to and fro over one place",
             Self::DuplicatePoints { .. } => "duplicate points",
             Self::SelfCrossing { .. } => "self-crossing",
             Self::ConflictingWay { .. } => "conflicting way",
@@ -215,6 +221,7 @@ impl Defect {
             | Self::Split { way_id, .. }
             | Self::StrayPoints { way_id, .. }
             | Self::NoLine { way_id }
+            | Self::ToAndFro { way_id }
             | Self::DuplicatePoints { way_id, .. }
             | Self::ConflictingWay { way_id }
             | Self::LostLine { way_id, .. }
@@ -250,6 +257,7 @@ impl Defect {
             | Self::DamagedText { .. }
             | Self::LongText { .. }
             | Self::NoLine { .. }
+            | Self::ToAndFro { .. }
             | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. }
             | Self::OpenCoastline { .. }
@@ -280,6 +288,7 @@ impl Defect {
                 | Self::DuplicateWay { .. }
                 | Self::TooFewNodes { .. }
                 | Self::NoLine { .. }
+                | Self::ToAndFro { .. }
         )
     }
 }

@@ -67,6 +67,7 @@ mod nodes;
 mod search;
 mod self_crossings;
 mod sought_ids;
+mod to_and_fro;
 mod versions;
 mod ways;
 

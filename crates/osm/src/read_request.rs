@@ -37,6 +37,8 @@ pub struct ReadRequest<'a> {
     pub ring_area_m2: &'a RingArea<'a>,
     /// Where the lattice's map of the earth is cut open, if it is: lines over it are cut there.
     pub seam: Option<Seam>,
+    /// Side of a square in lattice steps: ways that go to and fro over one more often than a road can are left out.
+    pub square_steps: i64,
     /// Whether roads come with the ids of their fixed nodes, which takes a few bytes more for each node.
     pub node_ids: bool,
     /// Where blobs are decoded and points placed.
@@ -56,11 +58,13 @@ pub(crate) struct Placing<'a> {
     pub(crate) place: &'a ToLattice<'a>,
     pub(crate) ring_area_m2: &'a RingArea<'a>,
     pub(crate) seam: Option<Seam>,
+    pub(crate) square_steps: i64,
 }
 
 impl ReadRequest<'_> {
     pub(crate) fn placing(&self) -> Placing<'_> {
-        Placing { place: self.place, ring_area_m2: self.ring_area_m2, seam: self.seam }
+        let Self { place, ring_area_m2, seam, square_steps, .. } = *self;
+        Placing { place, ring_area_m2, seam, square_steps }
     }
 
     /// One of the extracts, by its number: 0 is the first.

@@ -73,7 +73,7 @@ pub struct LeftOut {
     pub area: u64,
     /// Another way of the file has the same id.
     pub duplicate: u64,
-    /// Too few nodes, or too few that the file holds and the projection can place.
+    /// Too few nodes, or too few that the file holds and the projection can place; or they go to and fro over one place.
     pub without_line: u64,
 }
 

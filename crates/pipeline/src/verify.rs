@@ -23,6 +23,7 @@ mod layer_sums;
 mod line_names;
 mod lines;
 mod manifest_sums;
+mod near_index;
 mod network;
 mod one_tile;
 mod osm;

@@ -83,6 +83,7 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, Area
         place: &to_lattice,
         ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
+        square_steps: i64::MAX,
         node_ids: false,
         pool: &pool,
         memory_bytes: 1 << 26,

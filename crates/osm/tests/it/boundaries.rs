@@ -46,6 +46,7 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         place: &to_lattice,
         ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
+        square_steps: i64::MAX,
         node_ids: false,
         pool: &pool,
         memory_bytes,

@@ -84,6 +84,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             place: &to_lattice,
             ring_area_m2: &corniche_geom::wgs84::area_m2,
             seam: None,
+            square_steps: i64::MAX,
             node_ids: false,
             pool: &pool,
             memory_bytes: 1 << 26,

@@ -174,5 +174,6 @@ fn is_final(error: &BuildError) -> bool {
                 | BuildError::PackageTile { .. }
                 | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
                 | BuildError::Triangulate { .. }
+                | BuildError::Encode(_)
         )
 }

@@ -59,6 +59,7 @@ fn read(
         place: &|positions_deg| vec![None; positions_deg.len()],
         ring_area_m2: &|_| 0.0,
         seam: None,
+        square_steps: i64::MAX,
         node_ids: false,
         pool: &pool(context)?,
         memory_bytes: context.memory().sorting,

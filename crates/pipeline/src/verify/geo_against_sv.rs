@@ -9,6 +9,7 @@ use corniche_tileset::TilePayload;
 
 use super::{
     checks::{CheckId, Findings},
+    near_index::NearIndex,
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
@@ -60,23 +61,28 @@ pub(crate) fn verify_lines(
     let id = view.payload.id;
     let work = Work::new(MOST_STEPS);
     for ((class, way_id), way) in ways(view, positions) {
-        work.add(way.sv.len().saturating_mul(way.geo.len().max(way.points.len())));
         if let Err(error) = work.check() {
-            let found =
-                || format!("its ways have so many segments that no writer has made them: {error}");
-            findings.look(CheckId::Methods, false, || format!("tile {id}: {}", found()));
+            findings.look(CheckId::Methods, false, || {
+                format!("tile {id}: so many segments of its ways lie on each other that no writer has made them: {error}")
+            });
             return;
         }
+        let [near_sv, near_geo] =
+            [&way.sv, &way.geo].map(|segments| NearIndex::new(segments.iter().copied()));
         let name = || format!("way {way_id} of class {class} in tile {id}");
         for &point in &way.points {
+            let at = view.place.local(point);
             let holds = way.sv_points.contains(&point)
-                || is_on(view.place.local(point), &way.sv, SAME_LINE_STEPS);
+                || near_sv
+                    .near([at; 2], SAME_LINE_STEPS, &work)
+                    .any(|number| distance(at, way.sv[number]) <= SAME_LINE_STEPS);
             findings.look(CheckId::Methods, holds, || {
                 format!("{}: the GEO line is at {point:?}, no SV line is", name())
             });
         }
         for &segment in &way.sv {
-            let bare = bare_pieces(view.place, segment, &way.geo);
+            let lines = near_geo.near(segment, SAME_LINE_STEPS, &work);
+            let bare = bare_pieces(view.place, segment, lines.map(|number| way.geo[number]));
             let bare = bare.into_iter().find(|&piece| {
                 view.ground.meets(piece.map(|point| view.place.cells(point)), &work)
             });
@@ -155,7 +161,11 @@ pub(crate) fn distance(point: [f64; 2], [a, b]: Segment) -> f64 {
 
 /// The pieces of a segment that lie in the tile but on none of the lines. A segment along a border has none, because its
 /// line may belong to the neighbour.
-fn bare_pieces(place: TilePlace, segment: Segment, lines: &[Segment]) -> Vec<Segment> {
+fn bare_pieces(
+    place: TilePlace,
+    segment: Segment,
+    lines: impl Iterator<Item = Segment>,
+) -> Vec<Segment> {
     let [p, q] = segment;
     let (du, dv) = (q[0] - p[0], q[1] - p[1]);
     let length = du.hypot(dv);
@@ -180,7 +190,6 @@ fn bare_pieces(place: TilePlace, segment: Segment, lines: &[Segment]) -> Vec<Seg
         to = to.min(ends[0].max(ends[1]));
     }
     let mut covered: Vec<[f64; 2]> = lines
-        .iter()
         .filter_map(|ends| {
             let [a, b] = ends.map(|[u, v]| {
                 let (u, v) = (u - p[0], v - p[1]);

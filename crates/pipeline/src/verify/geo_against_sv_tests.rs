@@ -13,7 +13,7 @@ fn place() -> TilePlace {
 fn a_piece_without_a_line_is_found_and_only_inside_the_tile() {
     let line = [[-1000.0, -5000.0], [9000.0, -5000.0]];
     let lines = [[[7000.0, -5001.0], [3000.0, -5000.0]], [[0.0, -5000.0], [2000.0, -5000.0]]];
-    let bare = bare_pieces(place(), line, &lines);
+    let bare = bare_pieces(place(), line, lines.into_iter());
     assert_eq!(
         bare,
         [[[2000.0, -5000.0], [3000.0, -5000.0]], [[7000.0, -5000.0], [9000.0, -5000.0]]]
@@ -22,8 +22,8 @@ fn a_piece_without_a_line_is_found_and_only_inside_the_tile() {
 
 #[test]
 fn along_a_border_nothing_is_asked() {
-    assert!(bare_pieces(place(), [[0.0, -10.0], [0.0, -9000.0]], &[]).is_empty());
-    assert_eq!(bare_pieces(place(), [[1.0, -10.0], [1.0, -9000.0]], &[]).len(), 1);
+    assert!(bare_pieces(place(), [[0.0, -10.0], [0.0, -9000.0]], std::iter::empty()).is_empty());
+    assert_eq!(bare_pieces(place(), [[1.0, -10.0], [1.0, -9000.0]], std::iter::empty()).len(), 1);
 }
 
 #[test]

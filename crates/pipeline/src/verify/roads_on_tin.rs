@@ -32,6 +32,8 @@ pub(crate) struct RoadLengths {
     pub(crate) by_structure_m: [f64; Structure::ALL.len()],
     /// How many lines that is: each part of a way in a tile is one.
     pub(crate) lines: [u64; Structure::ALL.len()],
+    /// By how much all may be longer or shorter because their vertices are put on the lattice, metres.
+    pub(crate) rounding_m: f64,
 }
 
 impl RoadLengths {
@@ -43,6 +45,13 @@ impl RoadLengths {
         for (own, other) in self.lines.iter_mut().zip(other.lines) {
             *own += other;
         }
+        self.rounding_m += other.rounding_m;
+    }
+
+    /// Adds an edge. Its ends may each be half a lattice step off along both axes: across the edge, that lengthens it by the square of this over its length.
+    fn add_edge(&mut self, structure: usize, length_m: f64, step_m: f64) {
+        self.by_structure_m[structure] += length_m;
+        self.rounding_m += step_m * (step_m / length_m).min(1.0);
     }
 
     /// The length of all.
@@ -120,7 +129,8 @@ pub(crate) fn verify_on_tin(
             if counts_for_sums(id, frame) {
                 // The same formula as the build's: beside a pole it is off the geodesic by more than the sums may differ.
                 let ends = [pair[0], pair[1]].map(position_m);
-                found.lengths.by_structure_m[structure] += manifest.coordinates.line_length_m(ends);
+                let length_m = manifest.coordinates.line_length_m(ends);
+                found.lengths.add_edge(structure, length_m, frame.lattice_step_m());
             }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             found.gaps.edges += 1;

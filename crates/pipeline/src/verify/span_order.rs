@@ -1,7 +1,14 @@
 //! Which is above where bridges cross bridges, and tunnels tunnels.
 
+use std::{
+    collections::BTreeMap,
+    ops::Bound::{Excluded, Included},
+};
+
 use corniche_geom::{LatticePoint, TooMuchWork, Work};
 use corniche_spans::SpanKind;
+
+use super::near_index::NearIndex;
 
 /// Points of runs are rounded to the lattice. So a run that ends on another one may end so many steps beyond it.
 const ROUNDING_STEPS: f64 = 2.0;
@@ -35,27 +42,29 @@ pub(crate) struct OrderedCrossing {
 /// # Errors
 /// When more of them lie over each other than in any real tile.
 pub(crate) fn crossings(
-    mut pieces: Vec<Piece>,
+    pieces: &[Piece],
     work: &Work,
 ) -> Result<Vec<OrderedCrossing>, TooMuchWork> {
-    let us = |piece: &Piece| {
-        let [a, b] = piece.ends.map(|end| end.u);
-        [a.min(b), a.max(b)]
-    };
-    pieces.sort_by_key(|piece| (us(piece)[0], piece.way_id));
+    // Pieces of one layer are not ordered. So a way that lies over itself is never asked about itself.
+    let mut layers: BTreeMap<(SpanKind, i8), Vec<&Piece>> = BTreeMap::new();
+    for piece in pieces {
+        layers.entry((piece.kind, piece.layer)).or_default().push(piece);
+    }
     let mut found = Vec::new();
-    for (number, one) in pieces.iter().enumerate() {
-        let last_u = us(one)[1];
-        let near = pieces[number + 1..].iter().take_while(|other| us(other)[0] <= last_u);
-        for other in near {
-            work.add(1);
-            work.check()?;
-            if one.kind == other.kind
-                && one.layer != other.layer
-                && let Some(crossing) = one.crossing(other)
-            {
-                work.add(STEPS_OF_A_CROSSING);
-                found.push(crossing);
+    for (&(kind, layer), below) in &layers {
+        let above = layers.range((Excluded((kind, layer)), Included((kind, i8::MAX))));
+        let above: Vec<&Piece> = above.flat_map(|(_, of_layer)| of_layer).copied().collect();
+        if above.is_empty() {
+            continue;
+        }
+        let near = NearIndex::new(below.iter().map(|piece| piece.line()));
+        for upper in above {
+            for number in near.near(upper.line(), 0.0, work) {
+                work.check()?;
+                if let Some(crossing) = upper.crossing(below[number]) {
+                    work.add(STEPS_OF_A_CROSSING);
+                    found.push(crossing);
+                }
             }
         }
     }
@@ -63,12 +72,16 @@ pub(crate) fn crossings(
 }
 
 impl Piece {
+    fn line(&self) -> [[f64; 2]; 2] {
+        self.ends.map(LatticePoint::in_steps)
+    }
+
+    /// Where it crosses one of a lower layer.
     fn crossing(&self, other: &Self) -> Option<OrderedCrossing> {
         if self.ends.iter().any(|end| other.ends.contains(end)) {
             return None;
         }
-        let [a, b] = self.ends.map(LatticePoint::in_steps);
-        let [c, d] = other.ends.map(LatticePoint::in_steps);
+        let [[a, b], [c, d]] = [self.line(), other.line()];
         let across = |[p, q]: [[f64; 2]; 2], r: [f64; 2]| {
             (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
         };
@@ -87,11 +100,9 @@ impl Piece {
         }
         let shares = [share([c, d], [a, b])?, share([a, b], [c, d])?];
         let height_m = |[from_m, to_m]: [f64; 2], share: f64| from_m + share * (to_m - from_m);
-        let both = [(self, shares[0]), (other, shares[1])];
-        let [upper, lower] = if self.layer > other.layer { both } else { [both[1], both[0]] };
-        let [upper_m, lower_m] = [upper, lower].map(|(of, share)| height_m(of.heights_m, share));
-        let way_ids = [upper.0.way_id, lower.0.way_id];
-        Some(OrderedCrossing { way_ids, free_m: upper_m - lower_m })
+        let [upper_m, lower_m] =
+            [(self, shares[0]), (other, shares[1])].map(|(of, share)| height_m(of.heights_m, share));
+        Some(OrderedCrossing { way_ids: [self.way_id, other.way_id], free_m: upper_m - lower_m })
     }
 }
 

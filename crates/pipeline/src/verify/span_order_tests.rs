@@ -11,8 +11,8 @@ fn piece(way_id: i64, layer: i8, ends: [[i64; 2]; 2], heights_m: [f64; 2]) -> Pi
 /// The crossings of a bridge of layer 1 along the first axis with another one across it, a quarter along the first.
 fn crossed_by(other: Piece) -> Vec<OrderedCrossing> {
     let own = piece(1, 1, [[0, 0], [400, 0]], [10.0, 14.0]);
-    let one = crossings(vec![own, other], &Work::new(100)).unwrap();
-    assert_eq!(crossings(vec![other, own], &Work::new(100)).unwrap(), one, "in any order");
+    let one = crossings(&[own, other], &Work::new(100)).unwrap();
+    assert_eq!(crossings(&[other, own], &Work::new(100)).unwrap(), one, "in any order");
     one
 }
 
@@ -30,8 +30,8 @@ fn the_upper_layer_is_above() {
     ];
     let own = piece(1, 1, [[0, 0], [400, 0]], [10.0, 14.0]);
     let all = [&lifted[..], &[own]].concat();
-    assert_eq!(crossings(all.clone(), &Work::new(100)).unwrap().len(), 1);
-    assert!(crossings(all, &Work::new(1)).is_err());
+    assert_eq!(crossings(&all, &Work::new(100)).unwrap().len(), 1);
+    assert!(crossings(&all, &Work::new(1)).is_err());
 }
 
 #[test]

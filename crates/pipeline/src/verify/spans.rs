@@ -19,6 +19,7 @@ use super::{
     decoded_tiles::DecodedTiles,
     error::VerifyError,
     layer_sums::{Counts, OfTile, look_at_layer},
+    near_index::NearIndex,
     span_order::{self, OrderedCrossing, Piece},
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
@@ -157,7 +158,6 @@ fn look_at(
     let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
         let own = lines.get(&(run.way_id, run.class, run.structure == Structure::Tunnel));
-        let own = own.map_or(&[][..], Vec::as_slice);
         tile.look_at_ends(run, own, &mut found.findings);
         tile.look_at_side(run, own, &mut found.findings);
         if let Err(error) = work.check() {
@@ -171,7 +171,7 @@ fn look_at(
     }
     // Lifts are those of the finest level.
     if id.z() == manifest.frame.max_level() {
-        match span_order::crossings(tile.pieces(&runs, &of_structures), &work) {
+        match span_order::crossings(&tile.pieces(&runs, &of_structures), &work) {
             Ok(all) => {
                 let reversed = reversed(all, least_m, &mut found.findings);
                 let reversed = reversed.into_iter().map(|crossing| (id, crossing));
@@ -188,10 +188,34 @@ fn look_at(
     found
 }
 
-/// The places of a GEO line of a bridge or a tunnel in lattice steps, with heights.
-type Line = Vec<[f64; 3]>;
+/// The GEO lines of a bridge or a tunnel: places in lattice steps, with heights.
+struct WayLines {
+    /// First and last place of each line.
+    ends: Vec<[[f64; 2]; 2]>,
+    /// The straight pieces of all lines.
+    pieces: Vec<[[f64; 3]; 2]>,
+    near: NearIndex,
+}
+
+impl WayLines {
+    fn new(lines: &[Vec<[f64; 3]>]) -> Self {
+        let flat = |[u, v, _]: [f64; 3]| [u, v];
+        let ends_of = |line: &Vec<[f64; 3]>| Some([flat(*line.first()?), flat(*line.last()?)]);
+        let pieces: Vec<[[f64; 3]; 2]> =
+            lines.iter().flat_map(|line| line.array_windows().copied()).collect();
+        let near = NearIndex::new(pieces.iter().map(|piece| piece.map(flat)));
+        Self { ends: lines.iter().filter_map(ends_of).collect(), pieces, near }
+    }
+
+    /// The pieces that come near a box, and perhaps others.
+    fn near(&self, corners: [[f64; 2]; 2], work: &Work) -> impl Iterator<Item = [[f64; 3]; 2]> {
+        // Places along a line are measured as far beyond its ends as across it.
+        self.near.near(corners, 2.0 * NEAR_STEPS, work).map(|number| self.pieces[number])
+    }
+}
+
 /// Lines by way, class and whether it is a tunnel.
-type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), Vec<Line>>;
+type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), WayLines>;
 
 /// The ways of a tile that are bridges or tunnels, with their layers.
 fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (Structure, i8)> {
@@ -209,7 +233,7 @@ fn lines_of_structures(
     structures: &BTreeMap<i64, (Structure, i8)>,
     surface: &Surface,
 ) -> Lines {
-    let mut lines = Lines::new();
+    let mut lines: BTreeMap<_, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
     for road in &payload.roads_geo {
         let Some((structure, _)) = structures.get(&road.way_id) else { continue };
         if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
@@ -217,12 +241,7 @@ fn lines_of_structures(
             lines.entry(key).or_default().push(vertices);
         }
     }
-    lines
-}
-
-/// The first and the last place of a line.
-fn ends_of(line: &Line) -> [[f64; 2]; 2] {
-    [line.first(), line.last()].map(|end| end.map_or([f64::NAN; 2], |&[u, v, _]| [u, v]))
+    lines.into_iter().map(|(key, own)| (key, WayLines::new(&own))).collect()
 }
 
 /// Adds what a tile has on its border: ends of lines, and the heights of runs that end there.
@@ -236,10 +255,8 @@ fn put_ends(
     let is_on_border = |at: &LatticePoint| {
         at.u == bounds.min.u || at.u == bounds.max.u || at.v == bounds.min.v || at.v == bounds.max.v
     };
-    for (&(way_id, ..), line) in
-        lines.iter().flat_map(|(key, own)| own.iter().map(move |of| (key, of)))
-    {
-        for [u, v] in ends_of(line) {
+    for (&(way_id, ..), own_lines) in lines {
+        for &[u, v] in own_lines.ends.iter().flatten() {
             let at = LatticePoint::new(u.round() as i64, v.round() as i64);
             if is_on_border(&at) {
                 own.entry((id.z(), way_id, at)).or_default();
@@ -271,23 +288,23 @@ struct Tile<'a> {
 
 impl Tile<'_> {
     /// A run ends on the ground of its way, in the triangle that it names, or where the line of its way ends.
-    fn look_at_ends(&self, run: &SpanRun, lines: &[Line], findings: &mut Findings) {
+    fn look_at_ends(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
         for end in [run.points.first(), run.points.last()].into_iter().flatten() {
             let [u, v] = end.at.in_steps();
             let is_near =
                 |[a, b]: [f64; 2]| (a - u).abs() <= NEAR_STEPS && (b - v).abs() <= NEAR_STEPS;
             let holds = match end.height {
                 SpanHeight::Ground { triangle } => {
-                    let is_on_line = lines.iter().any(|line| {
-                        self.work.add(line.len());
-                        let mut pairs = line.array_windows();
-                        pairs.any(|&[from, to]| share_of([from, to], [u, v]).is_some())
+                    let is_on_line = lines.is_some_and(|lines| {
+                        let mut near = lines.near([[u, v]; 2], self.work);
+                        near.any(|piece| share_of(piece, [u, v]).is_some())
                     });
                     is_on_line && self.holds(triangle, end.at)
                 }
-                SpanHeight::Steps(_) => {
-                    lines.iter().any(|line| ends_of(line).into_iter().any(is_near))
-                }
+                SpanHeight::Steps(_) => lines.is_some_and(|lines| {
+                    self.work.add(lines.ends.len());
+                    lines.ends.iter().flatten().copied().any(is_near)
+                }),
             };
             findings.look(CheckId::SpanEnds, holds, || {
                 format!("a run of way {} in tile {} ends at {:?}", run.way_id, self.id, end.at)
@@ -329,7 +346,7 @@ impl Tile<'_> {
     }
 
     /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
-    fn look_at_side(&self, run: &SpanRun, lines: &[Line], findings: &mut Findings) {
+    fn look_at_side(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
         let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
         let mut lowest_m = f64::INFINITY;
         for [from, to] in run.points.array_windows() {
@@ -338,10 +355,10 @@ impl Tile<'_> {
             };
             let [a, b] = [from.at.in_steps(), to.at.in_steps()];
             let ends = [[a[0], a[1], from_m], [b[0], b[1], to_m]];
-            self.work.add(lines.iter().map(Vec::len).sum());
             let is_beside =
                 |of: [f64; 2], [u, v]: [f64; 2]| (of[0] - u).hypot(of[1] - v) <= NEAR_STEPS;
-            let inner = lines.iter().flatten().filter_map(|&[u, v, ground_m]| {
+            let near = lines.into_iter().flat_map(|lines| lines.near([a, b], self.work));
+            let inner = near.flatten().filter_map(|[u, v, ground_m]| {
                 // The ends are looked at themselves: beside a wall the ground is another one within a step.
                 let share = share_of(ends, [u, v])
                     .filter(|_| !is_beside(a, [u, v]) && !is_beside(b, [u, v]))?;

@@ -224,6 +224,8 @@ mod write {
         roads_geo::surprises::{Surprise, put_surprises},
     };
 
+    const MANY_VERTICES: &str = "more than four million vertices of lines; show fewer roads on this level or use a larger --max-error";
+
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
     /// range-coded bits.
     pub(crate) fn encode(
@@ -233,7 +235,7 @@ mod write {
         surface: &Surface,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
         if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES {
-            return Err("more than four million vertices of lines");
+            return Err(MANY_VERTICES);
         }
         // The same limit as a reader's, because a reader takes the same steps.
         let work = Work::new(MAX_ROUTE_STEPS);

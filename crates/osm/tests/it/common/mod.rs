@@ -88,7 +88,7 @@ impl Extract {
         let ids: BTreeSet<i64> = self.roads.iter().map(|road| road.way_id).collect();
         assert_eq!(self.summary.road_ways, ids.len() as u64);
         for defect in self.defects.iter().filter(lost) {
-            if matches!(defect, Defect::TooFewNodes { .. } | Defect::NoLine { .. }) {
+            if matches!(defect, Defect::TooFewNodes { .. } | Defect::NoLine { .. } | Defect::ToAndFro { .. }) {
                 assert!(!ids.contains(&defect.object().1), "{defect:?}");
             }
         }
@@ -125,6 +125,7 @@ pub(crate) fn request<'a>(
         place,
         ring_area_m2: &corniche_geom::wgs84::area_m2,
         seam: None,
+        square_steps: i64::MAX,
         node_ids: false,
         pool,
         memory_bytes,

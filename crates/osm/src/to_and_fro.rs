@@ -1,0 +1,69 @@
+//! Ways that go to and fro over one place far more often than a road can.
+
+use std::collections::HashMap;
+
+use corniche_geom::{LatticePoint, Polyline};
+
+/// A way may lie in one square for so many sides of it. A finest tile has 256 × 256 cells: on its ground such a way has some two hundred thousand
+/// vertices, a twentieth of those that a tile may have.
+const MOST_SIDES: f64 = 256.0;
+
+/// A way may be as long as so many squares: with squares of 23 km a hundred million kilometres, with those of 10 m once around the earth.
+const MOST_SQUARES: f64 = 4_194_304.0;
+
+/// Whether a line goes to and fro over a square, of `side` lattice steps, more often than a road can. Squares cover all the lattice, so that it does not
+/// depend on the extent of a package.
+pub(crate) fn goes_to_and_fro(line: &Polyline, side: i64) -> bool {
+    let side = side.max(1) as f64;
+    let segments = || line.points().array_windows().map(|ends| ends.map(LatticePoint::in_steps));
+    let length: f64 = segments().map(length_of).sum();
+    if length <= MOST_SIDES * side {
+        return false;
+    }
+    if length > MOST_SQUARES * side {
+        return true;
+    }
+    let mut squares: HashMap<[i64; 2], f64> = HashMap::new();
+    for segment in segments() {
+        for (column, part) in strips(segment, 0, side) {
+            for (row, part) in strips(part, 1, side) {
+                let within = squares.entry([column, row]).or_default();
+                *within += length_of(part);
+                if *within > MOST_SIDES * side {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}
+
+fn length_of([a, b]: [[f64; 2]; 2]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// A segment, cut at the multiples of `side` along one axis: the number of each strip, and the part within it.
+fn strips(
+    [a, b]: [[f64; 2]; 2],
+    axis: usize,
+    side: f64,
+) -> impl Iterator<Item = (i64, [[f64; 2]; 2])> {
+    let (low, high) = if a[axis] <= b[axis] { (a, b) } else { (b, a) };
+    let [first, last] = [low, high].map(|at| (at[axis] / side).floor() as i64);
+    let other = 1 - axis;
+    let slope = if first == last { 0.0 } else { (high[other] - low[other]) / (high[axis] - low[axis]) };
+    let at = move |strip: i64| {
+        let along = strip as f64 * side;
+        let across = low[other] + slope * (along - low[axis]);
+        if axis == 0 { [along, across] } else { [across, along] }
+    };
+    (first..=last).map(move |strip| {
+        let from = if strip == first { low } else { at(strip) };
+        let to = if strip == last { high } else { at(strip + 1) };
+        (strip, [from, to])
+    })
+}
+
+#[cfg(test)]
+#[path = "to_and_fro_tests.rs"]
+mod tests;
