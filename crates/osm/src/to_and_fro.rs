@@ -51,7 +51,8 @@ fn strips(
     let (low, high) = if a[axis] <= b[axis] { (a, b) } else { (b, a) };
     let [first, last] = [low, high].map(|at| (at[axis] / side).floor() as i64);
     let other = 1 - axis;
-    let slope = if first == last { 0.0 } else { (high[other] - low[other]) / (high[axis] - low[axis]) };
+    let slope =
+        if first == last { 0.0 } else { (high[other] - low[other]) / (high[axis] - low[axis]) };
     let at = move |strip: i64| {
         let along = strip as f64 * side;
         let across = low[other] + slope * (along - low[axis]);

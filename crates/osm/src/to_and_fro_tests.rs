@@ -13,7 +13,9 @@ fn line(points: impl Iterator<Item = [i64; 2]>) -> Polyline {
 
 /// A way that goes `legs` times from one end of a square to the other, each time a step beside the last.
 fn zigzag(legs: i64, at: [i64; 2]) -> Polyline {
-    line((0..=legs).map(|k| [at[0] + if k % 2 == 0 { 0 } else { SIDE - 2 }, at[1] + k % (SIDE - 1)]))
+    line(
+        (0..=legs).map(|k| [at[0] + if k % 2 == 0 { 0 } else { SIDE - 2 }, at[1] + k % (SIDE - 1)]),
+    )
 }
 
 #[test]

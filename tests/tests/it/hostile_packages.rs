@@ -118,7 +118,8 @@ fn is_read(case: &Case) -> bool {
 
 #[test]
 fn work_follows_bytes_and_no_coordinate() {
-    let commands = ["verify", "render sv", "export geotiff", "export geotiff 0"];
+    let commands =
+        ["verify", "render sv", "export geotiff", "export geotiff 0", "export quantized-mesh"];
     check(&["lies"], [1; 3], |case, command| is_read(case) && commands.contains(&command));
 }
 

@@ -1,5 +1,6 @@
 //! Scenarios through the whole program, in one binary. The first line of each module says what holds.
 
+mod absurd_ways;
 mod area_pictures;
 mod areas;
 mod bad_input;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use corniche_geom::{Bounds, Seam};
+use corniche_geom::{Bounds, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest};
 
 use super::{
@@ -121,15 +121,12 @@ fn tiles_around_deg(
     };
     let mut found = Vec::new();
     for id in read::tiles(package, manifest.frame.max_level(), bounds)? {
-        let mut around = Bounds::EMPTY;
-        for place in read::places_deg(manifest, id) {
-            if !is_near(place) {
-                return Err(ExportError::OtherCoordinates {
-                    package: package.path().to_path_buf(),
-                });
-            }
-            around.include(place);
+        let places = read::places_deg(manifest, id);
+        if !(places.iter().copied().all(is_near) && is_as_large(manifest, id)) {
+            return Err(ExportError::OtherCoordinates { package: package.path().to_path_buf() });
         }
+        let mut around = Bounds::EMPTY;
+        places.into_iter().for_each(|place| around.include(place));
         // Sides bend a little between these places.
         let margin = 0.01 * around.width().max(around.height());
         found.push(Bounds {
@@ -140,6 +137,20 @@ fn tiles_around_deg(
         });
     }
     Ok(found)
+}
+
+/// Whether a tile has about the area by the table of coordinates that it has by the manifest's scale. A table of one place, one that is mirrored and one
+/// that is stretched have not, and looking for the ground at a place would take for ever.
+fn is_as_large(manifest: &Manifest, id: TileId) -> bool {
+    /// The scale is that of some places.
+    const ROOM: f64 = 4.0;
+    let part = read::data_part(manifest, id);
+    let [low, high] = [[part.min_x, part.min_y], [part.max_x, part.max_y]];
+    let ring = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let [least, largest] = [manifest.scale.least, manifest.scale.largest].map(|[x, y]| x * y);
+    let area_m2 = part.width() * part.height();
+    let by_table_m2 = manifest.coordinates.ring_area_m2(&ring);
+    (area_m2 / largest / ROOM..=area_m2 / least * ROOM).contains(&by_table_m2)
 }
 
 /// The first and the last column and row of a level over a rectangle of degrees.

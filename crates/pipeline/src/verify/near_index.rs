@@ -21,9 +21,9 @@ impl NearIndex {
         if corners.len() <= FEW {
             return Self::Few(corners.len());
         }
-        let boxes = corners.enumerate().map(|(number, [a, b])| {
-            GeomWithData::new(Rectangle::from_corners(a, b), number)
-        });
+        let boxes = corners
+            .enumerate()
+            .map(|(number, [a, b])| GeomWithData::new(Rectangle::from_corners(a, b), number));
         Self::Many(RTree::bulk_load(boxes.collect()))
     }
 

@@ -23,7 +23,8 @@ fn all_that_lie_there_are_found() {
             let (asked, reach) = ([place(), place()], 3.0);
             let is_there = |axis: usize, of: [[f64; 2]; 2]| {
                 let [low, high] = [f64::min, f64::max].map(|pick| pick(of[0][axis], of[1][axis]));
-                let [from, to] = [f64::min, f64::max].map(|pick| pick(asked[0][axis], asked[1][axis]));
+                let [from, to] =
+                    [f64::min, f64::max].map(|pick| pick(asked[0][axis], asked[1][axis]));
                 low <= to + reach && high >= from - reach
             };
             let scanned: Vec<usize> = (0..count)

@@ -100,8 +100,8 @@ impl Piece {
         }
         let shares = [share([c, d], [a, b])?, share([a, b], [c, d])?];
         let height_m = |[from_m, to_m]: [f64; 2], share: f64| from_m + share * (to_m - from_m);
-        let [upper_m, lower_m] =
-            [(self, shares[0]), (other, shares[1])].map(|(of, share)| height_m(of.heights_m, share));
+        let [upper_m, lower_m] = [(self, shares[0]), (other, shares[1])]
+            .map(|(of, share)| height_m(of.heights_m, share));
         Some(OrderedCrossing { way_ids: [self.way_id, other.way_id], free_m: upper_m - lower_m })
     }
 }

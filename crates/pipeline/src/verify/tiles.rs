@@ -131,7 +131,8 @@ fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Fin
             Structure::Tunnel => ("tunnels", i128::from(tunnels_um)),
         };
         let (found_m, recorded_m) = (found.by_structure_m[number], recorded_um as f64 / 1e6);
-        let allowed_m = LENGTH_SHARE * recorded_m + CUT_M * found.lines[number] as f64 + found.rounding_m;
+        let allowed_m =
+            LENGTH_SHARE * recorded_m + CUT_M * found.lines[number] as f64 + found.rounding_m;
         let holds = (found_m - recorded_m).abs() <= allowed_m;
         findings.look(CheckId::Structures, holds, || {
             format!("{found_m} m of {name} lie in the tiles, {recorded_m} m are recorded")

@@ -156,6 +156,8 @@ pub(crate) fn all() -> Vec<Case> {
         read("a table over half the globe", with_values(&[("/coordinates", spread(1e5, 0.0))])),
         read("a table of a hundred degrees", with_values(&[("/coordinates", spread(3e3, 0.0))])),
         read("a table of other degrees", with_values(&[("/coordinates", spread(-400.0, 20.0))])),
+        read("a table of one place", with_values(&[("/coordinates", spread(0.0, 0.0))])),
+        read("a table that is turned around", with_values(&[("/coordinates", spread(-1.0, 0.0))])),
         lie("data at 10^17 m", "/data_bounds", bounds_at(1e17), "data_bounds"),
         lie("data beside the grid", "/data_bounds", bounds_at(1e9), "data_bounds"),
         lie("an origin of 10^17 m", "/frame/origin_m/0", json!(1e17), "frame.origin_m"),

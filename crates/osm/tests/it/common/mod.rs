@@ -88,7 +88,10 @@ impl Extract {
         let ids: BTreeSet<i64> = self.roads.iter().map(|road| road.way_id).collect();
         assert_eq!(self.summary.road_ways, ids.len() as u64);
         for defect in self.defects.iter().filter(lost) {
-            if matches!(defect, Defect::TooFewNodes { .. } | Defect::NoLine { .. } | Defect::ToAndFro { .. }) {
+            if matches!(
+                defect,
+                Defect::TooFewNodes { .. } | Defect::NoLine { .. } | Defect::ToAndFro { .. }
+            ) {
                 assert!(!ids.contains(&defect.object().1), "{defect:?}");
             }
         }
