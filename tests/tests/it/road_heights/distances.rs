@@ -1,17 +1,20 @@
 //! What is told as "at most" is at most: random places on lines that were written, against the elevation files as GDAL reads them; and measures of
 //! spans that the ground stops are those of their lines.
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, process::Command};
 
 use corniche_testing::{
     Raster,
     pbf::{self, Way},
 };
-use e2e::{build_from, real_data, text, write_ascii_grid};
+use e2e::{build_from, real_data, skip, some_of, text, write_ascii_grid};
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use tempfile::TempDir;
 
 use super::{Bilinear, Line, Row, export, features, number, pass_inputs, profile, succeed};
+
+/// Places that are compared in the quick tests.
+const PLACES: usize = 20_000;
 
 /// From one CRS to another by PROJ, x first.
 fn transform(from: u32, to: u32) -> CoordTransform {
@@ -23,13 +26,16 @@ fn transform(from: u32, to: u32) -> CoordTransform {
     CoordTransform::new(&of(from), &of(to)).unwrap()
 }
 
-/// Random places on lines are within `field` of an elevation file. Returns how many were compared, and the largest distance.
+/// Some random places on lines, spread over their segments, are within `field` of an elevation file. Returns how many were compared, and the largest distance.
 fn are_within(
     features: &[(Row, Vec<Line>)],
     (dem, to_dem): (&Bilinear, Option<&CoordTransform>),
-    field: &str,
+    (field, places): (&str, usize),
 ) -> (usize, f64) {
     let (mut compared, mut farthest_m) = (0, 0.0_f64);
+    let all =
+        features.iter().flat_map(|(_, lines)| lines).map(|line| line.len() - 1).sum::<usize>();
+    let each = places.div_ceil(all.max(1));
     let mut state = 11_u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -39,8 +45,7 @@ fn are_within(
         let most_m = number(row, field);
         let segments = lines.iter().flat_map(|line| line.array_windows::<2>());
         for [from, to] in segments {
-            let long = (to[0] - from[0]).hypot(to[1] - from[1]);
-            for _ in 0..=(long / 2.0) as usize {
+            for _ in 0..each {
                 let share = random();
                 let at: [f64; 3] =
                     std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]));
@@ -65,7 +70,7 @@ fn compare(
     folder: &Path,
     [dem, osm]: [&Path; 2],
     options: &[&str],
-    to_dem: Option<&CoordTransform>,
+    (to_dem, places): (Option<&CoordTransform>, usize),
 ) -> [f64; 2] {
     let package = folder.join("package.pmtiles");
     build_from([dem, osm], &package, &[&["-q", "-O"], options].concat());
@@ -78,18 +83,18 @@ fn compare(
         row["height_source"] != "dem" || !row["height_tolerance_m"].is_empty()
     };
     assert!(of_dem.iter().all(is_told), "{options:?}");
-    let (compared, dem_m) = are_within(&of_dem, (&read, to_dem), "height_tolerance_m");
+    let (compared, dem_m) = are_within(&of_dem, (&read, to_dem), ("height_tolerance_m", places));
     assert!(compared > 50, "{options:?}: {compared}");
     let on_ground = folder.join("ground.gpkg");
     succeed(export(&package, "roads", &on_ground, &["-O"]));
     let mut of_ground = features(&on_ground);
-    let (_, ground_m) = are_within(&of_ground, (&read, to_dem), "height_tolerance_m");
+    let (_, ground_m) = are_within(&of_ground, (&read, to_dem), ("height_tolerance_m", places));
     // The same lines, as they were measured beside the elevation file.
     for ((row, _), (on_dem, _)) in of_ground.iter_mut().zip(&of_dem) {
         assert_eq!(row["way_id"], on_dem["way_id"]);
         row.insert("ground_tolerance_m".to_owned(), on_dem["ground_tolerance_m"].clone());
     }
-    let (compared, _) = are_within(&of_ground, (&read, to_dem), "ground_tolerance_m");
+    let (compared, _) = are_within(&of_ground, (&read, to_dem), ("ground_tolerance_m", places));
     assert!(compared > 50, "{options:?}: {compared}");
     [dem_m, ground_m]
 }
@@ -108,9 +113,61 @@ fn lines_are_within_their_field_whatever_the_nodes_are() {
         (&["--cell", "33"], None, [1.0, 0.0]),
     ];
     for (options, to_dem, least_m) in cases {
-        let found_m = compare(folder.path(), [&dem, &osm], options, to_dem.as_ref());
+        let found_m = compare(folder.path(), [&dem, &osm], options, (to_dem.as_ref(), PLACES));
         for (found_m, least_m) in found_m.into_iter().zip(least_m) {
             assert!(found_m >= least_m, "{options:?}: {found_m}");
+        }
+    }
+}
+
+/// A hundred thousand places in each region, on lines of the package's triangles and of the elevation file, whatever the nodes are.
+#[test]
+#[ignore = "slow: six regions, three packages of each, some minutes"]
+fn lines_of_real_regions_are_within_their_field() {
+    let folder = TempDir::new().unwrap();
+    let [dem, osm] = pass_inputs();
+    let mut regions = vec![("pass", dem, osm, [32632, 32633])];
+    for (dem, osm, codes) in [
+        (
+            "liechtenstein/N47E009.hgt",
+            "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
+            [4326, 32632],
+        ),
+        ("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", [4269, 26910]),
+        ("swellendam/srtm_41_19_4326.tif", "swellendam/swellendam-roads.osm.pbf", [4326, 32734]),
+        (
+            "delft-oostpoort/delft_dtm_0.5m.tif",
+            "delft-oostpoort/tudelft-full.osm.pbf",
+            [28992, 25831],
+        ),
+        (
+            "finland-m3-road/m3-existing-ground-0.5m.tif",
+            "finland-m3-road/m3-road.osm",
+            [3875, 3067],
+        ),
+    ] {
+        let (Some(file), Some(mut extract)) = (real_data(dem), real_data(osm)) else { continue };
+        if extract.extension().is_some_and(|ending| ending == "osm") {
+            let packed = folder.path().join("road.osm.pbf");
+            let words = ["cat", "-O", text(&extract), "-o", text(&packed)];
+            if !Command::new("osmium").args(words).status().is_ok_and(|status| status.success()) {
+                skip("there is no program osmium (Debian: osmium-tool)");
+                continue;
+            }
+            extract = packed;
+        }
+        regions.push((dem, file, extract, codes));
+    }
+    for (name, dem, osm, [own, utm]) in some_of(regions, [6, 6, 1]) {
+        let utm_name = format!("EPSG:{utm}");
+        let back = transform(utm, own);
+        for (options, to_dem) in [
+            (&[][..], None),
+            (&["--cell-every", "3"], None),
+            (&["--crs", utm_name.as_str()], Some(&back)),
+        ] {
+            let found_m = compare(folder.path(), [&dem, &osm], options, (to_dem, 100_000));
+            println!("{name} {options:?}: at most {found_m:?} m from the file");
         }
     }
 }
@@ -131,7 +188,7 @@ fn lines_over_a_turned_file_are_within_their_field() {
     let osm = folder.path().join("roads.osm.pbf");
     let places = [[499_000.0, 5_199_600.0], [500_300.0, 5_198_300.0], [501_100.0, 5_199_500.0]];
     write_way(&osm, &to_degrees, &places, &[(&[1, 2, 3], "")]);
-    let [dem_m, _] = compare(folder.path(), [&dem, &osm], &[], None);
+    let [dem_m, _] = compare(folder.path(), [&dem, &osm], &[], (None, PLACES));
     assert!(dem_m > 0.5, "{dem_m}");
 }
 
@@ -144,7 +201,8 @@ fn lines_of_thinned_samples_are_told_as_far_from_the_file() {
         return;
     };
     let folder = TempDir::new().unwrap();
-    let [dem_m, ground_m] = compare(folder.path(), [&dem, &osm], &["--cell-every", "2"], None);
+    let [dem_m, ground_m] =
+        compare(folder.path(), [&dem, &osm], &["--cell-every", "2"], (None, PLACES));
     assert!(dem_m > 4.5 && ground_m > 4.5, "{dem_m} {ground_m}");
 }
 
