@@ -73,6 +73,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                 place: &place,
                 ring_area_m2: &|_| 0.0,
                 seam: None,
+                square_steps: 256_000,
                 node_ids: false,
                 pool,
                 memory_bytes,

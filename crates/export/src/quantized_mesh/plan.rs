@@ -126,7 +126,9 @@ fn tiles_around_deg(
             return Err(ExportError::OtherCoordinates { package: package.path().to_path_buf() });
         }
         let mut around = Bounds::EMPTY;
-        places.into_iter().for_each(|place| around.include(place));
+        for place in places {
+            around.include(place);
+        }
         // Sides bend a little between these places.
         let margin = 0.01 * around.width().max(around.height());
         found.push(Bounds {
