@@ -1,3 +1,5 @@
+//! Ways that no road is, and roads that look a little like them.
+
 #![allow(
     clippy::unwrap_used,
     clippy::float_cmp,

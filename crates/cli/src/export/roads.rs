@@ -47,6 +47,12 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     let (summary, size) = fill(&args.vector.file, output, elevation.as_ref(), |path, progress| {
         export_roads(&package, (&request, features, road.as_ref()), heights, path, progress)
     })?;
+    if summary.features == 0 {
+        let level = summary.level;
+        messages::warning(&format!(
+            "level {level} of the package has no road of the chosen classes within the bounds: the file has no features"
+        ));
+    }
     messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }

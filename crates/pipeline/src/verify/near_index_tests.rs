@@ -1,3 +1,5 @@
+//! What is found is what a scan finds.
+
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use corniche_geom::Work;

@@ -32,7 +32,7 @@ pub(crate) struct RoadLengths {
     pub(crate) by_structure_m: [f64; Structure::ALL.len()],
     /// How many lines that is: each part of a way in a tile is one.
     pub(crate) lines: [u64; Structure::ALL.len()],
-    /// By how much all may be longer or shorter because their vertices are put on the lattice, metres.
+    /// What all together may be longer or shorter because their vertices are put on the lattice, metres.
     pub(crate) rounding_m: f64,
 }
 
