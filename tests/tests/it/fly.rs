@@ -225,11 +225,11 @@ fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
     let out = folder.path().join("out");
     fs::create_dir(&out).unwrap();
     // The shell counts blocks of 512 or of 1024 bytes. If the signal is ignored, the write returns an error.
-    let limited = "trap '' XFSZ; ulimit -f 32; exec \"$@\"";
+    let limited = "trap '' XFSZ; ulimit -f 16; exec \"$@\"";
     let ran = Command::new("sh")
         .args(["-c", limited, "sh"])
         .arg(e2e::binary())
-        .args(["fly", text(&package), "--size", "16x12", "--frames", "400"])
+        .args(["fly", text(&package), "--size", "16x12", "--frames", "120"])
         .args(["-o", text(&out.join("fly.csv")), "--save-path", text(&out.join("flight.toml"))])
         .output()
         .unwrap();

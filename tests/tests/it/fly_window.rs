@@ -119,11 +119,11 @@ fn closing_the_window_ends_the_flight_and_leaves_nothing() {
 fn a_window_that_is_lost_is_no_loss() {
     let Some(display) = Display::start() else { return };
     let place = FlightFolder::new();
-    let Some(ran) = disturbed(&place, &display, "200", &["windowclose ID"]) else { return };
+    let Some(ran) = disturbed(&place, &display, "80", &["windowclose ID"]) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(ran.err.contains("goes on without it"), "{}", ran.err);
-    assert_eq!(without_times(&place.out.join("fly.csv")).len(), 201);
-    assert_eq!(fs::read_dir(place.out.join("frames")).unwrap().count(), 200);
+    assert_eq!(without_times(&place.out.join("fly.csv")).len(), 81);
+    assert_eq!(fs::read_dir(place.out.join("frames")).unwrap().count(), 80);
 }
 
 #[test]

@@ -120,7 +120,7 @@ fn is_read(case: &Case) -> bool {
 fn work_follows_bytes_and_no_coordinate() {
     let commands =
         ["verify", "render sv", "export geotiff", "export geotiff 0", "export quantized-mesh"];
-    check(&["lies"], [1; 3], |case, command| is_read(case) && commands.contains(&command));
+    check(&["lies"], [2, 2, 1], |case, command| is_read(case) && commands.contains(&command));
 }
 
 /// What is refused is refused when it is opened, with its first tile, or with the list of all: by one way for all commands, so two of them will do.

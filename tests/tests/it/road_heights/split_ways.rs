@@ -245,5 +245,5 @@ fn junctions_of_liechtenstein_do_not_move() {
 fn junctions_of_other_regions_do_not_move() {
     stays("portland/portland-ned.tif", "portland/portland-central-filtered.osm.pbf", 2000);
     let [dem, osm] = pass_inputs();
-    stay([&dem, &osm], 200);
+    stay([&dem, &osm], 100);
 }
