@@ -22,7 +22,7 @@ mod values;
 mod view;
 mod voice;
 
-use std::{borrow::Cow, ffi::OsString};
+use std::{borrow::Cow, ffi::OsString, path::Path};
 
 use clap::{
     CommandFactory as _, Parser, Subcommand, ValueEnum as _,
@@ -198,6 +198,10 @@ fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
         })
     };
     let option_of = |file: &str| -> Option<&str> {
+        // A number is half of a place that was written with a space.
+        if file.parse::<f64>().is_ok() {
+            return None;
+        }
         let name = file.to_lowercase();
         let is_for = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
         let mut fitting = OPTIONS_BY_ENDING.iter().filter(|(option, endings)| {
@@ -207,8 +211,11 @@ fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
         let writes_rasters = command.get_name() == "geotiff" && !is_given("output");
         let found = fitting.next().map(|(option, _)| *option);
         let other = ["dem", "output"].into_iter().find(|option| has(option) && !is_given(option));
+        // What is not there is what is to be written, rather than a polygon.
+        let is_missing = has("output") && !is_given("output") && !Path::new(file).exists();
         match found {
             Some("dem") if writes_rasters => Some("output"),
+            Some("polygon") if is_missing => Some("output"),
             _ => found.or(other),
         }
     };

@@ -1,6 +1,6 @@
 //! Names of files that commands write.
 
-use std::path::Path;
+use std::{ffi::OsStr, path::Path};
 
 use crate::failure::Failure;
 
@@ -28,9 +28,17 @@ pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
     if is_package_name(target) {
         return Ok(());
     }
-    let target = target.display();
+    // Another format's ending is replaced; what follows a dot in a name may also be a part of it.
+    let is_ending = |ending: &OsStr| ending.as_encoded_bytes().iter().all(u8::is_ascii_alphabetic);
+    let whole = if target.extension().is_some_and(is_ending) {
+        target.with_extension("pmtiles")
+    } else {
+        target.with_added_extension("pmtiles")
+    };
     Err(Failure::unusable(format!(
-        "cannot write {target}: the name of a package ends in .pmtiles; write it like {target}.pmtiles"
+        "cannot write {}: the name of a package ends in .pmtiles; write it like {}",
+        target.display(),
+        whole.display()
     )))
 }
 

@@ -97,6 +97,9 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     };
     files.write(|output| output.fill(to_csv(&found).as_bytes()), make_svg)?;
     json.map_or(Ok(()), Complete::place)?;
+    for written in [&args.csv, &args.svg, &args.json].into_iter().flatten() {
+        messages::note(&format!("wrote {}", written.display()));
+    }
     let told = road.map(|road| to_text_of_route(&road, args.road.query().as_ref()));
     messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?;
     Ok(ExitCode::Done)

@@ -141,10 +141,11 @@ pub(crate) fn named_ways(
     let meant: BTreeSet<i64> = meant.map(|(&way_id, _)| way_id).collect();
     if meant.is_empty() {
         let near = query.near(known.values());
+        let quoted: Vec<String> = near.iter().map(|text| format!("\"{text}\"")).collect();
         let near = if near.is_empty() {
             String::new()
         } else {
-            format!("; there are {}", near.join(", "))
+            format!("; similar ones are {}", quoted.join(", "))
         };
         let package = package.path().to_path_buf();
         return Err(ExportError::NoSuchRoad { package, query: query.text(), near });

@@ -11,7 +11,7 @@ use crate::{
     read_request::Placing,
     records::Stop,
     self_crossings::self_crossings,
-    to_and_fro::goes_to_and_fro,
+    to_and_fro::go_to_and_fro,
     way_bytes::{LeftOutWay, WayKind},
 };
 
@@ -194,20 +194,21 @@ fn assemble_way(
         assembled.defects.push(Defect::TooFewNodes { way_id, nodes: stops.len() as u32 });
         return assembled;
     }
-    let (mut crossings, mut roads, mut is_to_and_fro) = (0, 0, false);
+    let (mut crossings, mut roads) = (0, 0);
     for piece in pieces {
         let count = piece.len() as u32;
         let parts = split_at_seam(piece, placing.seam);
         let before = assembled.roads.len();
         assembled.roads.extend(parts.into_iter().filter_map(|part| road(&way, part)));
         let own = &assembled.roads[before..];
-        is_to_and_fro |= own.iter().any(|road| goes_to_and_fro(&road.line, placing.square_steps));
         crossings += own.iter().map(|road| self_crossings(road.line.points())).sum::<u32>();
         strays += if own.is_empty() { count } else { 0 };
         roads += u32::from(!own.is_empty());
     }
+    let lines = assembled.roads.iter().map(|road| &road.line);
+    let is_to_and_fro = go_to_and_fro(lines, placing.square_steps);
     if is_to_and_fro {
-        return Assembled { defects: vec![Defect::ToAndFro { way_id }], ..Assembled::default() };
+        assembled.roads.clear();
     }
     // Nearly every way is one road, which needs no copy of the texts.
     if let Some((last, others)) = assembled.roads.split_last_mut() {
@@ -228,6 +229,7 @@ fn assemble_way(
         (strays.min(roads), Defect::StrayPoints { way_id, points: strays }),
         (roads.saturating_sub(1), Defect::Split { way_id, roads }),
         (u32::from(roads == 0), Defect::NoLine { way_id }),
+        (u32::from(is_to_and_fro), Defect::ToAndFro { way_id }),
         (crossings, Defect::SelfCrossing { way_id, crossings }),
     ] {
         if count > 0 {

@@ -37,7 +37,8 @@ pub struct ReadRequest<'a> {
     pub ring_area_m2: &'a RingArea<'a>,
     /// Where the lattice's map of the earth is cut open, if it is: lines over it are cut there.
     pub seam: Option<Seam>,
-    /// Side of a square in lattice steps: ways that go to and fro over one more often than a road can are left out.
+    /// Side of a finest tile in lattice steps: ways that go to and fro over a square of this side
+    /// more often than a road can are skipped and reported.
     pub square_steps: i64,
     /// Whether roads come with the ids of their fixed nodes, which takes a few bytes more for each node.
     pub node_ids: bool,

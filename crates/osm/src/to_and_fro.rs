@@ -4,20 +4,33 @@ use std::collections::HashMap;
 
 use corniche_geom::{LatticePoint, Polyline};
 
-/// A way may lie in one square for so many sides of it. A finest tile has 256 × 256 cells: on its ground such a way has some two hundred thousand
-/// vertices, a twentieth of those that a tile may have.
+/// A way may lie in one square for so many sides of it. A finest tile has 256 × 256 cells: on
+/// its ground such a way has some two hundred thousand vertices, a twentieth of what a tile may
+/// hold.
 const MOST_SIDES: f64 = 256.0;
 
-/// A way may be as long as so many squares: with squares of 23 km a hundred million kilometres, with those of 10 m once around the earth.
-const MOST_SQUARES: f64 = 4_194_304.0;
+/// A segment lies within a square for its diagonal at most, so ways of so few segments are not
+/// looked at: a few nodes in wrong places make no work.
+const FEW_SEGMENTS: usize = 181;
 
-/// Whether a line goes to and fro over a square, of `side` lattice steps, more often than a road can. Squares cover all the lattice, so that it does not
-/// depend on the extent of a package.
-pub(crate) fn goes_to_and_fro(line: &Polyline, side: i64) -> bool {
+/// A way of more segments may be as long as so many squares: with squares of 23 km 24 million
+/// kilometres, with those of 40 m once around the earth. That bounds work and memory.
+const MOST_SQUARES: f64 = 1_048_576.0;
+
+/// Whether the lines of a way together go to and fro over a square, of `side` lattice steps, more
+/// often than a road can. Squares cover all the lattice, so that it does not depend on the extent
+/// of a package.
+pub(crate) fn go_to_and_fro<'a>(
+    lines: impl Iterator<Item = &'a Polyline> + Clone,
+    side: i64,
+) -> bool {
     let side = side.max(1) as f64;
-    let segments = || line.points().array_windows().map(|ends| ends.map(LatticePoint::in_steps));
+    let segments = || {
+        let pairs = lines.clone().flat_map(|line| line.points().array_windows());
+        pairs.map(|ends| ends.map(LatticePoint::in_steps))
+    };
     let length: f64 = segments().map(length_of).sum();
-    if length <= MOST_SIDES * side {
+    if length <= MOST_SIDES * side || segments().nth(FEW_SEGMENTS).is_none() {
         return false;
     }
     if length > MOST_SQUARES * side {

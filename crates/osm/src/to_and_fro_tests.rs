@@ -9,12 +9,16 @@
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_testing::Random;
 
-use super::{goes_to_and_fro, length_of, strips};
+use super::{go_to_and_fro, length_of, strips};
 
 const SIDE: i64 = 1000;
 
 fn line(points: impl Iterator<Item = [i64; 2]>) -> Polyline {
     Polyline::new(points.map(|[u, v]| LatticePoint::new(u, v)).collect()).unwrap()
+}
+
+fn goes_to_and_fro(line: &Polyline, side: i64) -> bool {
+    go_to_and_fro(std::iter::once(line), side)
 }
 
 /// A way that goes `legs` times from one end of a square to the other, each time a step beside the last.
@@ -48,6 +52,13 @@ fn long_roads_do_not() {
     assert!(goes_to_and_fro(&endless, SIDE), "the same way a thousand times");
     let far = line((0..2000).map(|k| [if k % 2 == 0 { -9000 } else { 9000 } * SIDE, k * SIDE]));
     assert!(goes_to_and_fro(&far, SIDE), "longer than anything on earth");
+}
+
+/// What gaps make several roads of is one way all the same.
+#[test]
+fn parts_of_a_way_count_together() {
+    let parts: Vec<Polyline> = (0..30).map(|_| zigzag(100, [0, 0])).collect();
+    assert!(!go_to_and_fro(parts[..2].iter(), SIDE) && go_to_and_fro(parts.iter(), SIDE));
 }
 
 /// The parts of a segment lie in their strips, meet, and are as long as it together.

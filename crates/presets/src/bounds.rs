@@ -44,6 +44,13 @@ impl BoundsChoice {
                 "the south must be less than the north, both between -90 and 90 degrees; {ADVICE}"
             ));
         }
+        if west > east && west - east < 180.0 {
+            return Err(format!(
+                "the west is larger than the east, which means across 180 degrees of longitude: all but {:.5} degrees of the earth; \
+                 if the two are exchanged, give {east},{south},{west},{north}",
+                west - east
+            ));
+        }
         if west.to_bits() == east.to_bits() {
             return Err(format!("the west and the east are the same; {ADVICE}"));
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use corniche_geom::{Bounds, Seam, TileId};
+use corniche_geom::{Bounds, Seam, TileId, wgs84::radii_m};
 use corniche_tileset::{FilePackage, Manifest};
 
 use super::{
@@ -122,7 +122,7 @@ fn tiles_around_deg(
     let mut found = Vec::new();
     for id in read::tiles(package, manifest.frame.max_level(), bounds)? {
         let places = read::places_deg(manifest, id);
-        if !(places.iter().copied().all(is_near) && is_as_large(manifest, id)) {
+        if !(places.iter().copied().all(is_near) && is_as_large(manifest, id, &places)) {
             return Err(ExportError::OtherCoordinates { package: package.path().to_path_buf() });
         }
         let mut around = Bounds::EMPTY;
@@ -141,18 +141,33 @@ fn tiles_around_deg(
     Ok(found)
 }
 
-/// Whether a tile has about the area by the table of coordinates that it has by the manifest's scale. A table of one place, one that is mirrored and one
-/// that is stretched have not, and looking for the ground at a place would take for ever.
-fn is_as_large(manifest: &Manifest, id: TileId) -> bool {
-    /// The scale is that of some places.
-    const ROOM: f64 = 4.0;
-    let part = read::data_part(manifest, id);
-    let [low, high] = [[part.min_x, part.min_y], [part.max_x, part.max_y]];
-    let ring = [low, [high[0], low[1]], high, [low[0], high[1]]];
+/// Whether each part of a tile has about the area by the table of coordinates that it has by the
+/// manifest's scale. A table of one place has not, nor one that is mirrored or stretched: then the
+/// search for the ground at a place grows with what the table says, not with the package.
+fn is_as_large(manifest: &Manifest, id: TileId, places: &[[f64; 2]]) -> bool {
+    /// The scale is that of some places, and parts count as flat.
+    const AREA_TOLERANCE: f64 = 4.0;
+    let (part, cell) = (read::data_part(manifest, id), manifest.frame.cell());
+    if part.width() < cell.east_m || part.height() < cell.north_m {
+        return true;
+    }
+    let side = places.len().isqrt();
+    let parts = ((side - 1) * (side - 1)) as f64;
+    let area_m2 = part.width() * part.height() / parts;
     let [least, largest] = [manifest.scale.least, manifest.scale.largest].map(|[x, y]| x * y);
-    let area_m2 = part.width() * part.height();
-    let by_table_m2 = manifest.coordinates.ring_area_m2(&ring);
-    (area_m2 / largest / ROOM..=area_m2 / least * ROOM).contains(&by_table_m2)
+    let allowed_m2 = area_m2 / largest / AREA_TOLERANCE..=area_m2 / least * AREA_TOLERANCE;
+    let corners = (0..side - 1).flat_map(|row| (0..side - 1).map(move |at| row * side + at));
+    corners.map(|at| [at, at + 1, at + side + 1, at + side].map(|corner| places[corner])).all(
+        |[from, east, across, north]| {
+            let [parallel_m, meridian_m] = radii_m(f64::midpoint(from[1], across[1]));
+            let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+                (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+            };
+            let square_deg = f64::midpoint(turn(from, east, across), turn(from, across, north));
+            let scale = parallel_m.to_radians() * meridian_m.to_radians();
+            allowed_m2.contains(&(square_deg * scale))
+        },
+    )
 }
 
 /// The first and the last column and row of a level over a rectangle of degrees.

@@ -30,6 +30,7 @@ pub(crate) fn open(
         |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
     let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
     let other = || VerifyError::OtherDem {
+        given: settings.dem.clone(),
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
     let mut terrain = settings_record::terrain(&manifest.settings);

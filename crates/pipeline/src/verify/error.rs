@@ -24,11 +24,10 @@ pub enum VerifyError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(
-        "these are not the elevation files that the package was made from; give {}, the same files in the \
-         same order",
-        listed_files(.expected)
+        "the package was not made from {}; give {}, the same files in the same order",
+        listed_files(.given), listed_files(.expected)
     )]
-    OtherDem { expected: Vec<String> },
+    OtherDem { given: Vec<PathBuf>, expected: Vec<String> },
     #[error(
         "the elevation files do not give the package's grid or heights; corniche verify PACKAGE --dem FILE... says what differs"
     )]

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{LatticePoint, Work};
+use corniche_geom::{LatticePoint, TileId, TooMuchWork, Work};
 use corniche_tileset::TilePayload;
 
 use super::{
@@ -25,7 +25,7 @@ const PAD_ROUNDING: f64 = 1e-3;
 
 /// Steps that comparing a tile's lines with each other may take, and looking for the ground along them: a pair of segments or a triangle is one.
 /// Real tiles take a few million, and those with the finest cells and the most roads a hundred times as many: a margin there holds all triangles.
-const MOST_STEPS: u64 = 1 << 30;
+pub(crate) const MOST_STEPS: u64 = 1 << 30;
 
 /// A segment in local steps.
 pub(crate) type Segment = [[f64; 2]; 2];
@@ -60,29 +60,21 @@ pub(crate) fn verify_lines(
 ) {
     let id = view.payload.id;
     let work = Work::new(MOST_STEPS);
+    let is_within = || work.check().is_ok();
     for ((class, way_id), way) in ways(view, positions) {
-        if let Err(error) = work.check() {
-            findings.look(CheckId::Methods, false, || {
-                format!("tile {id}: so many segments of its ways lie on each other that no writer has made them: {error}")
-            });
-            return;
-        }
         let [near_sv, near_geo] =
-            [&way.sv, &way.geo].map(|segments| NearIndex::new(segments.iter().copied()));
+            [&way.sv, &way.geo].map(|segments| NearSegments::new(segments.clone()));
         let name = || format!("way {way_id} of class {class} in tile {id}");
-        for &point in &way.points {
+        for &point in way.points.iter().take_while(|_| is_within()) {
             let at = view.place.local(point);
-            let holds = way.sv_points.contains(&point)
-                || near_sv
-                    .near([at; 2], SAME_LINE_STEPS, &work)
-                    .any(|number| distance(at, way.sv[number]) <= SAME_LINE_STEPS);
+            let holds = way.sv_points.contains(&point) || near_sv.is_on(at, SAME_LINE_STEPS, &work);
             findings.look(CheckId::Methods, holds, || {
                 format!("{}: the GEO line is at {point:?}, no SV line is", name())
             });
         }
-        for &segment in &way.sv {
-            let lines = near_geo.near(segment, SAME_LINE_STEPS, &work);
-            let bare = bare_pieces(view.place, segment, lines.map(|number| way.geo[number]));
+        for &segment in way.sv.iter().take_while(|_| is_within()) {
+            let lines = near_geo.near(segment, SAME_LINE_STEPS, &work).take_while(|_| is_within());
+            let bare = bare_pieces(view.place, segment, lines);
             let bare = bare.into_iter().find(|&piece| {
                 view.ground.meets(piece.map(|point| view.place.cells(point)), &work)
             });
@@ -94,7 +86,17 @@ pub(crate) fn verify_lines(
                 )
             });
         }
+        // Lines of which not all were looked at prove nothing, and may have been told to be bare.
+        if let Err(error) = work.check() {
+            findings.look(CheckId::Methods, false, || too_much(id, &error));
+            return;
+        }
     }
+}
+
+/// What is told of a tile whose lines lie on each other without end.
+pub(crate) fn too_much(id: TileId, error: &TooMuchWork) -> String {
+    format!("tile {id}: so many segments lie near each other that no writer has made them: {error}")
 }
 
 fn ways(view: &View<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i64), Way> {
@@ -144,9 +146,27 @@ pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePo
     line.lead_in.into_iter().chain(own).chain(line.lead_out)
 }
 
-/// Whether a point lies within so many steps of one of the segments.
-pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
-    segments.iter().any(|&segment| distance(point, segment) <= steps)
+/// The segments of a way, found by where they are.
+pub(crate) struct NearSegments {
+    segments: Vec<Segment>,
+    index: NearIndex,
+}
+
+impl NearSegments {
+    pub(crate) fn new(segments: Vec<Segment>) -> Self {
+        let index = NearIndex::new(segments.iter().copied());
+        Self { segments, index }
+    }
+
+    /// Those within `reach` of the box around two places, and perhaps others.
+    fn near(&self, corners: Segment, reach: f64, work: &Work) -> impl Iterator<Item = Segment> {
+        self.index.near(corners, reach, work).map(|number| self.segments[number])
+    }
+
+    /// Whether a point lies within so many steps of one of them.
+    pub(crate) fn is_on(&self, point: [f64; 2], steps: f64, work: &Work) -> bool {
+        self.near([point; 2], steps, work).any(|segment| distance(point, segment) <= steps)
+    }
 }
 
 /// The distance of a point from a segment.

@@ -29,6 +29,8 @@ fn along_a_border_nothing_is_asked() {
 #[test]
 fn a_point_is_on_a_segment_and_not_beyond_its_end() {
     let segments = [[[0.0, 0.0], [100.0, 0.0]]];
-    assert!(is_on([50.0, 1.5], &segments, 2.0) && is_on([101.0, 0.0], &segments, 2.0));
-    assert!(!is_on([50.0, 2.5], &segments, 2.0) && !is_on([103.0, 0.0], &segments, 2.0));
+    let segments = NearSegments::new(segments.to_vec());
+    let is_on = |point| segments.is_on(point, 2.0, &Work::unlimited());
+    assert!(is_on([50.0, 1.5]) && is_on([101.0, 0.0]));
+    assert!(!is_on([50.0, 2.5]) && !is_on([103.0, 0.0]));
 }

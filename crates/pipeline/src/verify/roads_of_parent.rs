@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticeBounds, LatticePoint, Work};
 use corniche_tileset::TilePayload;
 
 use super::{
     checks::{CheckId, Findings},
-    geo_against_sv::{SAME_LINE_STEPS, Segment, is_on, segments, source_points},
+    geo_against_sv::{
+        MOST_STEPS, NearSegments, SAME_LINE_STEPS, Segment, segments, source_points, too_much,
+    },
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
@@ -40,6 +42,8 @@ pub(crate) fn verify(
         (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)
     };
 
+    let work = Work::new(MOST_STEPS);
+    let is_within = || work.check().is_ok();
     let tolerance = levels.simplify_tolerance_steps(above.z());
     if tolerance <= levels.margin_steps(above.z()) as f64 {
         let lines = sv_lines(parent.payload, place);
@@ -47,13 +51,16 @@ pub(crate) fn verify(
             if !levels.shows(above.z(), road.class) {
                 continue;
             }
-            let line = lines.get(&road.way_id).map_or(&[][..], Vec::as_slice);
-            for point in source_points(&road.line).filter(|&point| is_inside(point)) {
+            let line = lines.get(&road.way_id);
+            let points = source_points(&road.line).filter(|&point| is_inside(point));
+            for point in points.take_while(|_| is_within()) {
                 let at = place.local(point);
                 if parent.ground.height_m(place.cells(at)).is_none() {
                     continue;
                 }
-                findings.look(CheckId::Shown, is_on(at, line, tolerance + SAME_LINE_STEPS), || {
+                let reach = tolerance + SAME_LINE_STEPS;
+                let is_there = line.is_some_and(|line| line.is_on(at, reach, &work));
+                findings.look(CheckId::Shown, is_there, || {
                     format!("way {} of tile {id} is not in tile {above} at {point:?}", road.way_id)
                 });
             }
@@ -64,24 +71,30 @@ pub(crate) fn verify(
     if tolerance <= levels.margin_steps(id.z()) as f64 {
         let lines = sv_lines(child.payload, own_place);
         for road in &parent.payload.roads_sv {
-            let line = lines.get(&road.way_id).map_or(&[][..], Vec::as_slice);
-            for &point in road.line.points.iter().filter(|&&point| is_inside(point)) {
+            let line = lines.get(&road.way_id);
+            let points = road.line.points.iter().filter(|&&point| is_inside(point));
+            for &point in points.take_while(|_| is_within()) {
                 let at = own_place.local(point);
                 if child.ground.height_m(own_place.cells(at)).is_none() {
                     continue;
                 }
-                findings.look(CheckId::Shown, is_on(at, line, tolerance + SAME_LINE_STEPS), || {
+                let reach = tolerance + SAME_LINE_STEPS;
+                let is_there = line.is_some_and(|line| line.is_on(at, reach, &work));
+                findings.look(CheckId::Shown, is_there, || {
                     format!("way {} of tile {above} is not in tile {id} at {point:?}", road.way_id)
                 });
             }
         }
     }
+    if let Err(error) = work.check() {
+        findings.look(CheckId::Shown, false, || too_much(id, &error));
+    }
 }
 
-fn sv_lines(payload: &TilePayload, place: TilePlace) -> BTreeMap<i64, Vec<Segment>> {
+fn sv_lines(payload: &TilePayload, place: TilePlace) -> BTreeMap<i64, NearSegments> {
     let mut lines: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
     for road in &payload.roads_sv {
         lines.entry(road.way_id).or_default().extend(segments(&road.line.points, place));
     }
-    lines
+    lines.into_iter().map(|(way_id, segments)| (way_id, NearSegments::new(segments))).collect()
 }

@@ -32,8 +32,8 @@ pub(crate) struct RoadLengths {
     pub(crate) by_structure_m: [f64; Structure::ALL.len()],
     /// How many lines that is: each part of a way in a tile is one.
     pub(crate) lines: [u64; Structure::ALL.len()],
-    /// What all together may be longer or shorter because their vertices are put on the lattice, metres.
-    pub(crate) rounding_m: f64,
+    /// What all together may be longer or shorter because vertices are put on the lattice.
+    rounding_m: f64,
 }
 
 impl RoadLengths {
@@ -48,10 +48,17 @@ impl RoadLengths {
         self.rounding_m += other.rounding_m;
     }
 
-    /// Adds an edge. Its ends may each be half a lattice step off along both axes: across the edge, that lengthens it by the square of this over its length.
+    /// Adds an edge. Its ends may each be half a lattice step off along both axes. Across the
+    /// edge that lengthens it by the square of a step over its length.
     fn add_edge(&mut self, structure: usize, length_m: f64, step_m: f64) {
         self.by_structure_m[structure] += length_m;
         self.rounding_m += step_m * (step_m / length_m).min(1.0);
+    }
+
+    /// What lengths may differ by because vertices are put on the lattice, never more than a
+    /// hundredth of them: a package must not allow itself any length.
+    pub(crate) fn rounding_m(&self, length_m: f64) -> f64 {
+        self.rounding_m.min(length_m / 100.0)
     }
 
     /// The length of all.
@@ -103,6 +110,8 @@ pub(crate) fn verify_on_tin(
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
     let place = TilePlace::of(frame, id);
+    let [least_x, least_y] = manifest.scale.least;
+    let step_m = frame.lattice_step_m() / least_x.min(least_y);
     let position_m = |[u, v, _]: [f64; 3]| frame.position_of_fraction_m([u, v]);
     let structures: BTreeMap<i64, Structure> = payload
         .attributes
@@ -130,7 +139,7 @@ pub(crate) fn verify_on_tin(
                 // The same formula as the build's: beside a pole it is off the geodesic by more than the sums may differ.
                 let ends = [pair[0], pair[1]].map(position_m);
                 let length_m = manifest.coordinates.line_length_m(ends);
-                found.lengths.add_edge(structure, length_m, frame.lattice_step_m());
+                found.lengths.add_edge(structure, length_m, step_m);
             }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             found.gaps.edges += 1;

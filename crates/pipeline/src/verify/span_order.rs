@@ -57,8 +57,11 @@ pub(crate) fn crossings(
         if above.is_empty() {
             continue;
         }
+        work.add(above.len());
         let near = NearIndex::new(below.iter().map(|piece| piece.line()));
         for upper in above {
+            work.add(1);
+            work.check()?;
             for number in near.near(upper.line(), 0.0, work) {
                 work.check()?;
                 if let Some(crossing) = upper.crossing(below[number]) {

@@ -7,7 +7,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Distribution, FilePackage, GrowthRow, PayloadSizes, TilePayload};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{CheckId, Findings, as_json},
     geo_against_sv::source_points,
     seams::Borders,
 };
@@ -34,7 +34,7 @@ pub(crate) struct TileSums {
 }
 
 /// What of a growth row follows from the tiles.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 pub(crate) struct Row {
     geo_vertices: u64,
     sv_vertices: u64,
@@ -154,8 +154,11 @@ pub(crate) fn check_growth(
         };
         findings.look(CheckId::Growth, found == said && last < Some(key), || {
             format!(
-                "level {} class {}: {found:?} in the tiles, {row:?} recorded",
-                row.level, row.class
+                "level {} class {}: {} in the tiles, {} recorded",
+                row.level,
+                row.class,
+                as_json(&found),
+                as_json(row)
             )
         });
         last = Some(key);
@@ -170,7 +173,7 @@ pub(crate) fn check_growth(
     // A class of which no point lies in a tile with ground has no row.
     for ((level, class), row) in left {
         findings.look(CheckId::Growth, row.inner_points == 0, || {
-            format!("level {level} class {class} has no row, but {row:?} in the tiles")
+            format!("level {level} class {class} has no row, but {} in the tiles", as_json(&row))
         });
     }
 }

@@ -109,7 +109,7 @@ pub(crate) fn verify(
 /// Compares the length of all GEO roads of the finest level with the recorded length.
 fn check_length(found: &RoadLengths, recorded_um: u64, findings: &mut Findings) {
     let (found_m, expected_m) = (found.length_m(), recorded_um as f64 / 1e6);
-    let allowed_m = LENGTH_SHARE * expected_m.max(1.0) + found.rounding_m;
+    let allowed_m = LENGTH_SHARE * expected_m.max(1.0) + found.rounding_m(expected_m);
     let holds = (found_m - expected_m).abs() <= allowed_m;
     findings.look(CheckId::Length, holds, || {
         format!("{found_m} m lie in the tiles, {expected_m} m are recorded")
@@ -131,8 +131,9 @@ fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Fin
             Structure::Tunnel => ("tunnels", i128::from(tunnels_um)),
         };
         let (found_m, recorded_m) = (found.by_structure_m[number], recorded_um as f64 / 1e6);
-        let allowed_m =
-            LENGTH_SHARE * recorded_m + CUT_M * found.lines[number] as f64 + found.rounding_m;
+        let allowed_m = LENGTH_SHARE * recorded_m
+            + CUT_M * found.lines[number] as f64
+            + found.rounding_m(recorded_m);
         let holds = (found_m - recorded_m).abs() <= allowed_m;
         findings.look(CheckId::Structures, holds, || {
             format!("{found_m} m of {name} lie in the tiles, {recorded_m} m are recorded")

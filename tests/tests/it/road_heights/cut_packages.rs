@@ -96,7 +96,7 @@ fn cut_packages_export_the_whole(name: &str, region: &Region) {
     built(&whole, &[]);
     let roads_of_whole = exported(&whole, "roads", &inputs, WAY);
     let edges_of_whole = exported(&whole, "edges", &inputs, EDGE);
-    let count = cases(1, 1, 10);
+    let count = cases(1, 2, 10);
     let (mut vertices, mut most_m) = (0, 0.0_f64);
     for number in 0..count {
         // Strips across the region, by turns along both axes.
