@@ -25,10 +25,10 @@ const other = await startServer({ site, packages });
 
 /** What tests share. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
-const usual = ["units", "opening", "pixels", "sizes", "served", "failures", "access", "pictures"];
-// What people do with a page takes longest; in CI days take turns.
-const uses = ["drags", "keys", "streaming", "embedding", "own_styles", "links", "gestures"];
-const names = [...usual, ...someOf(uses, 2)];
+const usual = ["units", "opening", "pixels", "sizes", "served", "failures"];
+// What people do with a page, and pictures of it, take longest; in CI days take turns.
+const uses = ["drags", "access", "keys", "streaming", "embedding", "pictures", "own_styles", "links", "gestures"];
+const names = [...usual, ...someOf(uses, 3)];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
 describe("the page of the browser viewer", () => {
   for (const { tests } of parts) tests(world);
