@@ -1,6 +1,6 @@
 //! Names of files that commands write.
 
-use std::{ffi::OsStr, path::Path};
+use std::path::Path;
 
 use crate::failure::Failure;
 
@@ -28,9 +28,8 @@ pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
     if is_package_name(target) {
         return Ok(());
     }
-    // Another format's ending is replaced; what follows a dot in a name may also be a part of it.
-    let is_ending = |ending: &OsStr| ending.as_encoded_bytes().iter().all(u8::is_ascii_alphabetic);
-    let whole = if target.extension().is_some_and(is_ending) {
+    // The other format for tiles in one file.
+    let whole = if target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mbtiles")) {
         target.with_extension("pmtiles")
     } else {
         target.with_added_extension("pmtiles")

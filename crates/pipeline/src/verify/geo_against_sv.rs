@@ -158,7 +158,7 @@ impl NearSegments {
         Self { segments, index }
     }
 
-    /// Those within `reach` of the box around two places, and perhaps others.
+    /// All segments within `reach` of the box around two places, and perhaps others.
     fn near(&self, corners: Segment, reach: f64, work: &Work) -> impl Iterator<Item = Segment> {
         self.index.near(corners, reach, work).map(|number| self.segments[number])
     }
