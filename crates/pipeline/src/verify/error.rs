@@ -24,7 +24,7 @@ pub enum VerifyError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(
-        "the package was not made from {}; give {}, the same files in the same order",
+        "{}: not the elevation files that the package was made from; give {}, the same files in the same order",
         listed_files(.given), listed_files(.expected)
     )]
     OtherDem { given: Vec<PathBuf>, expected: Vec<String> },
