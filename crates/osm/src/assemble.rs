@@ -205,8 +205,8 @@ fn assemble_way(
         strays += if own.is_empty() { count } else { 0 };
         roads += u32::from(!own.is_empty());
     }
-    let lines = assembled.roads.iter().map(|road| &road.line);
-    let is_to_and_fro = go_to_and_fro(lines, placing.square_steps);
+    let lines: Vec<_> = assembled.roads.iter().map(|road| &road.line).collect();
+    let is_to_and_fro = go_to_and_fro(&lines, placing.square_steps);
     if is_to_and_fro {
         assembled.roads.clear();
     }

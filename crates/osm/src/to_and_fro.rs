@@ -20,13 +20,10 @@ const MOST_SQUARES: f64 = 1_048_576.0;
 /// Whether the lines of a way together go to and fro over a square, of `side` lattice steps, more
 /// often than a road can. Squares cover all the lattice, so that it does not depend on the extent
 /// of a package.
-pub(crate) fn go_to_and_fro<'a>(
-    lines: impl Iterator<Item = &'a Polyline> + Clone,
-    side: i64,
-) -> bool {
+pub(crate) fn go_to_and_fro(lines: &[&Polyline], side: i64) -> bool {
     let side = side.max(1) as f64;
     let segments = || {
-        let pairs = lines.clone().flat_map(|line| line.points().array_windows());
+        let pairs = lines.iter().flat_map(|line| line.points().array_windows());
         pairs.map(|ends| ends.map(LatticePoint::in_steps))
     };
     let length: f64 = segments().map(length_of).sum();

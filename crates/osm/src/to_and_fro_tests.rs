@@ -18,7 +18,7 @@ fn line(points: impl Iterator<Item = [i64; 2]>) -> Polyline {
 }
 
 fn goes_to_and_fro(line: &Polyline, side: i64) -> bool {
-    go_to_and_fro(std::iter::once(line), side)
+    go_to_and_fro(&[line], side)
 }
 
 /// A way that goes `legs` times from one end of a square to the other, each time a step beside the last.
@@ -58,7 +58,8 @@ fn long_roads_do_not() {
 #[test]
 fn parts_of_a_way_count_together() {
     let parts: Vec<Polyline> = (0..30).map(|_| zigzag(100, [0, 0])).collect();
-    assert!(!go_to_and_fro(parts[..2].iter(), SIDE) && go_to_and_fro(parts.iter(), SIDE));
+    let parts: Vec<&Polyline> = parts.iter().collect();
+    assert!(!go_to_and_fro(&parts[..2], SIDE) && go_to_and_fro(&parts, SIDE));
 }
 
 /// The parts of a segment lie in their strips, meet, and are as long as it together.

@@ -88,14 +88,14 @@ pub(crate) fn verify_lines(
         }
         // Lines of which not all were looked at prove nothing, and may have been told to be bare.
         if let Err(error) = work.check() {
-            findings.look(CheckId::Methods, false, || too_much(id, &error));
+            findings.look(CheckId::Methods, false, || too_much(id, error));
             return;
         }
     }
 }
 
 /// What is told of a tile whose lines lie on each other without end.
-pub(crate) fn too_much(id: TileId, error: &TooMuchWork) -> String {
+pub(crate) fn too_much(id: TileId, error: TooMuchWork) -> String {
     format!("tile {id}: so many segments lie near each other that no writer has made them: {error}")
 }
 

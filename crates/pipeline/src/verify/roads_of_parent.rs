@@ -87,7 +87,7 @@ pub(crate) fn verify(
         }
     }
     if let Err(error) = work.check() {
-        findings.look(CheckId::Shown, false, || too_much(id, &error));
+        findings.look(CheckId::Shown, false, || too_much(id, error));
     }
 }
 
