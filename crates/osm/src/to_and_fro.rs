@@ -26,8 +26,12 @@ pub(crate) fn go_to_and_fro(lines: &[&Polyline], side: i64) -> bool {
         let pairs = lines.iter().flat_map(|line| line.points().array_windows());
         pairs.map(|ends| ends.map(LatticePoint::in_steps))
     };
+    // Nearly every road ends here.
+    if segments().nth(FEW_SEGMENTS).is_none() {
+        return false;
+    }
     let length: f64 = segments().map(length_of).sum();
-    if length <= MOST_SIDES * side || segments().nth(FEW_SEGMENTS).is_none() {
+    if length <= MOST_SIDES * side {
         return false;
     }
     if length > MOST_SQUARES * side {

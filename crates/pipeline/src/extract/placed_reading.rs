@@ -5,7 +5,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{GridFrame, LatticePoint, NodeIndex, ProjectError, Projection, TILE_CELLS};
+use corniche_geom::{GridFrame, LatticePoint, ProjectError, Projection, TILE_CELLS};
 use corniche_osm::{OnProgress, ReadOsmError, ReadRequest};
 use corniche_roads::FrcTable;
 use corniche_store::Scratch;
@@ -44,6 +44,7 @@ impl PlacedReading<'_> {
             })
         };
         let Some((path, others)) = self.osm.split_first() else { return Ok(()) };
+        let cell_steps = self.frame.node_steps(self.frame.max_level());
         let done = read(&ReadRequest {
             path,
             others,
@@ -51,7 +52,7 @@ impl PlacedReading<'_> {
             place: &place,
             ring_area_m2: &|ring_deg| degrees_ring_m2(ring_deg, self.projection),
             seam: self.projection.seam().map(|seam| seam.on_lattice(self.frame)),
-            square_steps: side_of_finest_tile(self.frame),
+            square_steps: TILE_CELLS * cell_steps[0].min(cell_steps[1]),
             node_ids: self.node_ids,
             pool: self.pool,
             memory_bytes: self.memory_bytes,
@@ -67,13 +68,6 @@ impl PlacedReading<'_> {
             None => Ok(()),
         }
     }
-}
-
-/// The shorter side, in lattice steps.
-fn side_of_finest_tile(frame: &GridFrame) -> i64 {
-    let [from, to] =
-        [0, TILE_CELLS].map(|node| frame.lattice_of_node(NodeIndex { i: node, j: node }));
-    (to.u - from.u).min(to.v - from.v)
 }
 
 fn place(

@@ -62,18 +62,18 @@ pub(crate) fn verify_lines(
     let work = Work::new(MOST_STEPS);
     let is_within = || work.check().is_ok();
     for ((class, way_id), way) in ways(view, positions) {
-        let [near_sv, near_geo] =
-            [&way.sv, &way.geo].map(|segments| NearSegments::new(segments.clone()));
+        let Way { points, geo, sv_points, sv } = way;
+        let [sv, geo] = [sv, geo].map(NearSegments::new);
         let name = || format!("way {way_id} of class {class} in tile {id}");
-        for &point in way.points.iter().take_while(|_| is_within()) {
+        for &point in points.iter().take_while(|_| is_within()) {
             let at = view.place.local(point);
-            let holds = way.sv_points.contains(&point) || near_sv.is_on(at, SAME_LINE_STEPS, &work);
+            let holds = sv_points.contains(&point) || sv.is_on(at, SAME_LINE_STEPS, &work);
             findings.look(CheckId::Methods, holds, || {
                 format!("{}: the GEO line is at {point:?}, no SV line is", name())
             });
         }
-        for &segment in way.sv.iter().take_while(|_| is_within()) {
-            let lines = near_geo.near(segment, SAME_LINE_STEPS, &work).take_while(|_| is_within());
+        for &segment in sv.segments.iter().take_while(|_| is_within()) {
+            let lines = geo.near(segment, SAME_LINE_STEPS, &work).take_while(|_| is_within());
             let bare = bare_pieces(view.place, segment, lines);
             let bare = bare.into_iter().find(|&piece| {
                 view.ground.meets(piece.map(|point| view.place.cells(point)), &work)
