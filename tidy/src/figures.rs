@@ -10,7 +10,7 @@ use syn::{ImplItem, Item, TraitItem, Visibility, spanned::Spanned, visit::Visit}
 
 use crate::{
     files::files_below,
-    source::{attributes_of, is_test},
+    source::{attributes_of, is_test, is_test_file},
 };
 
 /// What a crate amounts to. A line is counted once: as comment, as test or as product; empty lines are not counted.
@@ -69,14 +69,12 @@ pub fn figures(folder: &Path) -> Result<CrateFigures> {
     Ok(figures)
 }
 
-/// Whether a file in `src` holds nothing but tests: `NAME_tests.rs`, or what lies in the folder of one.
-fn is_test_file(file: &Path) -> bool {
-    let is_tests = |name: &std::ffi::OsStr| {
-        let name = name.to_string_lossy();
-        let stem = name.strip_suffix(".rs").unwrap_or(&name);
-        stem == "tests" || stem.ends_with("_tests")
-    };
-    file.iter().any(is_tests)
+/// First and last lines, from 1, of what a product file has of tests.
+pub(crate) fn test_lines(parsed: &syn::File) -> Vec<[usize; 2]> {
+    let mut figures = CrateFigures::default();
+    let mut product = Product { file: Path::new(""), tests: Vec::new(), figures: &mut figures };
+    product.visit_file(parsed);
+    product.tests
 }
 
 impl CrateFigures {

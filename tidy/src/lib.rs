@@ -4,7 +4,7 @@
 //!  crates/*/src ──► source: modules, what they define and import, every path in them
 //!                      │
 //!                      ├──► uses: which file uses which, through re-exports ──► graph: cycles, ranks
-//!                      └──► figures: lines, functions, public items
+//!                      └──► figures: lines, functions, public items ──► budget: bytes by crate
 //! ```
 //!
 //! `cargo run -p corniche-tidy` prints the picture of every crate; `tests/` holds the rules.
@@ -14,12 +14,14 @@
 //!
 //! This package never changes a file and no product crate depends on it.
 
+mod budget;
 mod figures;
 mod files;
 mod graph;
 mod source;
 mod uses;
 
+pub use budget::{BUDGET, Bytes, over_budget, product_bytes, read_budget, sunk};
 pub use figures::{CrateFigures, Function, figures};
 pub use files::{files_below, root};
 pub use graph::{Cycle, Graph};

@@ -1,23 +1,36 @@
 //! Prints for every crate its files by rank (users above what they use), its cycles, and how large it is.
 //!
 //! `cargo run -p corniche-tidy [FOLDER OF A WORKSPACE]`
+//! `cargo run -p corniche-tidy budget [--sink]`: bytes of product code by crate beside their budget; lowers the budget to them.
 
 use std::{
+    collections::BTreeSet,
     env,
     fmt::Write as _,
+    fs,
     io::{self, Write as _},
     path::{Path, PathBuf},
 };
 
-use anyhow::Result;
-use corniche_tidy::{CrateFigures, Graph, crates_of, figures, read_crate, uses};
+use anyhow::{Context as _, Result};
+use corniche_tidy::{
+    BUDGET, Bytes, CrateFigures, Graph, crates_of, figures, over_budget, product_bytes,
+    read_budget, read_crate, root, sunk, uses,
+};
 
 /// How many of the longest functions and files are listed.
 const LONGEST: usize = 12;
 
 fn main() -> Result<()> {
-    let root = env::args_os().nth(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
+    let mut arguments = env::args().skip(1);
     let mut text = String::new();
+    let first = arguments.next();
+    if first.as_deref() == Some("budget") {
+        show_budget(arguments.next().as_deref() == Some("--sink"), &mut text)?;
+        io::stdout().write_all(text.as_bytes())?;
+        return Ok(());
+    }
+    let root = first.map_or_else(|| PathBuf::from("."), PathBuf::from);
     let mut all = Vec::new();
     for folder in crates_of(&root)? {
         let name = show_graph(&folder, &mut text)?;
@@ -30,6 +43,30 @@ fn main() -> Result<()> {
     }
     show_figures(&all, &mut text)?;
     io::stdout().write_all(text.as_bytes())?;
+    Ok(())
+}
+
+fn show_budget(is_to_sink: bool, text: &mut String) -> Result<()> {
+    let path = root().join(BUDGET);
+    let read = || -> Result<Bytes> {
+        read_budget(&fs::read_to_string(&path).with_context(|| format!("cannot read {BUDGET}"))?)
+    };
+    let found = product_bytes(&root())?;
+    if is_to_sink {
+        fs::write(&path, sunk(&read()?, &found)?)
+            .with_context(|| format!("cannot write {BUDGET}"))?;
+    }
+    let budget = read()?;
+    let names: BTreeSet<_> = found.keys().chain(budget.keys()).collect();
+    for name in names {
+        let [bytes, row] = [&found, &budget].map(|of| of.get(name).copied().unwrap_or_default());
+        writeln!(text, "{name:12} {bytes:9} of {row:9}")?;
+    }
+    let [bytes, row] = [&found, &budget].map(|of| of.values().sum::<u64>());
+    writeln!(text, "{:12} {bytes:9} of {row:9}", "all")?;
+    for wrong in over_budget(&budget, &found) {
+        writeln!(text, "{wrong}")?;
+    }
     Ok(())
 }
 

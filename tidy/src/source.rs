@@ -316,3 +316,13 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         self.found.extend(imports.into_iter().map(|import| import.path));
     }
 }
+
+/// Whether a file in `src` holds nothing but tests: `NAME_tests.rs`, or what lies in the folder of one.
+pub(crate) fn is_test_file(file: &Path) -> bool {
+    let is_tests = |name: &std::ffi::OsStr| {
+        let name = name.to_string_lossy();
+        let stem = name.strip_suffix(".rs").unwrap_or(&name);
+        stem == "tests" || stem.ends_with("_tests")
+    };
+    file.iter().any(is_tests)
+}

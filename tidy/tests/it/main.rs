@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+mod budget;
 mod comments;
 mod files;
 mod finds_cycles;

@@ -1,0 +1,205 @@
+//! How many bytes of product code there are, by crate, and the budget that they keep to.
+//!
+//! A row of `tidy/budget.toml` sinks with its crate. It rises only in a commit that names the feature and the bytes
+//! (`CONTRIBUTING.md`); one that only renames or rewords may raise it, too.
+
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
+
+use crate::{
+    figures::test_lines,
+    files::files_below,
+    source::{crates_of, is_test_file},
+};
+
+/// Where the budget is kept, from the root.
+pub const BUDGET: &str = "tidy/budget.toml";
+
+/// The languages that are written by hand, by the ending of a file's name, and how a comment on a line of its own begins.
+const LANGUAGES: [(&str, &str); 6] =
+    [("rs", "//"), ("wgsl", "//"), ("js", "//"), ("mjs", "//"), ("py", "#"), ("sh", "#")];
+/// Folders of product code beside the crates.
+const FOLDERS: [&str; 3] = ["config", "python", "scripts"];
+/// Folders whose files are tests, measurements or examples.
+const NOT_PRODUCT: [&str; 4] = ["tests", "benches", "examples", "fuzz_targets"];
+/// A crate of tests alone.
+const FOR_TESTS: &str = "testing";
+
+/// Bytes of product code by crate or folder.
+pub type Bytes = BTreeMap<String, u64>;
+
+/// Counts the product code below `root`: lines that are neither empty, comments nor tests, without their indentation.
+///
+/// # Errors
+/// When a file cannot be read or is no Rust.
+pub fn product_bytes(root: &Path) -> Result<Bytes> {
+    let mut rows = Bytes::new();
+    let crates = crates_of(root)?;
+    for folder in crates.into_iter().chain(FOLDERS.map(|name| root.join(name))) {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if name == FOR_TESTS {
+            continue;
+        }
+        let mut bytes = 0;
+        for (language, comment) in LANGUAGES {
+            for file in files_below(&folder, language)? {
+                bytes += bytes_of(&folder, &file, comment)?;
+            }
+        }
+        if name == "scripts" {
+            for file in scripts_without_ending(&folder)? {
+                bytes += bytes_of(&folder, &file, "#")?;
+            }
+        }
+        rows.insert(name, bytes);
+    }
+    Ok(rows)
+}
+
+/// Scripts have no ending. Those that only run tests are no product.
+fn scripts_without_ending(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in
+        fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?
+    {
+        let path = entry?.path();
+        let is_test =
+            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("test"));
+        if path.is_file() && path.extension().is_none() && !is_test {
+            found.push(path);
+        }
+    }
+    Ok(found)
+}
+
+fn bytes_of(folder: &Path, file: &Path, comment: &str) -> Result<u64> {
+    let inside = file.strip_prefix(folder).unwrap_or(file);
+    let is_left_out = |part: &std::ffi::OsStr| NOT_PRODUCT.iter().any(|name| part == *name);
+    if inside.iter().any(is_left_out) || is_test_file(inside) {
+        return Ok(0);
+    }
+    let text =
+        fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let tests = if file.extension().is_some_and(|ending| ending == "rs") {
+        let parsed = syn::parse_file(&text)
+            .with_context(|| format!("{} is no Rust that can be read", file.display()))?;
+        test_lines(&parsed)
+    } else {
+        Vec::new()
+    };
+    Ok(code_bytes(&text, comment, &tests))
+}
+
+/// The bytes of a text's lines, each with the end of the line, that are neither empty nor comments nor in `tests`
+/// (first and last line, from 1).
+fn code_bytes(text: &str, comment: &str, tests: &[[usize; 2]]) -> u64 {
+    let mut bytes = 0;
+    // The end of the block comment or of the docstring that a line is in.
+    let mut block: Option<&str> = None;
+    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+        if let Some(end) = block {
+            block = (!line.contains(end)).then_some(end);
+            continue;
+        }
+        let opens = [("/*", "*/"), ("\"\"\"", "\"\"\"")];
+        let of_language = &opens[usize::from(comment == "#")];
+        if let Some(rest) = line.strip_prefix(of_language.0) {
+            block = (!rest.contains(of_language.1)).then_some(of_language.1);
+            continue;
+        }
+        let is_test = tests.iter().any(|&[first, last]| (first..=last).contains(&number));
+        if !line.is_empty() && !line.starts_with(comment) && !is_test {
+            bytes += line.len() as u64 + 1;
+        }
+    }
+    bytes
+}
+
+/// Reads a budget: a name and a number on each line.
+///
+/// # Errors
+/// When a line is something else.
+pub fn read_budget(text: &str) -> Result<Bytes> {
+    let rows =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    rows.map(|line| {
+        let (name, bytes) = line.split_once('=').context("no `name = bytes`")?;
+        Ok((name.trim().trim_matches('"').to_owned(), bytes.trim().replace('_', "").parse()?))
+    })
+    .collect::<Result<_>>()
+    .with_context(|| format!("{BUDGET} cannot be read"))
+}
+
+/// The budget that fits what is there: rows sink, and none rises. A new crate has no row until someone gives it one.
+///
+/// # Errors
+/// Never: writing into memory cannot fail.
+pub fn sunk(budget: &Bytes, found: &Bytes) -> Result<String> {
+    let mut text = String::from(
+        "# Bytes of product code that each crate may have: `cargo run -p corniche-tidy -- budget` counts, `budget --sink` lowers.\n\
+         # A row rises only in a commit that names the feature and the bytes.\n",
+    );
+    for (name, row) in budget {
+        if let Some(bytes) = found.get(name) {
+            writeln!(text, "{name} = {}", row.min(bytes))?;
+        }
+    }
+    Ok(text)
+}
+
+/// What the budget does not allow: a crate beyond its row, without one, or so far below that the row must sink.
+#[must_use]
+pub fn over_budget(budget: &Bytes, found: &Bytes) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (name, &bytes) in found {
+        match budget.get(name) {
+            None => wrong.push(format!("{name} has {bytes} bytes and no row in {BUDGET}")),
+            Some(&row) if bytes > row => {
+                wrong.push(format!("{name} has {bytes} bytes, {} more than its row", bytes - row));
+            }
+            // A hundredth, so that not each small change must touch the table.
+            Some(&row) if row - bytes > row / 100 => {
+                wrong.push(format!("{name} has {bytes} bytes, and its row is {row}: lower it"));
+            }
+            Some(_) => {}
+        }
+    }
+    let gone = budget.keys().filter(|name| !found.contains_key(*name));
+    wrong.extend(gone.map(|name| format!("{name} has a row in {BUDGET} and does not exist")));
+    wrong
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_tests_and_indentation_do_not_count() {
+        let rust =
+            "//! Docs.\n\n/* a\n b */\nfn a() {\n    b(); // why\n}\n#[cfg(test)]\nmod t {}\n";
+        let parsed = syn::parse_file(rust).unwrap();
+        assert_eq!(test_lines(&parsed), [[8, 9]]);
+        assert_eq!(code_bytes(rust, "//", &test_lines(&parsed)), 9 + 12 + 2);
+        let python = "\"\"\"One line.\"\"\"\n\"\"\"Two\nlines.\"\"\"\n# why\n    x = 1\n";
+        assert_eq!(code_bytes(python, "#", &[]), 6);
+    }
+
+    #[test]
+    fn a_budget_only_sinks() {
+        let budget = read_budget("# about\na = 1_000\n\"b\" = 500\ngone = 1\n").unwrap();
+        let found = Bytes::from([("a".into(), 900), ("b".into(), 501), ("new".into(), 3)]);
+        let wrong = over_budget(&budget, &found);
+        assert_eq!(wrong.len(), 4, "{wrong:?}");
+        let text = sunk(&budget, &found).unwrap();
+        assert_eq!(
+            read_budget(&text).unwrap(),
+            Bytes::from([("a".into(), 900), ("b".into(), 500)])
+        );
+    }
+}
