@@ -146,7 +146,7 @@ fn costs(
                 + piece_bytes as f64 * rates::MERGE_SECONDS_PER_PIECE_BYTE,
         ),
         start_us: micros(
-            rates::PART_START_SECONDS + inputs.count() as f64 * rates::START_SECONDS_PER_INPUT,
+            rates::PART_START_SECONDS + inputs.len() as f64 * rates::START_SECONDS_PER_INPUT,
         ),
     })
 }
