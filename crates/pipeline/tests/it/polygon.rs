@@ -14,12 +14,14 @@ use crate::support::{
     settings, table,
     terrain::rough_with_voids,
 };
+use corniche_dem::Polygon;
 use corniche_drape::DrapedVertex;
-use corniche_pipeline::{
-    BuildPlan, BuildSettings, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport,
-    VerifySettings, build, plan, verify,
-};
+use corniche_pipeline::build;
+use corniche_plan::{BuildPlan, plan};
+use corniche_spec::BuildSettings;
 use corniche_tileset::{FilePackage, GeoRoad, Sections};
+use corniche_verify::{VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 
 /// A raster of four by three tiles with voids, and roads all over it and beyond.
 struct Files {
