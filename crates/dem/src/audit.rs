@@ -13,16 +13,16 @@
 
 mod spikes;
 
+use corniche_gis::{CrsError, RasterError, first_names};
 use gdal::Dataset;
 use serde::{Deserialize, Serialize};
 
 use crate::audit::spikes::{Spike, Spikes};
-use crate::file_names::first_names;
 use crate::files::source::Source;
+use crate::mosaics::mosaic::SampleRect;
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::clip::{needed_samples, parts_of_file};
-use crate::{Dem, DemError, GridPlan};
+use crate::{AuditError, Dem, GridPlan};
 
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
@@ -125,7 +125,7 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, DemError> {
+    pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, CrsError> {
         let mut needed: Vec<Vec<SampleRect>> = vec![Vec::new(); self.sources.len()];
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
             let rect = needed_samples(plan, mosaic, role)?;
@@ -173,7 +173,7 @@ impl Dem {
         &self,
         block: &AuditBlock,
         plan: &GridPlan,
-    ) -> Result<[f64; 2], DemError> {
+    ) -> Result<[f64; 2], CrsError> {
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
             let Some(file) = mosaic.files.iter().find(|file| file.index == block.file) else {
                 continue;
@@ -195,7 +195,7 @@ impl Dem {
         Auditor {
             dem: self,
             range_m,
-            files: OpenFiles::new(),
+            files: OpenFiles::default(),
             stored: Vec::new(),
             heights_m: Vec::new(),
         }
@@ -208,7 +208,7 @@ impl Auditor<'_> {
     ///
     /// # Errors
     /// When the file cannot be read.
-    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, DemError> {
+    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, RasterError> {
         let source = &self.dem.sources[block.file];
         let dataset: &Dataset = self.files.dataset(block.file, source)?;
         source.read_stored(dataset, block.start, block.size, &mut self.stored)?;
@@ -234,7 +234,7 @@ impl Auditor<'_> {
     }
 
     /// Whether a sample is a spike among its neighbours in the file, also those of other blocks.
-    fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, DemError> {
+    fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, RasterError> {
         let source = &self.dem.sources[file];
         let start = [column.saturating_sub(1), row.saturating_sub(1)];
         let end = [(column + 2).min(source.columns as usize), (row + 2).min(source.rows as usize)];
@@ -382,8 +382,8 @@ impl Audit {
     /// - None may lie outside the range.
     ///
     /// # Errors
-    /// [`DemError::Sentinel`] or [`DemError::OutOfRange`].
-    pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), DemError> {
+    /// [`AuditError::Sentinel`] or [`AuditError::OutOfRange`].
+    pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), AuditError> {
         if !is_range_given && let Some(error) = self.sentinel_error(dem) {
             return Err(error);
         }
@@ -399,7 +399,7 @@ impl Audit {
             [_, Some(high)] => high,
             _ => return Ok(()),
         };
-        Err(DemError::OutOfRange {
+        Err(AuditError::OutOfRange {
             path: source.path.clone(),
             count: file.outside,
             samples: file.samples,
@@ -458,12 +458,12 @@ impl Audit {
     }
 
     /// The error when all samples of all files have the same value, and it is lower than any dry land.
-    fn nothing_error(&self, dem: &Dem) -> Option<DemError> {
+    fn nothing_error(&self, dem: &Dem) -> Option<AuditError> {
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
         let [only] = all.lowest.entries.as_slice() else { return None };
         let source = dem.sources.first()?;
-        (only.height_m < LOWEST_LAND_M).then(|| DemError::OutOfRange {
+        (only.height_m < LOWEST_LAND_M).then(|| AuditError::OutOfRange {
             path: source.path.clone(),
             count: only.count,
             samples: all.samples,
@@ -474,7 +474,7 @@ impl Audit {
         })
     }
 
-    fn sentinel_error(&self, dem: &Dem) -> Option<DemError> {
+    fn sentinel_error(&self, dem: &Dem) -> Option<AuditError> {
         let files = || dem.sources.iter().zip(&self.files);
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
@@ -497,7 +497,7 @@ impl Audit {
         };
         let [low_m, high_m] = all.range_m()?;
         let names = holders.iter().map(|(source, _)| source.path.display().to_string());
-        Some(DemError::Sentinel {
+        Some(AuditError::Sentinel {
             files: first_names(names),
             stored: first.stored_text(entry.stored),
             count: holders.iter().map(|(_, file)| count_in(file)).sum(),

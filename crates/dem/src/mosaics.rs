@@ -2,8 +2,6 @@
 
 pub(crate) mod mosaic;
 pub(crate) mod open_files;
-pub(crate) mod sample_rect;
 
 pub(crate) mod data_extent;
-pub(crate) mod spacing;
 pub(crate) mod vertical_target;

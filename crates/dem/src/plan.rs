@@ -9,13 +9,9 @@ pub(crate) mod layout;
 pub(crate) mod sample_steps;
 pub(crate) mod working_crs;
 
-pub(crate) mod alignment;
 pub(crate) mod kernel;
 pub(crate) mod node_positions;
 
-pub(crate) mod file_nodes;
-pub(crate) mod footprint;
-
 pub(crate) mod datum_operations;
 pub(crate) mod description;
-pub(crate) mod oversampling;
+pub(crate) mod footprint;

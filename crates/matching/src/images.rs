@@ -5,7 +5,10 @@ use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, TexelWindow};
 use corniche_tileset::{FilePackage, Manifest, Relief, Sections};
 
-use crate::{error::MatchError, grey::Grey, response::TexelScale};
+use crate::{
+    error::MatchError,
+    response::{Grey, TexelScale},
+};
 
 /// What roads are compared with.
 #[derive(Debug)]

@@ -17,7 +17,6 @@ mod error;
 mod images;
 mod report;
 
-mod grey;
 mod response;
 mod samples;
 mod votes;

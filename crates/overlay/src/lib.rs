@@ -8,13 +8,11 @@
 //! draws: what was not changed is saved as it was.
 
 mod error;
-mod heights;
 mod line_file;
 mod place_lines;
 mod read;
 
 pub use error::OverlayError;
-pub use heights::EllipsoidHeights;
 pub use line_file::{LineFile, SavedLine, Shape};
-pub use place_lines::{Placed, place};
+pub use place_lines::{EllipsoidHeights, Placed, place};
 pub use read::{MOST_POINTS, VectorLine, VectorLines, read};

@@ -2,6 +2,7 @@
 
 use std::{fs, io::Read as _, path::Path};
 
+use corniche_gis::{VectorError, VectorKind};
 use geo::{LineString, Winding as _};
 use serde_json::{Map, Value, json};
 
@@ -49,7 +50,8 @@ impl LineFile {
     pub fn read(path: &Path) -> Result<Self, OverlayError> {
         let failed = |source| OverlayError::Read { path: path.to_path_buf(), source };
         if !fs::metadata(path).map_err(failed)?.is_file() {
-            return Err(OverlayError::Stream { path: path.to_path_buf() });
+            let (kind, path) = (VectorKind::Lines, path.to_path_buf());
+            return Err(VectorError::Stream { kind, path }.into());
         }
         let mut text = String::new();
         let file = fs::File::open(path).map_err(failed)?;

@@ -2,8 +2,10 @@
 
 use std::{collections::HashMap, path::Path};
 
-use corniche_dem::{DemError, FileDatums, NotOpened, ToWgs84, failure, forget, open_vectors};
 use corniche_geom::MOST_TILE_STEPS;
+use corniche_gis::{
+    CrsError, FileDatums, ToWgs84, VectorKind, for_each_feature, forget, open_vectors,
+};
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten,
 };
@@ -101,12 +103,7 @@ impl VectorLine {
 /// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system, or one of an unknown datum.
 pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
-    let dataset = open_vectors(path).map_err(|error| match error {
-        NotOpened::Missing(source) => OverlayError::Missing { path: own(), source },
-        NotOpened::Stream => OverlayError::Stream { path: own() },
-        NotOpened::NoDriver(advice) => OverlayError::NoDriver { path: own(), advice },
-        NotOpened::Unreadable(source) => OverlayError::Open { path: own(), source },
-    })?;
+    let dataset = open_vectors(path, VectorKind::Lines)?;
     let is_gpx = dataset.driver().short_name() == "GPX";
     let mut reading = Reading { path, found: VectorLines::default(), points: 0, allow_ballpark };
     let [mut routes, mut tracks] = [0; 2];
@@ -143,38 +140,34 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     fn layer(&mut self, layer: &mut Layer<'_>) -> Result<(), OverlayError> {
-        let path = || self.path.to_path_buf();
-        let (name, claimed) = (layer.name(), layer.try_feature_count());
-        let unusable = |source: DemError| OverlayError::Crs {
-            path: path(),
+        let path = self.path;
+        let (own, name) = (|| path.to_path_buf(), layer.name());
+        let unusable = |source: CrsError| OverlayError::Crs {
+            path: own(),
             layer: name.clone(),
             source: Box::new(source),
         };
         let to_wgs84 = layer.spatial_ref().as_ref().map(ToWgs84::new).transpose();
         let to_wgs84 = to_wgs84.map_err(unusable)?;
         let before = self.found.lines.len();
-        let mut features = 0;
-        forget();
-        for feature in layer.features() {
-            features += 1;
-            let label = label_of(&feature);
+        for_each_feature(layer, (path, VectorKind::Lines), |feature| {
+            let label = label_of(feature);
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else {
-                continue;
+                return Ok(());
             };
             let mut parts = Vec::new();
             take(geometry, &mut parts);
             if parts.is_empty() {
                 self.found.others += 1;
-                continue;
+                return Ok(());
             }
             let Some(to_wgs84) = &to_wgs84 else {
-                return Err(OverlayError::NoCrs { path: self.path.to_path_buf(), layer: name });
+                return Err(OverlayError::NoCrs { path: own(), layer: name.clone() });
             };
             for mut part in parts {
                 self.points += part.len();
                 if self.points > MOST_POINTS {
-                    let (path, limit) = (self.path.to_path_buf(), MOST_POINTS);
-                    return Err(OverlayError::TooManyPoints { path, limit });
+                    return Err(OverlayError::TooManyPoints { path: own(), limit: MOST_POINTS });
                 }
                 to_wgs84.apply(&mut part).map_err(unusable)?;
                 let (name, positions_deg) = (label.clone(), part);
@@ -182,21 +175,14 @@ impl Reading<'_> {
             }
             // What PROJ says of single points is no failure to read the file.
             forget();
-        }
-        // The iterator ends where a feature cannot be read, and does not tell.
-        let path = self.path.to_path_buf();
-        if let Some(source) = failure() {
-            return Err(OverlayError::Damaged { path, source });
-        }
-        if let Some(claimed) = claimed.filter(|claimed| *claimed != features) {
-            return Err(OverlayError::CutOff { path, layer: name, claimed, found: features });
-        }
+            Ok(())
+        })?;
         let Some(to_wgs84) = to_wgs84 else { return Ok(()) };
         let first = |line: &VectorLine| {
             line.positions_deg.iter().find(|position| position[0].is_finite()).copied()
         };
         let places_deg: Vec<_> = self.found.lines[before..].iter().filter_map(first).collect();
-        let datums = to_wgs84.datums(&path, &places_deg).allowed(self.allow_ballpark);
+        let datums = to_wgs84.datums(path, &places_deg).allowed(self.allow_ballpark);
         self.found.datums.extend(datums.map_err(|error| OverlayError::Datum(Box::new(error)))?);
         Ok(())
     }

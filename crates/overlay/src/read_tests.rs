@@ -2,6 +2,8 @@
 
 use std::{fs, path::PathBuf};
 
+use corniche_gis::VectorError;
+
 use super::*;
 use crate::LineFile;
 
@@ -95,7 +97,7 @@ fn what_gives_no_lines_is_told() {
     assert!(told("half.geojson", &GEOJSON[..300]).contains("half.geojson"));
     assert!(told("empty.gpx", "").contains("not a vector file"));
     let missing = read(&folder.path().join("missing.gpx"), false).unwrap_err();
-    assert!(matches!(missing, OverlayError::Missing { .. }), "{missing}");
+    assert!(matches!(missing, OverlayError::Vector(VectorError::Missing { .. })), "{missing}");
 }
 
 /// As many as a file may have are read, and one more is refused; also by what takes drawn lines up again.

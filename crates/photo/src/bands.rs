@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_dem::LibraryError;
+use corniche_gis::{RasterError, RasterKind, forget, has_own_mask};
 use gdal::Dataset;
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, GdalDataType};
@@ -53,8 +53,7 @@ impl Bands {
             }
         }
         let first = dataset.rasterband(colour.bands()[0]).map_err(broken)?;
-        let flags = first.mask_flags().map_err(broken)?;
-        let is_own_nodata = flags.is_nodata() && !flags.is_per_dataset();
+        let has_mask = has_own_mask(&first).map_err(broken)?;
         let mut nodata = Vec::new();
         for number in colour.bands() {
             let band = dataset.rasterband(number).map_err(broken)?;
@@ -65,7 +64,6 @@ impl Bands {
             nodata.extend(value.map(|value| value as u8));
         }
         let nodata = (nodata.len() == colour.bands().len()).then_some(nodata);
-        let has_mask = !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata;
         Ok(Self { colour, alpha, has_mask, nodata })
     }
 
@@ -122,7 +120,7 @@ impl Bands {
         dataset: &Dataset,
         [column, row]: [usize; 2],
         [columns, rows]: [usize; 2],
-    ) -> Result<Pixels, PhotoError> {
+    ) -> Result<Pixels, RasterError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
         let mut values = vec![0_u8; columns * rows];
         let mut rgba = vec![[0, 0, 0, 255]; columns * rows];
@@ -163,13 +161,12 @@ impl Bands {
             }
             Ok(())
         };
-        corniche_dem::forget();
-        read().map_err(|source| PhotoError::Read {
+        forget();
+        read().map_err(|source| RasterError::Read {
+            kind: RasterKind::Photo,
             path: path.to_path_buf(),
-            column,
-            row,
-            columns,
-            rows,
+            start: [column, row],
+            size: [columns, rows],
             source: source.into(),
         })?;
         Ok(Pixels { start: [column as i64, row as i64], columns, rows, rgba })
@@ -187,6 +184,5 @@ impl Colour {
 }
 
 fn opening(path: &Path, source: GdalError) -> PhotoError {
-    let source: Box<LibraryError> = source.into();
-    PhotoError::Raster(corniche_dem::DemError::Open { path: path.to_path_buf(), source })
+    RasterError::Open { path: path.to_path_buf(), source: source.into() }.into()
 }

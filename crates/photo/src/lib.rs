@@ -11,7 +11,6 @@
 //! This crate never encodes, never triangulates, and never guesses where an image lies or what its values mean.
 
 mod error;
-mod photo_grid;
 mod photos;
 mod reader;
 
@@ -23,7 +22,7 @@ mod texel_grid;
 mod texels;
 
 pub use error::PhotoError;
-pub use photo_grid::PhotoGrid;
+pub use photo_file::PhotoGrid;
 pub use photos::{LevelChoice, Photos};
 pub use reader::PhotoReader;
 pub use texel_grid::{MAX_LEVELS, TexelGrid, TexelWindow};

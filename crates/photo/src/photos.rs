@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{FileBlocks, GridPlan, PlacedRaster};
+use corniche_dem::GridPlan;
 use corniche_geom::Bounds;
+use corniche_gis::{FileBlocks, PlacedRaster, RasterKind};
 
-use crate::photo_file::PhotoFile;
-use crate::photo_grid::overlap;
+use crate::photo_file::{PhotoFile, overlap};
 use crate::{PhotoError, PhotoGrid, TexelGrid};
 
 /// The most levels finer than the finest cell that are taken where nobody says how many: a finest tile then has 2048 texels a side.
@@ -73,7 +73,7 @@ impl Photos {
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, PhotoError> {
         let mut found = Vec::new();
         for file in &self.files {
-            found.extend(file.raster.blocks()?);
+            found.extend(FileBlocks::of_file(file.raster.path(), 1, RasterKind::Photo)?);
         }
         Ok(found)
     }

@@ -1,8 +1,8 @@
 //! Where texels lie among a photo's pixels.
 
-use corniche_dem::RasterOnGrid;
+use corniche_gis::{CrsError, RasterOnGrid};
 
-use crate::{PhotoError, TexelGrid};
+use crate::TexelGrid;
 
 /// Texels along a side of a mesh. Meshes are those of the global grid, so a texel's position depends on nothing but its index.
 pub(crate) const MESH: i64 = 32;
@@ -36,7 +36,7 @@ impl MeshPositions {
         grid: &TexelGrid,
         photo: &RasterOnGrid,
         at: [i64; 2],
-    ) -> Result<Option<Self>, PhotoError> {
+    ) -> Result<Option<Self>, CrsError> {
         let half = MESH / 2;
         let mut points: Vec<[f64; 2]> = (0..3)
             .flat_map(|row| (0..3).map(move |column| [column, row]))

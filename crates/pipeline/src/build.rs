@@ -14,8 +14,9 @@ pub(crate) mod work_store;
 
 use std::{sync::Arc, time::Duration};
 
-use corniche_dem::{DatumOperation, GridPlan};
+use corniche_dem::GridPlan;
 use corniche_geom::TileId;
+use corniche_gis::DatumOperation;
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 

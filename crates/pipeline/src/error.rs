@@ -2,8 +2,8 @@
 
 use std::{io, path::PathBuf};
 
-use corniche_dem::listed_files;
 use corniche_geom::Bounds;
+use corniche_gis::listed_files;
 use corniche_store::{LackOfRoom, TargetError};
 use corniche_tileset::WriteError;
 use corniche_work::Interrupted;
@@ -159,6 +159,8 @@ fn room_of(error: &WriteError) -> String {
         _ => None,
     })
 }
+
+corniche_dem::from_dem_errors!(BuildError);
 
 impl From<Interrupted> for BuildError {
     fn from(_: Interrupted) -> Self {

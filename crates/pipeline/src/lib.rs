@@ -42,9 +42,8 @@ mod verify;
 use corniche_work::workers;
 
 pub use build::{BuildSummary, build, build_on};
-pub use corniche_dem::{
-    OpenOptions, PlanOptions, Polygon, PolygonError, libraries, missing_formats, use_files_beside,
-};
+pub use corniche_dem::{OpenOptions, PlanOptions};
+pub use corniche_gis::{Polygon, PolygonError, libraries, missing_formats, use_files_beside};
 pub use corniche_objects::Requests;
 pub use corniche_osm::{AreaLoss, Defect as OsmDefect, LineLoss, Share};
 pub use corniche_store::Existing;

@@ -27,7 +27,7 @@ impl MemoryShares {
 
     /// Gives GDAL its share. To be called before the first raster is opened.
     pub(crate) fn limit_raster_cache(resources: Resources) -> Result<(), BuildError> {
-        corniche_dem::limit_block_cache(Self::of(resources.memory_bytes).raster_cache)
+        corniche_gis::limit_block_cache(Self::of(resources.memory_bytes).raster_cache)
             .map_err(|error| BuildError::Start { what: error.to_string() })
     }
 }

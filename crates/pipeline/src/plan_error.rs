@@ -27,7 +27,7 @@ pub enum PlanError {
     #[error("the plan's table of areas names a class that does not exist; make the plan again")]
     AreaClass,
     #[error(transparent)]
-    Polygon(#[from] corniche_dem::PolygonError),
+    Polygon(#[from] corniche_gis::PolygonError),
     #[error(
         "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
         differences.join("; ")

@@ -1,12 +1,11 @@
 //! Where a DEM's files lie, from positions along their sides and inside them.
 
 use corniche_geom::{Bounds, Seam};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::DemError;
-use crate::crs::operation::Operation;
+use crate::OpenDemError;
 use crate::files::source::Source;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
 /// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
 const SIDE_POSITIONS: usize = 65;
@@ -47,8 +46,8 @@ pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -
 pub(crate) fn bounds(
     mosaic: &Mosaic,
     rect: &SampleRect,
-    operation: &Operation,
-) -> Result<Bounds, DemError> {
+    operation: &CrsOperation,
+) -> Result<Bounds, CrsError> {
     let mut points = positions(mosaic, rect);
     operation.apply(&mut points)?;
     Ok(with_bend(&points))
@@ -86,8 +85,8 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
 pub(crate) fn wgs84(
     sources: &[Source],
     mosaics: &[Mosaic],
-    operations: &[Operation],
-) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
+    operations: &[CrsOperation],
+) -> Result<(Vec<[f64; 2]>, Bounds), OpenDemError> {
     let mut all = Vec::new();
     let mut bounds = Bounds::EMPTY;
     for (mosaic, operation) in mosaics.iter().zip(operations) {
@@ -109,7 +108,7 @@ pub(crate) fn wgs84(
             points.retain(|point| point[0].is_finite() && point[1].is_finite());
             if points.is_empty() {
                 let path = sources[file.index].path.clone();
-                return Err(DemError::Nowhere { path, crs: mosaic.crs.label.clone() });
+                return Err(OpenDemError::Nowhere { path, crs: mosaic.crs.label.clone() });
             }
             let turns =
                 of_mosaic.unwrap_or_else(|| turns_beside(around(&points).center()[0], bounds));

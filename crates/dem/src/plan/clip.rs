@@ -5,18 +5,13 @@
 use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex, Seam};
+use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, Polygon, PolygonError};
 
-use crate::crs::horizontal::Crs;
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
-use crate::mosaics::mosaic::{Mosaic, Placed};
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, Placed, SampleRect};
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
 use crate::plan::layout::Layout;
-use crate::polygons::image::{Image, region};
-use crate::polygons::polygon::Polygon;
-use crate::{Dem, DemError};
+use crate::{Dem, GridError};
 
 /// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
 const ON_NODE: f64 = 1e-6;
@@ -31,14 +26,14 @@ const AROUND_SAMPLES: i64 = 2;
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
 pub(crate) fn nodes_of(
     bounds_deg: [f64; 4],
-    working: &Working,
+    working: &GridCrs,
     area_deg: Bounds,
     origin_m: [f64; 2],
     cell: Cell,
-) -> Result<[NodeIndex; 2], DemError> {
+) -> Result<[NodeIndex; 2], CrsError> {
     let [west, south, east, north] = around_the_earth_as(area_deg, continuous(bounds_deg));
     let mut points = rim_and_inside([west, north], [east, south]);
-    let operation = Operation::into_working(&Crs::wgs84()?, working, Some(area_deg));
+    let operation = CrsOperation::into_working(&Crs::wgs84()?, working, Some(area_deg));
     operation.around(None).apply(&mut points)?;
     if let Some(seam_m) = working.seam_m() {
         // The whole rectangle lies where the data's middle is near.
@@ -51,7 +46,7 @@ pub(crate) fn nodes_of(
     let bounds_m = with_bend(&points);
     if bounds_m.is_empty() {
         let crs = working.crs.label.clone();
-        return Err(DemError::BoundsOutsideCrs { bounds: bounds_text(bounds_deg), crs });
+        return Err(CrsError::BoundsOutside { bounds: bounds_text(bounds_deg), crs });
     }
     Ok(nodes_around(bounds_m, origin_m, cell))
 }
@@ -83,7 +78,7 @@ impl Asked {
         options: &PlanOptions,
         layout: &Layout,
         area_deg: Bounds,
-    ) -> Result<Option<Self>, DemError> {
+    ) -> Result<Option<Self>, GridError> {
         let Layout { working, origin_m, cell, .. } = layout;
         let mut asked: Option<Self> = None;
         if let Some(bounds_deg) = options.bounds_deg {
@@ -92,8 +87,8 @@ impl Asked {
             asked = Some(Self { nodes, text, bounds_deg: Some(bounds_deg) });
         }
         if let Some(polygon) = &options.polygon {
-            let image = Image::new(polygon, working, area_deg, cell.shorter_m())?;
-            let own = nodes_around(image.bounds, *origin_m, *cell);
+            let bounds = working.polygon_bounds_m(polygon, area_deg, cell.shorter_m())?;
+            let own = nodes_around(bounds, *origin_m, *cell);
             let text = format!("--polygon {}", polygon.path().display());
             asked = Some(match asked {
                 Some(bounds) => Self {
@@ -152,7 +147,7 @@ pub(crate) fn cut(
     whole: [NodeIndex; 2],
     around_the_earth: Option<i64>,
     dem: &Dem,
-) -> Result<[NodeIndex; 2], DemError> {
+) -> Result<[NodeIndex; 2], GridError> {
     let Asked { nodes: asked, text, bounds_deg } = asked;
     let common = common(*asked, whole);
     let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
@@ -164,7 +159,7 @@ pub(crate) fn cut(
             high.i - low.i > 1 && low.j < high.j
         };
         if has_cell(common) && (is_at_other_end(columns) || is_at_other_end(-columns)) {
-            return Err(DemError::BoundsAtBothEnds { asked: text.clone() });
+            return Err(GridError::BoundsAtBothEnds { asked: text.clone() });
         }
     }
     if has_cell(common) {
@@ -176,7 +171,7 @@ pub(crate) fn cut(
         .filter(|own| own[0] < east && own[2] > west && own[1] < north && own[3] > south)
         .map(|own| format!("; {} has some", bounds_text(own)))
         .unwrap_or_default();
-    Err(DemError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
+    Err(GridError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
 }
 
 /// The rectangle of nodes that two have in common; its corners change places where there is none.
@@ -191,13 +186,13 @@ fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
 /// of the whole DEM do.
 pub(crate) fn wgs84_bounds(
     data: Bounds,
-    working: &Working,
+    working: &GridCrs,
     whole_deg: Bounds,
-) -> Result<Bounds, DemError> {
+) -> Result<Bounds, GridError> {
     let own = rim_and_inside([data.min_x, data.max_y], [data.max_x, data.min_y]);
     let mut points = own.clone();
     let degrees = Seam::of_degrees();
-    Operation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
+    CrsOperation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
     if let Some(turn) = working.crs.turn_angle() {
         let to_degrees = 360.0 / turn / working.metres_per_unit[0];
         for (point, own) in points.iter_mut().zip(&own) {
@@ -211,7 +206,7 @@ pub(crate) fn wgs84_bounds(
         bounds.include(point);
     }
     if bounds.is_empty() {
-        return Err(DemError::OutsideCrs { crs: working.crs.label.clone() });
+        return Err(GridError::OutsideCrs { crs: working.crs.label.clone() });
     }
     let away = degrees.around(whole_deg.center()[0]).turns(bounds.center()[0]);
     let bounds = moved_back(bounds, away);
@@ -223,7 +218,7 @@ pub(crate) fn needed_samples(
     plan: &GridPlan,
     mosaic: &Mosaic,
     role: &MosaicRole,
-) -> Result<SampleRect, DemError> {
+) -> Result<SampleRect, CrsError> {
     if plan.clip.is_none() {
         return Ok(mosaic.reachable());
     }
@@ -267,7 +262,7 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, DemError> {
+    pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, CrsError> {
         let mut is_needed = vec![false; self.sources.len()];
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
             let rect = needed_samples(plan, mosaic, role)?;
@@ -309,8 +304,8 @@ impl GridPlan {
     ///
     /// # Errors
     /// When the polygon has no place in the working CRS, or encloses nothing.
-    pub fn within(mut self, polygon: &Polygon) -> Result<Self, DemError> {
-        let region = region(polygon, &self.working, self.area_deg(), &self.frame)?;
+    pub fn within(mut self, polygon: &Polygon) -> Result<Self, PolygonError> {
+        let region = self.working.polygon_on_lattice(polygon, self.area_deg(), &self.frame)?;
         self.polygon = Some(Arc::new(region));
         Ok(self)
     }

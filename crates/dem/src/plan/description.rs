@@ -1,10 +1,11 @@
 //! How nodes relate to samples, in words.
 
+use corniche_gis::first_names;
+
 use crate::Dem;
-use crate::file_names::first_names;
 use crate::mosaics::mosaic::{Mosaic, Placed};
-use crate::plan::alignment::Alignment;
 use crate::plan::grid_plan::{Method, MosaicRole};
+use crate::plan::kernel::Alignment;
 
 /// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first named first.
 pub(crate) fn describe(dem: &Dem, roles: &[MosaicRole]) -> String {

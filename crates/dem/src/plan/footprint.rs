@@ -1,18 +1,74 @@
-//! Where files have samples, grid by grid.
+//! Where files have samples, grid by grid, and between which nodes.
 
-use crate::crs::operation::Operation;
+use corniche_geom::NodeIndex;
+use corniche_gis::{CrsError, CrsOperation};
+
+use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::Mosaic;
-use crate::{Dem, DemError, GridPlan};
+use crate::plan::grid_plan::Method;
+use crate::plan::kernel::Alignment;
+use crate::{Dem, GridPlan};
 
 /// The samples of the files that lie on one grid.
 pub struct Footprint<'a> {
     /// For each file its first and its last sample: column, row. On a grid all around the earth, one more column closes it.
     pub rects: Vec<[[i64; 2]; 2]>,
     mosaic: &'a Mosaic,
-    working_from_crs: &'a Operation,
+    working_from_crs: &'a CrsOperation,
 }
 
 impl Dem {
+    /// The south-western and the north-eastern node of each file, between which it can have data, within the plan's. Files that
+    /// have no node between their samples there are left out.
+    ///
+    /// # Errors
+    /// When a file's place cannot be transformed.
+    pub fn file_nodes(&self, plan: &GridPlan) -> Result<Vec<[NodeIndex; 2]>, CrsError> {
+        let mut found = Vec::new();
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+            for file in &mosaic.files {
+                let [south_west, north_east] = match &role.method {
+                    Method::Aligned(Alignment { first, way, every }) => {
+                        let rect = mosaic.closed(&file.rect);
+                        let ends = |axis: usize| {
+                            let at = |index: i64| first[axis] + way[axis] * index;
+                            let (a, b) = (at(rect.min[axis]), at(rect.max[axis] - 1));
+                            // Rounded inwards: the outermost samples can lie between two nodes.
+                            (-(-a.min(b)).div_euclid(*every), a.max(b).div_euclid(*every))
+                        };
+                        let ((west, east), (south, north)) = (ends(0), ends(1));
+                        [NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]
+                    }
+                    Method::Resampled(..) => {
+                        let bounds =
+                            data_extent::bounds(mosaic, &file.rect, &role.working_from_crs)?;
+                        let (origin_m, cell_m) =
+                            (plan.frame.origin_m(), plan.frame.cell().to_array());
+                        let cells =
+                            |metres: f64, axis: usize| (metres - origin_m[axis]) / cell_m[axis];
+                        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
+                        [
+                            corner(cells(bounds.min_x, 0).ceil(), cells(bounds.min_y, 1).ceil()),
+                            corner(cells(bounds.max_x, 0).floor(), cells(bounds.max_y, 1).floor()),
+                        ]
+                    }
+                };
+                let south_west = NodeIndex {
+                    i: south_west.i.max(plan.south_west.i),
+                    j: south_west.j.max(plan.south_west.j),
+                };
+                let north_east = NodeIndex {
+                    i: north_east.i.min(plan.north_east.i),
+                    j: north_east.j.min(plan.north_east.j),
+                };
+                if south_west.i <= north_east.i && south_west.j <= north_east.j {
+                    found.push([south_west, north_east]);
+                }
+            }
+        }
+        Ok(found)
+    }
+
     /// Where its files have samples. Those of several grids may overlap.
     #[must_use]
     pub fn footprints<'a>(&'a self, plan: &'a GridPlan) -> Vec<Footprint<'a>> {
@@ -38,7 +94,7 @@ impl Footprint<'_> {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn to_working_m(&self, places: &mut [[f64; 2]]) -> Result<(), DemError> {
+    pub fn to_working_m(&self, places: &mut [[f64; 2]]) -> Result<(), CrsError> {
         for place in &mut *places {
             *place = self.mosaic.crs_from_sample.crs_from_pixel(*place);
         }

@@ -3,14 +3,10 @@
 use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, GridFrame, LatticeRegion, NodeIndex};
+use corniche_gis::{CrsOperation, DatumOperation, GridCrs, Polygon};
 
-use crate::crs::datum_operation::DatumOperation;
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
-use crate::plan::alignment::Alignment;
-use crate::plan::kernel::Kernel;
+use crate::plan::kernel::{Alignment, Kernel};
 use crate::plan::node_positions::NodePositions;
-use crate::polygons::polygon::Polygon;
 
 /// What the user can choose about the grid. The default chooses nothing, and fills no voids.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -116,7 +112,8 @@ pub struct GridPlan {
     pub fill_voids: u32,
     /// One per mosaic of the DEM, in its order.
     pub(crate) roles: Vec<MosaicRole>,
-    pub(crate) working: Working,
+    /// Its working CRS.
+    pub working: GridCrs,
 }
 
 /// What one mosaic does for the grid: which nodes it can serve, and how.
@@ -126,7 +123,7 @@ pub(crate) struct MosaicRole {
     pub(crate) nodes: [NodeIndex; 2],
     pub(crate) method: Method,
     /// The operation from the mosaic's CRS to working metres.
-    pub(crate) working_from_crs: Operation,
+    pub(crate) working_from_crs: CrsOperation,
 }
 
 #[derive(Debug, Clone)]

@@ -1,6 +1,8 @@
-//! Heights between samples: bilinear, or area averages where a cell holds several samples.
+//! How nodes get heights from samples: they are samples, or lie between some: bilinear, or area averages where a cell holds several.
 
-use crate::mosaics::sample_rect::SampleRect;
+use corniche_geom::NodeIndex;
+
+use crate::mosaics::mosaic::SampleRect;
 
 /// A position this close to a sample, in samples, is on it: what is left of rounding in transformations.
 const ON_SAMPLE: f64 = 1e-6;
@@ -10,6 +12,25 @@ const AVERAGE_FROM: f64 = 2.0;
 const LEAST_WEIGHT: f64 = 0.5;
 /// Samples with a smaller variance than this, in samples squared, do not determine a plane.
 const LEAST_SPREAD: f64 = 1e-3;
+
+/// Sample (column, row) = (`way[0]` · (`every` · i − `first[0]`), `way[1]` · (`every` · j − `first[1]`)).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Alignment {
+    /// Index of sample (0, 0), counted in samples from node (0, 0).
+    pub(crate) first: [i64; 2],
+    pub(crate) way: [i64; 2],
+    pub(crate) every: i64,
+}
+
+impl Alignment {
+    /// The sample under a node.
+    pub(crate) fn sample(&self, node: NodeIndex) -> [i64; 2] {
+        [
+            self.way[0] * (self.every * node.i - self.first[0]),
+            self.way[1] * (self.every * node.j - self.first[1]),
+        ]
+    }
+}
 
 /// How heights at nodes come from samples.
 ///

@@ -1,9 +1,8 @@
 //! Where nodes lie among the DEM's samples.
 
 use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow, Seam};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::DemError;
-use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 
 /// Largest error of a position, as a share of a sample or of a cell, whichever is smaller.
@@ -29,7 +28,7 @@ const TRIAL_MESHES: i64 = 12;
 /// points are tested: with a conformal projection the errors cancel in the middle of a mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
-    pub(crate) crs_from_working: Operation,
+    pub(crate) crs_from_working: CrsOperation,
     crs_from_sample: GeoTransform,
     /// The seam of the mosaic's CRS around its middle.
     seam: Option<Seam>,
@@ -43,11 +42,11 @@ impl NodePositions {
     /// `samples_per_node` samples to a cell.
     pub(crate) fn new(
         mosaic: &Mosaic,
-        crs_from_working: Operation,
+        crs_from_working: CrsOperation,
         frame: &GridFrame,
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
-    ) -> Result<Self, DemError> {
+    ) -> Result<Self, CrsError> {
         let seam = mosaic.seam();
         let crs_from_sample = mosaic.crs_from_sample;
         let scale = samples_per_node.min(1.0);
@@ -73,7 +72,7 @@ impl NodePositions {
         self.step
     }
 
-    fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, DemError> {
+    fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, CrsError> {
         if self.step == 1 {
             return Ok(true);
         }
@@ -99,7 +98,7 @@ impl NodePositions {
         &self,
         frame: &GridFrame,
         window: &NodeWindow,
-    ) -> Result<Vec<[f64; 2]>, DemError> {
+    ) -> Result<Vec<[f64; 2]>, CrsError> {
         let mut positions = vec![[f64::NAN; 2]; window.columns * window.rows];
         let (west, north) = (window.corner.i, window.corner.j);
         let (east, south) = (west + window.columns as i64 - 1, north - window.rows as i64 + 1);
@@ -152,12 +151,12 @@ impl NodePositions {
     }
 
     /// Positions in working metres to samples, in place; NaN where there is none.
-    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         self.transform(points)
     }
 
     /// Working CRS to samples, in place.
-    fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+    fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         if points.is_empty() {
             return Ok(());
         }
@@ -176,7 +175,7 @@ impl NodePositions {
         frame: &GridFrame,
         first: [i64; 2],
         meshes: [usize; 2],
-    ) -> Result<Lattice, DemError> {
+    ) -> Result<Lattice, CrsError> {
         let columns = 2 * meshes[0] + 1;
         let half = self.step / 2;
         let mut halves = Vec::with_capacity(columns * (2 * meshes[1] + 1));

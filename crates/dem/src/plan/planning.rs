@@ -1,12 +1,8 @@
 //! From a DEM and what the user says to the grid of a package.
 
-use std::sync::LazyLock;
-
 use corniche_geom::{GridFrame, NodeIndex};
-use gdal::version::VersionInfo;
+use corniche_gis::{CrsError, CrsOperation, DemProjection, GridCrs, libraries};
 
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::{self, Asked};
 use crate::plan::datum_operations::datum_operations;
@@ -19,7 +15,7 @@ use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;
 use crate::plan::sample_steps::{samples_to_a_cell, steps_m};
 use crate::plan::working_crs;
-use crate::{Dem, DemError, DemProjection};
+use crate::{Dem, GridError};
 
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
 const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
@@ -47,7 +43,7 @@ impl Dem {
     ///
     /// # Errors
     /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is too large.
-    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, DemError> {
+    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, GridError> {
         plan(self, options)
     }
 
@@ -55,7 +51,7 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ knows no operation.
-    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
+    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, CrsError> {
         // The middle of what packages record, so that all that read them find the same seam.
         let data_m = plan.clip.map_or(plan.data_bounds, |clip| clip.whole_data_bounds);
         let working = plan.working.clone().around(data_m);
@@ -63,18 +59,19 @@ impl Dem {
     }
 }
 
-fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
+fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
     if options.fill_voids > MAX_FILL_VOIDS {
-        return Err(DemError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
+        return Err(GridError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
     }
     let working = working_crs::choose(dem, options.crs.as_deref(), options.scale_latitude_deg)?;
-    let into_working = |working: &Working| -> Vec<Operation> {
-        let of =
-            |mosaic: &Mosaic| Operation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds));
+    let into_working = |working: &GridCrs| -> Vec<CrsOperation> {
+        let of = |mosaic: &Mosaic| {
+            CrsOperation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds))
+        };
         dem.mosaics.iter().map(of).collect()
     };
     let layout = layout::layout(dem, options, working, &into_working)?;
-    let scale = layout.working.scale(dem)?;
+    let scale = working_crs::scale(&layout.working, dem)?;
     let operations = into_working(&layout.working);
     let steps: Vec<Option<[[f64; 2]; 2]>> = dem
         .mosaics
@@ -89,7 +86,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         .map(|(mosaic, operation)| layout.nodes(dem, mosaic, operation))
         .collect::<Result<_, _>>()?;
     let [south_west, north_east] = around(&extents)
-        .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+        .ok_or_else(|| GridError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
     if let Some(every) = options.cell_every {
         refuse_line(every, [south_west, north_east])?;
     }
@@ -112,7 +109,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
             let method = method(dem, mosaic, &layout, &frame, nodes, steps)?;
             Ok(MosaicRole { nodes, method, working_from_crs })
         })
-        .collect::<Result<_, DemError>>()?;
+        .collect::<Result<_, GridError>>()?;
     let working = layout.working;
     let data_bounds = bounds_of(&frame, [south_west, north_east]);
     let clip = asked.map(|asked| Clip {
@@ -149,7 +146,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         working,
     };
     match &options.polygon {
-        Some(polygon) => plan.within(polygon),
+        Some(polygon) => Ok(plan.within(polygon)?),
         None => Ok(plan),
     }
 }
@@ -171,13 +168,13 @@ fn columns_of_a_turn(layout: &Layout) -> Option<i64> {
 }
 
 /// Refuses to take so few samples that a single row or column of nodes is left.
-fn refuse_line(every: u32, [south_west, north_east]: [NodeIndex; 2]) -> Result<(), DemError> {
+fn refuse_line(every: u32, [south_west, north_east]: [NodeIndex; 2]) -> Result<(), GridError> {
     let [columns, rows] = [north_east.i - south_west.i + 1, north_east.j - south_west.j + 1];
     if columns.min(rows) >= 2 {
         return Ok(());
     }
     let [columns, rows] = [columns, rows].map(|nodes| nodes.max(0));
-    Err(DemError::CellEveryLeaves { every, columns, rows })
+    Err(GridError::CellEveryLeaves { every, columns, rows })
 }
 
 fn resampling(roles: &[MosaicRole]) -> Resampling {
@@ -201,7 +198,7 @@ fn method(
     frame: &GridFrame,
     nodes: [NodeIndex; 2],
     steps: Option<[[f64; 2]; 2]>,
-) -> Result<Method, DemError> {
+) -> Result<Method, GridError> {
     if let Some(alignment) = layout.alignment(mosaic) {
         return Ok(Method::Aligned(alignment));
     }
@@ -212,23 +209,10 @@ fn method(
         .unwrap_or([1.0; 2]);
     let most = samples_per_node[0].max(samples_per_node[1]);
     if most > MAX_SAMPLES_PER_NODE {
-        return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
+        return Err(GridError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
     }
-    let back = Operation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let back = CrsOperation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
     let least = samples_per_node[0].min(samples_per_node[1]);
     let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
-}
-
-/// Releases of GDAL and PROJ that this program runs with, as packages record them.
-#[must_use]
-pub fn libraries() -> String {
-    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and another thread may find it half written.
-    static LIBRARIES: LazyLock<String> = LazyLock::new(|| {
-        let proj = VersionInfo::build_info()
-            .remove("PROJ_RUNTIME_VERSION")
-            .unwrap_or_else(|| "unknown".to_owned());
-        format!("GDAL {}, PROJ {proj}", VersionInfo::release_name())
-    });
-    LIBRARIES.clone()
 }

@@ -1,11 +1,10 @@
 //! The grid of a package without its elevation files.
 
 use corniche_geom::{Bounds, GridFrame, NodeIndex};
+use corniche_gis::{CrsError, DatumOperation, RecordedCrs, libraries};
 
 use crate::plan::clip;
 use crate::plan::grid_plan::{Clip, GridPlan, PlanScale, Resampling, bounds_of};
-use crate::plan::planning::libraries;
-use crate::{DatumOperation, DemError, RecordedCrs};
 
 /// What a package records of its grid, beside its CRS.
 #[derive(Debug, Clone)]
@@ -42,25 +41,25 @@ pub struct RecordedGrid {
     pub fill_voids: u32,
 }
 
-impl RecordedCrs {
-    /// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes of a package's grid, its south-western and north-eastern one, rounded
-    /// outwards as those of a build are. They may reach beyond the data. `area_deg` is the rectangle for which PROJ chooses its operation.
-    ///
-    /// # Errors
-    /// When the bounds have no place in the CRS.
-    pub fn nodes_within(
-        &self,
-        bounds_deg: [f64; 4],
-        frame: &GridFrame,
-        area_deg: Bounds,
-    ) -> Result<[NodeIndex; 2], DemError> {
-        clip::nodes_of(bounds_deg, self.working(), area_deg, frame.origin_m(), frame.cell())
-    }
+/// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes of a package's grid, its south-western and north-eastern one, rounded
+/// outwards as those of a build are. They may reach beyond the data. `area_deg` is the rectangle for which PROJ chooses its operation.
+///
+/// # Errors
+/// When the bounds have no place in the CRS.
+pub fn nodes_within(
+    bounds_deg: [f64; 4],
+    crs: &RecordedCrs,
+    frame: &GridFrame,
+    area_deg: Bounds,
+) -> Result<[NodeIndex; 2], CrsError> {
+    clip::nodes_of(bounds_deg, crs.working(), area_deg, frame.origin_m(), frame.cell())
+}
 
+impl RecordedGrid {
     /// The plan of a package whose elevation files are not there. No height can be read with it: it has no file.
     #[must_use]
-    pub fn plan(&self, recorded: RecordedGrid) -> GridPlan {
-        let RecordedGrid {
+    pub fn plan(self, in_crs: &RecordedCrs) -> GridPlan {
+        let Self {
             frame,
             south_west,
             north_east,
@@ -76,11 +75,11 @@ impl RecordedCrs {
             vertical,
             datum_operations,
             fill_voids,
-        } = recorded;
+        } = self;
         // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
         let resampling =
             if nodes_are_samples { Resampling::Aligned } else { Resampling::Resampled };
-        let working = self.working().clone();
+        let working = in_crs.working().clone();
         GridPlan {
             frame,
             south_west,

@@ -2,15 +2,13 @@
 
 use corniche_geom::{HeightGrid, NodeWindow};
 
-use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::alignment::Alignment;
 use crate::plan::grid_plan::Method;
-use crate::plan::kernel::{Kernel, Samples, Scratch};
+use crate::plan::kernel::{Alignment, Kernel, Samples, Scratch};
 use crate::reading::fill_voids;
 use crate::reading::window_parts::{Target, WindowPart, intersection};
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
 pub(crate) const MOST_SAMPLES: usize = 1 << 22;
@@ -48,7 +46,7 @@ impl Dem {
         Reader {
             dem: self,
             plan,
-            files: OpenFiles::new(),
+            files: OpenFiles::default(),
             samples: Vec::new(),
             scratch: Scratch::default(),
         }
@@ -62,9 +60,9 @@ impl Reader<'_> {
     ///
     /// # Errors
     /// When the stride is not 1 or a file cannot be read.
-    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, ReadHeightsError> {
         if window.stride != 1 {
-            return Err(DemError::Stride { stride: window.stride });
+            return Err(ReadHeightsError::Stride { stride: window.stride });
         }
         if self.plan.clip.is_none() {
             return self.filled_window(window);
@@ -125,7 +123,7 @@ impl Reader<'_> {
     }
 
     /// The same without regard to bounds.
-    fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+    fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, ReadHeightsError> {
         let mut heights_m = self.nodes(window)?;
         let mut is_filled = Vec::new();
         let mut filled = 0;
@@ -155,7 +153,7 @@ impl Reader<'_> {
         window: NodeWindow,
         inside_m: &[f32],
         reach: usize,
-    ) -> Result<Vec<f32>, DemError> {
+    ) -> Result<Vec<f32>, ReadHeightsError> {
         let wide = window.with_halo(reach);
         let mut heights_m = vec![f32::NAN; wide.columns * wide.rows];
         let mut put = |[left, top]: [usize; 2], columns: usize, part_m: &[f32]| {
@@ -180,7 +178,7 @@ impl Reader<'_> {
     }
 
     /// Heights of nodes from the mosaics, voids not filled (NaN), row by row from the north.
-    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, DemError> {
+    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         for (role, mosaic) in plan.roles.iter().zip(&dem.mosaics) {
@@ -211,7 +209,7 @@ impl Reader<'_> {
         part: &NodeWindow,
         target: &Target,
         heights_m: &mut [f32],
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         // Bands of rows, so that a window of any size needs bounded memory.
         let every = alignment.every as usize;
         let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
@@ -251,7 +249,7 @@ impl Reader<'_> {
         part: &WindowPart,
         target: &Target,
         heights_m: &mut [f32],
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         let open = part.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
         let Some(rect) =
             around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.reachable())

@@ -5,10 +5,11 @@ use std::{
     rc::Rc,
 };
 
-use crate::crs::operation::Operation;
+use corniche_gis::CrsOperation;
+
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples along each side of a block.
 const BLOCK_SAMPLES: i64 = 64;
@@ -27,7 +28,7 @@ type Stretch = [f64; 2];
 pub struct SampleSurface<'a> {
     dem: &'a Dem,
     /// For each mosaic the operation from working metres to its CRS.
-    crs_from_working: Vec<Operation>,
+    crs_from_working: Vec<CrsOperation>,
     files: OpenFiles,
     kept: HashMap<BlockKey, Block>,
     /// The blocks that are kept, the oldest first.
@@ -49,14 +50,14 @@ impl Dem {
     /// The surface of its samples, beneath lines in the working metres of a plan.
     #[must_use]
     pub fn sample_surface<'a>(&'a self, plan: &GridPlan) -> SampleSurface<'a> {
-        let operation = |mosaic: &crate::mosaics::mosaic::Mosaic| {
-            Operation::out_of_working(&plan.working, &mosaic.crs, Some(self.wgs84_bounds))
+        let operation = |mosaic: &Mosaic| {
+            CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(self.wgs84_bounds))
                 .around(mosaic.seam())
         };
         SampleSurface {
             dem: self,
             crs_from_working: self.mosaics.iter().map(operation).collect(),
-            files: OpenFiles::new(),
+            files: OpenFiles::default(),
             kept: HashMap::new(),
             order: VecDeque::new(),
             last: None,
@@ -76,7 +77,10 @@ impl SampleSurface<'_> {
     ///
     /// # Errors
     /// When a file cannot be read, or PROJ fails.
-    pub fn largest_distance_m(&mut self, line: &[[f64; 3]]) -> Result<Option<f64>, DemError> {
+    pub fn largest_distance_m(
+        &mut self,
+        line: &[[f64; 3]],
+    ) -> Result<Option<f64>, ReadHeightsError> {
         let mut places = Vec::with_capacity(self.crs_from_working.len());
         for (mosaic, operation) in self.dem.mosaics.iter().zip(&self.crs_from_working) {
             let mut at: Vec<[f64; 2]> = line.iter().map(|&[x, y, _]| [x, y]).collect();
@@ -110,7 +114,7 @@ impl SampleSurface<'_> {
         heights_m: [f64; 2],
         [begin, end]: Stretch,
         left: &mut Vec<Stretch>,
-    ) -> Result<Option<f64>, DemError> {
+    ) -> Result<Option<f64>, ReadHeightsError> {
         let Half { from, to, bow } = half;
         if !from.into_iter().chain(to).all(f64::is_finite) {
             left.push([begin, end]);
@@ -158,7 +162,11 @@ impl SampleSurface<'_> {
     }
 
     /// The heights at the corners of a cell of samples: first row, then second.
-    fn corners_m(&mut self, mosaic: usize, [column, row]: [i64; 2]) -> Result<[f64; 4], DemError> {
+    fn corners_m(
+        &mut self,
+        mosaic: usize,
+        [column, row]: [i64; 2],
+    ) -> Result<[f64; 4], ReadHeightsError> {
         let mut corners_m = [0.0; 4];
         for (corner_m, [across, along]) in
             corners_m.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]])
@@ -168,7 +176,7 @@ impl SampleSurface<'_> {
         Ok(corners_m)
     }
 
-    fn sample_m(&mut self, mosaic: usize, sample: [i64; 2]) -> Result<f64, DemError> {
+    fn sample_m(&mut self, mosaic: usize, sample: [i64; 2]) -> Result<f64, ReadHeightsError> {
         let key = (mosaic, sample.map(|index| index.div_euclid(BLOCK_SAMPLES)));
         let [column, row] = sample.map(|index| index.rem_euclid(BLOCK_SAMPLES) as usize);
         let at = row * BLOCK_SAMPLES as usize + column;
@@ -184,7 +192,7 @@ impl SampleSurface<'_> {
         Ok(height_m)
     }
 
-    fn read(&mut self, key: BlockKey) -> Result<Block, DemError> {
+    fn read(&mut self, key: BlockKey) -> Result<Block, ReadHeightsError> {
         let (mosaic, number) = key;
         let min = number.map(|number| number * BLOCK_SAMPLES);
         let rect = SampleRect { min, max: min.map(|index| index + BLOCK_SAMPLES) };

@@ -1,16 +1,15 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
 use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::crs::operation::Operation;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::plan::clip::needed_samples;
 use crate::plan::grid_plan::{Clip, Method};
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
 use crate::reading::window_parts::intersection;
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Side of the blocks in which samples are handed out.
 const BLOCK_SAMPLES: i64 = 256;
@@ -55,7 +54,7 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, DemError> {
+    pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, CrsError> {
         let mut ranges = Vec::new();
         for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
             let needed = needed_samples(plan, mosaic, role)?;
@@ -78,7 +77,7 @@ impl Dem {
         &self,
         plan: &GridPlan,
         window: NodeWindow,
-    ) -> Result<Vec<SampleRange>, DemError> {
+    ) -> Result<Vec<SampleRange>, CrsError> {
         let wide = window.with_halo(AROUND_NODES);
         let mut ranges = Vec::new();
         for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
@@ -132,7 +131,7 @@ impl Reader<'_> {
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+    pub fn samples(&mut self, range: &SampleRange) -> Result<SampleBlock, ReadHeightsError> {
         let mosaic = &self.dem.mosaics[range.mosaic];
         self.files.read(&self.dem.sources, mosaic, &range.rect, &mut self.samples)?;
         let mut block = SampleBlock::default();
@@ -158,7 +157,7 @@ impl Reader<'_> {
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+    pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, ReadHeightsError> {
         let mut block = self.samples(range)?;
         for earlier in 0..range.mosaic {
             let hidden = self.is_covered(earlier, &block.positions_m)?;
@@ -175,11 +174,11 @@ impl Reader<'_> {
         &mut self,
         mosaic: usize,
         positions_m: &[[f64; 2]],
-    ) -> Result<Vec<bool>, DemError> {
+    ) -> Result<Vec<bool>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mosaic = &dem.mosaics[mosaic];
         let mut at = positions_m.to_vec();
-        Operation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
+        CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
             .around(mosaic.seam())
             .apply(&mut at)?;
         for position in &mut at {
@@ -197,7 +196,7 @@ impl Reader<'_> {
         mosaic: &Mosaic,
         at: &[[f64; 2]],
         covered: &mut [bool],
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         let kernel = Kernel::new([0.0; 2]);
         let Some(rect) = around(at.iter().copied(), &kernel, &mosaic.reachable()) else {
             return Ok(());

@@ -1,6 +1,6 @@
 //! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to the last bit.
 
-use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, GridError, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
 
 use crate::fixture::{Raster, all, check_words, folder, in_utm, open, options, sample_blocks};
@@ -195,7 +195,7 @@ fn bounds_around_the_earth_leave_out_no_longitude() {
                 assert!(part.wgs84_bounds.height() < 0.3, "{:?}", part.wgs84_bounds);
             }
             let beside = dem.plan(&with([-180.0, 10.0, 180.0, 20.0], asked)).unwrap_err();
-            assert!(matches!(beside, DemError::BoundsBesideData { .. }), "{beside}");
+            assert!(matches!(beside, GridError::BoundsBesideData { .. }), "{beside}");
         }
     }
 }
@@ -217,7 +217,7 @@ fn bounds_without_a_cell_or_at_both_ends_are_refused() {
             .unwrap();
     let own = PlanOptions { crs: Some("dem".to_owned()), ..options() };
     let error = globe.plan(&with([170.0, -20.0, -170.0, 20.0], own.clone())).unwrap_err();
-    assert!(matches!(error, DemError::BoundsAtBothEnds { .. }), "{error}");
+    assert!(matches!(error, GridError::BoundsAtBothEnds { .. }), "{error}");
     for bounds_deg in
         [[-180.0, -90.0, 180.0, 90.0], [-20.0, -10.0, 30.0, 40.0], [150.0, 0.0, 179.0, 9.0]]
     {

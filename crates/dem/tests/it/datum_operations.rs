@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{DatumOperation, PlanOptions, RecordedCrs};
+use corniche_dem::PlanOptions;
 use corniche_geom::{Bounds, Projection};
+use corniche_gis::{DatumOperation, RecordedCrs};
 
 use crate::fixture::{Raster, check_words, folder, open, options, plan};
 

@@ -74,17 +74,18 @@ pub(crate) fn check_heights(
 
 /// Files are refused, by opening or by reading, with the file's name and all of `words`, and no raw error of a library.
 pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&str]) {
-    let read = || {
+    let read = || -> Result<(), DemError> {
         let dem = Dem::open(files, options)?;
         let plan = dem.plan(&self::options())?;
-        dem.reader(&plan).window(all(&plan)).map(|_| ())
+        dem.reader(&plan).window(all(&plan))?;
+        Ok(())
     };
     let error = read().expect_err(&format!("{files:?} was read"));
     check_words(&error, words);
 }
 
 /// The message has all of `words`, and neither it nor its causes are in a library's own code words.
-pub(crate) fn check_words(error: &DemError, words: &[&str]) {
+pub(crate) fn check_words(error: &(impl std::error::Error + 'static), words: &[&str]) {
     let text = error.to_string();
     for word in words {
         assert!(text.contains(word), "{word:?} is not in: {text}");

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Dem, DemError, OpenOptions};
+use corniche_dem::{Dem, DemError, OpenDemError, OpenOptions};
 use gdal::{DriverManager, Metadata};
 
 use crate::fixture::{Raster, Space, UTM, check_heights, check_refused, converted, plane};
@@ -267,7 +267,7 @@ fn broken_files_are_refused_with_a_reason() {
     }
     check_refused(&[folder.path().to_path_buf()], &given, &["not a file"]);
     check_refused(&[folder.path().join("gone.tif")], &given, &["gone.tif", "cannot open"]);
-    assert!(matches!(Dem::open(&[], &given), Err(DemError::NoFiles)));
+    assert!(matches!(Dem::open(&[], &given), Err(OpenDemError::NoFiles)));
 }
 
 /// Cut anywhere, a file is refused or gives the true heights; it never gives others.
@@ -280,13 +280,13 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     let (mut read, mut refused) = (0, 0);
     for length in 0..bytes.len() {
         fs::write(&path, &bytes[..length]).unwrap();
-        let found =
-            Dem::open(std::slice::from_ref(&path), &OpenOptions::default()).and_then(|dem| {
-                let plan = crate::fixture::plan(&dem);
-                dem.reader(&plan).window(crate::fixture::all(&plan))?;
-                Ok((dem, plan))
-            });
-        match found {
+        let open = || -> Result<_, DemError> {
+            let dem = Dem::open(std::slice::from_ref(&path), &OpenOptions::default())?;
+            let plan = crate::fixture::plan(&dem);
+            dem.reader(&plan).window(crate::fixture::all(&plan))?;
+            Ok((dem, plan))
+        };
+        match open() {
             Ok((dem, plan)) => {
                 crate::fixture::check(&mut dem.reader(&plan), &plan, 1e-4, plane);
                 read += 1;
@@ -314,6 +314,6 @@ fn parts_keep_the_bytes_of_their_names() {
     let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'@' { 0xff } else { byte }).collect();
     let path = folder.path().join("named.vrt");
     fs::write(&path, bytes).unwrap();
-    let files = corniche_dem::raster_files(&path).unwrap();
+    let files = corniche_gis::raster_files(&path).unwrap();
     assert!(files.contains(&part), "{files:?}");
 }

@@ -2,8 +2,9 @@
 
 use std::{collections::HashSet, fs, path::Path};
 
-use corniche_dem::{Dem, GridPlan, PlanOptions, Polygon, PolygonError};
+use corniche_dem::{Dem, GridPlan, PlanOptions};
 use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_gis::{Polygon, PolygonError, VectorError};
 use gdal::{
     DriverManager,
     spatial_ref::SpatialRef,
@@ -281,7 +282,7 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let folder = folder();
     let refuse = |path: &Path, words: &[&str]| {
         let error = Polygon::read(path).unwrap_err();
-        check_words(&error.into(), words);
+        check_words(&error, words);
     };
     let json =
         |kind: &str, coordinates: &str| geojson(folder.path(), "a.geojson", kind, coordinates);
@@ -343,7 +344,9 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     assert!(
         matches!(
             error,
-            PolygonError::Damaged { .. } | PolygonError::CutOff { .. } | PolygonError::Open { .. }
+            PolygonError::Vector(
+                VectorError::Damaged { .. } | VectorError::CutOff { .. } | VectorError::Open { .. }
+            )
         ),
         "{error}"
     );

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::TileId;
+use corniche_gis::RasterError;
 use corniche_photo::{LevelChoice, PhotoError, PhotoReader, Photos, Texels};
 use corniche_testing::{ColourImage, Raster};
 use gdal::{
@@ -316,7 +317,7 @@ fn what_is_no_photo_is_refused_with_what_to_do() {
     let text = refused(&[flat]);
     assert!(text.contains("no georeference"), "{text}");
     let missing = Photos::open(&[at.join("none.tif")]).unwrap_err();
-    assert!(matches!(missing, PhotoError::Missing { .. }), "{missing}");
+    assert!(matches!(missing, PhotoError::Raster(RasterError::Missing { .. })), "{missing}");
     assert_eq!(missing.to_string(), format!("cannot open photo {:?}", at.join("none.tif")));
     assert!(matches!(Photos::open(&[]), Err(PhotoError::NoFiles)));
     std::fs::write(at.join("text.tif"), "no image").unwrap();

@@ -172,7 +172,7 @@ fn is_final(error: &BuildError) -> bool {
                 | BuildError::NoGround { .. }
                 | BuildError::DamagedPackage { .. }
                 | BuildError::PackageTile { .. }
-                | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
+                | BuildError::Dem(DemError::Audit(_))
                 | BuildError::Triangulate { .. }
                 | BuildError::Encode(_)
         )

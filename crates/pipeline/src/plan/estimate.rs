@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use corniche_dem::{Dem, FileBlocks};
+use corniche_dem::Dem;
 use corniche_geom::TILE_CELLS;
+use corniche_gis::FileBlocks;
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use corniche_dem::{Dem, DemProjection, FileDatums, GridPlan, Polygon};
+use corniche_dem::{Dem, GridPlan};
 use corniche_geom::CoordinateTable;
+use corniche_gis::{DemProjection, FileDatums, Polygon};
 use corniche_tileset::ReliefLevels;
 
 use super::{coordinates::coordinates, facts::terrain_differences, opened_photos::PhotoSource};

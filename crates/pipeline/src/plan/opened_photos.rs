@@ -1,6 +1,7 @@
 //! The photos of a build are opened and placed on the grid, or taken from another package.
 
-use corniche_dem::{FileBlocks, FileDatums, GridPlan};
+use corniche_dem::GridPlan;
+use corniche_gis::{FileBlocks, FileDatums};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;
 

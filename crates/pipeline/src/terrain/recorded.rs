@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{DemError, DemProjection, GridPlan, RecordedCrs};
+use corniche_dem::GridPlan;
 use corniche_geom::TileId;
+use corniche_gis::{CrsError, DemProjection, RecordedCrs};
 use corniche_tileset::{
     FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
 };
@@ -60,7 +61,7 @@ impl RecordedTerrain {
     pub(crate) fn open(path: &Path, generator: &str) -> Result<Self, BuildError> {
         let package = open_package(path)?;
         let manifest = package.manifest();
-        let this = format!("{generator}, {}", corniche_dem::libraries());
+        let this = format!("{generator}, {}", corniche_gis::libraries());
         if manifest.generator != this {
             let differences = format!("it was made by {}, this is {this}", manifest.generator);
             return Err(BuildError::OtherTerrain { path: path.to_path_buf(), differences });
@@ -103,7 +104,7 @@ impl RecordedTerrain {
     }
 
     /// WGS84 ⇄ working CRS.
-    pub(crate) fn projection(&self) -> Result<DemProjection, DemError> {
+    pub(crate) fn projection(&self) -> Result<DemProjection, CrsError> {
         self.crs.projection(self.manifest().area_deg())
     }
 

@@ -1,7 +1,8 @@
 //! The grid of a package, from its manifest.
 
-use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
+use corniche_dem::{Clip, GridPlan, PlanScale, RecordedGrid};
 use corniche_geom::{GridFrame, TILE_CELLS};
+use corniche_gis::{CrsError, RecordedCrs};
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
 use crate::manifest_texts;
@@ -10,7 +11,7 @@ use crate::manifest_texts;
 pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
     let [south_west, north_east] = manifest.data_nodes();
     let scale = &manifest.scale;
-    crs.plan(RecordedGrid {
+    RecordedGrid {
         frame: manifest.frame,
         south_west,
         north_east,
@@ -30,7 +31,8 @@ pub(crate) fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
         vertical: manifest.vertical.treatment.clone(),
         datum_operations: manifest_texts::recorded_datum_operations(manifest),
         fill_voids: manifest.settings.fill_voids,
-    })
+    }
+    .plan(crs)
 }
 
 /// Fails with a reason unless the grid is one that a build makes. It decides how much work there is.
@@ -63,7 +65,7 @@ pub(crate) fn check(manifest: &Manifest) -> Result<(), &'static str> {
 ///
 /// # Errors
 /// When PROJ does not know its CRS.
-pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, DemError> {
+pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, CrsError> {
     let bounds = manifest.whole_data_bounds();
     let crs = RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, bounds)?;
     Ok(plan(&crs, manifest))

@@ -1,6 +1,6 @@
 //! Whether the polygon that is given is the one that the package was cut with.
 
-use corniche_dem::Polygon;
+use corniche_gis::Polygon;
 use corniche_tileset::Manifest;
 
 use super::error::VerifyError;

@@ -79,9 +79,7 @@ pub(crate) fn verify(
 fn refusal(audited: Result<(), BuildError>) -> Result<Option<String>, VerifyError> {
     match audited {
         Ok(()) => Ok(None),
-        Err(BuildError::Dem(error @ (DemError::OutOfRange { .. } | DemError::Sentinel { .. }))) => {
-            Ok(Some(error.to_string()))
-        }
+        Err(BuildError::Dem(error @ DemError::Audit(_))) => Ok(Some(error.to_string())),
         Err(error) => Err(error.into()),
     }
 }

@@ -9,8 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::Polygon;
 use corniche_geom::{LatticePoint, TileId};
+use corniche_gis::Polygon;
 use corniche_pipeline::{BuildSettings, Silent, VerifyOsm, VerifySettings, build, verify};
 use corniche_testing::{cases, real_data, sample};
 use corniche_tileset::{FilePackage, Sections, SpanHeight, SpanRun, decode_spans};
