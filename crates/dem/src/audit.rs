@@ -127,7 +127,7 @@ impl Dem {
     /// When PROJ fails.
     pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, CrsError> {
         let mut needed: Vec<Vec<SampleRect>> = vec![Vec::new(); self.sources.len()];
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
                 needed[file.index] = without_overlap(parts_of_file(mosaic, file, &rect));
@@ -174,7 +174,7 @@ impl Dem {
         block: &AuditBlock,
         plan: &GridPlan,
     ) -> Result<[f64; 2], CrsError> {
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let Some(file) = mosaic.files.iter().find(|file| file.index == block.file) else {
                 continue;
             };

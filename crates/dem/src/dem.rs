@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use corniche_geom::Bounds;
 use corniche_gis::{
-    Crs, CrsOperation, FileBlocks, RasterError, RasterKind, center_deg, first_names, quiet,
+    Crs, CrsOperation, FileBlocks, FileUse, RasterError, center_deg, first_names, quiet,
 };
 
 use crate::OpenDemError;
@@ -86,10 +86,7 @@ impl Dem {
     /// # Errors
     /// When a file cannot be opened any more.
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, RasterError> {
-        let mut found = Vec::new();
-        for source in &self.sources {
-            found.extend(FileBlocks::of_file(&source.path, source.band, RasterKind::Dem)?);
-        }
-        Ok(found)
+        let blocks = |source: &Source| FileBlocks::of_file(&source.path, source.band, FileUse::Dem);
+        Ok(self.sources.iter().map(blocks).collect::<Result<Vec<_>, _>>()?.concat())
     }
 }

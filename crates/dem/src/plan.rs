@@ -2,7 +2,6 @@
 
 pub(crate) mod grid_plan;
 pub(crate) mod planning;
-pub(crate) mod recorded_grid;
 
 pub(crate) mod clip;
 pub(crate) mod layout;

@@ -1,54 +1,42 @@
 //! Errors of files and coordinate systems, an enum for each activity.
 
-use std::{fmt, path::PathBuf};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+use gdal::errors::GdalError;
 
 use crate::LibraryError;
 
-/// What a raster is read for, as messages call it.
+/// What a file is read for, as messages call it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RasterKind {
-    /// For its heights.
+pub enum FileUse {
+    /// A raster, for its heights.
     Dem,
-    /// For its colours.
+    /// A raster, for its colours.
     Photo,
-}
-
-impl RasterKind {
-    fn pick(self, dem: &'static str, photo: &'static str) -> &'static str {
-        match self {
-            Self::Dem => dem,
-            Self::Photo => photo,
-        }
-    }
-}
-
-impl fmt::Display for RasterKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.pick("DEM", "photo"))
-    }
-}
-
-/// What a vector file is read for, as messages call it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum VectorKind {
-    /// To cut elevation data.
+    /// A vector file, to cut elevation data.
     Polygon,
-    /// To be drawn.
+    /// A vector file, to be drawn.
     Lines,
 }
 
-impl VectorKind {
-    fn pick(self, polygon: &'static str, lines: &'static str) -> &'static str {
-        match self {
-            Self::Polygon => polygon,
-            Self::Lines => lines,
-        }
+impl FileUse {
+    /// One of two words: the first for heights and polygons, the second for photos and lines.
+    fn pick(self, first: &'static str, second: &'static str) -> &'static str {
+        if matches!(self, Self::Dem | Self::Polygon) { first } else { second }
     }
 }
 
-impl fmt::Display for VectorKind {
+impl fmt::Display for FileUse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.pick("the polygon", "the lines"))
+        f.write_str(match self {
+            Self::Dem => "DEM",
+            Self::Photo => "photo",
+            Self::Polygon => "the polygon",
+            Self::Lines => "the lines",
+        })
     }
 }
 
@@ -59,7 +47,7 @@ impl fmt::Display for VectorKind {
 )]
 pub struct NotUtf8 {
     /// What the file is read for.
-    pub kind: RasterKind,
+    pub kind: FileUse,
     /// The name.
     pub path: PathBuf,
 }
@@ -74,17 +62,9 @@ pub enum NameError {
     #[error("the list {path:?} names no file; write the name of a file on each line")]
     EmptyList { path: PathBuf },
     #[error(
-        "the folder {path:?} holds no elevation file (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
+        "the folder {path:?} holds no {sought}; folders in it are not looked into, so name the files or the right folder"
     )]
-    EmptyFolder { path: PathBuf, endings: String },
-    #[error(
-        "the folder {path:?} holds no extract (names ending in .pbf); folders in it are not looked into, so name the files or the right folder"
-    )]
-    NoExtracts { path: PathBuf },
-    #[error(
-        "the folder {path:?} holds no photo (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
-    )]
-    NoPhotos { path: PathBuf, endings: String },
+    EmptyFolder { path: PathBuf, sought: String },
     #[error("the pattern {pattern:?} names no file: {reason}")]
     Pattern { pattern: String, reason: String },
     #[error(
@@ -101,7 +81,7 @@ pub enum NameError {
 #[non_exhaustive]
 pub enum RasterError {
     #[error("cannot open {kind} {path:?}")]
-    Missing { kind: RasterKind, path: PathBuf, source: std::io::Error },
+    Missing { kind: FileUse, path: PathBuf, source: std::io::Error },
     #[error(transparent)]
     NotUtf8(#[from] NotUtf8),
     #[error(
@@ -158,12 +138,20 @@ pub enum RasterError {
         )
     )]
     Read {
-        kind: RasterKind,
+        kind: FileUse,
         path: PathBuf,
         start: [usize; 2],
         size: [usize; 2],
         source: Box<LibraryError>,
     },
+}
+
+impl RasterError {
+    /// Why GDAL cannot read a file, in its words.
+    #[must_use]
+    pub fn unreadable(path: &Path, source: GdalError) -> Self {
+        Self::Open { path: path.to_path_buf(), source: source.into() }
+    }
 }
 
 /// Why a coordinate system, or a way from one to another, cannot be used.
@@ -216,29 +204,29 @@ pub enum CrsError {
 #[non_exhaustive]
 pub enum VectorError {
     #[error("cannot open {kind} {path:?}")]
-    Missing { kind: VectorKind, path: PathBuf, source: std::io::Error },
+    Missing { kind: FileUse, path: PathBuf, source: std::io::Error },
     #[error(
         "{kind} {path:?} {}",
         .kind.pick("is a pipe or a device; save it to a file first", "are a pipe or a device; save them to a file first")
     )]
-    Stream { kind: VectorKind, path: PathBuf },
+    Stream { kind: FileUse, path: PathBuf },
     #[error(
         "{path:?} is not a vector file that GDAL can read; it is damaged, cut off, or of an unknown format; GeoJSON, {}GeoPackage and Shapefile can be read (ogr2ogr converts others)",
         .kind.pick("", "GPX, ")
     )]
-    Open { kind: VectorKind, path: PathBuf, source: Box<LibraryError> },
+    Open { kind: FileUse, path: PathBuf, source: Box<LibraryError> },
     #[error("cannot read {path:?}: {advice}")]
     NoDriver { path: PathBuf, advice: String },
     #[error(
         "not all features of {}{path:?} can be read; fetch or export it again",
         .kind.pick("the polygon ", "")
     )]
-    Damaged { kind: VectorKind, path: PathBuf, source: Box<LibraryError> },
+    Damaged { kind: FileUse, path: PathBuf, source: Box<LibraryError> },
     #[error(
         "layer {layer:?} of {}{path:?} claims to have {claimed} features, and {found} can be read: it is damaged or cut off; fetch or export it again",
         .kind.pick("the polygon ", "")
     )]
-    CutOff { kind: VectorKind, path: PathBuf, layer: String, claimed: u64, found: u64 },
+    CutOff { kind: FileUse, path: PathBuf, layer: String, claimed: u64, found: u64 },
 }
 
 /// Why a file gives no polygon to cut elevation data with, or not in a working CRS.

@@ -10,7 +10,7 @@ use gdal::vector::{Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_ty
 
 use crate::crs::horizontal::Crs;
 use crate::files::vector_files::{for_each_feature, open_vectors};
-use crate::{PolygonError, VectorKind, library_error};
+use crate::{FileUse, PolygonError, library_error};
 
 /// Far more than any administrative border has; the limit keeps memory bounded.
 const MOST_CORNERS: usize = 4_000_000;
@@ -44,7 +44,7 @@ impl Polygon {
     /// itself.
     pub fn read(path: &Path) -> Result<Self, PolygonError> {
         let own = || path.to_path_buf();
-        let dataset = open_vectors(path, VectorKind::Polygon)?;
+        let dataset = open_vectors(path, FileUse::Polygon)?;
         let mut reading = Reading { path, parts: Vec::new(), features: 0, corners: 0 };
         for mut layer in dataset.layers() {
             reading.read_layer(&mut layer)?;
@@ -107,7 +107,7 @@ impl Reading<'_> {
         let crs = layer.spatial_ref().as_ref().map(Crs::from_spatial_ref).transpose();
         let crs =
             crs.map_err(|error| PolygonError::Crs { path: own(), reason: error.to_string() })?;
-        for_each_feature(layer, (path, VectorKind::Polygon), |feature| {
+        for_each_feature(layer, (path, FileUse::Polygon), |feature| {
             self.features += 1;
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else {
                 return Ok(());

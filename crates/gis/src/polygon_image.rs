@@ -23,10 +23,8 @@ impl GridCrs {
         area_deg: Bounds,
         cell_m: f64,
     ) -> Result<Bounds, PolygonError> {
-        let mut bounds = Bounds::EMPTY;
         let parts = self.polygon_parts_m(polygon, area_deg, cell_m)?;
-        parts.iter().flatten().flatten().for_each(|&corner| bounds.include(corner));
-        Ok(bounds)
+        Ok(Bounds::around(parts.iter().flatten().flatten()))
     }
 
     /// A polygon on the lattice of a package over data that lie in `area_deg`: the same, to the last step, as when the package was built.
@@ -87,7 +85,7 @@ fn of_part(
         };
         if let Some(seam_m) = seam_m {
             // The outer ring goes where the data's middle is near, and holes go with it.
-            let own = center_x(&ring);
+            let [own, _] = Bounds::around(&ring).center();
             let near = *center_m.get_or_insert(own - seam_m.turn() * seam_m.turns(own));
             let away = seam_m.turn() * seam_m.around(near).turns(own);
             for corner in &mut ring {
@@ -97,14 +95,6 @@ fn of_part(
         rings.push(ring);
     }
     Ok(Some(rings))
-}
-
-fn center_x(ring: &Ring) -> f64 {
-    let mut bounds = Bounds::EMPTY;
-    for &corner in ring {
-        bounds.include(corner);
-    }
-    bounds.center()[0]
 }
 
 /// A corner, where it comes out, and whether the edge to the next corner needs no more corners.

@@ -2,7 +2,7 @@
 
 use std::{fs, io::Read as _, path::Path};
 
-use corniche_gis::{VectorError, VectorKind};
+use corniche_gis::{FileUse, VectorError};
 use geo::{LineString, Winding as _};
 use serde_json::{Map, Value, json};
 
@@ -50,7 +50,7 @@ impl LineFile {
     pub fn read(path: &Path) -> Result<Self, OverlayError> {
         let failed = |source| OverlayError::Read { path: path.to_path_buf(), source };
         if !fs::metadata(path).map_err(failed)?.is_file() {
-            let (kind, path) = (VectorKind::Lines, path.to_path_buf());
+            let (kind, path) = (FileUse::Lines, path.to_path_buf());
             return Err(VectorError::Stream { kind, path }.into());
         }
         let mut text = String::new();

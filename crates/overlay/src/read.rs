@@ -4,7 +4,7 @@ use std::{collections::HashMap, path::Path};
 
 use corniche_geom::MOST_TILE_STEPS;
 use corniche_gis::{
-    CrsError, FileDatums, ToWgs84, VectorKind, for_each_feature, forget, open_vectors,
+    CrsError, FileDatums, FileUse, ToWgs84, for_each_feature, forget, open_vectors,
 };
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten,
@@ -103,7 +103,7 @@ impl VectorLine {
 /// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system, or one of an unknown datum.
 pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
-    let dataset = open_vectors(path, VectorKind::Lines)?;
+    let dataset = open_vectors(path, FileUse::Lines)?;
     let is_gpx = dataset.driver().short_name() == "GPX";
     let mut reading = Reading { path, found: VectorLines::default(), points: 0, allow_ballpark };
     let [mut routes, mut tracks] = [0; 2];
@@ -150,7 +150,7 @@ impl Reading<'_> {
         let to_wgs84 = layer.spatial_ref().as_ref().map(ToWgs84::new).transpose();
         let to_wgs84 = to_wgs84.map_err(unusable)?;
         let before = self.found.lines.len();
-        for_each_feature(layer, (path, VectorKind::Lines), |feature| {
+        for_each_feature(layer, (path, FileUse::Lines), |feature| {
             let label = label_of(feature);
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else {
                 return Ok(());

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_gis::{RasterError, RasterKind, forget, has_own_mask};
+use corniche_gis::{FileUse, RasterError, forget, has_own_mask};
 use gdal::Dataset;
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, GdalDataType};
@@ -163,7 +163,7 @@ impl Bands {
         };
         forget();
         read().map_err(|source| RasterError::Read {
-            kind: RasterKind::Photo,
+            kind: FileUse::Photo,
             path: path.to_path_buf(),
             start: [column, row],
             size: [columns, rows],
@@ -184,5 +184,5 @@ impl Colour {
 }
 
 fn opening(path: &Path, source: GdalError) -> PhotoError {
-    RasterError::Open { path: path.to_path_buf(), source: source.into() }.into()
+    RasterError::unreadable(path, source).into()
 }

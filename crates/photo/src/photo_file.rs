@@ -4,7 +4,7 @@ use std::path::Path;
 
 use corniche_dem::GridPlan;
 use corniche_geom::Bounds;
-use corniche_gis::{PlacedRaster, RasterKind, RasterOnGrid, stored_text};
+use corniche_gis::{FileUse, PlacedRaster, RasterOnGrid, stored_text};
 
 use crate::bands::Bands;
 use crate::{PhotoError, TexelGrid};
@@ -34,7 +34,7 @@ const SIDE_POINTS: usize = 33;
 
 impl PhotoFile {
     pub(crate) fn open(path: &Path) -> Result<Self, PhotoError> {
-        let (raster, dataset) = PlacedRaster::open(path, RasterKind::Photo)?;
+        let (raster, dataset) = PlacedRaster::open(path, FileUse::Photo)?;
         if dataset.raster_count() == 0 {
             return Err(PhotoError::NoBand { path: path.to_path_buf() });
         }
@@ -54,10 +54,7 @@ impl PhotoFile {
             .map(|[c, r]| [c * columns, r * rows])
             .collect();
         on_grid.working_from_pixels(&mut border)?;
-        let mut bounds = Bounds::EMPTY;
-        for point in border.into_iter().filter(|point| point[0].is_finite()) {
-            bounds.include(point);
-        }
+        let bounds = Bounds::around(&border);
         if bounds.is_empty() {
             return Err(nowhere());
         }

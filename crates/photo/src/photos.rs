@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use corniche_dem::GridPlan;
 use corniche_geom::Bounds;
-use corniche_gis::{FileBlocks, PlacedRaster, RasterKind};
+use corniche_gis::{FileBlocks, FileUse, PlacedRaster};
 
 use crate::photo_file::{PhotoFile, overlap};
 use crate::{PhotoError, PhotoGrid, TexelGrid};
@@ -73,7 +73,7 @@ impl Photos {
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, PhotoError> {
         let mut found = Vec::new();
         for file in &self.files {
-            found.extend(FileBlocks::of_file(file.raster.path(), 1, RasterKind::Photo)?);
+            found.extend(FileBlocks::of_file(file.raster.path(), 1, FileUse::Photo)?);
         }
         Ok(found)
     }

@@ -1,7 +1,7 @@
 //! The reader of texels: windows of them are made of the pixels of photos, block by block.
 
 use corniche_geom::Bounds;
-use corniche_gis::{OpenRasters, RasterError, RasterKind};
+use corniche_gis::{FileUse, OpenRasters, RasterError};
 
 use crate::filter::{Filter, Light, Pixels};
 use crate::photo_file::{PlacedPhoto, overlap};
@@ -121,7 +121,7 @@ impl<'a> PhotoReader<'a> {
         size: [i64; 2],
     ) -> Result<Pixels, RasterError> {
         let path = photo.file.raster.path();
-        let dataset = self.open.dataset(index, path, RasterKind::Photo)?;
+        let dataset = self.open.dataset(index, path, FileUse::Photo)?;
         let [start, size] = [start, size].map(|pair| pair.map(|value| value as usize));
         photo.file.bands.read(path, dataset, start, size)
     }

@@ -27,7 +27,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
     ("tileset", &["drape", "tin", "roads", "areas", "varints"]),
     ("osm", &["roads", "areas", "store", "objects", "varints"]),
     ("photo", &["dem"]),
-    ("dem", &["gis"]),
+    ("dem", &["gis", "work"]),
     ("gis", &["geom"]),
     ("presets", &["config", "roads", "areas"]),
     ("styles", &["config", "roads", "areas"]),

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use corniche_geom::{GeoTransform, wgs84::SEMI_MAJOR_M};
 use corniche_gis::{
-    Crs, Georeference, HeightOperation, RasterError, RasterKind, VerticalCrs, names_up_to,
-    open_raster,
+    Crs, FileUse, Georeference, HeightOperation, RasterError, VerticalCrs, names_up_to, open_raster,
 };
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, RasterBand};
@@ -45,12 +44,13 @@ pub(crate) struct Source {
 
 impl Source {
     pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, OpenDemError> {
-        let dataset = open_raster(path, RasterKind::Dem)?;
+        let dataset = open_raster(path, FileUse::Dem)?;
         if dataset.raster_count() == 0 {
             return Err(no_band(path, &dataset));
         }
         let number = band_number(path, &dataset, options.band)?;
-        let band = dataset.rasterband(number).map_err(|source| broken(path, source))?;
+        let band =
+            dataset.rasterband(number).map_err(|source| RasterError::unreadable(path, source))?;
         let (columns, rows) = dataset.raster_size();
         let Georeference { crs_from_pixel, crs, vertical } =
             Georeference::of(path, &dataset, options.dem_crs.as_deref())?;
@@ -168,18 +168,13 @@ impl Source {
             Ok(())
         };
         read().map_err(|source| RasterError::Read {
-            kind: RasterKind::Dem,
+            kind: FileUse::Dem,
             path: self.path.clone(),
             start: [column, row],
             size: [columns, rows],
             source: source.into(),
         })
     }
-}
-
-/// The error for a file that was opened, and whose bands GDAL does not hand out.
-pub(crate) fn broken(path: &Path, source: GdalError) -> RasterError {
-    RasterError::Open { path: path.to_path_buf(), source: source.into() }
 }
 
 /// Replaces values by NaN.
@@ -261,7 +256,7 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
 /// display.
 fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), OpenDemError> {
     use ColorInterpretation as C;
-    let band = dataset.rasterband(1).map_err(|source| broken(path, source))?;
+    let band = dataset.rasterband(1).map_err(|source| RasterError::unreadable(path, source))?;
     let interpretation = band.color_interpretation();
     let is_colour = matches!(
         interpretation,

@@ -80,10 +80,8 @@ impl StoredValues {
             let path = path.to_path_buf();
             return Err(OpenDemError::Scale { path, band: number, scale, offset });
         }
-        let has_mask = has_own_mask(band).map_err(|source| RasterError::Open {
-            path: path.to_path_buf(),
-            source: source.into(),
-        })?;
+        let has_mask =
+            has_own_mask(band).map_err(|source| RasterError::unreadable(path, source))?;
         let pixel_type = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
         Ok(Self {
             nodata,

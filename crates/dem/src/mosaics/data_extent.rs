@@ -55,11 +55,7 @@ pub(crate) fn bounds(
 
 /// The rectangle around images of [`rim_and_inside`], the bend between rim positions included; empty where there are none.
 pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    let is_point = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
-    for &point in points.iter().filter(|point| is_point(point)) {
-        bounds.include(point);
-    }
+    let mut bounds = Bounds::around(points);
     // The distance of a position from the straight line between its two neighbours is 4 times the bend between two
     // positions.
     let mut bend = 0.0_f64;
@@ -110,8 +106,8 @@ pub(crate) fn wgs84(
                 let path = sources[file.index].path.clone();
                 return Err(OpenDemError::Nowhere { path, crs: mosaic.crs.label.clone() });
             }
-            let turns =
-                of_mosaic.unwrap_or_else(|| turns_beside(around(&points).center()[0], bounds));
+            let turns = of_mosaic
+                .unwrap_or_else(|| turns_beside(Bounds::around(&points).center()[0], bounds));
             for point in &mut points {
                 point[0] -= 360.0 * turns;
                 bounds.include(*point);
@@ -151,19 +147,10 @@ pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
         seam.around(first).unroll(rim);
     }
     // If no position of the rim is on earth, the first inner position is used.
-    let mut near = first.map(|_| around(rim).center()[0]);
+    let mut near = first.map(|_| Bounds::around(&*rim).center()[0]);
     for point in inside.iter_mut().filter(is_somewhere) {
         point[0] = seam.around(*near.get_or_insert(point[0])).image(point[0]);
     }
-}
-
-/// The rectangle around those positions that are somewhere.
-fn around(points: &[[f64; 2]]) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
-        bounds.include(point);
-    }
-    bounds
 }
 
 /// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and none from an empty one.

@@ -1,6 +1,6 @@
 //! The samples of a mosaic, read from files that are kept open.
 
-use corniche_gis::{OpenRasters, RasterError, RasterKind};
+use corniche_gis::{FileUse, OpenRasters, RasterError};
 use gdal::Dataset;
 
 use crate::ReadHeightsError;
@@ -57,6 +57,6 @@ impl OpenFiles {
         index: usize,
         source: &Source,
     ) -> Result<&Dataset, RasterError> {
-        self.open.dataset(index, &source.path, RasterKind::Dem)
+        self.open.dataset(index, &source.path, FileUse::Dem)
     }
 }

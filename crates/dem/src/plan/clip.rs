@@ -9,7 +9,7 @@ use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, Polygon, PolygonError};
 
 use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
 use crate::mosaics::mosaic::{Mosaic, Placed, SampleRect};
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, node_bounds_m};
 use crate::plan::layout::Layout;
 use crate::{Dem, GridError};
 
@@ -21,10 +21,14 @@ const LEAST_ROOM_DEG: f64 = 1e-3;
 /// Samples around those under the nodes asked for, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
-/// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
+/// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes, its south-western and north-eastern one, rounded outwards. They
+/// may reach beyond the data. `area_deg` is the rectangle for which PROJ chooses its operation.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
-pub(crate) fn nodes_of(
+///
+/// # Errors
+/// When the bounds have no place in the CRS.
+pub fn nodes_within(
     bounds_deg: [f64; 4],
     working: &GridCrs,
     area_deg: Bounds,
@@ -82,7 +86,7 @@ impl Asked {
         let Layout { working, origin_m, cell, .. } = layout;
         let mut asked: Option<Self> = None;
         if let Some(bounds_deg) = options.bounds_deg {
-            let nodes = nodes_of(bounds_deg, working, area_deg, *origin_m, *cell)?;
+            let nodes = nodes_within(bounds_deg, working, area_deg, *origin_m, *cell)?;
             let text = format!("--bounds {}", bounds_text(bounds_deg));
             asked = Some(Self { nodes, text, bounds_deg: Some(bounds_deg) });
         }
@@ -175,7 +179,7 @@ pub(crate) fn cut(
 }
 
 /// The rectangle of nodes that two have in common; its corners change places where there is none.
-fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
+pub(crate) fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
     [
         NodeIndex { i: a[0].i.max(b[0].i), j: a[0].j.max(b[0].j) },
         NodeIndex { i: a[1].i.min(b[1].i), j: a[1].j.min(b[1].j) },
@@ -201,10 +205,7 @@ pub(crate) fn wgs84_bounds(
     } else {
         unwrap(&mut points, degrees);
     }
-    let mut bounds = Bounds::EMPTY;
-    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
-        bounds.include(point);
-    }
+    let bounds = Bounds::around(&points);
     if bounds.is_empty() {
         return Err(GridError::OutsideCrs { crs: working.crs.label.clone() });
     }
@@ -230,11 +231,11 @@ pub(crate) fn needed_samples(
     ];
     let (min, max) = match &role.method {
         Method::Aligned(alignment) => {
-            let (a, b) = (alignment.sample(nodes[0]), alignment.sample(nodes[1]));
-            ([0, 1].map(|axis| a[axis].min(b[axis])), [0, 1].map(|axis| a[axis].max(b[axis])))
+            let SampleRect { min, max } = alignment.samples(nodes);
+            (min, max.map(|end| end - 1))
         }
         Method::Resampled(positions, kernel) => {
-            let Bounds { min_x, min_y, max_x, max_y } = bounds_of(&plan.frame, nodes);
+            let Bounds { min_x, min_y, max_x, max_y } = node_bounds_m(&plan.frame, nodes);
             let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
             positions.samples_of(&mut points)?;
             let bounds = with_bend(&points);
@@ -264,7 +265,7 @@ impl Dem {
     /// When PROJ fails.
     pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, CrsError> {
         let mut is_needed = vec![false; self.sources.len()];
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
                 is_needed[file.index] = !parts_of_file(mosaic, file, &rect).is_empty();

@@ -5,8 +5,8 @@ use corniche_gis::{CrsError, CrsOperation};
 
 use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::Mosaic;
+use crate::plan::clip::common;
 use crate::plan::grid_plan::Method;
-use crate::plan::kernel::Alignment;
 use crate::{Dem, GridPlan};
 
 /// The samples of the files that lie on one grid.
@@ -25,20 +25,10 @@ impl Dem {
     /// When a file's place cannot be transformed.
     pub fn file_nodes(&self, plan: &GridPlan) -> Result<Vec<[NodeIndex; 2]>, CrsError> {
         let mut found = Vec::new();
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             for file in &mosaic.files {
-                let [south_west, north_east] = match &role.method {
-                    Method::Aligned(Alignment { first, way, every }) => {
-                        let rect = mosaic.closed(&file.rect);
-                        let ends = |axis: usize| {
-                            let at = |index: i64| first[axis] + way[axis] * index;
-                            let (a, b) = (at(rect.min[axis]), at(rect.max[axis] - 1));
-                            // Rounded inwards: the outermost samples can lie between two nodes.
-                            (-(-a.min(b)).div_euclid(*every), a.max(b).div_euclid(*every))
-                        };
-                        let ((west, east), (south, north)) = (ends(0), ends(1));
-                        [NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]
-                    }
+                let own = match &role.method {
+                    Method::Aligned(alignment) => alignment.nodes(&mosaic.closed(&file.rect)),
                     Method::Resampled(..) => {
                         let bounds =
                             data_extent::bounds(mosaic, &file.rect, &role.working_from_crs)?;
@@ -53,14 +43,7 @@ impl Dem {
                         ]
                     }
                 };
-                let south_west = NodeIndex {
-                    i: south_west.i.max(plan.south_west.i),
-                    j: south_west.j.max(plan.south_west.j),
-                };
-                let north_east = NodeIndex {
-                    i: north_east.i.min(plan.north_east.i),
-                    j: north_east.j.min(plan.north_east.j),
-                };
+                let [south_west, north_east] = common(own, [plan.south_west, plan.north_east]);
                 if south_west.i <= north_east.i && south_west.j <= north_east.j {
                     found.push([south_west, north_east]);
                 }
@@ -79,7 +62,7 @@ impl Dem {
             });
             rects.collect()
         };
-        let all = self.mosaics.iter().zip(&plan.roles);
+        let all = self.mosaics.iter().zip(&plan.roles.0);
         all.map(|(mosaic, role)| Footprint {
             rects: of_mosaic(mosaic),
             mosaic,

@@ -110,11 +110,15 @@ pub struct GridPlan {
     pub libraries: String,
     /// A void is filled from data within this many cells.
     pub fill_voids: u32,
-    /// One per mosaic of the DEM, in its order.
-    pub(crate) roles: Vec<MosaicRole>,
+    /// How samples become heights; nothing in the plan of a package without its elevation files, with which no height can be read.
+    pub roles: MosaicRoles,
     /// Its working CRS.
     pub working: GridCrs,
 }
+
+/// What each mosaic of the DEM does for the grid, in its order.
+#[derive(Debug, Clone, Default)]
+pub struct MosaicRoles(pub(crate) Vec<MosaicRole>);
 
 /// What one mosaic does for the grid: which nodes it can serve, and how.
 #[derive(Debug, Clone)]
@@ -133,7 +137,8 @@ pub(crate) enum Method {
 }
 
 /// The rectangle between two nodes, working metres.
-pub(crate) fn bounds_of(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+#[must_use]
+pub fn node_bounds_m(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
     Bounds {
         min_x: frame.x_m(south_west.i),
         min_y: frame.y_m(south_west.j),

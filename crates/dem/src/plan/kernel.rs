@@ -23,6 +23,25 @@ pub(crate) struct Alignment {
 }
 
 impl Alignment {
+    /// The samples under the nodes between two.
+    pub(crate) fn samples(&self, nodes: [NodeIndex; 2]) -> SampleRect {
+        let [a, b] = nodes.map(|node| self.sample(node));
+        let min = [0, 1].map(|axis| a[axis].min(b[axis]));
+        SampleRect { min, max: [0, 1].map(|axis| a[axis].max(b[axis]) + 1) }
+    }
+
+    /// The south-western and the north-eastern node on samples of a rectangle. Rounded inwards: the outermost samples can lie between two
+    /// nodes.
+    pub(crate) fn nodes(&self, samples: &SampleRect) -> [NodeIndex; 2] {
+        let ends = |axis: usize| {
+            let at = |index: i64| self.first[axis] + self.way[axis] * index;
+            let (a, b) = (at(samples.min[axis]), at(samples.max[axis] - 1));
+            (-(-a.min(b)).div_euclid(self.every), a.max(b).div_euclid(self.every))
+        };
+        let ((west, east), (south, north)) = (ends(0), ends(1));
+        [NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]
+    }
+
     /// The sample under a node.
     pub(crate) fn sample(&self, node: NodeIndex) -> [i64; 2] {
         [

@@ -176,17 +176,8 @@ impl Layout {
         mosaic: &Mosaic,
         operation: &CrsOperation,
     ) -> Result<[NodeIndex; 2], GridError> {
-        if let Some(Alignment { first, way, every }) = self.alignment(mosaic) {
-            let closed = mosaic.closed(&mosaic.extent);
-            let (low, high) = (closed.min, closed.max.map(|index| index - 1));
-            let ends = |axis: usize| {
-                let (a, b) =
-                    (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
-                // Rounded inwards: the outermost samples can lie between two nodes.
-                (-(-a.min(b)).div_euclid(every), a.max(b).div_euclid(every))
-            };
-            let ((west, east), (south, north)) = (ends(0), ends(1));
-            return Ok([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]);
+        if let Some(alignment) = self.alignment(mosaic) {
+            return Ok(alignment.nodes(&mosaic.closed(&mosaic.extent)));
         }
         let mut bounds = Bounds::EMPTY;
         for file in &mosaic.files {

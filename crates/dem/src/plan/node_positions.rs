@@ -1,6 +1,6 @@
 //! Where nodes lie among the DEM's samples.
 
-use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow, Seam};
+use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow};
 use corniche_gis::{CrsError, CrsOperation};
 
 use crate::mosaics::mosaic::Mosaic;
@@ -28,10 +28,9 @@ const TRIAL_MESHES: i64 = 12;
 /// points are tested: with a conformal projection the errors cancel in the middle of a mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
-    pub(crate) crs_from_working: CrsOperation,
+    /// Around the seam of the mosaic's CRS.
+    crs_from_working: CrsOperation,
     crs_from_sample: GeoTransform,
-    /// The seam of the mosaic's CRS around its middle.
-    seam: Option<Seam>,
     step: i64,
     /// The tolerance, in samples.
     tolerance: f64,
@@ -47,13 +46,10 @@ impl NodePositions {
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
     ) -> Result<Self, CrsError> {
-        let seam = mosaic.seam();
-        let crs_from_sample = mosaic.crs_from_sample;
         let scale = samples_per_node.min(1.0);
         let mut positions = Self {
-            crs_from_working,
-            crs_from_sample,
-            seam,
+            crs_from_working: crs_from_working.around(mosaic.seam()),
+            crs_from_sample: mosaic.crs_from_sample,
             step: 1,
             tolerance: PLAN_TOLERANCE * scale,
         };
@@ -160,14 +156,7 @@ impl NodePositions {
         if points.is_empty() {
             return Ok(());
         }
-        self.crs_from_working.apply(points)?;
-        for point in points {
-            if let Some(seam) = self.seam {
-                point[0] = seam.image(point[0]);
-            }
-            *point = self.crs_from_sample.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
-        }
-        Ok(())
+        self.crs_from_working.apply_to_pixels(&self.crs_from_sample, points)
     }
 
     fn lattice(

@@ -8,7 +8,7 @@ use crate::plan::clip::{self, Asked};
 use crate::plan::datum_operations::datum_operations;
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{
-    Clip, GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of,
+    Clip, GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling, node_bounds_m,
 };
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
@@ -98,7 +98,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         None => whole,
     };
     let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
-    let datum_operations = datum_operations(dem, &layout.working, bounds_of(&frame, whole))?;
+    let datum_operations = datum_operations(dem, &layout.working, node_bounds_m(&frame, whole))?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()
@@ -111,10 +111,10 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         })
         .collect::<Result<_, GridError>>()?;
     let working = layout.working;
-    let data_bounds = bounds_of(&frame, [south_west, north_east]);
+    let data_bounds = node_bounds_m(&frame, [south_west, north_east]);
     let clip = asked.map(|asked| Clip {
         nodes: clip::on_lattice(&frame, asked.nodes),
-        whole_data_bounds: bounds_of(&frame, whole),
+        whole_data_bounds: node_bounds_m(&frame, whole),
         whole_wgs84_bounds: area_deg,
     });
     let wgs84_bounds = match clip {
@@ -142,7 +142,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         datum_operations,
         libraries: libraries(),
         fill_voids: options.fill_voids,
-        roles,
+        roles: MosaicRoles(roles),
         working,
     };
     match &options.polygon {

@@ -62,7 +62,7 @@ impl Dem {
     pub fn refuse_oversampling(&self, plan: &GridPlan) -> Result<(), GridError> {
         let cell = plan.frame.cell();
         let mut fewest: Option<f64> = None;
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let steps = steps_m(mosaic, &plan.working, &role.working_from_crs)?;
             let Some(samples) = steps.map(|steps| samples_to_a_cell(steps, cell)) else {
                 continue;

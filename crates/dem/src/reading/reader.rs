@@ -181,7 +181,7 @@ impl Reader<'_> {
     fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
-        for (role, mosaic) in plan.roles.iter().zip(&dem.mosaics) {
+        for (role, mosaic) in plan.roles.0.iter().zip(&dem.mosaics) {
             let Some(part) = intersection(&window, role.nodes) else {
                 continue;
             };
@@ -215,16 +215,12 @@ impl Reader<'_> {
         let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
         for top in (0..part.rows).step_by(band) {
             let rows = band.min(part.rows - top);
-            let sample = |column: usize, row: usize| alignment.sample(part.node(column, row));
-            let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
-            let rect = SampleRect {
-                min: [a[0].min(b[0]), a[1].min(b[1])],
-                max: [a[0].max(b[0]) + 1, a[1].max(b[1]) + 1],
-            };
+            let ends = [part.node(0, top), part.node(part.columns - 1, top + rows - 1)];
+            let rect = alignment.samples(ends);
             self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
             let width = rect.columns();
             for row in 0..rows {
-                let [_, line] = sample(0, top + row);
+                let [_, line] = alignment.sample(part.node(0, top + row));
                 let from = (line - rect.min[1]) as usize * width;
                 let line = &self.samples[from..from + width];
                 for column in 0..part.columns {

@@ -1,11 +1,9 @@
 //! How far lines are from the surface of the DEM's own samples.
 
-use std::{
-    collections::{HashMap, VecDeque},
-    rc::Rc,
-};
+use std::sync::Arc;
 
 use corniche_gis::CrsOperation;
+use corniche_work::Recent;
 
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
@@ -13,11 +11,11 @@ use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples along each side of a block.
 const BLOCK_SAMPLES: i64 = 64;
-/// Blocks that are kept: 17 MB.
-const MOST_BLOCKS: usize = 512;
+/// Bytes of the blocks that are kept, about 512.
+const KEPT_BYTES: u64 = 17 << 20;
 
 /// Heights of the samples of a block, row by row.
-type Block = Rc<[f64]>;
+type Block = Arc<Vec<f64>>;
 /// A mosaic, by its place, and a block of its samples.
 type BlockKey = (usize, [i64; 2]);
 /// From where to where along a segment, as shares of it.
@@ -30,9 +28,7 @@ pub struct SampleSurface<'a> {
     /// For each mosaic the operation from working metres to its CRS.
     crs_from_working: Vec<CrsOperation>,
     files: OpenFiles,
-    kept: HashMap<BlockKey, Block>,
-    /// The blocks that are kept, the oldest first.
-    order: VecDeque<BlockKey>,
+    kept: Recent<BlockKey, Vec<f64>>,
     /// The block that was asked for last.
     last: Option<(BlockKey, Block)>,
 }
@@ -58,8 +54,7 @@ impl Dem {
             dem: self,
             crs_from_working: self.mosaics.iter().map(operation).collect(),
             files: OpenFiles::default(),
-            kept: HashMap::new(),
-            order: VecDeque::new(),
+            kept: Recent::new(KEPT_BYTES),
             last: None,
         }
     }
@@ -84,10 +79,7 @@ impl SampleSurface<'_> {
         let mut places = Vec::with_capacity(self.crs_from_working.len());
         for (mosaic, operation) in self.dem.mosaics.iter().zip(&self.crs_from_working) {
             let mut at: Vec<[f64; 2]> = line.iter().map(|&[x, y, _]| [x, y]).collect();
-            operation.apply(&mut at)?;
-            for place in &mut at {
-                *place = mosaic.crs_from_sample.pixel_from_crs(*place).unwrap_or([f64::NAN; 2]);
-            }
+            operation.apply_to_pixels(&mosaic.crs_from_sample, &mut at)?;
             places.push(at);
         }
         let mut most_m: Option<f64> = None;
@@ -183,30 +175,18 @@ impl SampleSurface<'_> {
         if let Some((_, block)) = self.last.as_ref().filter(|(last, _)| *last == key) {
             return Ok(block[at]);
         }
-        let block = match self.kept.get(&key) {
-            Some(block) => Rc::clone(block),
-            None => self.read(key)?,
+        let Self { dem, files, kept, .. } = self;
+        let read = || {
+            let min = key.1.map(|number| number * BLOCK_SAMPLES);
+            let rect = SampleRect { min, max: min.map(|index| index + BLOCK_SAMPLES) };
+            let mut heights_m = Vec::new();
+            files.read(&dem.sources, &dem.mosaics[mosaic], &rect, &mut heights_m)?;
+            Ok::<_, ReadHeightsError>(heights_m)
         };
+        let block = kept.get(key, read, |block| size_of_val(&block[..]) as u64)?;
         let height_m = block[at];
         self.last = Some((key, block));
         Ok(height_m)
-    }
-
-    fn read(&mut self, key: BlockKey) -> Result<Block, ReadHeightsError> {
-        let (mosaic, number) = key;
-        let min = number.map(|number| number * BLOCK_SAMPLES);
-        let rect = SampleRect { min, max: min.map(|index| index + BLOCK_SAMPLES) };
-        let mut heights_m = Vec::new();
-        self.files.read(&self.dem.sources, &self.dem.mosaics[mosaic], &rect, &mut heights_m)?;
-        let block: Block = heights_m.into();
-        if self.order.len() >= MOST_BLOCKS
-            && let Some(oldest) = self.order.pop_front()
-        {
-            self.kept.remove(&oldest);
-        }
-        self.order.push_back(key);
-        self.kept.insert(key, Rc::clone(&block));
-        Ok(block)
     }
 }
 

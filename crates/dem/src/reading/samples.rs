@@ -41,10 +41,15 @@ impl SampleBlock {
             .iter()
             .map(|&position_m| frame.snap(position_m).is_some_and(|point| bounds.contains(point)))
             .collect();
-        let mut inside = is_inside.iter();
-        self.positions_m.retain(|_| inside.next().copied().unwrap_or(false));
-        let mut inside = is_inside.iter();
-        self.heights_m.retain(|_| inside.next().copied().unwrap_or(false));
+        self.retain(&is_inside);
+    }
+
+    /// Leaves out the samples for which this is false.
+    fn retain(&mut self, is_kept: &[bool]) {
+        let mut kept = is_kept.iter();
+        self.positions_m.retain(|_| kept.next().copied().unwrap_or(false));
+        let mut kept = is_kept.iter();
+        self.heights_m.retain(|_| kept.next().copied().unwrap_or(false));
     }
 }
 
@@ -56,7 +61,7 @@ impl Dem {
     /// When PROJ fails.
     pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, CrsError> {
         let mut ranges = Vec::new();
-        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles.0).enumerate() {
             let needed = needed_samples(plan, mosaic, role)?;
             ranges.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
         }
@@ -80,7 +85,7 @@ impl Dem {
     ) -> Result<Vec<SampleRange>, CrsError> {
         let wide = window.with_halo(AROUND_NODES);
         let mut ranges = Vec::new();
-        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles.0).enumerate() {
             let grow = |[low, high]: [NodeIndex; 2]| {
                 let by = AROUND_NODES as i64;
                 [
@@ -91,11 +96,8 @@ impl Dem {
             let Some(part) = intersection(&wide, grow(role.nodes)) else { continue };
             let rect = match &role.method {
                 Method::Aligned(alignment) => {
-                    let a = alignment.sample(part.node(0, 0));
-                    let b = alignment.sample(part.node(part.columns - 1, part.rows - 1));
-                    let low = [0, 1].map(|axis| a[axis].min(b[axis]));
-                    let high = [0, 1].map(|axis| a[axis].max(b[axis]) + 1);
-                    Some(SampleRect { min: low, max: high }.intersection(&mosaic.extent))
+                    let ends = [part.node(0, 0), part.node(part.columns - 1, part.rows - 1)];
+                    Some(alignment.samples(ends).intersection(&mosaic.extent))
                 }
                 Method::Resampled(positions, kernel) => {
                     let at = positions.of(&plan.frame, &part)?;
@@ -145,7 +147,7 @@ impl Reader<'_> {
             block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(at));
             block.heights_m.push(*height_m as f32);
         }
-        self.plan.roles[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
+        self.plan.roles.0[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
         if let Some(Clip { nodes, .. }) = self.plan.clip {
             block.keep_within(&self.plan.frame, nodes);
         }
@@ -160,17 +162,14 @@ impl Reader<'_> {
     pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, ReadHeightsError> {
         let mut block = self.samples(range)?;
         for earlier in 0..range.mosaic {
-            let hidden = self.is_covered(earlier, &block.positions_m)?;
-            let mut is_hidden = hidden.iter();
-            block.positions_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
-            let mut is_hidden = hidden.iter();
-            block.heights_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
+            let is_open = self.is_open(earlier, &block.positions_m)?;
+            block.retain(&is_open);
         }
         Ok(block)
     }
 
-    /// Tells for each position, in working metres, whether a mosaic has all samples around it.
-    fn is_covered(
+    /// Tells for each position, in working metres, whether a mosaic lacks samples around it.
+    fn is_open(
         &mut self,
         mosaic: usize,
         positions_m: &[[f64; 2]],
@@ -180,14 +179,10 @@ impl Reader<'_> {
         let mut at = positions_m.to_vec();
         CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
             .around(mosaic.seam())
-            .apply(&mut at)?;
-        for position in &mut at {
-            let sample = mosaic.crs_from_sample.pixel_from_crs(*position);
-            *position = sample.unwrap_or([f64::NAN; 2]);
-        }
-        let mut covered = vec![false; at.len()];
-        self.look(mosaic, &at, &mut covered)?;
-        Ok(covered)
+            .apply_to_pixels(&mosaic.crs_from_sample, &mut at)?;
+        let mut is_open = vec![true; at.len()];
+        self.look(mosaic, &at, &mut is_open)?;
+        Ok(is_open)
     }
 
     /// The same for positions among a mosaic's samples, in parts of bounded memory.
@@ -195,7 +190,7 @@ impl Reader<'_> {
         &mut self,
         mosaic: &Mosaic,
         at: &[[f64; 2]],
-        covered: &mut [bool],
+        is_open: &mut [bool],
     ) -> Result<(), ReadHeightsError> {
         let kernel = Kernel::new([0.0; 2]);
         let Some(rect) = around(at.iter().copied(), &kernel, &mosaic.reachable()) else {
@@ -203,14 +198,14 @@ impl Reader<'_> {
         };
         if rect.columns() * rect.rows() > MOST_SAMPLES && at.len() > 1 {
             let half = at.len() / 2;
-            let (first, last) = covered.split_at_mut(half);
+            let (first, last) = is_open.split_at_mut(half);
             self.look(mosaic, &at[..half], first)?;
             return self.look(mosaic, &at[half..], last);
         }
         self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
         let samples = Samples { rect, heights_m: &self.samples };
-        for (position, covered) in at.iter().zip(covered).filter(|(at, _)| at[0].is_finite()) {
-            *covered = !kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
+        for (position, is_open) in at.iter().zip(is_open).filter(|(at, _)| at[0].is_finite()) {
+            *is_open = kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use corniche_geom::{Bounds, MAX_COORDINATE_M, Seam};
+use corniche_geom::{Bounds, GeoTransform, MAX_COORDINATE_M, Seam};
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
 
@@ -168,6 +168,22 @@ impl CrsOperation {
             } else {
                 [f64::NAN; 2]
             };
+        }
+        Ok(())
+    }
+
+    /// Replaces each position by the place of its image among the pixels of a raster; NaN where there is none.
+    ///
+    /// # Errors
+    /// As [`CrsOperation::apply`].
+    pub fn apply_to_pixels(
+        &self,
+        crs_from_pixel: &GeoTransform,
+        points: &mut [[f64; 2]],
+    ) -> Result<(), CrsError> {
+        self.apply(points)?;
+        for point in points {
+            *point = crs_from_pixel.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
         }
         Ok(())
     }

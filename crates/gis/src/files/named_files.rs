@@ -1,12 +1,12 @@
 //! Which files a name on the command line means: those of a folder, a pattern, a list or an archive.
 
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::{fmt, fs, io};
 
 use gdal::Dataset;
 
 use crate::files::open::utf8_name;
-use crate::{NameError, RasterKind, library_error};
+use crate::{FileUse, NameError, library_error};
 
 /// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT is not: it names files that may lie in the
 /// same folder.
@@ -41,6 +41,18 @@ impl Sought {
     }
 }
 
+impl fmt::Display for Sought {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (noun, endings) = match self {
+            Self::Elevation => ("elevation file", &ENDINGS[..]),
+            Self::Extracts => return write!(f, "extract (names ending in .pbf)"),
+            Self::Photos => ("photo", &PHOTO_ENDINGS[..]),
+        };
+        let endings = endings.join(", ");
+        write!(f, "{noun} (names ending in {endings}, or these in .gz or .zip)")
+    }
+}
+
 /// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder those that end in pbf.
 ///
 /// # Errors
@@ -71,7 +83,7 @@ pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
 }
 
 fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
-    let text = utf8_name(name, RasterKind::Dem)?;
+    let text = utf8_name(name, FileUse::Dem)?;
     match text.strip_prefix('@').filter(|_| !name.exists()) {
         Some(list) => expand_list(Path::new(list), sought),
         None => expand_plain(name, text, sought),
@@ -97,7 +109,7 @@ fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
     for line in lines {
         let is_elsewhere = line.contains("://") || line.starts_with("/vsi");
         let name = if is_elsewhere { PathBuf::from(line) } else { folder.join(line) };
-        let text = utf8_name(&name, RasterKind::Dem)?;
+        let text = utf8_name(&name, FileUse::Dem)?;
         files.extend(expand_plain(&name, text, sought)?);
     }
     if files.is_empty() {
@@ -142,11 +154,7 @@ fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameErro
     files.sort();
     if files.is_empty() {
         let path = folder.to_path_buf();
-        return Err(match sought {
-            Sought::Elevation => NameError::EmptyFolder { path, endings: ENDINGS.join(", ") },
-            Sought::Extracts => NameError::NoExtracts { path },
-            Sought::Photos => NameError::NoPhotos { path, endings: PHOTO_ENDINGS.join(", ") },
-        });
+        return Err(NameError::EmptyFolder { path, sought: sought.to_string() });
     }
     Ok(files)
 }
@@ -157,7 +165,7 @@ fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameErro
 /// # Errors
 /// When an archive cannot be read or holds no elevation file.
 pub fn unpack_name(name: PathBuf) -> Result<Vec<PathBuf>, NameError> {
-    let text = utf8_name(&name, RasterKind::Dem)?;
+    let text = utf8_name(&name, FileUse::Dem)?;
     let is_inside = ["/vsigzip/", "/vsizip/", "/vsitar/"].iter().any(|at| text.starts_with(at));
     if is_inside {
         return Ok(vec![name]);

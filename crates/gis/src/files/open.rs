@@ -5,7 +5,7 @@ use std::{fs::File, io::Read as _, path::Path};
 use gdal::Dataset;
 
 use crate::formats::lacks_format_of;
-use crate::{NotUtf8, RasterError, RasterKind, library_error};
+use crate::{FileUse, NotUtf8, RasterError, library_error};
 
 /// Files that a reader keeps open; each may hold an operating system's handle.
 const OPEN_FILES: usize = 32;
@@ -26,7 +26,7 @@ impl OpenRasters {
         &mut self,
         index: usize,
         path: &Path,
-        kind: RasterKind,
+        kind: FileUse,
     ) -> Result<&Dataset, RasterError> {
         if let Some(at) = self.open.iter().position(|(open, _)| *open == index) {
             self.open[..=at].rotate_right(1);
@@ -40,7 +40,7 @@ impl OpenRasters {
 }
 
 /// The name of a file as GDAL takes it.
-pub(crate) fn utf8_name(path: &Path, kind: RasterKind) -> Result<&str, NotUtf8> {
+pub(crate) fn utf8_name(path: &Path, kind: FileUse) -> Result<&str, NotUtf8> {
     path.to_str().ok_or_else(|| NotUtf8 { kind, path: path.to_path_buf() })
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn is_virtual(name: &str) -> bool {
 ///
 /// # Errors
 /// When there is no such file, it is empty, a pipe or none of a raster, or GDAL cannot read its format.
-pub fn open_raster(path: &Path, kind: RasterKind) -> Result<Dataset, RasterError> {
+pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
     let own = || path.to_path_buf();
     let is_virtual = is_virtual(utf8_name(path, kind)?);
     if path.starts_with("/vsistdin") {
@@ -83,7 +83,7 @@ pub fn open_raster(path: &Path, kind: RasterKind) -> Result<Dataset, RasterError
         } else if let Some(fault) = fault_of_hgt(path) {
             fault
         } else {
-            RasterError::Open { path: own(), source: source.into() }
+            RasterError::unreadable(path, source)
         }
     })
 }

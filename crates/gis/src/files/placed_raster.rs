@@ -9,7 +9,7 @@ use crate::crs::horizontal::{Crs, GridCrs};
 use crate::crs::operation::CrsOperation;
 use crate::files::georeference::Georeference;
 use crate::files::open::open_raster;
-use crate::{CrsError, RasterError, RasterKind, library_error};
+use crate::{CrsError, FileUse, RasterError, library_error};
 
 /// Where any raster lies, also one without heights, such as an image; described but not held open.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ impl PlacedRaster {
     ///
     /// # Errors
     /// When the file cannot be opened, or lacks georeference or CRS.
-    pub fn open(path: &Path, kind: RasterKind) -> Result<(Self, Dataset), RasterError> {
+    pub fn open(path: &Path, kind: FileUse) -> Result<(Self, Dataset), RasterError> {
         library_error::quiet();
         let dataset = open_raster(path, kind)?;
         let place = Georeference::of(path, &dataset, None)?;
@@ -81,11 +81,7 @@ impl RasterOnGrid {
     /// # Errors
     /// When PROJ knows no transformation between the two systems.
     pub fn pixels_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
-        self.crs_from_working.apply(points)?;
-        for point in points {
-            *point = self.crs_from_pixel.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
-        }
-        Ok(())
+        self.crs_from_working.apply_to_pixels(&self.crs_from_pixel, points)
     }
 
     /// Replaces pixel positions by positions in working metres; NaN where there is none.

@@ -11,7 +11,7 @@ use gdal::raster::RasterBand;
 
 use crate::files::open::open_raster;
 use crate::files::vsi::{self, VirtualFile};
-use crate::{RasterError, RasterKind, library_error};
+use crate::{FileUse, RasterError, library_error};
 
 /// How a virtual raster (VRT) begins, after white space and an XML declaration at most.
 const VRT: &[u8] = b"<VRTDataset";
@@ -26,14 +26,14 @@ const VRT_BYTES: u64 = 512;
 /// When GDAL cannot open the raster.
 pub fn raster_files(path: &Path) -> Result<Vec<PathBuf>, RasterError> {
     library_error::quiet();
-    let mut files = vsi::file_list(&open_raster(path, RasterKind::Dem)?);
+    let mut files = vsi::file_list(&open_raster(path, FileUse::Dem)?);
     let mut seen: BTreeSet<PathBuf> = BTreeSet::from([path.to_path_buf()]);
     files.retain(|file| file == path || seen.insert(file.clone()));
     let mut at = 0;
     while let Some(file) = files.get(at) {
         if file != path && is_vrt(file) {
             // One that GDAL cannot open is told of when its heights are read.
-            let nested = open_raster(file, RasterKind::Dem).map(|dataset| vsi::file_list(&dataset));
+            let nested = open_raster(file, FileUse::Dem).map(|dataset| vsi::file_list(&dataset));
             let new: Vec<PathBuf> = nested.unwrap_or_default();
             files.extend(new.into_iter().filter(|file| seen.insert(file.clone())));
         }
@@ -111,7 +111,7 @@ impl FileBlocks {
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub fn of_file(path: &Path, band: usize, kind: RasterKind) -> Result<Vec<Self>, RasterError> {
+    pub fn of_file(path: &Path, band: usize, kind: FileUse) -> Result<Vec<Self>, RasterError> {
         let dataset = open_raster(path, kind)?;
         let mut found: Vec<Self> = Self::of(path, &dataset, band).into_iter().collect();
         if dataset.driver().short_name() == "VRT" {

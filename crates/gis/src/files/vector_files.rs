@@ -6,13 +6,13 @@ use gdal::vector::{Feature, Layer, LayerAccess};
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 
 use crate::files::open::{is_virtual, stand_in};
-use crate::{LibraryError, VectorError, VectorKind, formats::lacks_format_of, library_error};
+use crate::{FileUse, LibraryError, VectorError, formats::lacks_format_of, library_error};
 
 /// Opens a vector file of any format that GDAL reads, or a name that GDAL knows, such as `/vsizip/…`.
 ///
 /// # Errors
 /// When there is no such file, or GDAL cannot read it.
-pub fn open_vectors(path: &Path, kind: VectorKind) -> Result<Dataset, VectorError> {
+pub fn open_vectors(path: &Path, kind: FileUse) -> Result<Dataset, VectorError> {
     library_error::quiet();
     let own = || path.to_path_buf();
     match fs::metadata(path) {
@@ -46,7 +46,7 @@ pub fn open_vectors(path: &Path, kind: VectorKind) -> Result<Dataset, VectorErro
 /// Those of `take`, and when not all features can be read.
 pub fn for_each_feature<E: From<VectorError>>(
     layer: &mut Layer<'_>,
-    (path, kind): (&Path, VectorKind),
+    (path, kind): (&Path, FileUse),
     mut take: impl FnMut(&Feature<'_>) -> Result<(), E>,
 ) -> Result<(), E> {
     let path = || path.to_path_buf();
