@@ -1,5 +1,7 @@
 //! Errors of elevation files, an enum for each activity, and their sum.
 
+#![expect(missing_docs, reason = "each message documents its variant")]
+
 use std::path::{Path, PathBuf};
 
 use corniche_geom::{Cell, GridFrameError};
@@ -7,7 +9,6 @@ use corniche_gis::{CrsError, LibraryError, NameError, PolygonError, RasterError}
 
 /// Why elevation files could not be opened.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum OpenDemError {
     #[error("no DEM file is given")]
@@ -66,7 +67,6 @@ pub enum OpenDemError {
 
 /// Why what heights are measured from is not known, or cannot become what is asked for.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum HeightDatumError {
     #[error(
@@ -109,7 +109,6 @@ pub enum HeightDatumError {
 
 /// Why no grid could be planned.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum GridError {
     #[error(
@@ -195,7 +194,6 @@ pub enum GridError {
 
 /// Why heights could not be read.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum ReadHeightsError {
     #[error("windows of stride {stride} are not read from the DEM, only of stride 1")]
@@ -212,7 +210,6 @@ pub enum ReadHeightsError {
 
 /// Why values are taken for no heights.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum AuditError {
     #[error(
@@ -249,7 +246,6 @@ pub enum AuditError {
 
 /// Whatever can go wrong with elevation files: for callers that do all of it.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each variant is an activity, whose error says it all")]
 #[non_exhaustive]
 pub enum DemError {
     #[error(transparent)]

@@ -1,4 +1,6 @@
-//! Errors of files and coordinate systems, an enum for each activity.
+//! Errors of files and coordinate systems, an enum for each activity, and how messages name files.
+
+#![expect(missing_docs, reason = "each message documents its variant")]
 
 use std::{
     fmt,
@@ -40,6 +42,29 @@ impl fmt::Display for FileUse {
     }
 }
 
+/// Most files that a message names.
+const MAX_NAMES: usize = 3;
+
+/// The first few names, and how many more there are.
+#[must_use]
+pub fn first_names(names: impl ExactSizeIterator<Item = String>) -> String {
+    names_up_to(MAX_NAMES, names)
+}
+
+/// Up to so many names, and how many more there are.
+#[must_use]
+pub fn names_up_to(most: usize, names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(most);
+    let told = names.take(most).collect::<Vec<_>>().join(", ");
+    if more == 0 { told } else { format!("{told} and {more} more") }
+}
+
+/// Files as a message names them: quoted, and no more than are read.
+#[must_use]
+pub fn listed_files<F: AsRef<Path>>(files: &[F]) -> String {
+    first_names(files.iter().map(|file| format!("\"{}\"", file.as_ref().display())))
+}
+
 /// A name that GDAL does not take.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -54,7 +79,6 @@ pub struct NotUtf8 {
 
 /// Why a name stands for no files.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum NameError {
     #[error("cannot read {path:?}, which was to name files")]
@@ -77,7 +101,6 @@ pub enum NameError {
 
 /// Why a raster could not be opened, placed on the earth or read.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum RasterError {
     #[error("cannot open {kind} {path:?}")]
@@ -156,7 +179,6 @@ impl RasterError {
 
 /// Why a coordinate system, or a way from one to another, cannot be used.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum CrsError {
     #[error(
@@ -200,7 +222,6 @@ pub enum CrsError {
 
 /// Why a vector file could not be opened, or not read to its end.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum VectorError {
     #[error("cannot open {kind} {path:?}")]
@@ -231,7 +252,6 @@ pub enum VectorError {
 
 /// Why a file gives no polygon to cut elevation data with, or not in a working CRS.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum PolygonError {
     #[error(transparent)]

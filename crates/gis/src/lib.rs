@@ -12,7 +12,6 @@
 mod error;
 mod library_error;
 
-mod file_names;
 mod formats;
 mod libraries;
 mod proj_folders;
@@ -33,7 +32,7 @@ pub use crs::recorded_heights::RecordedHeights;
 pub use crs::scale::{LocalScale, SCALES, center_deg, scales};
 pub use crs::vertical::{VerticalCrs, grid_names};
 pub use error::{CrsError, FileUse, NameError, NotUtf8, PolygonError, RasterError, VectorError};
-pub use file_names::{first_names, listed_files, names_up_to};
+pub use error::{first_names, listed_files, names_up_to};
 pub use files::georeference::Georeference;
 pub use files::named_files::{expand_extract_name, expand_name, expand_photo_name, unpack_name};
 pub use files::open::{OpenRasters, open_raster, stand_in};

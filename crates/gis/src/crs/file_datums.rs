@@ -50,7 +50,7 @@ impl FileDatums {
         Self { found }
     }
 
-    /// Those of files that come to working metres, for data that lie in `area_deg`.
+    /// The operations of files that come to working metres, for data that lie in `area_deg`.
     pub fn into_working<'a>(
         files: impl Iterator<Item = (&'a Crs, &'a Path)>,
         working: &GridCrs,

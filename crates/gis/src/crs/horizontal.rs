@@ -27,7 +27,7 @@ pub struct Crs {
 }
 
 impl Crs {
-    /// That of an object of GDAL.
+    /// The system of an object of GDAL.
     ///
     /// # Errors
     /// When it cannot be written down as WKT.

@@ -26,7 +26,7 @@ pub struct Georeference {
 }
 
 impl Georeference {
-    /// By the file's geotransform, or by tie points that agree on one; `crs_text` is the CRS of a file that names none.
+    /// Takes the file's geotransform, or the one that tie points agree on; `crs_text` is the CRS of a file that names none.
     ///
     /// # Errors
     /// When it lacks georeference or CRS, or lies beside the earth.

@@ -13,7 +13,7 @@ const OPEN_FILES: usize = 32;
 /// Rasters kept open by one reader, the least lately used closed first.
 #[derive(Default)]
 pub struct OpenRasters {
-    /// Those used last first, by numbers that the reader gives them.
+    /// The ones used last come first, by numbers that the reader gives them.
     open: Vec<(usize, Dataset)>,
 }
 
