@@ -33,18 +33,20 @@ pub struct Dem {
 impl Dem {
     /// Looks into all files; reads no heights yet.
     ///
-    /// Files on one grid are read as one raster, so that interpolation crosses their seams; where they overlap
-    /// the first named wins, sample by sample, and a void in it falls through to the next. Files on other grids
-    /// serve the nodes at which the grids named before have no data.
+    /// Files on one grid are read as one raster, so that interpolation crosses their seams; where
+    /// they overlap the first named wins, sample by sample, and a void in it falls through to the
+    /// next. Files on other grids serve the nodes at which the grids named before have no data.
     ///
-    /// Heights are those of the only band, or of [`OpenOptions::band`]; a mask, an alpha band or a nodata value says where there are none.
-    /// With [`OpenOptions::vertical_crs`] each sample's height is carried there at the sample's own position;
-    /// without, all files must agree on what their heights are measured from.
+    /// Heights are those of the only band, or of [`OpenOptions::band`]; a mask, an alpha band or a
+    /// nodata value says where there are none. With [`OpenOptions::vertical_crs`] each sample's
+    /// height is carried there at the sample's own position; without, all files must agree on what
+    /// their heights are measured from.
     ///
     /// # Errors
-    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere on earth; when a
-    /// single row or column of samples encloses no ground; when heights cannot be carried to the vertical CRS asked
-    /// for without guessing, or files disagree on it and none is asked for.
+    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere
+    /// on earth; when a single row or column of samples encloses no ground; when heights cannot be
+    /// carried to the vertical CRS asked for without guessing, or files disagree on it and none is
+    /// asked for.
     pub fn open(files: &[PathBuf], options: &OpenOptions) -> Result<Self, OpenDemError> {
         quiet();
         if files.is_empty() {
@@ -81,7 +83,8 @@ impl Dem {
         })
     }
 
-    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers to.
+    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers
+    /// to.
     ///
     /// # Errors
     /// When a file cannot be opened any more.

@@ -6,11 +6,12 @@
 //!             CRS, units)     cell, extent)                interpolation, voids)
 //! ```
 //!
-//! A node has the same height, bit for bit, whichever window it is read through: its position comes from its
-//! global index, its height from samples around that position, and a filled void from nodes around it.
+//! A node has the same height, bit for bit, whichever window it is read through: its position comes
+//! from its global index, its height from samples around that position, and a filled void from
+//! nodes around it.
 //!
-//! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel, a unit or a vertical
-//! datum means.
+//! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel, a
+//! unit or a vertical datum means.
 
 mod dem;
 mod error;

@@ -1,4 +1,5 @@
-//! All elevation files together: those of one grid as one raster, where they lie, and one vertical CRS for all.
+//! All elevation files together: those of one grid as one raster, where they lie, and one vertical
+//! CRS for all.
 
 pub(crate) mod mosaic;
 pub(crate) mod open_files;

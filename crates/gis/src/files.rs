@@ -1,4 +1,5 @@
-//! Files that GDAL opens: which a name means, where they lie on the earth, how they are cut into blocks.
+//! Files that GDAL opens: which a name means, where they lie on the earth, how they are cut into
+//! blocks.
 
 pub(crate) mod named_files;
 pub(crate) mod open;

@@ -28,7 +28,8 @@ const FORMATS: [Format; 16] = [
     ("files on servers", "HTTP", &[]),
 ];
 
-/// Usual formats that nothing promises: a GDAL may lack them, and then files of theirs are not damaged.
+/// Usual formats that nothing promises: a GDAL may lack them, and then files of theirs are not
+/// damaged.
 const OTHERS: [Format; 19] = [
     ("GML", "GML", &["gml"]),
     ("DXF", "DXF", &["dxf"]),
@@ -53,7 +54,8 @@ const OTHERS: [Format; 19] = [
 
 const GEOTIFF: &str = "GTiff";
 
-/// Compressions of GeoTIFF that elevation files and photos have, as GDAL names them. Each needs a library of its own, or a part of libtiff.
+/// Compressions of GeoTIFF that elevation files and photos have, as GDAL names them. Each needs a
+/// library of its own, or a part of libtiff.
 const COMPRESSIONS: [&str; 9] =
     ["LZW", "PACKBITS", "JPEG", "DEFLATE", "LZMA", "ZSTD", "WEBP", "LERC", "LERC_ZSTD"];
 
@@ -62,7 +64,8 @@ const COMPRESSIONS: [&str; 9] =
 pub fn missing_formats() -> Vec<String> {
     let formats = FORMATS.iter().filter(|format| is_missing(format));
     let names = formats.map(|&(name, ..)| name.to_owned());
-    // What the driver can write it can read, too. Without the driver, its compressions are not worth a word.
+    // What the driver can write it can read, too. Without the driver, its compressions are not
+    // worth a word.
     let options = DriverManager::get_driver_by_name(GEOTIFF)
         .ok()
         .map(|driver| driver.metadata_item("DMD_CREATIONOPTIONLIST", "").unwrap_or_default());
@@ -83,7 +86,8 @@ fn missing_compressions(options: &str) -> Vec<&'static str> {
     COMPRESSIONS.into_iter().filter(lacks).collect()
 }
 
-/// Says that GDAL lacks the format of a file, by the ending of its name, if that is so, and what to do.
+/// Says that GDAL lacks the format of a file, by the ending of its name, if that is so, and what to
+/// do.
 pub(crate) fn lacks_format_of(path: &Path) -> Option<String> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     let mut formats = FORMATS.iter().chain(&OTHERS);

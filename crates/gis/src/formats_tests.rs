@@ -1,4 +1,5 @@
-//! What the manual promises is there in the GDAL that tests run with, and no ending stands for two formats.
+//! What the manual promises is there in the GDAL that tests run with, and no ending stands for two
+//! formats.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

@@ -1,4 +1,5 @@
-//! The room for GDAL and PROJ: whatever opens files with them, or asks them for coordinates, does so through this crate.
+//! The room for GDAL and PROJ: whatever opens files with them, or asks them for coordinates, does
+//! so through this crate.
 //!
 //! ```text
 //!   names ──► files ──► PlacedRaster, open_vectors, Polygon          Crs ──► CrsOperation ──► coordinates
@@ -6,8 +7,8 @@
 //!   lists, archives)
 //! ```
 //!
-//! What only heights, photos or overlays need is in the crates `dem`, `photo` and `overlay`. This crate knows no grid of heights, never uses
-//! GDAL's warper, and never guesses a coordinate system.
+//! What only heights, photos or overlays need is in the crates `dem`, `photo` and `overlay`. This
+//! crate knows no grid of heights, never uses GDAL's warper, and never guesses a coordinate system.
 
 mod error;
 mod library_error;

@@ -1,4 +1,5 @@
-//! GDAL and PROJ for the whole process: their releases, settings, and what a released program has beside it: tables, drivers, certificates.
+//! GDAL and PROJ for the whole process: their releases, settings, and what a released program has
+//! beside it: tables, drivers, certificates.
 
 use std::{
     env,
@@ -11,7 +12,8 @@ use gdal::{errors::GdalError, version::VersionInfo};
 
 use crate::proj_folders;
 
-/// The folder of GDAL and PROJ in a released archive, counted from the folder of the program. `scripts/release` makes it.
+/// The folder of GDAL and PROJ in a released archive, counted from the folder of the program.
+/// `scripts/release` makes it.
 const LIBRARIES: &str = "../lib/corniche";
 
 /// PROJ's tables and grids there. A program that has them is a released one.
@@ -21,8 +23,8 @@ const PROJ_TABLES: &str = "share/proj";
 const FOLDERS: [(&str, &str); 2] =
     [("GDAL_DATA", "share/gdal"), ("GDAL_DRIVER_PATH", "gdalplugins")];
 
-/// Where systems keep the certificates that they trust. The released library for `https://` was made on one system and knows
-/// the place of that one alone.
+/// Where systems keep the certificates that they trust. The released library for `https://` was
+/// made on one system and knows the place of that one alone.
 const CERTIFICATES: [&str; 4] = [
     "/etc/ssl/certs/ca-certificates.crt",
     "/etc/pki/tls/certs/ca-bundle.crt",
@@ -30,12 +32,13 @@ const CERTIFICATES: [&str; 4] = [
     "/etc/ssl/cert.pem",
 ];
 
-/// Lets GDAL and PROJ take their tables and drivers from beside `program`, if it is a released one, and else changes nothing. To be called
-/// before anything else uses GDAL.
+/// Lets GDAL and PROJ take their tables and drivers from beside `program`, if it is a released one,
+/// and else changes nothing. To be called before anything else uses GDAL.
 ///
-/// A shell in which conda or another installation of GDAL is active sets `PROJ_DATA`, `GDAL_DATA` and `GDAL_DRIVER_PATH` for libraries of other versions, which a
-/// released program does not use. So its own folders count; PROJ looks into the user's after them, for more grids. Certificates that the
-/// user names have precedence.
+/// A shell in which conda or another installation of GDAL is active sets `PROJ_DATA`, `GDAL_DATA`
+/// and `GDAL_DRIVER_PATH` for libraries of other versions, which a released program does not use.
+/// So its own folders count; PROJ looks into the user's after them, for more grids. Certificates
+/// that the user names have precedence.
 pub fn use_files_beside(program: &Path) {
     let Some(folder) = libraries_beside(program) else { return };
     for (option, name) in FOLDERS {
@@ -61,7 +64,8 @@ fn libraries_beside(program: &Path) -> Option<PathBuf> {
     folder.join(PROJ_TABLES).is_dir().then_some(folder)
 }
 
-/// Where PROJ looks for tables and grids: in its own folder, in the one to which it saves grids for the user, and in those that the environment names.
+/// Where PROJ looks for tables and grids: in its own folder, in the one to which it saves grids for
+/// the user, and in those that the environment names.
 fn proj_search(
     libraries: &Path,
     of_user: Option<PathBuf>,
@@ -72,8 +76,8 @@ fn proj_search(
     [libraries.join(PROJ_TABLES)].into_iter().chain(of_user).chain(named).collect()
 }
 
-/// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it GDAL takes up to
-/// 5 % of the machine's. To be called before the first file is opened.
+/// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it
+/// GDAL takes up to 5 % of the machine's. To be called before the first file is opened.
 ///
 /// # Errors
 /// When GDAL refuses.
@@ -82,7 +86,8 @@ pub fn limit_block_cache(bytes: u64) -> Result<(), GdalError> {
     gdal::config::set_config_option("GDAL_CACHEMAX", &bytes.max(1 << 20).to_string())
 }
 
-/// Sets one of GDAL's options for the whole process, unless the user has set it, in the environment or in GDAL's own settings file.
+/// Sets one of GDAL's options for the whole process, unless the user has set it, in the environment
+/// or in GDAL's own settings file.
 ///
 /// # Errors
 /// When GDAL refuses.
@@ -96,7 +101,8 @@ pub fn set_unless_set(option: &str, value: &str) -> Result<(), GdalError> {
 /// Releases of GDAL and PROJ that this program runs with, as packages record them.
 #[must_use]
 pub fn libraries() -> String {
-    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and another thread may find it half written.
+    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and
+    // another thread may find it half written.
     static LIBRARIES: LazyLock<String> = LazyLock::new(|| {
         let proj = VersionInfo::build_info()
             .remove("PROJ_RUNTIME_VERSION")

@@ -1,4 +1,5 @@
-//! A released program is known by its own tables of PROJ, and these count for more than those of another PROJ.
+//! A released program is known by its own tables of PROJ, and these count for more than those of
+//! another PROJ.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

@@ -78,7 +78,8 @@ fn with_advice(words: String, variable: impl Fn(&str) -> Option<String>) -> Stri
 /// How GDAL begins when it tells curl's reason.
 const CURL_REASON: &str = "CURL error";
 
-/// Whether this is what GDAL says where a server gave no answer: 0 in the place of the answer's status.
+/// Whether this is what GDAL says where a server gave no answer: 0 in the place of the answer's
+/// status.
 fn is_no_answer(words: &str) -> bool {
     words.contains("HTTP response code") && words.ends_with(": 0")
 }

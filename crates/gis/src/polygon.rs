@@ -1,4 +1,5 @@
-//! Polygons with holes, read from a vector file, that say which part of the elevation data is wanted.
+//! Polygons with holes, read from a vector file, that say which part of the elevation data is
+//! wanted.
 
 use std::{
     fmt,
@@ -18,7 +19,8 @@ const MOST_CORNERS: usize = 4_000_000;
 /// The corners of a ring, in the file's CRS; the first is not repeated at the end.
 pub(crate) type Ring = Vec<[f64; 2]>;
 
-/// Polygons with holes, united, that say which part of the elevation data is wanted. Copies share their corners.
+/// Polygons with holes, united, that say which part of the elevation data is wanted. Copies share
+/// their corners.
 #[derive(Clone)]
 pub struct Polygon {
     content: Arc<Content>,
@@ -37,11 +39,12 @@ pub(crate) struct PolygonRings {
 }
 
 impl Polygon {
-    /// Reads a vector file: all polygons of all its layers, each layer in its own coordinate system. Edges are straight in that system.
+    /// Reads a vector file: all polygons of all its layers, each layer in its own coordinate
+    /// system. Edges are straight in that system.
     ///
     /// # Errors
-    /// When GDAL cannot read the file, when it has no polygon or something else beside, names no coordinate system, or a polygon crosses
-    /// itself.
+    /// When GDAL cannot read the file, when it has no polygon or something else beside, names no
+    /// coordinate system, or a polygon crosses itself.
     pub fn read(path: &Path) -> Result<Self, PolygonError> {
         let own = || path.to_path_buf();
         let dataset = open_vectors(path, FileUse::Polygon)?;
@@ -63,7 +66,8 @@ impl Polygon {
         &self.content.path
     }
 
-    /// The polygons as bytes that depend on coordinate system and corners alone: neither on the file's format nor on the order of features.
+    /// The polygons as bytes that depend on coordinate system and corners alone: neither on the
+    /// file's format nor on the order of features.
     #[must_use]
     pub fn canonical_bytes(&self) -> &[u8] {
         &self.content.bytes
@@ -210,7 +214,8 @@ impl Reading<'_> {
     }
 }
 
-/// The same ring from its least corner on, towards the lesser of its neighbours: formats differ in direction and in where rings begin.
+/// The same ring from its least corner on, towards the lesser of its neighbours: formats differ in
+/// direction and in where rings begin.
 fn in_normal_order(mut ring: Ring) -> Ring {
     let order = |a: &[f64; 2], b: &[f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
     let least = (0..ring.len()).min_by(|&a, &b| order(&ring[a], &ring[b]));

@@ -9,11 +9,13 @@ use crate::{CrsError, PolygonError};
 
 /// Edges that are bent in the working CRS are followed this closely, in cells.
 const TOLERANCE_CELLS: f64 = 0.01;
-/// An edge is halved so often at most: one that still bends then crosses a place where the CRS is torn.
+/// An edge is halved so often at most: one that still bends then crosses a place where the CRS is
+/// torn.
 const MOST_HALVINGS: u32 = 24;
 
 impl GridCrs {
-    /// The rectangle around a polygon in working metres, over data that lie in `area_deg`, with cells of `cell_m`.
+    /// The rectangle around a polygon in working metres, over data that lie in `area_deg`, with
+    /// cells of `cell_m`.
     ///
     /// # Errors
     /// When the polygon has no place in the CRS.
@@ -27,7 +29,8 @@ impl GridCrs {
         Ok(Bounds::around(parts.iter().flatten().flatten()))
     }
 
-    /// A polygon on the lattice of a package over data that lie in `area_deg`: the same, to the last step, as when the package was built.
+    /// A polygon on the lattice of a package over data that lie in `area_deg`: the same, to the
+    /// last step, as when the package was built.
     ///
     /// # Errors
     /// When the polygon has no place in the CRS, or encloses nothing.
@@ -68,7 +71,8 @@ impl GridCrs {
     }
 }
 
-/// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does not reach or is torn.
+/// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does
+/// not reach or is torn.
 fn of_part(
     part: &PolygonRings,
     working: &GridCrs,
@@ -143,7 +147,8 @@ fn of_ring(
         let next = |index: usize| corners[(index + 1) % corners.len()];
         let open: Vec<usize> =
             (0..corners.len()).filter(|&index| !corners[index].is_done).collect();
-        // A quarter and half along each edge: an edge with the shape of an S is straight at its middle.
+        // A quarter and half along each edge: an edge with the shape of an S is straight at its
+        // middle.
         let probes: Vec<[f64; 2]> = open
             .iter()
             .flat_map(|&index| [0.25, 0.5].map(|t| between(corners[index].own, next(index).own, t)))

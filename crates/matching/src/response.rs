@@ -12,8 +12,8 @@ pub(crate) struct Grey {
 }
 
 impl Grey {
-    /// The value at a place in texels, where the centre of texel (0, 0) is (0.5, 0.5): from the four centres around it. NaN where one of
-    /// them has none.
+    /// The value at a place in texels, where the centre of texel (0, 0) is (0.5, 0.5): from the
+    /// four centres around it. NaN where one of them has none.
     pub(crate) fn at(&self, [u, v]: [f64; 2]) -> f32 {
         let (x, y) = (u - 0.5 - self.first[0] as f64, v - 0.5 - self.first[1] as f64);
         let (column, row) = (x.floor(), y.floor());
@@ -63,7 +63,8 @@ pub(crate) struct Profile {
 }
 
 impl Profile {
-    /// The profile of a road so wide in an image of such texels, of which a half is the least that is looked at.
+    /// The profile of a road so wide in an image of such texels, of which a half is the least that
+    /// is looked at.
     pub(crate) fn new(width_m: f64, texel_m: f64) -> Self {
         Self {
             half_width_m: (width_m / 2.0).min(MOST_HALF_WIDTH_M).max(texel_m / 2.0),
@@ -77,8 +78,9 @@ impl Profile {
     }
 }
 
-/// How much brighter the middle is than both sides at each shift, in the order of [`Search::shifts`]; negative where it is darker, 0
-/// where it lies between both sides: there is an edge and no line. `None` if a value is missing.
+/// How much brighter the middle is than both sides at each shift, in the order of
+/// [`Search::shifts`]; negative where it is darker, 0 where it lies between both sides: there is an
+/// edge and no line. `None` if a value is missing.
 pub(crate) fn responses(
     grey: &Grey,
     scale: &TexelScale,

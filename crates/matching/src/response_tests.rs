@@ -1,4 +1,5 @@
-//! Values are mixed between centres of texels. The filter for lines answers to a line where it lies, and not to an edge.
+//! Values are mixed between centres of texels. The filter for lines answers to a line where it
+//! lies, and not to an edge.
 
 use super::*;
 

@@ -4,8 +4,8 @@
 //!  GeoJSON, GPX, GeoPackage, Shapefile ──read──► VectorLines (WGS84) ──place──► points on the package's lattice
 //! ```
 //!
-//! What is drawn is what the file has: lines are not simplified, joined or moved here. [`LineFile`] is a file of lines that a person
-//! draws: what was not changed is saved as it was.
+//! What is drawn is what the file has: lines are not simplified, joined or moved here. [`LineFile`]
+//! is a file of lines that a person draws: what was not changed is saved as it was.
 
 mod error;
 mod line_file;

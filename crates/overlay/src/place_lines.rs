@@ -1,4 +1,5 @@
-//! Lines of a file are placed on the lattice of a package, whose heights are carried to the ellipsoid of WGS84.
+//! Lines of a file are placed on the lattice of a package, whose heights are carried to the
+//! ellipsoid of WGS84.
 
 use corniche_geom::{LatticePoint, Projection as _, split_at_seam};
 use corniche_gis::{RecordedCrs, RecordedHeights};
@@ -15,8 +16,9 @@ pub struct Placed {
     pub points: Vec<LatticePoint>,
 }
 
-/// Places lines on a package's lattice. A line in whose middle points have no place there, or that goes over the end of the map, comes in
-/// several parts, and one without two neighbouring points that have a place is left out.
+/// Places lines on a package's lattice. A line in whose middle points have no place there, or that
+/// goes over the end of the map, comes in several parts, and one without two neighbouring points
+/// that have a place is left out.
 ///
 /// # Errors
 /// When the package's coordinate system cannot be used.
@@ -41,12 +43,13 @@ pub fn place(lines: &[VectorLine], manifest: &Manifest) -> Result<Vec<Placed>, O
     Ok(placed)
 }
 
-/// Carries heights of a package to the ellipsoid of WGS84, which GeoJSON wants (RFC 7946, section 4).
+/// Carries heights of a package to the ellipsoid of WGS84, which GeoJSON wants (RFC 7946, section
+/// 4).
 pub struct EllipsoidHeights(RecordedHeights);
 
 impl EllipsoidHeights {
-    /// What carries a package's heights; `None` if its vertical datum is unknown, or nothing here leads from it to the ellipsoid,
-    /// such as a missing grid.
+    /// What carries a package's heights; `None` if its vertical datum is unknown, or nothing here
+    /// leads from it to the ellipsoid, such as a missing grid.
     ///
     /// # Errors
     /// When the package's coordinate system cannot be used.

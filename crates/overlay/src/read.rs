@@ -15,7 +15,8 @@ use crate::OverlayError;
 /// Steps of work for a point of a line that crosses little ground, as a track of a walker does.
 const STEPS_OF_POINT: u64 = 64;
 
-/// Points that the lines of a file may have, a million: as many as one tile can show, for they may all lie on one.
+/// Points that the lines of a file may have, a million: as many as one tile can show, for they may
+/// all lie on one.
 pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 
 /// A line of a file.
@@ -23,7 +24,8 @@ pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 pub struct VectorLine {
     /// The feature's `name`, if it has one.
     pub name: Option<String>,
-    /// Longitude and latitude of each point, degrees of WGS84. NaN where a point has no such position.
+    /// Longitude and latitude of each point, degrees of WGS84. NaN where a point has no such
+    /// position.
     pub positions_deg: Vec<[f64; 2]>,
 }
 
@@ -63,7 +65,8 @@ impl VectorLines {
         notices
     }
 
-    /// How many lines have the positions of one before them, in the same order or from end to begin.
+    /// How many lines have the positions of one before them, in the same order or from end to
+    /// begin.
     fn repeated(&self) -> usize {
         let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
         let mut repeated = 0;
@@ -96,11 +99,13 @@ impl VectorLine {
     }
 }
 
-/// Reads the lines of all layers of a vector file, each in its own coordinate system. With `allow_ballpark` its datum may be taken for that of
-/// WGS84 where PROJ knows nothing between the two.
+/// Reads the lines of all layers of a vector file, each in its own coordinate system. With
+/// `allow_ballpark` its datum may be taken for that of WGS84 where PROJ knows nothing between the
+/// two.
 ///
 /// # Errors
-/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system, or one of an unknown datum.
+/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no
+/// coordinate system, or one of an unknown datum.
 pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
     let dataset = open_vectors(path, FileUse::Lines)?;

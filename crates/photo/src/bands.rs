@@ -18,7 +18,8 @@ pub(crate) struct Bands {
     alpha: Option<usize>,
     /// The file says by a mask where it has no data.
     has_mask: bool,
-    /// The value for no data of each band of the colour: pixels in which all bands have it are none.
+    /// The value for no data of each band of the colour: pixels in which all bands have it are
+    /// none.
     nodata: Option<Vec<u8>>,
 }
 

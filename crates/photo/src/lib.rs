@@ -5,10 +5,11 @@
 //!            (bands, CRS)     (grid, levels)  (PROJ, filter, mosaic)            (exact, in whole numbers)
 //! ```
 //!
-//! A texel has the same colour, bit for bit, whichever window it is read through: its place follows from its global index, its
-//! colour from the pixels around that place.
+//! A texel has the same colour, bit for bit, whichever window it is read through: its place follows
+//! from its global index, its colour from the pixels around that place.
 //!
-//! This crate never encodes, never triangulates, and never guesses where an image lies or what its values mean.
+//! This crate never encodes, never triangulates, and never guesses where an image lies or what its
+//! values mean.
 
 mod error;
 mod photos;

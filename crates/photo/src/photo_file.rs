@@ -92,7 +92,8 @@ impl PhotoGrid {
         self.photos.iter().any(|photo| overlap(&photo.bounds, bounds))
     }
 
-    /// Area of the rectangles around the photos, square metres of the grid; where they overlap it counts twice.
+    /// Area of the rectangles around the photos, square metres of the grid; where they overlap it
+    /// counts twice.
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         self.photos.iter().map(|photo| photo.bounds.width() * photo.bounds.height()).sum()

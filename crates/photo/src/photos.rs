@@ -1,4 +1,5 @@
-//! Photo files that are described but not held open, and the choice of how fine their texels become.
+//! Photo files that are described but not held open, and the choice of how fine their texels
+//! become.
 
 use std::path::PathBuf;
 
@@ -9,7 +10,8 @@ use corniche_gis::{FileBlocks, FileUse, PlacedRaster};
 use crate::photo_file::{PhotoFile, overlap};
 use crate::{PhotoError, PhotoGrid, TexelGrid};
 
-/// The most levels finer than the finest cell that are taken where nobody says how many: a finest tile then has 2048 texels a side.
+/// The most levels finer than the finest cell that are taken where nobody says how many: a finest
+/// tile then has 2048 texels a side.
 const USUAL_LEVELS: u8 = 3;
 /// The most levels at all.
 const MOST_LEVELS: u8 = 16;
@@ -31,8 +33,8 @@ pub enum LevelChoice {
     OfPhotos,
     /// There are so many levels.
     Given(u8),
-    /// There are as many levels as the finest photo has detail for, or as make texels of so many metres if that is coarser; to
-    /// be read by windows, not by whole tiles.
+    /// There are as many levels as the finest photo has detail for, or as make texels of so many
+    /// metres if that is coarser; to be read by windows, not by whole tiles.
     NotCoarserThan(f64),
 }
 
@@ -45,7 +47,8 @@ impl Photos {
     /// Looks into all files; reads no pixel yet. Where photos overlap, the first named lies on top.
     ///
     /// # Errors
-    /// When a file cannot be opened, lacks georeference or CRS, has other samples than 8 bits, or bands that are no colours.
+    /// When a file cannot be opened, lacks georeference or CRS, has other samples than 8 bits, or
+    /// bands that are no colours.
     pub fn open(files: &[PathBuf]) -> Result<Self, PhotoError> {
         if files.is_empty() {
             return Err(PhotoError::NoFiles);
@@ -81,8 +84,8 @@ impl Photos {
     /// Puts the photos on a grid.
     ///
     /// # Errors
-    /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far more detail than the texels, or
-    /// there are too many levels.
+    /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far
+    /// more detail than the texels, or there are too many levels.
     pub fn on(&self, grid: &GridPlan, choice: LevelChoice) -> Result<PhotoGrid, PhotoError> {
         let mut photos = Vec::with_capacity(self.files.len());
         let mut all = Bounds::EMPTY;

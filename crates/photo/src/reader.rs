@@ -127,7 +127,8 @@ impl<'a> PhotoReader<'a> {
     }
 }
 
-/// The pixels that meshes need: first, and one past the last. `None` where that is none of the photo's.
+/// The pixels that meshes need: first, and one past the last. `None` where that is none of the
+/// photo's.
 fn pixels_of(meshes: &[MeshPositions], size: [usize; 2]) -> Option<[[i64; 2]; 2]> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];

@@ -101,8 +101,8 @@ impl Source {
 
     /// Carries heights in metres to the vertical CRS asked for, in place; voids (NaN) stay.
     ///
-    /// Each height is carried at the position of its own sample, counted in the whole file: the result does not
-    /// depend on the rectangle that is read.
+    /// Each height is carried at the position of its own sample, counted in the whole file: the
+    /// result does not depend on the rectangle that is read.
     fn carry(
         &self,
         operation: &HeightOperation,
@@ -129,7 +129,8 @@ impl Source {
         Ok(())
     }
 
-    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS and the shift asked for.
+    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS
+    /// and the shift asked for.
     pub(crate) fn convert(&self, values: &mut [f64]) {
         self.values.convert(values);
     }
@@ -144,7 +145,8 @@ impl Source {
         self.values.m_per_whole()
     }
 
-    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says that there is none.
+    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says
+    /// that there is none.
     pub(crate) fn read_stored(
         &self,
         dataset: &Dataset,
@@ -211,7 +213,8 @@ fn no_band(path: &Path, dataset: &Dataset) -> OpenDemError {
 }
 
 impl Source {
-    /// How far samples are from their neighbours, along the axis where they are farther, metres; in degrees as at the equator.
+    /// How far samples are from their neighbours, along the axis where they are farther, metres; in
+    /// degrees as at the equator.
     pub(crate) fn spacing_m(&self) -> f64 {
         let c = self.crs_from_pixel.coefficients;
         let around_m = TAU * SEMI_MAJOR_M;
@@ -220,8 +223,9 @@ impl Source {
     }
 }
 
-/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A raster with several is refused where none is
-/// asked for: which of them has heights is not to be guessed.
+/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A
+/// raster with several is refused where none is asked for: which of them has heights is not to be
+/// guessed.
 fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, OpenDemError> {
     let count = dataset.raster_count();
     if asked.is_none() {
@@ -252,8 +256,8 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
     }
 }
 
-/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can have one for
-/// display.
+/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can
+/// have one for display.
 fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), OpenDemError> {
     use ColorInterpretation as C;
     let band = dataset.rasterband(1).map_err(|source| RasterError::unreadable(path, source))?;

@@ -1,4 +1,5 @@
-//! From stored values to heights in metres, and the options that say how to understand a file where it does not say so itself.
+//! From stored values to heights in metres, and the options that say how to understand a file where
+//! it does not say so itself.
 
 use std::path::Path;
 
@@ -8,12 +9,13 @@ use gdal::raster::{GdalDataType, RasterBand};
 
 use crate::OpenDemError;
 
-/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing here", and the centre
-/// of the earth is only 6 400 km from sea level.
+/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing
+/// here", and the centre of the earth is only 6 400 km from sea level.
 const NO_HEIGHT_M: f64 = 1e7;
 /// The value for "nothing here" in the 16-bit files of SRTM, also where they do not declare it.
 const SRTM_VOID: f64 = -32768.0;
-/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
+/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for
+/// survey feet.
 const SAME_UNIT: f64 = 1e-5;
 
 /// How an elevation file is to be understood where it does not say so itself.
@@ -23,20 +25,23 @@ pub struct OpenOptions {
     pub band: Option<u32>,
     /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
     pub dem_crs: Option<String>,
-    /// The unit of heights, whatever bands and vertical CRSs say of it; `None` takes theirs, and refuses a band's that is not known.
+    /// The unit of heights, whatever bands and vertical CRSs say of it; `None` takes theirs, and
+    /// refuses a band's that is not known.
     pub vertical_unit: Option<String>,
     /// Stored values that mean "no height", besides the one that the file declares.
     pub nodata: Vec<f64>,
-    /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A file that names
-    /// one keeps it.
+    /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A
+    /// file that names one keeps it.
     pub dem_vertical_crs: Option<String>,
-    /// The vertical CRS that heights are wanted in, "EPSG:n" or WKT; `None` leaves them as they are.
+    /// The vertical CRS that heights are wanted in, "EPSG:n" or WKT; `None` leaves them as they
+    /// are.
     ///
-    /// PROJ takes the best operation for which it has the grids; approximations without any are not allowed. Where
-    /// the grid of the best is not installed but that of a lesser one is, an older model of the geoid say, PROJ takes
-    /// the lesser one and does not tell. It is not asked for the best alone, which GDAL can do since 3.8 only (PROJ
-    /// since 9.2 has an environment variable for it, `PROJ_ONLY_BEST_DEFAULT`). Instead [`crate::GridPlan::vertical`]
-    /// records the offset found at the centre, to the millimetre: runs with grids that differ there read differently.
+    /// PROJ takes the best operation for which it has the grids; approximations without any are not
+    /// allowed. Where the grid of the best is not installed but that of a lesser one is, an older
+    /// model of the geoid say, PROJ takes the lesser one and does not tell. It is not asked for the
+    /// best alone, which GDAL can do since 3.8 only (PROJ since 9.2 has an environment variable for
+    /// it, `PROJ_ONLY_BEST_DEFAULT`). Instead [`crate::GridPlan::vertical`] records the offset
+    /// found at the centre, to the millimetre: runs with grids that differ there read differently.
     pub vertical_crs: Option<String>,
     /// Added to every height, after all else, metres.
     pub vertical_shift_m: f64,
@@ -90,13 +95,14 @@ impl StoredValues {
             scale,
             offset,
             unit_m: m_per_value(path, &band.unit(), vertical, options.vertical_unit.as_deref())?,
-            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers all types.
+            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves
+            // is exact, and covers all types.
             has_mask,
         })
     }
 
-    /// A stored value as text, with no more digits than the file has: the user may give it as the value for "no
-    /// data".
+    /// A stored value as text, with no more digits than the file has: the user may give it as the
+    /// value for "no data".
     pub(crate) fn stored_text(&self, value: f64) -> String {
         match value {
             value if self.is_signed_byte && value > 127.0 => (value - 256.0).to_string(),
@@ -131,14 +137,16 @@ impl StoredValues {
 /// The value that the file declares to mean nothing.
 fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
     match kind {
-        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the samples read.
+        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the
+        // samples read.
         GdalDataType::Int64 => band.no_data_value_i64().map(|value| value as f64),
         GdalDataType::UInt64 => band.no_data_value_u64().map(|value| value as f64),
         _ => band.no_data_value(),
     }
 }
 
-/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or metres where none of them says.
+/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or
+/// metres where none of them says.
 fn m_per_value(
     path: &Path,
     band_unit: &str,

@@ -7,7 +7,8 @@ use crate::OpenDemError;
 use crate::files::source::Source;
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
-/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
+/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole
+/// sagitta.
 const SIDE_POSITIONS: usize = 65;
 /// Positions across the inside of a file, each way: a pole may lie there.
 const INNER_POSITIONS: usize = 9;
@@ -20,7 +21,8 @@ pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
     samples.iter().map(|&sample| mosaic.crs_from_sample.crs_from_pixel(sample)).collect()
 }
 
-/// Points on the rim and inside of a rectangle between two corners: the rim first, all the way around.
+/// Points on the rim and inside of a rectangle between two corners: the rim first, all the way
+/// around.
 pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -> Vec<[f64; 2]> {
     let corners = [[west, north], [east, north], [east, south], [west, south]];
     let between = |from: f64, to: f64, t: f64| from + (to - from) * t;
@@ -41,8 +43,8 @@ pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -
     samples
 }
 
-/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim positions
-/// included; empty where the CRS does not reach.
+/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim
+/// positions included; empty where the CRS does not reach.
 pub(crate) fn bounds(
     mosaic: &Mosaic,
     rect: &SampleRect,
@@ -53,11 +55,12 @@ pub(crate) fn bounds(
     Ok(with_bend(&points))
 }
 
-/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included; empty where there are none.
+/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included;
+/// empty where there are none.
 pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     let mut bounds = Bounds::around(points);
-    // The distance of a position from the straight line between its two neighbours is 4 times the bend between two
-    // positions.
+    // The distance of a position from the straight line between its two neighbours is 4 times the
+    // bend between two positions.
     let mut bend = 0.0_f64;
     for side in points[..4 * SIDE_POSITIONS].chunks_exact(SIDE_POSITIONS) {
         for [a, b, c] in side.windows(3).filter_map(|three| <[[f64; 2]; 3]>::try_from(three).ok()) {
@@ -76,8 +79,9 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     bounds
 }
 
-/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes are continuous:
-/// across the antimeridian they go on beyond ±180. Refuses a file of which no position is on earth.
+/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes
+/// are continuous: across the antimeridian they go on beyond ±180. Refuses a file of which no
+/// position is on earth.
 pub(crate) fn wgs84(
     sources: &[Source],
     mosaics: &[Mosaic],
@@ -125,7 +129,8 @@ pub(crate) fn wgs84(
     Ok((all, moved_back(bounds, away)))
 }
 
-/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies within.
+/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies
+/// within.
 pub(crate) fn turns_beyond(bounds: Bounds) -> f64 {
     let is_beyond = bounds.min_x >= 180.0 || bounds.max_x <= -180.0;
     if is_beyond { Seam::of_degrees().turns(bounds.center()[0]) } else { 0.0 }
@@ -137,8 +142,9 @@ pub(crate) fn moved_back(bounds: Bounds, turns: f64) -> Bounds {
     Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds }
 }
 
-/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved next to the one before it, which is
-/// near. Inside, each is moved next to the middle of the rim: neighbours in the list can be as far apart as the rectangle is wide.
+/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved
+/// next to the one before it, which is near. Inside, each is moved next to the middle of the rim:
+/// neighbours in the list can be as far apart as the rectangle is wide.
 pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
     let is_somewhere = |point: &&mut [f64; 2]| point[0].is_finite();
@@ -153,7 +159,8 @@ pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     }
 }
 
-/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and none from an empty one.
+/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and
+/// none from an empty one.
 fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     if bounds.is_empty() {
         return 0.0;

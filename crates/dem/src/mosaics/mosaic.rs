@@ -1,4 +1,5 @@
-//! Files of one grid as one raster of samples: its rectangles, its spacing and phase without the rounding of the program that wrote the files.
+//! Files of one grid as one raster of samples: its rectangles, its spacing and phase without the
+//! rounding of the program that wrote the files.
 
 use corniche_geom::{GeoTransform, Seam};
 use corniche_gis::Crs;
@@ -13,10 +14,11 @@ const SAME_PLACE_PX: f64 = 0.01;
 
 /// Numbers with few digits may move samples by this, over the whole extent, in cells.
 const NOISE_CELLS: f64 = 5e-4;
-/// Rounding of a grid's phase, in steps per unit: small enough that it removes only the noise in corner coordinates.
+/// Rounding of a grid's phase, in steps per unit: small enough that it removes only the noise in
+/// corner coordinates.
 const PHASE_STEPS: f64 = 1e6;
-/// The same in degrees, in steps per cell: degrees are written with fewer digits. Rounding moves nodes by half a step
-/// at most.
+/// The same in degrees, in steps per cell: degrees are written with fewer digits. Rounding moves
+/// nodes by half a step at most.
 const PHASE_STEPS_DEGREES: f64 = 1e4;
 
 /// A rectangle of samples: `min` inclusive, `max` exclusive, as `[column, row]`.
@@ -52,8 +54,8 @@ impl SampleRect {
     }
 }
 
-/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the first of the
-/// first file, and a position between samples has fractions.
+/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the
+/// first of the first file, and a position between samples has fractions.
 #[derive(Debug, Clone)]
 pub(crate) struct Mosaic {
     pub(crate) crs: Crs,
@@ -99,8 +101,8 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// How many columns make a full turn around the earth; `None` when this is not a whole number. A spacing that is
-/// written with few digits is read as the number that is meant.
+/// How many columns make a full turn around the earth; `None` when this is not a whole number. A
+/// spacing that is written with few digits is read as the number that is meant.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
     let reach = source.columns.max(source.rows) as f64;
@@ -121,7 +123,8 @@ pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(),
     }
 }
 
-/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel in.
+/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel
+/// in.
 fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
     let mut coefficients = crs_from_pixel.coefficients;
     [coefficients[0], coefficients[3]] = crs_from_pixel.crs_from_pixel([0.5, 0.5]);
@@ -129,13 +132,14 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
-    /// Whether it goes all around the earth with one sample in each cell: between its last column and its first one there is ground, too.
+    /// Whether it goes all around the earth with one sample in each cell: between its last column
+    /// and its first one there is ground, too.
     pub(crate) fn is_ring(&self) -> bool {
         self.period == Some(self.extent.max[0] - self.extent.min[0])
     }
 
-    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has the ring's first column once more, so that the
-    /// ring ends where it begins.
+    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has
+    /// the ring's first column once more, so that the ring ends where it begins.
     ///
     /// ```text
     ///   │ 0 │ 1 │ … │ 359 ┊ 0 ┊     A globe with cells of a degree: 360 columns of samples, 361 of nodes.
@@ -164,8 +168,8 @@ impl Mosaic {
         self.crs.turn.map(|turn| Seam::new(self.middle()[0], turn))
     }
 
-    /// The samples that a position can refer to. A grid all around the earth repeats, so its columns go on to both
-    /// sides.
+    /// The samples that a position can refer to. A grid all around the earth repeats, so its
+    /// columns go on to both sides.
     pub(crate) fn reachable(&self) -> SampleRect {
         let around = self.period.unwrap_or(0);
         let SampleRect { min, max } = self.extent;
@@ -208,8 +212,9 @@ impl Mosaic {
     }
 }
 
-/// A spacing without the rounding of the program that wrote the file: a whole number of samples per unit (1/1200 of a
-/// degree), or a number of few decimal digits. If neither is near, the spacing stays as it is.
+/// A spacing without the rounding of the program that wrote the file: a whole number of samples per
+/// unit (1/1200 of a degree), or a number of few decimal digits. If neither is near, the spacing
+/// stays as it is.
 pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
     let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
     let digits = rounded(spacing, 9);
@@ -220,7 +225,8 @@ pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
         .unwrap_or(spacing)
 }
 
-/// Where samples lie between two multiples of their spacing, so that adjoining files of one product have the same grid.
+/// Where samples lie between two multiples of their spacing, so that adjoining files of one product
+/// have the same grid.
 pub(crate) fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
     let (unit, steps) =
         if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };

@@ -15,8 +15,8 @@ pub(crate) struct OpenFiles {
 }
 
 impl OpenFiles {
-    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first file falls
-    /// through to the next.
+    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first
+    /// file falls through to the next.
     pub(crate) fn read(
         &mut self,
         sources: &[Source],

@@ -1,4 +1,5 @@
-//! One vertical CRS for the heights of all files: the one that is asked for, or the one that they agree on.
+//! One vertical CRS for the heights of all files: the one that is asked for, or the one that they
+//! agree on.
 
 use std::path::Path;
 
@@ -11,7 +12,8 @@ use crate::HeightDatumError;
 use crate::files::source::Source;
 use crate::files::stored_values::OpenOptions;
 
-/// The largest shift that is accepted: the deepest trench and the highest mountain differ by only 20 km.
+/// The largest shift that is accepted: the deepest trench and the highest mountain differ by only
+/// 20 km.
 const MAX_SHIFT_M: f64 = 100_000.0;
 
 /// What the heights that a DEM hands out are measured from.
@@ -23,10 +25,11 @@ pub(crate) struct HeightReference {
     pub(crate) conversion: String,
 }
 
-/// The operation that carries a file's heights from one vertical CRS to another; and the offset it gives, in words.
+/// The operation that carries a file's heights from one vertical CRS to another; and the offset it
+/// gives, in words.
 ///
-/// PROJ must know a true operation: its "ballpark" ones, which leave heights as they are where a grid is
-/// missing, are not allowed.
+/// PROJ must know a true operation: its "ballpark" ones, which leave heights as they are where a
+/// grid is missing, are not allowed.
 fn height_operation(
     source: &Source,
     [from, to]: [&VerticalCrs; 2],
@@ -79,8 +82,8 @@ fn probes(source: &Source) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a file can be
-/// looked for.
+/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a
+/// file can be looked for.
 fn no_operation(
     source: &Source,
     systems: [&VerticalCrs; 2],

@@ -1,6 +1,8 @@
-//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the samples that these need.
+//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the
+//! samples that these need.
 //!
-//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which of its nodes are made.
+//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which
+//! of its nodes are made.
 
 use std::sync::Arc;
 
@@ -21,8 +23,9 @@ const LEAST_ROOM_DEG: f64 = 1e-3;
 /// Samples around those under the nodes asked for, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
-/// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes, its south-western and north-eastern one, rounded outwards. They
-/// may reach beyond the data. `area_deg` is the rectangle for which PROJ chooses its operation.
+/// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes, its south-western
+/// and north-eastern one, rounded outwards. They may reach beyond the data. `area_deg` is the
+/// rectangle for which PROJ chooses its operation.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
 ///
@@ -122,8 +125,8 @@ fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     [west, south, if west > east { east + 360.0 } else { east }, north]
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of the data there, with some room on all
-/// sides. Others stay.
+/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of
+/// the data there, with some room on all sides. Others stay.
 fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -> [f64; 4] {
     if east - west < 360.0 {
         return [west, south, east, north];
@@ -144,8 +147,8 @@ fn bounds_text(bounds_deg: [f64; 4]) -> String {
     bounds_deg.map(|deg| deg.to_string()).join(",")
 }
 
-/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on both ends of data that go
-/// around the earth.
+/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on
+/// both ends of data that go around the earth.
 pub(crate) fn cut(
     asked: &Asked,
     whole: [NodeIndex; 2],
@@ -186,8 +189,8 @@ pub(crate) fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
     ]
 }
 
-/// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes go on beyond ±180, as those
-/// of the whole DEM do.
+/// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes
+/// go on beyond ±180, as those of the whole DEM do.
 pub(crate) fn wgs84_bounds(
     data: Bounds,
     working: &GridCrs,
@@ -214,7 +217,8 @@ pub(crate) fn wgs84_bounds(
     Ok(moved_back(bounds, turns_beyond(bounds)))
 }
 
-/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.
+/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them
+/// without bounds.
 pub(crate) fn needed_samples(
     plan: &GridPlan,
     mosaic: &Mosaic,
@@ -258,8 +262,8 @@ pub(crate) fn needed_samples(
 }
 
 impl Dem {
-    /// Tells for each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
-    /// plan's bounds were looked into for the grid alone.
+    /// Tells for each file, in the order in which they were given, whether the plan's nodes can
+    /// depend on its samples. Files outside the plan's bounds were looked into for the grid alone.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -301,7 +305,8 @@ impl GridPlan {
         Self { clip: None, polygon: None, ..self.clone() }
     }
 
-    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its bounds stay.
+    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its
+    /// bounds stay.
     ///
     /// # Errors
     /// When the polygon has no place in the working CRS, or encloses nothing.

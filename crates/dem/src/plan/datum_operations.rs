@@ -1,4 +1,5 @@
-//! How positions of all files and of the roads come to the datum of a package, and which of these ways a build must be allowed to take.
+//! How positions of all files and of the roads come to the datum of a package, and which of these
+//! ways a build must be allowed to take.
 
 use std::path::PathBuf;
 
@@ -11,8 +12,8 @@ use corniche_gis::{
 use crate::mosaics::data_extent;
 use crate::{Dem, GridPlan};
 
-/// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data` is the rectangle of all nodes. None
-/// where all datums are that of WGS84.
+/// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data`
+/// is the rectangle of all nodes. None where all datums are that of WGS84.
 pub(crate) fn datum_operations(
     dem: &Dem,
     working: &GridCrs,
@@ -42,8 +43,9 @@ pub(crate) fn datum_operations(
 }
 
 impl Dem {
-    /// Refuses a plan for which one datum is taken for another, because PROJ knows nothing between them: roads would lie 100 m and more
-    /// beside the ground. Datums on the ellipsoid of WGS84 are not refused.
+    /// Refuses a plan for which one datum is taken for another, because PROJ knows nothing between
+    /// them: roads would lie 100 m and more beside the ground. Datums on the ellipsoid of WGS84 are
+    /// not refused.
     ///
     /// # Errors
     /// [`CrsError::Ballpark`] where it is so.

@@ -11,15 +11,16 @@ use crate::{Dem, GridPlan};
 
 /// The samples of the files that lie on one grid.
 pub struct Footprint<'a> {
-    /// For each file its first and its last sample: column, row. On a grid all around the earth, one more column closes it.
+    /// For each file its first and its last sample: column, row. On a grid all around the earth,
+    /// one more column closes it.
     pub rects: Vec<[[i64; 2]; 2]>,
     mosaic: &'a Mosaic,
     working_from_crs: &'a CrsOperation,
 }
 
 impl Dem {
-    /// The south-western and the north-eastern node of each file, between which it can have data, within the plan's. Files that
-    /// have no node between their samples there are left out.
+    /// The south-western and the north-eastern node of each file, between which it can have data,
+    /// within the plan's. Files that have no node between their samples there are left out.
     ///
     /// # Errors
     /// When a file's place cannot be transformed.
@@ -73,7 +74,8 @@ impl Dem {
 }
 
 impl Footprint<'_> {
-    /// Carries places among the samples (column, row) to working metres; those without a place there become NaN.
+    /// Carries places among the samples (column, row) to working metres; those without a place
+    /// there become NaN.
     ///
     /// # Errors
     /// When PROJ fails.

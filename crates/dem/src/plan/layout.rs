@@ -20,11 +20,13 @@ pub(crate) struct Layout {
     pub(crate) working: GridCrs,
     pub(crate) origin_m: [f64; 2],
     pub(crate) cell: Cell,
-    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are aligned.
+    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are
+    /// aligned.
     every: i64,
 }
 
-/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the nodes.
+/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the
+/// nodes.
 pub(crate) fn layout(
     dem: &Dem,
     options: &PlanOptions,
@@ -111,8 +113,8 @@ fn asked_or_square(
 impl Layout {
     /// Nodes at every `every`-th sample of a mosaic that lies along the axes of the working CRS.
     ///
-    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a whole number of
-    /// lattice steps.
+    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a
+    /// whole number of lattice steps.
     fn of_samples(mosaic: &Mosaic, mut working: GridCrs, every: i64) -> Self {
         let c = mosaic.crs_from_sample.coefficients;
         let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
@@ -161,8 +163,8 @@ impl Layout {
                 [at[0] - (i + way[0] * sample[0]) as f64, at[1] - (j + way[1] * sample[1]) as f64];
             off.iter().all(|off| off.abs() <= ALIGNED_CELLS)
         });
-        // For a single row or column the positions alone do not test the spacing, so both spacings must equal the
-        // cell.
+        // For a single row or column the positions alone do not test the spacing, so both spacings
+        // must equal the cell.
         let is_cell = [0, 1]
             .iter()
             .all(|&axis| (steps[axis].abs() / between[axis] - 1.0).abs() <= ALIGNED_CELLS);

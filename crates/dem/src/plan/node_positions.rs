@@ -7,7 +7,8 @@ use crate::mosaics::mosaic::Mosaic;
 
 /// Largest error of a position, as a share of a sample or of a cell, whichever is smaller.
 const TOLERANCE: f64 = 0.01;
-/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the tolerance above.
+/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the
+/// tolerance above.
 const PLAN_TOLERANCE: f64 = 0.005;
 /// Lattice spacings tried, in nodes; at 1 every node is transformed.
 const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
@@ -24,8 +25,9 @@ const TRIAL_MESHES: i64 = 12;
 ///   o───·───o───·───o      the bilinear mean of its corners, nodes are interpolated, in others transformed.
 /// ```
 ///
-/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All five halfway
-/// points are tested: with a conformal projection the errors cancel in the middle of a mesh, but not on its sides.
+/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All
+/// five halfway points are tested: with a conformal projection the errors cancel in the middle of a
+/// mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
     /// Around the seam of the mosaic's CRS.
@@ -89,7 +91,8 @@ impl NodePositions {
         Ok(true)
     }
 
-    /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there is none.
+    /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there
+    /// is none.
     pub(crate) fn of(
         &self,
         frame: &GridFrame,

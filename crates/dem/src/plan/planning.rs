@@ -25,24 +25,29 @@ const MAX_FILL_VOIDS: u32 = 1024;
 impl Dem {
     /// Chooses working CRS, cell and extent.
     ///
-    /// - Working CRS: `options.crs`; else the first file's own, if lengths in working metres are then true within 3 % all
-    ///   over the data; else the UTM zone of the centre, if it is true to scale within 1 % all over the data and the data
-    ///   lies between 80° S and 84° N; else Lambert's azimuthal equal-area about the centre.
-    /// - Working metres are its coordinates times two factors. In degrees: metres per degree at the standard latitude, by
-    ///   the radii of curvature of the ellipsoid. In a projection: its unit, where that is true to scale within 1 % along
-    ///   both axes and all over the data; else the unit divided by the scale along each axis, at the standard latitude and
-    ///   the middle longitude. Axes that count westwards or southwards are turned. The standard latitude is the middle of
-    ///   the data to half a degree, or `options.scale_latitude_deg`; one that is given decides, at the middle longitude
-    ///   alone, whether a projection keeps its unit.
-    /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
-    ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
-    /// - Bounds: `options.bounds_deg` and `options.polygon` leave out nodes and nothing else. All of the above is chosen from the
-    ///   whole DEM.
-    /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide
-    ///   with samples; otherwise node (0, 0) is the CRS's zero. Files on other grids are resampled.
+    /// - Working CRS: `options.crs`; else the first file's own, if lengths in working metres are
+    ///   then true within 3 % all over the data; else the UTM zone of the centre, if it is true to
+    ///   scale within 1 % all over the data and the data lies between 80° S and 84° N; else
+    ///   Lambert's azimuthal equal-area about the centre.
+    /// - Working metres are its coordinates times two factors. In degrees: metres per degree at the
+    ///   standard latitude, by the radii of curvature of the ellipsoid. In a projection: its unit,
+    ///   where that is true to scale within 1 % along both axes and all over the data; else the
+    ///   unit divided by the scale along each axis, at the standard latitude and the middle
+    ///   longitude. Axes that count westwards or southwards are turned. The standard latitude is
+    ///   the middle of the data to half a degree, or `options.scale_latitude_deg`; one that is
+    ///   given decides, at the middle longitude alone, whether a projection keeps its unit.
+    /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where
+    ///   that file is in another CRS or turned against it, a square with the shorter spacing as
+    ///   side (two significant digits in another CRS).
+    /// - Bounds: `options.bounds_deg` and `options.polygon` leave out nodes and nothing else. All
+    ///   of the above is chosen from the whole DEM.
+    /// - Where the cell is the spacing of the first file's samples, or a multiple by
+    ///   `options.cell_every`, nodes coincide with samples; otherwise node (0, 0) is the CRS's
+    ///   zero. Files on other grids are resampled.
     ///
     /// # Errors
-    /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is too large.
+    /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is
+    /// too large.
     pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, GridError> {
         plan(self, options)
     }

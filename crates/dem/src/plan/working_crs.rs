@@ -11,16 +11,16 @@ use crate::mosaics::mosaic::{Mosaic, rounded};
 use crate::plan::grid_plan::PlanScale;
 use crate::{Dem, GridError};
 
-/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
-/// samples themselves are worth more than 3 % of a width.
+/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data:
+/// nodes that are the samples themselves are worth more than 3 % of a width.
 const OWN_TOLERANCE: f64 = 0.03;
-/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is taken where it is so in
-/// all directions.
+/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is
+/// taken where it is so in all directions.
 const TRUE_TOLERANCE: f64 = 0.01;
 /// UTM is defined between these latitudes.
 const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
-/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in a hundred kilometres,
-/// few enough that versions of PROJ agree.
+/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in
+/// a hundred kilometres, few enough that versions of PROJ agree.
 const FACTOR_DIGITS: usize = 9;
 
 /// The standard latitude: the latitude at which lengths are true.
@@ -37,7 +37,8 @@ fn around_data(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<GridCrs
     let middle = if crs.is_same(&own.crs) {
         own.middle()[0]
     } else {
-        // Files all around the earth end where they begin, and not half a turn from the mean of their positions.
+        // Files all around the earth end where they begin, and not half a turn from the mean of
+        // their positions.
         let [lon, lat] = dem.center_deg;
         let is_ring = dem.mosaics.iter().any(Mosaic::is_ring);
         let lon = if is_ring { dem.wgs84_bounds.center()[0] } else { lon };
@@ -48,10 +49,12 @@ fn around_data(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<GridCrs
     Ok(GridCrs { crs, metres_per_unit, middle, is_scaled: false })
 }
 
-/// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
+/// A CRS with the factors that make lengths true at the standard latitude; `None` where it has
+/// none, outside its reach.
 ///
-/// Whether a projection is true to scale without factors is asked all over the data; with a latitude that was given,
-/// there and at the middle longitude alone, so that packages of adjoining regions fit.
+/// Whether a projection is true to scale without factors is asked all over the data; with a
+/// latitude that was given, there and at the middle longitude alone, so that packages of adjoining
+/// regions fit.
 fn with_true_lengths(
     dem: &Dem,
     crs: &Crs,
@@ -98,7 +101,8 @@ fn scale_at(
     Ok(scales(&back, &points)?[0])
 }
 
-/// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside the CRS.
+/// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside
+/// the CRS.
 fn rim_scales(working: &GridCrs, dem: &Dem) -> Result<Vec<Option<LocalScale>>, CrsError> {
     let wgs84 = Crs::wgs84()?;
     let back = CrsOperation::out_of_working(working, &wgs84, Some(dem.wgs84_bounds));
@@ -122,8 +126,8 @@ fn is_true_within(working: &GridCrs, dem: &Dem, tolerance: f64) -> Result<bool, 
 /// How long lengths come out.
 pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<PlanScale, GridError> {
     let outside = || GridError::OutsideCrs { crs: working.crs.label.clone() };
-    // The middle of the rectangle, because the standard latitude is taken there; the mean of all positions may
-    // lie far from any data.
+    // The middle of the rectangle, because the standard latitude is taken there; the mean of all
+    // positions may lie far from any data.
     let center = match scale_at(working, dem, dem.wgs84_bounds.center())? {
         Some(center) => center,
         None => scale_at(working, dem, dem.center_deg)?.ok_or_else(outside)?,
@@ -210,8 +214,9 @@ fn is_right_handed(working: &GridCrs, dem: &Dem) -> Result<bool, CrsError> {
     Ok(scale.is_some_and(|scale| scale.deviation.is_finite()))
 }
 
-/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then to the nearest half
-/// degree (ties towards the equator), so that small changes of the extent leave the grid where it is.
+/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then
+/// to the nearest half degree (ties towards the equator), so that small changes of the extent leave
+/// the grid where it is.
 fn standard_latitude_deg(bounds: Bounds) -> f64 {
     let middle = (bounds.center()[1] * 1e6).round() / 1e6;
     let halves = middle.abs() * 2.0;
@@ -233,8 +238,8 @@ fn utm(dem: &Dem) -> Result<Option<GridCrs>, CrsError> {
     Ok(Some(around_data(crs, [1.0; 2], dem)?))
 }
 
-/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
-/// extent leave the grid where it is.
+/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small
+/// changes of the extent leave the grid where it is.
 fn equal_area(dem: &Dem) -> Result<GridCrs, CrsError> {
     let [lon, lat] = dem.center_deg.map(f64::round);
     let text = format!(

@@ -30,7 +30,8 @@ struct Wanted {
     is_wanted: Vec<bool>,
 }
 
-/// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its buffers.
+/// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its
+/// buffers.
 pub struct Reader<'a> {
     pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a GridPlan,
@@ -54,7 +55,8 @@ impl Dem {
 }
 
 impl Reader<'_> {
-    /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds or its polygon are gaps.
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds
+    /// or its polygon are gaps.
     ///
     /// A node has the same bits whichever window it is read through.
     ///
@@ -67,8 +69,8 @@ impl Reader<'_> {
         if self.plan.clip.is_none() {
             return self.filled_window(window);
         }
-        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so that nodes have the same heights as
-        // without bounds.
+        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so
+        // that nodes have the same heights as without bounds.
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         let (mut filled, mut is_filled) = (0, Vec::new());
         let within = intersection(&window, [self.plan.south_west, self.plan.north_east]);
@@ -100,7 +102,8 @@ impl Reader<'_> {
         Ok(DemWindow { heights, filled, is_filled })
     }
 
-    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them; `None` where it leaves none.
+    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them;
+    /// `None` where it leaves none.
     fn wanted(&self, window: NodeWindow) -> Option<Wanted> {
         let Some(region) = &self.plan.polygon else {
             return Some(Wanted { part: window, is_wanted: Vec::new() });
@@ -147,7 +150,8 @@ impl Reader<'_> {
         })
     }
 
-    /// The heights of a window widened by `reach` nodes on every side, of which the inside is known.
+    /// The heights of a window widened by `reach` nodes on every side, of which the inside is
+    /// known.
     fn with_halo(
         &mut self,
         window: NodeWindow,
@@ -236,7 +240,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the samples are in `at`.
+    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the
+    /// samples are in `at`.
     fn interpolate(
         &mut self,
         mosaic: &Mosaic,

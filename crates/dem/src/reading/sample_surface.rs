@@ -21,8 +21,9 @@ type BlockKey = (usize, [i64; 2]);
 /// From where to where along a segment, as shares of it.
 type Stretch = [f64; 2];
 
-/// The surface of the DEM's samples, as the files have them: bilinear between four of one grid. Where grids overlap, the one that is named first and
-/// has all four counts. It does not depend on the grid of a package.
+/// The surface of the DEM's samples, as the files have them: bilinear between four of one grid.
+/// Where grids overlap, the one that is named first and has all four counts. It does not depend on
+/// the grid of a package.
 pub struct SampleSurface<'a> {
     dem: &'a Dem,
     /// For each mosaic the operation from working metres to its CRS.
@@ -33,8 +34,8 @@ pub struct SampleSurface<'a> {
     last: Option<(BlockKey, Block)>,
 }
 
-/// A half of a straight part of a line: from one place among a mosaic's samples to another, and how far beside the straight way between them the line
-/// may be there, in samples.
+/// A half of a straight part of a line: from one place among a mosaic's samples to another, and how
+/// far beside the straight way between them the line may be there, in samples.
 #[derive(Clone, Copy)]
 struct Half {
     from: [f64; 2],
@@ -61,9 +62,11 @@ impl Dem {
 }
 
 impl SampleSurface<'_> {
-    /// The largest vertical distance between a line and the surface, metres, over the whole line; `None` where nothing of the surface lies beneath it.
+    /// The largest vertical distance between a line and the surface, metres, over the whole line;
+    /// `None` where nothing of the surface lies beneath it.
     ///
-    /// The line has ends of straight parts, and between each two of them their middle: an odd number of places in working metres, with heights.
+    /// The line has ends of straight parts, and between each two of them their middle: an odd
+    /// number of places in working metres, with heights.
     ///
     /// ```text
     ///   ●─────┬──m──┬──────●     ●  ends of a straight part,  m  its middle
@@ -99,7 +102,8 @@ impl SampleSurface<'_> {
         Ok(most_m)
     }
 
-    /// The largest distance along a stretch of a segment; of what has no surface of this mosaic beneath it the stretches are left.
+    /// The largest distance along a stretch of a segment; of what has no surface of this mosaic
+    /// beneath it the stretches are left.
     fn stretch_m(
         &mut self,
         (mosaic, half): (usize, Half),
@@ -191,8 +195,9 @@ impl SampleSurface<'_> {
 }
 
 impl Half {
-    /// The half that ends at a place of a line. Straight parts of a map bend a little among samples of another CRS: each half is off its chord by an
-    /// eighth of the second difference of the whole; twice that is allowed for.
+    /// The half that ends at a place of a line. Straight parts of a map bend a little among samples
+    /// of another CRS: each half is off its chord by an eighth of the second difference of the
+    /// whole; twice that is allowed for.
     fn of(at: &[[f64; 2]], index: usize) -> Self {
         let middle = index - (index + 1) % 2;
         let ends = [at[middle - 1], at[(middle + 1).min(at.len() - 1)]];
@@ -208,7 +213,8 @@ fn bilinear_m([nw, ne, sw, se]: [f64; 4], [across, along]: [f64; 2]) -> f64 {
     north + along * (south - north)
 }
 
-/// The largest size of a parabola between two places, from its values there and in the middle: along a straight line, heights over a bilinear cell are one.
+/// The largest size of a parabola between two places, from its values there and in the middle:
+/// along a straight line, heights over a bilinear cell are one.
 #[must_use]
 pub fn largest_of_parabola(from: f64, middle: f64, to: f64) -> f64 {
     let square = 2.0 * (from - 2.0 * middle + to);

@@ -32,7 +32,8 @@ pub struct SampleBlock {
 }
 
 impl SampleBlock {
-    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the lattice.
+    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the
+    /// lattice.
     fn keep_within(&mut self, frame: &GridFrame, nodes: [NodeIndex; 2]) {
         let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
         let bounds = LatticeBounds { min, max };
@@ -54,8 +55,8 @@ impl SampleBlock {
 }
 
 impl Dem {
-    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256 samples at most, those of no file
-    /// left out.
+    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256
+    /// samples at most, those of no file left out.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -73,8 +74,8 @@ impl Dem {
 const AROUND_NODES: usize = 2;
 
 impl Dem {
-    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256 samples at most. No sample
-    /// is in two of them.
+    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256
+    /// samples at most. No sample is in two of them.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -128,8 +129,8 @@ fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleRang
 }
 
 impl Reader<'_> {
-    /// The samples of a range that have a height: after nodata, units and shift; where files of one grid overlap, those of
-    /// the file named first. Those outside the plan's bounds are left out.
+    /// The samples of a range that have a height: after nodata, units and shift; where files of one
+    /// grid overlap, those of the file named first. Those outside the plan's bounds are left out.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -154,8 +155,8 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// The samples of a range from which nodes are made: those that are not hidden by an earlier named grid with data
-    /// there.
+    /// The samples of a range from which nodes are made: those that are not hidden by an earlier
+    /// named grid with data there.
     ///
     /// # Errors
     /// When a file cannot be read.

@@ -1,4 +1,5 @@
-//! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to the last bit.
+//! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to
+//! the last bit.
 
 use corniche_dem::{Dem, GridError, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
@@ -25,7 +26,8 @@ fn with(bounds_deg: [f64; 4], options: PlanOptions) -> PlanOptions {
     PlanOptions { bounds_deg: Some(bounds_deg), ..options }
 }
 
-/// Checks that all that is not about bounds is the same, that nodes inside have the same heights and no others have one.
+/// Checks that all that is not about bounds is the same, that nodes inside have the same heights
+/// and no others have one.
 fn check(dem: &Dem, asked: &PlanOptions, bounds_deg: [f64; 4]) -> GridPlan {
     let whole = dem.plan(asked).unwrap();
     let part = dem.plan(&with(bounds_deg, asked.clone())).unwrap();
@@ -164,7 +166,8 @@ fn bounds_may_cross_180_degrees() {
     assert!((-179.95..-179.85).contains(&part.wgs84_bounds.min_x), "{:?}", part.wgs84_bounds);
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie and whatever their working CRS is.
+/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie
+/// and whatever their working CRS is.
 #[test]
 fn bounds_around_the_earth_leave_out_no_longitude() {
     let folder = folder();

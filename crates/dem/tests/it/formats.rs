@@ -238,7 +238,8 @@ fn netcdf_4_gives_the_plane_and_bare_hdf5_has_no_place() {
     let options = ["FORMAT=NC4", "COMPRESS=DEFLATE"];
     let Some(path) = converted(&source, "netCDF", "four.nc", &options) else { return };
     check("netCDF 4", &path, F32_M);
-    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions nobody knows where it lies.
+    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions nobody knows
+    // where it lies.
     if DriverManager::get_driver_by_name("HDF5").is_ok() {
         let name = PathBuf::from(format!("HDF5:\"{}\"://Band1", path.display()));
         check_refused(&[name], &given, &["four.nc", "georeference"]);
@@ -301,7 +302,8 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     assert!(refused > bytes.len() / 2);
 }
 
-/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever records it can say so.
+/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever
+/// records it can say so.
 #[cfg(target_os = "linux")]
 #[test]
 fn parts_keep_the_bytes_of_their_names() {

@@ -1,4 +1,5 @@
-//! Coordinate systems as files and options name them: a horizontal one, and perhaps a vertical one with it.
+//! Coordinate systems as files and options name them: a horizontal one, and perhaps a vertical one
+//! with it.
 
 use gdal::errors::GdalError;
 use gdal::spatial_ref::SpatialRef;
@@ -29,8 +30,8 @@ pub fn crs_from_text(
     parts_of(&reference)?.ok_or_else(kind)
 }
 
-/// The horizontal part of a system and the vertical one, if any; `None` when it is neither projected nor
-/// geographic.
+/// The horizontal part of a system and the vertical one, if any; `None` when it is neither
+/// projected nor geographic.
 pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, CrsError> {
     let mut reference = reference.clone();
     let name = reference.name().unwrap_or_default();

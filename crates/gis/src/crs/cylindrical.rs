@@ -1,4 +1,5 @@
-//! Projections in which x goes evenly with the longitude: after a turn around the earth it comes back, as degrees do.
+//! Projections in which x goes evenly with the longitude: after a turn around the earth it comes
+//! back, as degrees do.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -19,7 +20,8 @@ thread_local! {
     static KNOWN: RefCell<HashMap<String, Option<f64>>> = RefCell::new(HashMap::new());
 }
 
-/// How far x goes in a turn around the earth, in the system's unit; `None` for projections that are not cylindrical.
+/// How far x goes in a turn around the earth, in the system's unit; `None` for projections that are
+/// not cylindrical.
 pub(crate) fn turn_of(reference: &SpatialRef, wkt: &str) -> Option<f64> {
     if !is_named(wkt) {
         return None;

@@ -8,7 +8,8 @@ fn turn(code: u32) -> Option<f64> {
     turn_of(&reference, &wkt2(&reference).unwrap())
 }
 
-/// A turn is 2π times the radius of the equator, by the scale of the projection: on a cylinder that is true at a latitude φ on WGS84, 2π N cos φ.
+/// A turn is 2π times the radius of the equator, by the scale of the projection: on a cylinder that
+/// is true at a latitude φ on WGS84, 2π N cos φ.
 #[test]
 fn cylinders_have_a_turn() {
     let equator_m = std::f64::consts::TAU * 6_378_137.0;

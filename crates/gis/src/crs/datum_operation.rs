@@ -1,4 +1,5 @@
-//! Which of PROJ's operations carries positions from one datum to another, how good it is, and what would be better.
+//! Which of PROJ's operations carries positions from one datum to another, how good it is, and what
+//! would be better.
 
 use std::cmp::Ordering;
 
@@ -20,10 +21,12 @@ pub struct DatumOperation {
     pub name: String,
     /// How accurate it is, metres; `None` where PROJ does not know it.
     pub accuracy_m: Option<f64>,
-    /// Whether it takes one datum for another ("ballpark"), because PROJ knows nothing between them.
+    /// Whether it takes one datum for another ("ballpark"), because PROJ knows nothing between
+    /// them.
     pub is_ballpark: bool,
-    /// Whether a build must be allowed to use it: a ballpark operation of datums other than those of satellite positioning, which
-    /// lie within metres of each other and share the ellipsoid of WGS84 or GRS80.
+    /// Whether a build must be allowed to use it: a ballpark operation of datums other than those
+    /// of satellite positioning, which lie within metres of each other and share the ellipsoid of
+    /// WGS84 or GRS80.
     pub must_be_allowed: bool,
     /// A more accurate operation that PROJ knows and cannot use, because its grids are not there.
     pub better: Option<BetterOperation>,
@@ -41,7 +44,8 @@ pub struct BetterOperation {
 }
 
 impl DatumOperation {
-    /// What a user should know of it before a build: that another is better, or that nobody knows how good it is.
+    /// What a user should know of it before a build: that another is better, or that nobody knows
+    /// how good it is.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         let Self { from, to, name, .. } = self;
@@ -61,8 +65,8 @@ impl DatumOperation {
         }
     }
 
-    /// The operations from a package's working CRS to WGS84, over the rectangle of the data in working metres; `area_deg` is the rectangle
-    /// for which PROJ chooses.
+    /// The operations from a package's working CRS to WGS84, over the rectangle of the data in
+    /// working metres; `area_deg` is the rectangle for which PROJ chooses.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -81,8 +85,8 @@ impl DatumOperation {
         Ok(Self::used(&operation, &places))
     }
 
-    /// The operations between two datums that are used at some places (degrees), each once; the first place has the first. None where
-    /// the datum stays the same.
+    /// The operations between two datums that are used at some places (degrees), each once; the
+    /// first place has the first. None where the datum stays the same.
     #[must_use]
     pub fn used(operation: &CrsOperation, places_deg: &[[f64; 2]]) -> Vec<Self> {
         let systems = [&operation.from, &operation.to].map(|crs| &*crs.wkt);
@@ -137,8 +141,8 @@ impl DatumOperation {
     }
 }
 
-/// The operation that GDAL takes at a place: the most accurate of those whose area holds it, the first of equals; where there is none,
-/// the first that needs no grid.
+/// The operation that GDAL takes at a place: the most accurate of those whose area holds it, the
+/// first of equals; where there is none, the first that needs no grid.
 fn taken_at<'a>(place_deg: [f64; 2], all: &[&'a ProjOperation]) -> Option<&'a ProjOperation> {
     let mut best: Option<&ProjOperation> = None;
     for &other in all.iter().filter(|other| holds(other.area_deg, place_deg)) {
@@ -153,8 +157,9 @@ fn taken_at<'a>(place_deg: [f64; 2], all: &[&'a ProjOperation]) -> Option<&'a Pr
     best.or_else(|| all.iter().copied().find(|other| !other.has_grids))
 }
 
-/// The operation for the smallest area around a place that lacks its grids alone and is more accurate than another one. The areas of whole countries are
-/// rectangles that reach far into their neighbours.
+/// The operation for the smallest area around a place that lacks its grids alone and is more
+/// accurate than another one. The areas of whole countries are rectangles that reach far into their
+/// neighbours.
 fn better_than(
     used: &ProjOperation,
     place_deg: [f64; 2],

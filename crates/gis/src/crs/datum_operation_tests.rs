@@ -1,4 +1,5 @@
-//! Of PROJ's operations the one is chosen that GDAL takes, and a better one is told only where its grids alone are missing.
+//! Of PROJ's operations the one is chosen that GDAL takes, and a better one is told only where its
+//! grids alone are missing.
 
 use super::*;
 

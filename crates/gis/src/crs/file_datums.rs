@@ -1,4 +1,5 @@
-//! How positions of files beside the elevation data come to another datum, and which of these ways a build must be allowed to take.
+//! How positions of files beside the elevation data come to another datum, and which of these ways
+//! a build must be allowed to take.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +11,8 @@ use crate::crs::datum_operation::DatumOperation;
 use crate::crs::horizontal::{Crs, GridCrs};
 use crate::crs::operation::CrsOperation;
 
-/// Systems, each once, with all that is in them: of thousands of files nearly all have the same one, and asking PROJ takes long.
+/// Systems, each once, with all that is in them: of thousands of files nearly all have the same
+/// one, and asking PROJ takes long.
 #[must_use]
 pub fn by_system<'a, T>(files: impl Iterator<Item = (&'a Crs, T)>) -> Vec<(&'a Crs, Vec<T>)> {
     let mut systems: Vec<(&Crs, Vec<T>)> = Vec::new();
@@ -23,7 +25,8 @@ pub fn by_system<'a, T>(files: impl Iterator<Item = (&'a Crs, T)>) -> Vec<(&'a C
     systems
 }
 
-/// How positions of files beside the elevation data come to another datum: of photos, polygons, and lines of people's own files.
+/// How positions of files beside the elevation data come to another datum: of photos, polygons, and
+/// lines of people's own files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FileDatums {
     /// Each operation, and the first file that needs it.
@@ -31,7 +34,8 @@ pub struct FileDatums {
 }
 
 impl FileDatums {
-    /// The operations of files; `operation` says where their positions go, and `places_deg` where they lie.
+    /// The operations of files; `operation` says where their positions go, and `places_deg` where
+    /// they lie.
     fn of<'a>(
         files: impl Iterator<Item = (&'a Crs, &'a Path)>,
         operation: impl Fn(&Crs) -> CrsOperation,
@@ -73,7 +77,8 @@ impl FileDatums {
         }
     }
 
-    /// What a user should know of them: that another operation is better, or that nobody knows how good one is.
+    /// What a user should know of them: that another operation is better, or that nobody knows how
+    /// good one is.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let warning = |(path, found): &(PathBuf, DatumOperation)| {
             found.warning().map(|text| format!("{}: {text}", path.display()))
@@ -87,7 +92,8 @@ impl FileDatums {
     }
 }
 
-/// The way from a coordinate system, such as that of a layer of a vector file, to longitudes and latitudes of WGS84.
+/// The way from a coordinate system, such as that of a layer of a vector file, to longitudes and
+/// latitudes of WGS84.
 #[derive(Debug, Clone)]
 pub struct ToWgs84 {
     operation: CrsOperation,
@@ -111,7 +117,8 @@ impl ToWgs84 {
         self.operation.apply(points)
     }
 
-    /// How positions of a file in this system, which lie at these places, come to the datum of WGS84.
+    /// How positions of a file in this system, which lie at these places, come to the datum of
+    /// WGS84.
     #[must_use]
     pub fn datums(&self, path: &Path, places_deg: &[[f64; 2]]) -> FileDatums {
         let file = std::iter::once((&self.operation.from, path));

@@ -10,7 +10,8 @@ use crate::crs::vertical::VerticalCrs;
 /// Carries heights of one file to the vertical CRS asked for, sample by sample.
 #[derive(Debug, Clone)]
 pub struct HeightOperation {
-    /// The operation from the horizontal system of the file to that of the ellipsoidal heights, where these differ.
+    /// The operation from the horizontal system of the file to that of the ellipsoidal heights,
+    /// where these differ.
     place: Option<CrsOperation>,
     operation: CrsOperation,
     /// Value in the source system for a metre upwards.
@@ -35,7 +36,8 @@ impl HeightOperation {
         }
     }
 
-    /// Values of the source system, at positions in the file's horizontal one, to those of the target.
+    /// Values of the source system, at positions in the file's horizontal one, to those of the
+    /// target.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -46,7 +48,8 @@ impl HeightOperation {
         self.operation.apply_heights(&points, values)
     }
 
-    /// Carries heights in metres at positions in the file's horizontal system, in place; NaN where there is none.
+    /// Carries heights in metres at positions in the file's horizontal system, in place; NaN where
+    /// there is none.
     ///
     /// # Errors
     /// When PROJ knows no operation.

@@ -1,4 +1,5 @@
-//! Horizontal coordinate systems, kept as text because the objects of PROJ belong to one thread, and such a one in working metres.
+//! Horizontal coordinate systems, kept as text because the objects of PROJ belong to one thread,
+//! and such a one in working metres.
 
 use std::sync::Arc;
 
@@ -19,7 +20,8 @@ pub struct Crs {
     pub label: String,
     /// Whether the label is a code.
     has_code: bool,
-    /// Period of the first coordinate: how far it goes in a full turn around the earth. `None` for projections that are not cylindrical.
+    /// Period of the first coordinate: how far it goes in a full turn around the earth. `None` for
+    /// projections that are not cylindrical.
     pub turn: Option<f64>,
     is_projected: bool,
     /// Metres to a unit of the coordinates; 1 for a geographic system.
@@ -67,7 +69,8 @@ impl Crs {
         Self { wkt, label, has_code: false, ..self.clone() }
     }
 
-    /// What tells it from all other systems: its code; where it has none, its definition, because names such as "unknown" are common.
+    /// What tells it from all other systems: its code; where it has none, its definition, because
+    /// names such as "unknown" are common.
     pub(crate) fn identity(&self) -> &str {
         if self.has_code { &self.label } else { &self.wkt }
     }
@@ -88,8 +91,8 @@ impl Crs {
         Ok(reference)
     }
 
-    /// Whether its ellipsoid is that of WGS84, or GRS80, which differs from it by a tenth of a millimetre. Datums with it were made to be
-    /// used with satellites.
+    /// Whether its ellipsoid is that of WGS84, or GRS80, which differs from it by a tenth of a
+    /// millimetre. Datums with it were made to be used with satellites.
     pub(crate) fn is_on_wgs84_ellipsoid(&self) -> bool {
         const AXES_M: [f64; 2] = [6_378_137.0, 6_356_752.314];
         const SAME_M: f64 = 0.01;
@@ -112,8 +115,8 @@ impl Crs {
         self.turn.filter(|_| !self.is_projected)
     }
 
-    /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of the system's ellipsoid;
-    /// `None` when projected.
+    /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of
+    /// the system's ellipsoid; `None` when projected.
     ///
     /// # Errors
     /// When PROJ does not read its own text.
@@ -130,8 +133,8 @@ impl Crs {
         Ok(Some([parallel_m * radians, meridian_m * radians]))
     }
 
-    /// 1 for each of the two coordinates, or −1 where it counts westwards or southwards. Both axes of a polar system
-    /// run south or north: their signs are 1.
+    /// 1 for each of the two coordinates, or −1 where it counts westwards or southwards. Both axes
+    /// of a polar system run south or north: their signs are 1.
     #[must_use]
     pub fn signs(&self) -> [f64; 2] {
         let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());
@@ -159,18 +162,19 @@ impl Crs {
 
 /// A CRS with the factors that make its coordinates working metres.
 ///
-/// Working x = first coordinate × `metres_per_unit[0]`, y likewise. No PROJ method is invented for it: `eqc` is
-/// spherical in some versions of PROJ and ellipsoidal in others.
+/// Working x = first coordinate × `metres_per_unit[0]`, y likewise. No PROJ method is invented for
+/// it: `eqc` is spherical in some versions of PROJ and ellipsoidal in others.
 #[derive(Debug, Clone)]
 pub struct GridCrs {
     /// The CRS.
     pub crs: Crs,
     /// East and north; negative for an axis that counts westwards or southwards.
     pub metres_per_unit: [f64; 2],
-    /// First coordinate in the middle of the data: where it comes back after a turn, images are those nearest to it, beyond ±180° too.
+    /// First coordinate in the middle of the data: where it comes back after a turn, images are
+    /// those nearest to it, beyond ±180° too.
     pub middle: f64,
-    /// Whether the factors make lengths true at the standard latitude. False where the factors are the unit of the
-    /// CRS alone.
+    /// Whether the factors make lengths true at the standard latitude. False where the factors are
+    /// the unit of the CRS alone.
     pub is_scaled: bool,
 }
 
@@ -181,7 +185,8 @@ impl GridCrs {
         Self { middle: data_m.center()[0] / self.metres_per_unit[0], ..self }
     }
 
-    /// The seam of the CRS around the middle of the data, in its own coordinates; `None` where x never comes back.
+    /// The seam of the CRS around the middle of the data, in its own coordinates; `None` where x
+    /// never comes back.
     #[must_use]
     pub fn seam(&self) -> Option<Seam> {
         self.crs.turn.map(|turn| Seam::new(self.middle, turn))

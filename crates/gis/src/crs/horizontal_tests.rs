@@ -2,7 +2,8 @@
 
 use crate::crs::compound;
 
-/// WGS84 at 45 degrees: Snyder 1987, table 3: 1 degree of latitude 111 131.7 m, of longitude 78 846.8 m.
+/// WGS84 at 45 degrees: Snyder 1987, table 3: 1 degree of latitude 111 131.7 m, of longitude 78
+/// 846.8 m.
 #[test]
 fn a_degree_is_as_long_as_the_tables_say() {
     let (crs, _) = compound::crs_from_text("--dem-crs", "EPSG:4326").unwrap();

@@ -1,4 +1,5 @@
-//! Coordinate operations between two systems, made for one area of interest and kept for each thread.
+//! Coordinate operations between two systems, made for one area of interest and kept for each
+//! thread.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -13,12 +14,13 @@ use crate::{CrsError, library_error};
 
 /// A coordinate operation between two systems, pinned to one area of interest.
 ///
-/// PROJ picks among the operations it knows by the area and by the position transformed, and by nothing else:
-/// what comes out for a position depends neither on its neighbours nor on what was asked before.
-/// The description may go to any thread; PROJ's own object is made once per thread.
+/// PROJ picks among the operations it knows by the area and by the position transformed, and by
+/// nothing else: what comes out for a position depends neither on its neighbours nor on what was
+/// asked before. The description may go to any thread; PROJ's own object is made once per thread.
 ///
-/// Over an area, an operation that takes one datum for another ("ballpark") is used only where PROJ knows no other at all: else it would
-/// carry positions beyond the area of the true one, 100 m beside their neighbours.
+/// Over an area, an operation that takes one datum for another ("ballpark") is used only where PROJ
+/// knows no other at all: else it would carry positions beyond the area of the true one, 100 m
+/// beside their neighbours.
 #[derive(Debug, Clone)]
 pub struct CrsOperation {
     pub(crate) from: Crs,
@@ -40,18 +42,20 @@ thread_local! {
     static TRANSFORMS: RefCell<HashMap<String, Rc<CoordTransform>>> = RefCell::new(HashMap::new());
 }
 
-/// How many operations a thread keeps: more than a run needs. The limit keeps the memory of a program with many runs
-/// bounded.
+/// How many operations a thread keeps: more than a run needs. The limit keeps the memory of a
+/// program with many runs bounded.
 const KEPT: usize = 64;
 
-/// Turns around the earth that an angle may count. PROJ takes off one after the other, so that 10¹⁷ degrees keep it busy for ever. Data go on
-/// for one turn beyond ±180 degrees, and packages name no longitude beyond 720.
+/// Turns around the earth that an angle may count. PROJ takes off one after the other, so that 10¹⁷
+/// degrees keep it busy for ever. Data go on for one turn beyond ±180 degrees, and packages name no
+/// longitude beyond 720.
 const MOST_TURNS: f64 = 4.0;
 /// Metres that a projected coordinate may count: as many as working metres.
 const MOST_METRES: f64 = MAX_COORDINATE_M;
 
 impl CrsOperation {
-    /// The operation from one system to another for data inside `area_deg` (WGS84; past the antimeridian beyond ±180).
+    /// The operation from one system to another for data inside `area_deg` (WGS84; past the
+    /// antimeridian beyond ±180).
     #[must_use]
     pub fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
         let wrap = |lon: f64| Seam::of_degrees().image_from_west(lon);
@@ -76,8 +80,8 @@ impl CrsOperation {
         }
     }
 
-    /// The operation from a system to working metres. Where x comes back after a turn around the earth,
-    /// the images nearest to the data's middle come out.
+    /// The operation from a system to working metres. Where x comes back after a turn around the
+    /// earth, the images nearest to the data's middle come out.
     #[must_use]
     pub fn into_working(from: &Crs, working: &GridCrs, area_deg: Option<Bounds>) -> Self {
         let multiply = working.metres_per_unit;
@@ -90,7 +94,8 @@ impl CrsOperation {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }
 
-    /// The same operation; its first coordinate is then moved by whole turns onto the map that ends at a seam.
+    /// The same operation; its first coordinate is then moved by whole turns onto the map that ends
+    /// at a seam.
     #[must_use]
     pub fn around(self, seam: Option<Seam>) -> Self {
         Self { seam, ..self }
@@ -106,8 +111,8 @@ impl CrsOperation {
         Self { is_exact: true, key: format!("{} exact", self.key), ..self }
     }
 
-    /// Replaces each height at its position by its image, in the unit and direction of the systems' third axes;
-    /// NaN where there is none.
+    /// Replaces each height at its position by its image, in the unit and direction of the systems'
+    /// third axes; NaN where there is none.
     pub(crate) fn apply_heights(
         &self,
         points: &[[f64; 2]],
@@ -172,7 +177,8 @@ impl CrsOperation {
         Ok(())
     }
 
-    /// Replaces each position by the place of its image among the pixels of a raster; NaN where there is none.
+    /// Replaces each position by the place of its image among the pixels of a raster; NaN where
+    /// there is none.
     ///
     /// # Errors
     /// As [`CrsOperation::apply`].

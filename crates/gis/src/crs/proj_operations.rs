@@ -1,4 +1,5 @@
-//! What PROJ says of the operations between two systems: accuracy, area and grids, which GDAL does not hand out.
+//! What PROJ says of the operations between two systems: accuracy, area and grids, which GDAL does
+//! not hand out.
 
 #![expect(unsafe_code, reason = "PROJ's list of operations has no wrapper in the gdal crate")]
 
@@ -31,16 +32,16 @@ pub(crate) struct ProjOperation {
     pub(crate) has_grids: bool,
 }
 
-/// PROJ's operations from one system to another in its order, over an area (west, south, east, north in degrees); none where it
-/// cannot read a system.
+/// PROJ's operations from one system to another in its order, over an area (west, south, east,
+/// north in degrees); none where it cannot read a system.
 pub(crate) fn operations(
     [from, to]: [&str; 2],
     area_deg: Option<[f64; 4]>,
     listed: Listed,
 ) -> Vec<ProjOperation> {
     let (Ok(from), Ok(to)) = (CString::new(from), CString::new(to)) else { return Vec::new() };
-    // SAFETY: every object is made in one context that nothing else uses, is checked for null, and is freed once, after
-    // what was made of it; texts are C strings that outlive the calls.
+    // SAFETY: every object is made in one context that nothing else uses, is checked for null, and
+    // is freed once, after what was made of it; texts are C strings that outlive the calls.
     unsafe {
         let Some(context) = Owned::new(proj_context_create(), free_context) else {
             return Vec::new();
@@ -85,7 +86,8 @@ unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperat
     let mut area = [0.0; 4];
     let [west, south, east, north] = &mut area;
     let mut missing_grids = Vec::new();
-    // SAFETY: the caller hands in live objects; results go to places that outlive the calls, and texts are copied at once.
+    // SAFETY: the caller hands in live objects; results go to places that outlive the calls, and
+    // texts are copied at once.
     unsafe {
         let has_area =
             proj_get_area_of_use(context, operation, west, south, east, north, null_mut()) != 0;

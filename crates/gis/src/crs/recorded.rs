@@ -1,4 +1,5 @@
-//! The working CRS of a package, made from what the package records and without its elevation files, and the projection to it.
+//! The working CRS of a package, made from what the package records and without its elevation
+//! files, and the projection to it.
 
 use corniche_geom::{Bounds, ProjectError, Projection, Seam};
 
@@ -15,8 +16,8 @@ pub struct RecordedCrs {
 }
 
 impl RecordedCrs {
-    /// The CRS of a WKT or a code such as "EPSG:32632", the working metres to a unit of its coordinates, and the rectangle of
-    /// the data in working metres.
+    /// The CRS of a WKT or a code such as "EPSG:32632", the working metres to a unit of its
+    /// coordinates, and the rectangle of the data in working metres.
     ///
     /// # Errors
     /// When PROJ cannot read it, or it is neither projected nor geographic.
@@ -46,8 +47,8 @@ impl RecordedCrs {
         &self.working.crs.wkt
     }
 
-    /// WGS84 ⇄ working metres over a rectangle in degrees: the same positions, to the last bit, as when the package was
-    /// built with the same rectangle.
+    /// WGS84 ⇄ working metres over a rectangle in degrees: the same positions, to the last bit, as
+    /// when the package was built with the same rectangle.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -55,7 +56,8 @@ impl RecordedCrs {
         DemProjection::new(&self.working, wgs84_bounds, wgs84_bounds)
     }
 
-    /// Working metres to coordinates of another projected CRS, such as "EPSG:2056", for data within a rectangle in degrees.
+    /// Working metres to coordinates of another projected CRS, such as "EPSG:2056", for data within
+    /// a rectangle in degrees.
     ///
     /// # Errors
     /// When PROJ does not know it, it is not projected, or PROJ knows no operation.
@@ -65,7 +67,8 @@ impl RecordedCrs {
         if !crs.is_projected() {
             return Err(CrsError::NotProjected { text: text.to_owned() });
         }
-        // Beyond the area for which a datum was made, its operation is better than to take it for another one.
+        // Beyond the area for which a datum was made, its operation is better than to take it for
+        // another one.
         let operation = |area_deg| {
             let found = CrsOperation::out_of_working(&self.working, &crs, area_deg).exactly();
             // PROJ reports at the first use whether it knows the operation.
@@ -75,8 +78,9 @@ impl RecordedCrs {
         Ok(ProjectedCrs { crs, from_working })
     }
 
-    /// The operations that carry positions between the package's datum and that of WGS84, over the rectangle of all elevation files in
-    /// working metres and in degrees; none where the datum is that of WGS84.
+    /// The operations that carry positions between the package's datum and that of WGS84, over the
+    /// rectangle of all elevation files in working metres and in degrees; none where the datum is
+    /// that of WGS84.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -88,7 +92,8 @@ impl RecordedCrs {
         DatumOperation::to_wgs84(&self.working, data, wgs84_bounds)
     }
 
-    /// Working metres to a true metre along x and along y at each of `points_m`; `None` where the CRS ends.
+    /// Working metres to a true metre along x and along y at each of `points_m`; `None` where the
+    /// CRS ends.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -137,8 +142,8 @@ pub struct DemProjection {
 }
 
 impl DemProjection {
-    /// Operations for data in `area_deg`. Longitudes come out as those that are nearest to the middle of `near_deg`: over the data they are
-    /// continuous.
+    /// Operations for data in `area_deg`. Longitudes come out as those that are nearest to the
+    /// middle of `near_deg`: over the data they are continuous.
     ///
     /// # Errors
     /// When PROJ knows no operation.

@@ -1,4 +1,5 @@
-//! The vertical CRS of a package, found from what it records, and heights carried to the ellipsoid of WGS84.
+//! The vertical CRS of a package, found from what it records, and heights carried to the ellipsoid
+//! of WGS84.
 
 use std::ops::RangeInclusive;
 
@@ -13,9 +14,11 @@ use crate::{CrsError, library_error};
 
 /// WGS84 in three dimensions.
 const WGS84_3D: &str = "EPSG:4979";
-/// Systems with ellipsoidal heights that elevation models come in, by their codes in the EPSG registry.
+/// Systems with ellipsoidal heights that elevation models come in, by their codes in the EPSG
+/// registry.
 const ELLIPSOIDAL: [u16; 8] = [4979, 4937, 6319, 4939, 7843, 4959, 4955, 9989];
-/// Where the EPSG registry has its vertical systems. Codes between them that are of other systems are passed over.
+/// Where the EPSG registry has its vertical systems. Codes between them that are of other systems
+/// are passed over.
 const VERTICAL: [RangeInclusive<u16>; 12] = [
     5701..=5799,
     3855..=3900,
@@ -42,9 +45,10 @@ pub struct RecordedHeights {
 }
 
 impl RecordedHeights {
-    /// The vertical CRS that has the name `datum`, as a package records it. Looked for are the systems in `named` ("EPSG:n"
-    /// or WKT: what was given when the package was built), then those of the EPSG registry. `None` where none has this
-    /// name: the datum is unknown, was shifted, or is not registered.
+    /// The vertical CRS that has the name `datum`, as a package records it. Looked for are the
+    /// systems in `named` ("EPSG:n" or WKT: what was given when the package was built), then those
+    /// of the EPSG registry. `None` where none has this name: the datum is unknown, was shifted, or
+    /// is not registered.
     ///
     /// # Errors
     /// When PROJ does not know WGS84.
@@ -76,7 +80,8 @@ impl RecordedHeights {
         }))
     }
 
-    /// The name that packages record for heights in metres upwards of the vertical CRS `text`; `None` for one in other units or of depths.
+    /// The name that packages record for heights in metres upwards of the vertical CRS `text`;
+    /// `None` for one in other units or of depths.
     ///
     /// # Errors
     /// When it is no vertical CRS that PROJ knows.
@@ -86,8 +91,9 @@ impl RecordedHeights {
         Ok(is_plain(&vertical).then(|| vertical.label()))
     }
 
-    /// WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS, or one with three axes.
-    /// `None` for ellipsoidal heights of another system than the horizontal one, which WKT has no words for.
+    /// WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS, or
+    /// one with three axes. `None` for ellipsoidal heights of another system than the horizontal
+    /// one, which WKT has no words for.
     #[must_use]
     pub fn wkt(&self) -> Option<String> {
         let Self { horizontal, vertical, .. } = self;
@@ -99,7 +105,8 @@ impl RecordedHeights {
         Some(self.compound(&horizontal.wkt))
     }
 
-    /// The same together with another projected CRS; `None` for ellipsoidal heights, which WKT has no words for there.
+    /// The same together with another projected CRS; `None` for ellipsoidal heights, which WKT has
+    /// no words for there.
     #[must_use]
     pub fn wkt_with(&self, crs: &ProjectedCrs) -> Option<String> {
         (!self.vertical.is_ellipsoidal).then(|| self.compound(crs.wkt()))
@@ -113,8 +120,9 @@ impl RecordedHeights {
         format!("COMPOUNDCRS[\"{both}\",{horizontal},{upwards}]")
     }
 
-    /// Replaces heights in metres, at positions in working metres, by heights above the ellipsoid of WGS84; NaN where there
-    /// is none. An approximation never takes the place of a geoid grid that is not installed.
+    /// Replaces heights in metres, at positions in working metres, by heights above the ellipsoid
+    /// of WGS84; NaN where there is none. An approximation never takes the place of a geoid grid
+    /// that is not installed.
     ///
     /// # Errors
     /// When PROJ has no exact operation.
@@ -144,8 +152,9 @@ fn is_plain(vertical: &VerticalCrs) -> bool {
     (vertical.unit_m - 1.0).abs() < f64::EPSILON && !vertical.is_down
 }
 
-/// The registered system of the same datum in metres upwards, for one in feet or downwards: formats that name systems by codes, such as `GeoTIFF`,
-/// have no words for one without. `None` where the system is one of metres upwards itself, or there is no other.
+/// The registered system of the same datum in metres upwards, for one in feet or downwards: formats
+/// that name systems by codes, such as `GeoTIFF`, have no words for one without. `None` where the
+/// system is one of metres upwards itself, or there is no other.
 fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
     let datum = vertical.datum.as_ref().filter(|_| !is_plain(vertical))?;
     let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();

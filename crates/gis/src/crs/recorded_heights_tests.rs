@@ -10,7 +10,8 @@ fn find(crs: &str, datum: &str, named: &[&str]) -> Option<RecordedHeights> {
     RecordedHeights::find(&crs, datum, named, BOUNDS).unwrap()
 }
 
-/// What a package records leads back to the system, whether it was given or is registered; nothing is guessed.
+/// What a package records leads back to the system, whether it was given or is registered; nothing
+/// is guessed.
 #[test]
 fn a_vertical_system_is_found_by_its_recorded_name() {
     let code = |datum: &str, named: &[&str]| {
@@ -26,7 +27,8 @@ fn a_vertical_system_is_found_by_its_recorded_name() {
     assert_eq!(code("EGM96 height, shifted by +10 m", &["EPSG:5773"]), None);
 }
 
-/// The compound CRS is one that PROJ reads; its heights are in metres although the system found counts in feet.
+/// The compound CRS is one that PROJ reads; its heights are in metres although the system found
+/// counts in feet.
 #[test]
 fn a_compound_crs_has_metres_upwards() {
     for (datum, named) in
@@ -41,7 +43,8 @@ fn a_compound_crs_has_metres_upwards() {
     }
 }
 
-/// Ellipsoidal heights make a CRS of three axes where the horizontal system is that of the ellipsoid.
+/// Ellipsoidal heights make a CRS of three axes where the horizontal system is that of the
+/// ellipsoid.
 #[test]
 fn ellipsoidal_heights_make_three_axes() {
     let datum = "ellipsoidal height (WGS 84)";

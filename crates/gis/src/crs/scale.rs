@@ -7,11 +7,12 @@ use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 use crate::CrsError;
 use crate::crs::operation::CrsOperation;
 
-/// Half the length over which the scale is measured: long enough that PROJ's rounding does not matter, short enough
-/// that the curvature of coordinate lines does not matter.
+/// Half the length over which the scale is measured: long enough that PROJ's rounding does not
+/// matter, short enough that the curvature of coordinate lines does not matter.
 const HALF_SPAN_M: f64 = 500.0;
 
-/// Scales that a package can record. At a pole a degree of longitude has no length, and the scale is infinite.
+/// Scales that a package can record. At a pole a degree of longitude has no length, and the scale
+/// is infinite.
 pub const SCALES: RangeInclusive<f64> = 0.001..=1000.0;
 
 /// Scale around a point: working metres over true metres.
@@ -19,7 +20,8 @@ pub const SCALES: RangeInclusive<f64> = 0.001..=1000.0;
 pub struct LocalScale {
     /// Along x and along y.
     pub along: [f64; 2],
-    /// Largest deviation from 1 along x, y and both diagonals; infinite when y does not lie left of x.
+    /// Largest deviation from 1 along x, y and both diagonals; infinite when y does not lie left of
+    /// x.
     pub deviation: f64,
 }
 
@@ -68,8 +70,9 @@ fn scale(ends_deg: &[[f64; 2]]) -> Option<LocalScale> {
     Some(LocalScale { along: [scales[0], scales[1]], deviation })
 }
 
-/// The middle of positions on the ellipsoid, longitude and latitude: the mean of their normals, so that neither
-/// the antimeridian nor a pole disturbs it. `None` when they surround the earth evenly or there are none.
+/// The middle of positions on the ellipsoid, longitude and latitude: the mean of their normals, so
+/// that neither the antimeridian nor a pole disturbs it. `None` when they surround the earth evenly
+/// or there are none.
 #[must_use]
 pub fn center_deg(points_deg: &[[f64; 2]]) -> Option<[f64; 2]> {
     let mut sum = [0.0; 3];

@@ -9,13 +9,14 @@ use crate::crs::horizontal::Crs;
 use crate::crs::wkt::{child, children, keyword, length_unit_m, quoted, wkt2};
 use crate::{CrsError, LibraryError, library_error};
 
-/// A vertical CRS, or the third axis of a three-dimensional one; kept as text: PROJ's objects belong to one thread.
+/// A vertical CRS, or the third axis of a three-dimensional one; kept as text: PROJ's objects
+/// belong to one thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerticalCrs {
     /// Its name, with the ellipsoid's system for ellipsoidal heights.
     pub name: String,
-    /// The datum; it is the same for metres and feet, and for heights and depths. `None` where it has no name: two
-    /// systems with the datum "unknown" need not have the same one.
+    /// The datum; it is the same for metres and feet, and for heights and depths. `None` where it
+    /// has no name: two systems with the datum "unknown" need not have the same one.
     pub datum: Option<String>,
     /// WKT2 of the vertical node, or of the whole three-dimensional system.
     pub(crate) wkt: Arc<str>,
@@ -114,7 +115,8 @@ impl VerticalCrs {
         self.wkt == other.wkt || self.datum.is_some() && self.datum == other.datum
     }
 
-    /// The vertical CRS of "EPSG:n" or WKT as `option` gave it, which may be one with a vertical part.
+    /// The vertical CRS of "EPSG:n" or WKT as `option` gave it, which may be one with a vertical
+    /// part.
     ///
     /// # Errors
     /// When it is none that PROJ knows, or its axis has no unit.

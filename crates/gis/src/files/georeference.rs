@@ -17,7 +17,8 @@ const TIE_POINT_PX: f64 = 0.01;
 /// Where a raster lies.
 #[derive(Debug, Clone)]
 pub struct Georeference {
-    /// The map from pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees to that.
+    /// The map from pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees
+    /// to that.
     pub crs_from_pixel: GeoTransform,
     /// Its CRS.
     pub crs: Crs,
@@ -26,7 +27,8 @@ pub struct Georeference {
 }
 
 impl Georeference {
-    /// Takes the file's geotransform, or the one that tie points agree on; `crs_text` is the CRS of a file that names none.
+    /// Takes the file's geotransform, or the one that tie points agree on; `crs_text` is the CRS of
+    /// a file that names none.
     ///
     /// # Errors
     /// When it lacks georeference or CRS, or lies beside the earth.
@@ -46,7 +48,8 @@ impl Georeference {
     }
 }
 
-/// The geotransform, or the one that tie points agree upon; `true` for the latter. GDAL refers both to pixel *corners*.
+/// The geotransform, or the one that tie points agree upon; `true` for the latter. GDAL refers both
+/// to pixel *corners*.
 fn geo_transform(path: &Path, dataset: &Dataset) -> Result<(GeoTransform, bool), RasterError> {
     if let Ok(coefficients) = dataset.geo_transform() {
         return Ok((GeoTransform { coefficients }, false));
@@ -97,7 +100,8 @@ fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
     fits.then_some(transform)
 }
 
-/// Refuses coordinates that cannot be degrees: metres in a file with a geographic CRS, or exchanged axes.
+/// Refuses coordinates that cannot be degrees: metres in a file with a geographic CRS, or exchanged
+/// axes.
 fn refuse_off_globe(
     path: &Path,
     crs: &Crs,

@@ -1,4 +1,5 @@
-//! Which files a name on the command line means: those of a folder, a pattern, a list or an archive.
+//! Which files a name on the command line means: those of a folder, a pattern, a list or an
+//! archive.
 
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
@@ -8,8 +9,8 @@ use gdal::Dataset;
 use crate::files::open::utf8_name;
 use crate::{FileUse, NameError, library_error};
 
-/// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT is not: it names files that may lie in the
-/// same folder.
+/// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT
+/// is not: it names files that may lie in the same folder.
 const ENDINGS: [&str; 13] =
     ["tif", "tiff", "hgt", "asc", "img", "dem", "dt0", "dt1", "dt2", "bil", "flt", "grd", "jp2"];
 /// Endings of packed files, of which GDAL reads the content.
@@ -53,7 +54,8 @@ impl fmt::Display for Sought {
     }
 }
 
-/// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder those that end in pbf.
+/// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder
+/// those that end in pbf.
 ///
 /// # Errors
 /// As [`expand_name`].
@@ -61,7 +63,8 @@ pub fn expand_extract_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
     expand(name, Sought::Extracts)
 }
 
-/// The photos that a name stands for, as [`expand_name`] does it for elevation files; of a folder those that end as images do.
+/// The photos that a name stands for, as [`expand_name`] does it for elevation files; of a folder
+/// those that end as images do.
 ///
 /// # Errors
 /// As [`expand_name`].
@@ -69,15 +72,18 @@ pub fn expand_photo_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
     expand(name, Sought::Photos)
 }
 
-/// The files that a name stands for, in the order in which they have precedence. A name of one file stands for itself, whether it is there or not.
+/// The files that a name stands for, in the order in which they have precedence. A name of one file
+/// stands for itself, whether it is there or not.
 ///
-/// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that are empty or begin with # do not count.
-///   Its names may be folders and patterns, but not lists.
-/// - A folder: its files with the endings of elevation files, sorted by name; not those of folders in it. A folder that is itself a raster stays one.
+/// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that
+///   are empty or begin with # do not count. Its names may be folders and patterns, but not lists.
+/// - A folder: its files with the endings of elevation files, sorted by name; not those of folders
+///   in it. A folder that is itself a raster stays one.
 /// - A pattern with `*`, `?` or `[…]`: the files that it fits, sorted by name.
 ///
 /// # Errors
-/// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no file.
+/// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no
+/// file.
 pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
     expand(name, Sought::Elevation)
 }
@@ -159,8 +165,8 @@ fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameErro
     Ok(files)
 }
 
-/// GDAL's names for the content of a packed file: of `FILE.gz` what it holds, of `FILE.zip` the elevation files in it, sorted by name. Other
-/// names stay as they are.
+/// GDAL's names for the content of a packed file: of `FILE.gz` what it holds, of `FILE.zip` the
+/// elevation files in it, sorted by name. Other names stay as they are.
 ///
 /// # Errors
 /// When an archive cannot be read or holds no elevation file.

@@ -1,4 +1,5 @@
-//! GDAL opens a raster, and an error says which of the usual things went wrong, such as that a failed download lies in its place.
+//! GDAL opens a raster, and an error says which of the usual things went wrong, such as that a
+//! failed download lies in its place.
 
 use std::{fs::File, io::Read as _, path::Path};
 
@@ -44,7 +45,8 @@ pub(crate) fn utf8_name(path: &Path, kind: FileUse) -> Result<&str, NotUtf8> {
     path.to_str().ok_or_else(|| NotUtf8 { kind, path: path.to_path_buf() })
 }
 
-/// Whether a name is one of GDAL's virtual files and subdatasets (`/vsizip/…`, `NETCDF:…`), which are no names of files.
+/// Whether a name is one of GDAL's virtual files and subdatasets (`/vsizip/…`, `NETCDF:…`), which
+/// are no names of files.
 pub(crate) fn is_virtual(name: &str) -> bool {
     name.starts_with("/vsi") || name.contains(':')
 }
@@ -52,7 +54,8 @@ pub(crate) fn is_virtual(name: &str) -> bool {
 /// Opens a raster, with an error that says which of the usual things went wrong.
 ///
 /// # Errors
-/// When there is no such file, it is empty, a pipe or none of a raster, or GDAL cannot read its format.
+/// When there is no such file, it is empty, a pipe or none of a raster, or GDAL cannot read its
+/// format.
 pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
     let own = || path.to_path_buf();
     let is_virtual = is_virtual(utf8_name(path, kind)?);
@@ -88,7 +91,8 @@ pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
     })
 }
 
-/// What is wrong with a file of SRTM that GDAL does not open: it has nothing but samples, so its size says their number and its name their place.
+/// What is wrong with a file of SRTM that GDAL does not open: it has nothing but samples, so its
+/// size says their number and its name their place.
 fn fault_of_hgt(path: &Path) -> Option<RasterError> {
     if !path.extension()?.eq_ignore_ascii_case("hgt") {
         return None;
@@ -106,7 +110,8 @@ const HGT_BYTES: [u64; 3] = [2_884_802, 12_970_802, 25_934_402];
 /// How many bytes of a file are examined.
 const START_BYTES: u64 = 4096;
 
-/// What a file is that stands where geodata were to be, and what to do; `None` if it is nothing of the kind, or cannot be read.
+/// What a file is that stands where geodata were to be, and what to do; `None` if it is nothing of
+/// the kind, or cannot be read.
 #[must_use]
 pub fn stand_in(path: &Path) -> Option<(&'static str, &'static str)> {
     // Opening a pipe would block until something is written to it.

@@ -1,4 +1,5 @@
-//! Any raster with its place on the earth, such as a photo, and the way from its pixels to working metres and back.
+//! Any raster with its place on the earth, such as a photo, and the way from its pixels to working
+//! metres and back.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +21,8 @@ pub struct PlacedRaster {
 }
 
 impl PlacedRaster {
-    /// Opens a raster and reads where it lies: by its geotransform, or by tie points that agree on one.
+    /// Opens a raster and reads where it lies: by its geotransform, or by tie points that agree on
+    /// one.
     ///
     /// # Errors
     /// When the file cannot be opened, or lacks georeference or CRS.
@@ -67,7 +69,8 @@ impl PlacedRaster {
 
 /// The pixels of a raster and the working metres of a package, through PROJ. Goes to any thread.
 ///
-/// Pixel positions are continuous: 0, 0 is the outer corner of the first pixel, its centre is at 0.5, 0.5.
+/// Pixel positions are continuous: 0, 0 is the outer corner of the first pixel, its centre is at
+/// 0.5, 0.5.
 #[derive(Debug, Clone)]
 pub struct RasterOnGrid {
     crs_from_working: CrsOperation,

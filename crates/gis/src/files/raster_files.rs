@@ -1,4 +1,5 @@
-//! Which files a raster is read from, how they are cut into blocks, and whether a mask counts: what their reader must know.
+//! Which files a raster is read from, how they are cut into blocks, and whether a mask counts: what
+//! their reader must know.
 
 use std::{
     collections::BTreeSet,
@@ -18,9 +19,10 @@ const VRT: &[u8] = b"<VRTDataset";
 /// The text must begin within this many bytes of the file.
 const VRT_BYTES: u64 = 512;
 
-/// The files that GDAL reads a raster from, each once: the file itself, those beside it (`.aux.xml`, `.ovr`, `.prj`), and
-/// of a virtual raster (VRT) the files that it refers to, also through other virtual rasters. Files that do not exist are
-/// left out; a raster that is no file (a database's, a server's) has none.
+/// The files that GDAL reads a raster from, each once: the file itself, those beside it
+/// (`.aux.xml`, `.ovr`, `.prj`), and of a virtual raster (VRT) the files that it refers to, also
+/// through other virtual rasters. Files that do not exist are left out; a raster that is no file (a
+/// database's, a server's) has none.
 ///
 /// # Errors
 /// When GDAL cannot open the raster.
@@ -74,13 +76,15 @@ impl FileBlocks {
     pub fn block_bytes(&self) -> u64 {
         let samples = |[columns, rows]: [u64; 2]| columns.saturating_mul(rows);
         let block = samples(self.block);
-        // A compressed block is smaller than its samples; a file may hold overviews and masks besides.
+        // A compressed block is smaller than its samples; a file may hold overviews and masks
+        // besides.
         let decoded = block.saturating_mul(self.sample_bytes);
         let share = block as f64 / samples(self.size).max(1) as f64;
         decoded.saturating_add(((self.file_bytes as f64 * share) as u64).min(decoded))
     }
 
-    /// All blocks beside each other from the west to the east side: as long as they are kept, no block is read twice.
+    /// All blocks beside each other from the west to the east side: as long as they are kept, no
+    /// block is read twice.
     #[must_use]
     pub fn row_bytes(&self) -> u64 {
         let across = self.size[0].div_ceil(self.block[0].max(1));
@@ -95,7 +99,8 @@ impl FileBlocks {
         let (columns, rows) = dataset.raster_size();
         let size = [columns as u64, rows as u64];
         let (block_columns, block_rows) = band.block_size();
-        // Decoders of JPEG 2000 offer small blocks, and decode the whole image for one where it was not written in tiles.
+        // Decoders of JPEG 2000 offer small blocks, and decode the whole image for one where it was
+        // not written in tiles.
         let is_whole = dataset.driver().short_name().starts_with("JP2");
         let block = [block_columns as u64, block_rows as u64];
         Some(Self {
@@ -107,7 +112,8 @@ impl FileBlocks {
         })
     }
 
-    /// The blocks of a file's band; of a virtual raster (VRT) also those of the files that it refers to.
+    /// The blocks of a file's band; of a virtual raster (VRT) also those of the files that it
+    /// refers to.
     ///
     /// # Errors
     /// When it cannot be opened.
@@ -125,8 +131,9 @@ impl FileBlocks {
     }
 }
 
-/// Whether a band has a mask that says more than its own nodata and alpha bands, which readers see in the values themselves. A nodata mask of the
-/// whole dataset is such a one: its item `NODATA_VALUES`, which no band has.
+/// Whether a band has a mask that says more than its own nodata and alpha bands, which readers see
+/// in the values themselves. A nodata mask of the whole dataset is such a one: its item
+/// `NODATA_VALUES`, which no band has.
 ///
 /// # Errors
 /// When GDAL fails.

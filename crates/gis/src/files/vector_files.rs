@@ -8,7 +8,8 @@ use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use crate::files::open::{is_virtual, stand_in};
 use crate::{FileUse, LibraryError, VectorError, formats::lacks_format_of, library_error};
 
-/// Opens a vector file of any format that GDAL reads, or a name that GDAL knows, such as `/vsizip/…`.
+/// Opens a vector file of any format that GDAL reads, or a name that GDAL knows, such as
+/// `/vsizip/…`.
 ///
 /// # Errors
 /// When there is no such file, or GDAL cannot read it.

@@ -1,4 +1,5 @@
-//! What the `gdal` crate does not hand out of GDAL: the files of a raster, texts as they are stored, and GDAL's virtual files.
+//! What the `gdal` crate does not hand out of GDAL: the files of a raster, texts as they are
+//! stored, and GDAL's virtual files.
 
 #![expect(
     unsafe_code,
@@ -17,13 +18,13 @@ use gdal::Dataset;
 
 use crate::library_error::{forget, last_words, quiet};
 
-/// A text that a file stores under a key. TIFF has ASCII alone there, and programs write UTF-8 or Latin-1: what is no UTF-8 is taken for Latin-1, in
-/// which every byte is a character.
+/// A text that a file stores under a key. TIFF has ASCII alone there, and programs write UTF-8 or
+/// Latin-1: what is no UTF-8 is taken for Latin-1, in which every byte is a character.
 #[must_use]
 pub fn stored_text(dataset: &Dataset, key: &str) -> Option<String> {
     let key = CString::new(key).ok()?;
-    // SAFETY: the handle is that of an open dataset, and the arguments are C strings that outlive the call. What comes back is null or a C
-    // string of the dataset's, which is copied at once.
+    // SAFETY: the handle is that of an open dataset, and the arguments are C strings that outlive
+    // the call. What comes back is null or a C string of the dataset's, which is copied at once.
     let bytes = unsafe {
         let text = gdal_sys::GDALGetMetadataItem(dataset.c_dataset(), key.as_ptr(), c"".as_ptr());
         (!text.is_null()).then(|| CStr::from_ptr(text).to_bytes().to_vec())
@@ -34,11 +35,12 @@ pub fn stored_text(dataset: &Dataset, key: &str) -> Option<String> {
     })
 }
 
-/// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the files it refers to.
+/// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the
+/// files it refers to.
 pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    // SAFETY: the handle is that of an open dataset. What comes back is null, or an array of C strings that ends with a
-    // null; it is ours, and is read before it is destroyed.
+    // SAFETY: the handle is that of an open dataset. What comes back is null, or an array of C
+    // strings that ends with a null; it is ours, and is read before it is destroyed.
     unsafe {
         let list = gdal_sys::GDALGetFileList(dataset.c_dataset());
         if list.is_null() {
@@ -54,7 +56,8 @@ pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
     files
 }
 
-/// A file as GDAL's virtual file systems (`/vsizip/…`, `/vsicurl/…`) deliver it: the bytes that GDAL decodes.
+/// A file as GDAL's virtual file systems (`/vsizip/…`, `/vsicurl/…`) deliver it: the bytes that
+/// GDAL decodes.
 #[derive(Debug)]
 pub struct VirtualFile {
     handle: NonNull<gdal_sys::VSILFILE>,
@@ -64,7 +67,8 @@ impl VirtualFile {
     /// Opens a file for reading.
     ///
     /// # Errors
-    /// When the name holds a zero byte, or GDAL cannot open such a file; with what it says of the reason.
+    /// When the name holds a zero byte, or GDAL cannot open such a file; with what it says of the
+    /// reason.
     pub fn open(path: &Path) -> io::Result<Self> {
         quiet();
         forget();
@@ -103,13 +107,14 @@ impl VirtualFile {
         }
     }
 
-    /// The `ETag` that a server gives for the file, which changes with its content; `None` if the server gives none, or the
-    /// file is on no server.
+    /// The `ETag` that a server gives for the file, which changes with its content; `None` if the
+    /// server gives none, or the file is on no server.
     #[must_use]
     pub fn etag(path: &Path) -> Option<String> {
         let name = c_name(path).ok()?;
-        // SAFETY: all arguments are C strings that outlive the call, or null where there are no options. What comes back is null
-        // or a list that is ours; the value in it is copied before the list is destroyed.
+        // SAFETY: all arguments are C strings that outlive the call, or null where there are no
+        // options. What comes back is null or a list that is ours; the value in it is copied before
+        // the list is destroyed.
         unsafe {
             let headers = gdal_sys::VSIGetFileMetadata(
                 name.as_ptr(),
@@ -130,7 +135,8 @@ impl Read for VirtualFile {
         if buffer.is_empty() {
             return Ok(0);
         }
-        // SAFETY: the handle is open until this is dropped, and GDAL writes at most the buffer's length into it.
+        // SAFETY: the handle is open until this is dropped, and GDAL writes at most the buffer's
+        // length into it.
         let (read, is_end) = unsafe {
             let handle = self.handle.as_ptr();
             let read = gdal_sys::VSIFReadL(buffer.as_mut_ptr().cast(), 1, buffer.len(), handle);
@@ -145,7 +151,8 @@ impl Read for VirtualFile {
 
 impl Drop for VirtualFile {
     fn drop(&mut self) {
-        // SAFETY: the handle is open and is not used afterwards. It was only read from, so nothing can be lost.
+        // SAFETY: the handle is open and is not used afterwards. It was only read from, so nothing
+        // can be lost.
         unsafe {
             gdal_sys::VSIFCloseL(self.handle.as_ptr());
         }

@@ -79,8 +79,8 @@ fn pixels_that_are_texels_come_out_as_they_are() {
     }
 }
 
-/// Moves an edge of black and white across a texel, and finds it again from the texel's grey: to a tenth of a texel, also in another
-/// CRS than the DEM's.
+/// Moves an edge of black and white across a texel, and finds it again from the texel's grey: to a
+/// tenth of a texel, also in another CRS than the DEM's.
 #[test]
 fn edges_land_within_a_tenth_of_a_texel() {
     let folder = tempfile::tempdir().unwrap();
@@ -143,7 +143,8 @@ fn edges_land_within_a_tenth_of_a_texel() {
     }
 }
 
-/// A file that says `PixelIsPoint` has its geotransform half a pixel away in its tags; both must come out at the same place.
+/// A file that says `PixelIsPoint` has its geotransform half a pixel away in its tags; both must
+/// come out at the same place.
 #[test]
 fn points_and_areas_lie_at_the_same_place() {
     let folder = tempfile::tempdir().unwrap();
