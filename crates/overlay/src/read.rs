@@ -1,6 +1,6 @@
 //! Lines are read from all layers of a vector file and carried to WGS84.
 
-use std::{collections::HashMap, path::Path};
+use std::{collections::HashSet, path::Path};
 
 use corniche_geom::MOST_TILE_STEPS;
 use corniche_gis::{
@@ -65,37 +65,19 @@ impl VectorLines {
         notices
     }
 
-    /// How many lines have the positions of one before them, in the same order or from end to
-    /// begin.
+    /// How many lines have the positions of one before them, in the same order or from end to begin.
     fn repeated(&self) -> usize {
-        let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
-        let mut repeated = 0;
-        for (number, line) in self.lines.iter().enumerate() {
-            let with_same_key = known.entry(line.key()).or_default();
-            if with_same_key.iter().any(|&before| self.lines[before].is_same_as(line)) {
-                repeated += 1;
-            } else {
-                with_same_key.push(number);
-            }
-        }
-        repeated
+        let mut known = HashSet::new();
+        self.lines.iter().filter(|line| !known.insert(line.bits())).count()
     }
 }
 
 impl VectorLine {
-    fn bits(&self) -> impl DoubleEndedIterator<Item = [u64; 2]> {
-        self.positions_deg.iter().map(|position| position.map(f64::to_bits))
-    }
-
-    /// A number that lines with the same positions have in common, whichever way they go.
-    fn key(&self) -> u64 {
-        let mix =
-            |[lon, lat]: [u64; 2]| lon.rotate_left(32).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ lat;
-        self.bits().map(mix).fold(0, u64::wrapping_add)
-    }
-
-    fn is_same_as(&self, other: &Self) -> bool {
-        self.bits().eq(other.bits()) || self.bits().eq(other.bits().rev())
+    /// The bits of its positions, the same whichever way it goes.
+    fn bits(&self) -> Vec<[u64; 2]> {
+        let bits: Vec<_> = self.positions_deg.iter().map(|at| at.map(f64::to_bits)).collect();
+        let back = bits.iter().rev().copied().collect();
+        bits.min(back)
     }
 }
 

@@ -74,11 +74,8 @@ impl Photos {
     /// # Errors
     /// When a file cannot be opened any more.
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, PhotoError> {
-        let mut found = Vec::new();
-        for file in &self.files {
-            found.extend(FileBlocks::of_file(file.raster.path(), 1, FileUse::Photo)?);
-        }
-        Ok(found)
+        let blocks = |file: &PhotoFile| FileBlocks::of_file(file.raster.path(), 1, FileUse::Photo);
+        Ok(self.files.iter().map(blocks).collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Puts the photos on a grid.
