@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Leftovers};
+use corniche_pieces::ExtractError;
+use corniche_pipeline::{BuildError, BuildSummary};
+use corniche_spec::{BuildSettings, Leftovers};
 
 use crate::{
     args::BuildArgs,
@@ -49,7 +51,10 @@ pub(crate) fn finish(
     // A list is put in its place only if it is complete. That is so after a run that failed because no road was kept: all
     // roads were looked at, and the list tells why they were lost.
     let is_complete = match &built {
-        Ok(_) | Err(BuildError::NoRoads { .. } | BuildError::NoGround { .. }) => true,
+        Ok(_)
+        | Err(BuildError::Extract(ExtractError::NoRoads { .. }) | BuildError::NoGround { .. }) => {
+            true
+        }
         Err(_) => false,
     };
     let listed = progress.defects.take().filter(|_| is_complete).map_or(Ok(()), DefectList::finish);

@@ -8,7 +8,7 @@ use std::{
 };
 
 use corniche_export::cell_text;
-use corniche_pipeline::{Defect, span_reason_words};
+use corniche_spec::{Defect, span_reason_words};
 
 use crate::{
     failure::Failure,

@@ -3,9 +3,13 @@
 use std::{fmt, io};
 
 use corniche_export::ExportError;
+use corniche_ground::TerrainError;
 use corniche_matching::MatchError;
-use corniche_pipeline::{BuildError, VerifyError};
+use corniche_pipeline::BuildError;
+use corniche_plan::{PlanError, PlanFileError};
+use corniche_spec::{ExtractBoundsError, inputs::InputError};
 use corniche_tileset::{OpenError, ReadError, SourceError};
+use corniche_verify::VerifyError;
 use corniche_viewer::gpu::GpuError;
 
 use crate::exit::ExitCode;
@@ -87,11 +91,30 @@ impl From<BuildError> for Failure {
     fn from(error: BuildError) -> Self {
         let code = match &error {
             BuildError::Exists { .. } => ExitCode::Exists,
-            BuildError::Interrupted => ExitCode::Interrupted,
+            interrupted if interrupted.is_interruption() => ExitCode::Interrupted,
             other if other.is_unusable_input() => ExitCode::Unusable,
             _ => ExitCode::Failed,
         };
         Self::new(code, error)
+    }
+}
+
+/// What a build may fail with fails the same way outside one.
+macro_rules! as_of_a_build {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                BuildError::from(error).into()
+            }
+        })*
+    };
+}
+
+as_of_a_build!(InputError, PlanError, PlanFileError, TerrainError);
+
+impl From<ExtractBoundsError> for Failure {
+    fn from(error: ExtractBoundsError) -> Self {
+        Self::new(ExitCode::Unusable, error)
     }
 }
 
@@ -100,7 +123,9 @@ impl From<VerifyError> for Failure {
         let code = match &error {
             VerifyError::Interrupted => ExitCode::Interrupted,
             VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
-            VerifyError::Roads(error) if !error.is_unusable_input() => ExitCode::Failed,
+            VerifyError::Extract(error) if !error.is_unusable_input() => ExitCode::Failed,
+            VerifyError::Ground(error) if !error.is_unusable_input() => ExitCode::Failed,
+            VerifyError::Setup(error) if !error.is_unusable_input() => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

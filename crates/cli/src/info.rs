@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_geom::Cell;
-use corniche_pipeline::LineLoss;
+use corniche_osm::LineLoss;
 use corniche_tileset::{
     AreasRecord, Counts, DatumOperationRecord, LinesRecord, Manifest, SampleErrorRecord,
     ScaleRecord, SpansRecord,

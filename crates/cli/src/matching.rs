@@ -19,7 +19,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let (place, photos) = args.files()?;
     let package = packages::open(&place)?;
     let manifest = package.manifest();
-    let photos = corniche_pipeline::photo_names(&photos)?;
+    let photos = corniche_spec::inputs::photo_names(&photos)?;
     let inputs: Vec<&Path> = photos.iter().map(AsRef::as_ref).chain([place.name()]).collect();
     let list = ("--csv", args.csv.as_deref());
     // Both places are looked at before any work is done.
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         match_roads(&package, &Target::Slope, &request, &progress)
     } else {
         let opened = Photos::open(&photos).map_err(MatchError::from)?;
-        let grid = corniche_pipeline::grid_of(manifest)
+        let grid = corniche_ground::terrain::recorded_grid::grid_of(manifest)
             .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
         let datums = grid.datums_of_rasters(opened.rasters()).allowed(args.allow_ballpark);
         let datums = datums.map_err(|error| Failure::new(ExitCode::Unusable, error))?;

@@ -17,7 +17,7 @@ static SOURCES: Mutex<Vec<Arc<HttpSource>>> = Mutex::new(Vec::new());
 /// Opens a package.
 pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
     let PackagePlace::Address(address) = place else {
-        return Ok(corniche_pipeline::open_package(place.name())?);
+        return Ok(corniche_spec::open_package(place.name())?);
     };
     let mut sources = SOURCES.lock().unwrap_or_else(PoisonError::into_inner);
     let known = sources.iter().find(|source| source.address() == address).cloned();

@@ -2,7 +2,9 @@
 
 use std::{fs, path::Path};
 
-use corniche_pipeline::{BuildPlan, PartSettings, Requests};
+use corniche_objects::Requests;
+use corniche_pipeline::PartSettings;
+use corniche_plan::BuildPlan;
 
 use crate::{
     args::PartArgs, exit::ExitCode, failure::Failure, messages, presets::refuse_stream,

@@ -2,8 +2,9 @@
 
 use std::{borrow::Cow, fmt::Write as _, path::Path};
 
-use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Resources};
+use corniche_plan::{BuildPlan, Estimate};
 use corniche_remote::without_secrets;
+use corniche_spec::{Resources, machine::MIN_MEMORY_BYTES};
 use corniche_work::Observer;
 
 use crate::{
@@ -45,7 +46,7 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
         }
         return jobs::print(&jobs);
     }
-    let (plan, mut estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
+    let (plan, mut estimate) = corniche_plan::plan(&work.plan, work.resources, &Signals)?;
     if let Some(file) = written {
         write_plan(file, &plan)?;
     }
@@ -94,7 +95,7 @@ impl Observer for Signals {
     }
 }
 
-impl corniche_pipeline::Observer for Signals {}
+impl corniche_spec::Observer for Signals {}
 
 /// Plan and estimates for people.
 fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: Digits) -> String {

@@ -9,8 +9,8 @@ use corniche_export::{
     Route, RouteRequest, profile, profile_of_course, route,
 };
 use corniche_overlay::Placed;
-use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
+use corniche_verify::RecordedElevation;
 
 use crate::{
     args::ProfileArgs,

@@ -17,7 +17,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use corniche_pipeline::Defect;
+use corniche_spec::Defect;
 use corniche_work::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 use tracing::Span;
@@ -437,7 +437,7 @@ impl Observer for Progress {
     }
 }
 
-impl corniche_pipeline::Observer for Progress {
+impl corniche_spec::Observer for Progress {
     fn defect(&self, defect: &Defect) {
         if let Some(defects) = &self.defects {
             defects.add(defect);

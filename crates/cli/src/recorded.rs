@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use corniche_areas::{ClassedLayer, LineNames};
 use corniche_export::Elevation;
 use corniche_network::Network;
-use corniche_pipeline::{Observer, RecordedElevation, VerifyError, VerifyOsm};
 use corniche_presets::frc_preset;
 use corniche_roads::FrcTable;
+use corniche_spec::Observer;
 use corniche_tileset::FilePackage;
+use corniche_verify::{RecordedElevation, VerifyError, VerifyOsm};
 
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg},
@@ -30,7 +31,7 @@ pub(crate) fn elevation(
     if dem.is_empty() {
         return Ok(None);
     }
-    let files = corniche_pipeline::elevation_names(dem)?;
+    let files = corniche_spec::inputs::elevation_names(dem)?;
     let polygon = args.polygon.clone().map(polygon).transpose()?;
     Ok(Some(RecordedElevation::open(package, &files, polygon, &Progress::new())?))
 }
@@ -46,7 +47,7 @@ pub(crate) fn network(
     osm: &[PathBuf],
     of: (&ThreadsArg, &FilePackage),
 ) -> Result<Option<Network>, Failure> {
-    from_extracts(args, osm, of, corniche_pipeline::network)
+    from_extracts(args, osm, of, corniche_verify::network)
 }
 
 /// The names of what the lines of a layer bound, if extracts are named; those of another package are refused.
@@ -56,7 +57,7 @@ pub(crate) fn line_names(
     of: (&ThreadsArg, &FilePackage),
 ) -> Result<Option<LineNames>, Failure> {
     from_extracts(args, osm, of, |package, extract, threads, observer| {
-        corniche_pipeline::line_names(package, layer, extract, threads, observer)
+        corniche_verify::line_names(package, layer, extract, threads, observer)
     })
 }
 
@@ -70,7 +71,7 @@ fn from_extracts<T>(
         return Ok(None);
     }
     let extract = VerifyOsm {
-        paths: corniche_pipeline::extract_names(osm)?,
+        paths: corniche_spec::inputs::extract_names(osm)?,
         table: frc_table(args.frc_table.as_deref(), package)?,
         areas: None,
         memory_bytes: MEMORY_BYTES,

@@ -5,7 +5,7 @@ mod picture_files;
 use std::path::Path;
 
 use corniche_export::{PictureFacts, PlaceOfPicture};
-use corniche_pipeline::AreaLoss;
+use corniche_osm::AreaLoss;
 use corniche_styles::{OwnWidths, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{

@@ -8,16 +8,18 @@ use std::{
 };
 
 use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::Cell;
-use corniche_pipeline::{
-    OpenOptions, PhotoChoice, PhotoSettings, PlanOptions, PlanSettings, Polygon, Resources,
-    RoadSettings, TerrainRecord, TerrainSettings,
-};
+use corniche_gis::Polygon;
+use corniche_ground::terrain::recorded::TerrainRecord;
 use corniche_presets::{
     AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions,
     TerrainOptions, check_cell, class_filter, is_photo_off, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
+use corniche_spec::{
+    PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
 use corniche_tileset::ReliefLevels;
 
 use crate::{args::WorkArgs, credits, exit::ExitCode, failure::Failure, presets};
@@ -94,7 +96,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         attribution.extend(credit);
     }
     credits::check(&attribution)?;
-    let osm = corniche_pipeline::extract_names(&args.osm)?;
+    let osm = corniche_spec::inputs::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;
     let lines = lines(&args.areas, &osm)?;
     let cut = Cut {
@@ -102,7 +104,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         polygon: args.polygon.map(polygon).transpose()?,
     };
     let plan = PlanSettings {
-        dem: corniche_pipeline::elevation_names(&args.dem)?,
+        dem: corniche_spec::inputs::elevation_names(&args.dem)?,
         terrain_of: args.terrain_of,
         osm,
         areas,
@@ -131,7 +133,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
 
 /// The name of an input for GDAL and for plans.
 fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
-    corniche_pipeline::input_name(path).map_err(Failure::unusable)
+    corniche_spec::inputs::input_name(path).map_err(Failure::unusable)
 }
 
 /// Reads a polygon.
@@ -160,9 +162,7 @@ fn bounds_deg(bounds: Option<BoundsChoice>, osm: &[PathBuf]) -> Result<Option<[f
     match bounds {
         None => Ok(None),
         Some(BoundsChoice::Degrees(bounds_deg)) => Ok(Some(bounds_deg)),
-        Some(BoundsChoice::Osm) if !osm.is_empty() => {
-            Ok(Some(corniche_pipeline::extract_bounds(osm)?))
-        }
+        Some(BoundsChoice::Osm) if !osm.is_empty() => Ok(Some(corniche_spec::extract_bounds(osm)?)),
         Some(BoundsChoice::Osm) => Err(Failure::unusable(
             "--bounds osm takes the bounds of the extract; give one with --osm",
         )),
@@ -241,7 +241,7 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
             "--photo-quality must be from 1 to 100, not {quality}"
         )));
     }
-    let files = corniche_pipeline::photo_names(names)?;
+    let files = corniche_spec::inputs::photo_names(names)?;
     Ok(PhotoChoice::Files(PhotoSettings { files, levels: options.levels, quality }))
 }
 
@@ -322,7 +322,7 @@ pub(crate) fn resources(
         Some(text) => {
             parse_memory(text).map_err(|error| Failure::unusable(format!("--memory {error}")))?
         }
-        None => corniche_pipeline::default_memory_bytes(),
+        None => corniche_spec::machine::default_memory_bytes(),
     };
     Ok(Resources { threads: threads(threads_asked), memory_bytes })
 }

@@ -122,6 +122,6 @@ fn a_whole_build_has_four_lines() {
 #[test]
 fn every_reason_for_leaving_out_has_its_place_in_the_list_of_remedies() {
     let known: Vec<&str> = REMEDIES.into_iter().map(|(reason, _)| reason).collect();
-    let all: Vec<&str> = corniche_pipeline::reasons_left_out().collect();
+    let all: Vec<&str> = corniche_pieces::roads::totals::reasons_left_out().collect();
     assert_eq!(known, all);
 }

@@ -3,11 +3,11 @@
 use std::{fmt::Write as _, path::PathBuf};
 
 use corniche_areas::AreaTable;
-use corniche_pipeline::{
-    Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
-};
 use corniche_presets::area_preset;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_verify::{
+    Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
+};
 
 use crate::{
     args::{VerifyArgs, VerifyFiles},
@@ -28,13 +28,13 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
-        dem: corniche_pipeline::elevation_names(&dem)?,
-        photo: corniche_pipeline::photo_names(&photo)?,
+        dem: corniche_spec::inputs::elevation_names(&dem)?,
+        photo: corniche_spec::inputs::photo_names(&photo)?,
         osm,
         polygon: args.polygon.clone().map(polygon).transpose()?,
         threads: threads(args.cpu.threads),
     };
-    let report = corniche_pipeline::verify(&package, &settings, &Progress::new())?;
+    let report = corniche_verify::verify(&package, &settings, &Progress::new())?;
     let text = if args.json {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
@@ -65,7 +65,7 @@ fn extract(
     if osm.is_empty() {
         return Ok(None);
     }
-    let paths = corniche_pipeline::extract_names(osm)?;
+    let paths = corniche_spec::inputs::extract_names(osm)?;
     let manifest = package.manifest();
     if !names_extract(manifest) {
         return Err(VerifyError::NoExtract.into());

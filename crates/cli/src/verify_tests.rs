@@ -1,6 +1,6 @@
 //! The last line of `verify` is the verdict, and checks that looked at nothing do not count.
 
-use corniche_pipeline::{Check, CheckId};
+use corniche_verify::{Check, CheckId};
 
 use super::*;
 

@@ -17,19 +17,20 @@ use std::{sync::Arc, time::Duration};
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
 use corniche_gis::DatumOperation;
+use corniche_ground::terrain::ground::GroundSource;
+use corniche_plan::{BuildPlan, Opened, check_room, network_differences};
+use corniche_spec::{
+    BuildSettings, Observer, PlanSettings, TerrainSettings, inputs::InputKind,
+    memory_shares::MemoryShares, settings_record,
+};
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
 use self::destination::Destination;
 use crate::{
-    BuildError, BuildPlan, BuildSettings, Observer, PlanSettings, TerrainSettings,
+    BuildError,
     context::Context,
-    inputs::InputKind,
-    memory_shares::MemoryShares,
-    plan::{Opened, check_room, network_differences},
-    settings_record,
     steps::{hashes, heights, merge, roads, tiles, top},
-    terrain::ground::GroundSource,
 };
 
 /// The result of a build.
@@ -44,7 +45,7 @@ pub struct BuildSummary {
 /// Builds a package. At the target there is either what was there before or the complete package.
 ///
 /// Intermediate results are kept in a store beside the package, or in `settings.tmp`. When the build is interrupted or the disk
-/// fails, they stay, and a build with [`Leftovers::Resume`](crate::Leftovers::Resume) goes on from them.
+/// fails, they stay, and a build with [`Leftovers::Resume`](corniche_spec::Leftovers::Resume) goes on from them.
 ///
 /// # Errors
 /// See [`BuildError`].

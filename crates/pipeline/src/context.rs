@@ -3,19 +3,18 @@
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
 use corniche_gis::{CrsError, DemProjection, FileDatums};
-use corniche_store::Artifacts;
-
-use crate::{
-    Observer, PlanSettings, Resources,
-    areas::{data_outline::data_outline, extent::Outline},
-    heights::{data_tiles::DataTiles, pyramid::Pyramid},
-    inputs::Inputs,
-    levels::Levels,
-    memory_shares::MemoryShares,
-    plan::{Opened, PhotoSource},
+use corniche_ground::{
+    heights::pyramid::Pyramid,
+    photos::{source::PhotoSource, textures::TextureStore},
     terrain::ground::GroundSource,
+};
+use corniche_plan::Opened;
+use corniche_spec::{
+    Observer, PlanSettings, Resources, data_outline::data_outline, data_tiles::DataTiles,
+    extent::Outline, inputs::Inputs, levels::Levels, memory_shares::MemoryShares,
     true_lengths::TrueLengths,
 };
+use corniche_store::Artifacts;
 
 /// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
 pub(crate) struct Context<'a> {
@@ -106,6 +105,12 @@ impl<'a> Context<'a> {
             GroundSource::Dem(dem) => data_outline(dem, self.grid, self.projection),
             GroundSource::Package(package) => Ok(package.manifest().data_outline()),
         }
+    }
+
+    /// Where textures of photos come from and go to.
+    pub(crate) fn textures(&self) -> TextureStore<'_> {
+        let Self { store, source, photo, .. } = *self;
+        TextureStore { store, source, photo, frame: self.frame(), data: self.data() }
     }
 
     /// The bounds that were asked for.

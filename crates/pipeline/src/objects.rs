@@ -6,8 +6,7 @@ use corniche_objects::{
     BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Requests, Storage,
     StorageSettings, block_cache,
 };
-
-use crate::{Resources, memory_shares::MemoryShares};
+use corniche_spec::{Resources, memory_shares::MemoryShares};
 
 /// The address that a name is; `None` for names of files.
 pub(crate) fn address(name: &Path) -> Result<Option<ObjectAddress>, ObjectError> {

@@ -59,6 +59,14 @@ pub enum TriangulateError {
     Tin(#[from] TinError),
 }
 
+impl TriangulateError {
+    /// Whether the heights are the cause.
+    #[must_use]
+    pub fn is_unusable_input(&self) -> bool {
+        matches!(self, Self::Height { .. })
+    }
+}
+
 /// The largest power of two that is at most `max_error_m` / 32: the height quantum of a package.
 ///
 /// 0 for a tolerance that is 0, negative or not a number.

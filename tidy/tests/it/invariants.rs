@@ -14,7 +14,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::{ImplItem, Item, Stmt, UseTree, visit::Visit};
 
 /// Crates that start threads, or work in the threads of a pool.
-const THREADS: [(&str, &str); 9] = [
+const THREADS: [(&str, &str); 11] = [
     (
         "cli",
         "signals, the end of standard input, progress while nothing moves, a flight that is shown in a window",
@@ -22,9 +22,11 @@ const THREADS: [(&str, &str); 9] = [
     ("live", "tiles are loaded while another thread draws"),
     ("objects", "the runtime of the library for object storage"),
     ("osm", "blobs are decoded in the pool that the caller hands in"),
+    ("pieces", "objects are split in the pool in which extracts are decoded"),
     ("pipeline", "the pool in which extracts are decoded"),
     ("remote", "a thread that waits for the network"),
     ("serve", "connections side by side"),
+    ("verify", "the pool in which extracts are decoded"),
     ("window", "files are written while the window draws"),
     ("work", "what is made of tiles and roads side by side, and their one writer"),
 ];
@@ -36,19 +38,18 @@ const UNSAFE: [(&str, &str); 2] = [
 ];
 
 /// Crates that open files.
-const FILES: [(&str, &str); 10] = [
+const FILES: [(&str, &str); 12] = [
     ("cli", "settings, styles, lists, pages and everything that commands write"),
     ("export", "the files that it makes, and scratch space"),
     ("gis", "rasters, polygons, vector files, lists of files"),
     ("objects", "the file that is sent, and the note of an upload that was begun"),
     ("osm", "extracts"),
     ("overlay", "the file of lines that a person draws"),
-    (
-        "pipeline",
-        "hashes of inputs, the package while it is written, what the system says of its memory",
-    ),
+    ("pipeline", "the package while it is written"),
+    ("spec", "hashes of inputs, what the system says of its memory"),
     ("store", "the store's own files, and what is written beside targets"),
     ("tileset", "packages"),
+    ("verify", "a folder for intermediate results"),
     ("window", "pictures and flights that a person saves"),
 ];
 

@@ -4,7 +4,8 @@ use std::{num::NonZeroU32, path::PathBuf};
 
 use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
-use corniche_pipeline::{Share, Step};
+use corniche_osm::Share;
+use corniche_pipeline::Step;
 
 use super::{ReportArgs, shared::ThreadsArg};
 use crate::failure::Failure;

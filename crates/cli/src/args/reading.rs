@@ -4,8 +4,8 @@ use std::{fmt::Write as _, path::PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
 use corniche_geom::TileId;
-use corniche_pipeline::CheckId;
 use corniche_remote::PackagePlace;
+use corniche_verify::CheckId;
 
 use super::{
     ReportArgs,

@@ -1,6 +1,7 @@
 //! `corniche plan --json`, and the lines of `corniche jobs`.
 
-use corniche_pipeline::{BuildPlan, Estimate, Job, MemoryEstimate, Rates};
+use corniche_pipeline::Job;
+use corniche_plan::{BuildPlan, Estimate, MemoryEstimate, Rates};
 use serde::Serialize;
 
 /// What a build will take.

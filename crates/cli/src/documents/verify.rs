@@ -1,7 +1,7 @@
 //! The JSON document of `corniche verify`.
 
-use corniche_pipeline::VerifyReport;
 use corniche_tileset::{Distribution, SampleErrorRecord};
+use corniche_verify::VerifyReport;
 use serde::Serialize;
 
 /// Whether a package keeps its promises.
@@ -119,7 +119,7 @@ impl From<SampleErrorRecord> for SamplesDocument {
 
 impl From<&VerifyReport> for VerifyDocument {
     fn from(report: &VerifyReport) -> Self {
-        let check = |check: &corniche_pipeline::Check| CheckDocument {
+        let check = |check: &corniche_verify::Check| CheckDocument {
             id: check.id.id(),
             promise: check.id.promise(),
             holds: check.verdict(),
@@ -127,12 +127,12 @@ impl From<&VerifyReport> for VerifyDocument {
             broken: check.broken,
             examples: check.examples.clone(),
         };
-        let gap = |gap: &corniche_pipeline::GapFigures| GapDocument {
+        let gap = |gap: &corniche_verify::GapFigures| GapDocument {
             level: gap.level,
             edges: gap.edges,
             largest_m: gap.largest_m,
         };
-        let error = |figures: &corniche_pipeline::ErrorFigures| ErrorDocument {
+        let error = |figures: &corniche_verify::ErrorFigures| ErrorDocument {
             level: figures.level,
             tiles: figures.tiles,
             nodes: figures.nodes,

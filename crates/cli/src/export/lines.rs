@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use corniche_export::{Coordinates, VectorFormat, check_lines_request};
 use corniche_network::Network;
-use corniche_pipeline::RecordedElevation;
 use corniche_tileset::FilePackage;
+use corniche_verify::RecordedElevation;
 
 use super::vector_files::{coordinates, format};
 use crate::{

@@ -73,7 +73,7 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
 fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failure> {
     let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
     // Where nothing is known of the file system, writing tells.
-    match corniche_pipeline::free_bytes(folder) {
+    match corniche_spec::machine::free_bytes(folder) {
         Ok(free) if free < needed => Err(Failure::unusable(format!(
             "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
             bytes(needed),

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use corniche_export::{Coordinates, ExportError, SpanFacts, VectorFormat};
-use corniche_pipeline::RecordedElevation;
 use corniche_tileset::Manifest;
+use corniche_verify::RecordedElevation;
 
 use super::unknown_ending::unknown_ending;
 use crate::{

@@ -47,7 +47,7 @@ const WORDS: [(&str, &str); 30] = [
 
 /// The words that a text uses, with their meanings, and where there are more.
 pub(crate) fn words_of(text: &str) -> String {
-    let all = WORDS.into_iter().chain(corniche_pipeline::span_reasons());
+    let all = WORDS.into_iter().chain(corniche_spec::span_reasons());
     let used: Vec<_> = all.filter(|(word, _)| uses(text, word)).collect();
     let width = used.iter().map(|(word, _)| word.len()).max().unwrap_or_default();
     let mut words = "\nWords:\n".to_owned();

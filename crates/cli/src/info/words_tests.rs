@@ -55,7 +55,7 @@ fn only_words_that_are_used_are_explained() {
 
 #[test]
 fn reasons_to_look_at_bridges_are_explained() {
-    for (reason, meaning) in corniche_pipeline::span_reasons() {
+    for (reason, meaning) in corniche_spec::span_reasons() {
         let words = words_of(&format!("2 of them: {reason} 3"));
         assert!(words.contains(reason) && words.contains(meaning), "{words}");
     }

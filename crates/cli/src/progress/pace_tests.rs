@@ -44,7 +44,8 @@ fn a_steady_stage_is_estimated_exactly() {
 #[test]
 fn bursts_do_not_disturb_the_estimate() {
     for burst in [7, 64] {
-        let clock: Vec<_> = (1..=50).map(|k| (3.0 * f64::from(k), burst * k as u64)).collect();
+        let clock: Vec<_> =
+            (1..=50).map(|k: u32| (3.0 * f64::from(k), burst * u64::from(k))).collect();
         check_exact(&estimates(&clock));
     }
 }

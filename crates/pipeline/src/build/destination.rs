@@ -5,9 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_store::{Claim, UnfinishedFile, file_target, folder_of, is_same_file};
+use corniche_spec::{Observer, PlanSettings};
+use corniche_store::{Claim, Existing, UnfinishedFile, file_target, folder_of, is_same_file};
 
-use crate::{BuildError, Existing, Observer, PlanSettings};
+use crate::BuildError;
 
 /// The place of a package: looked at before any work is done.
 pub(crate) struct Destination {

@@ -8,11 +8,15 @@ use std::{
 };
 
 use corniche_dem::DemError;
+use corniche_ground::TerrainError;
 use corniche_osm::ReadOsmError;
+use corniche_pieces::ExtractError;
+use corniche_plan::BuildPlan;
+use corniche_spec::{Leftovers, Observer, artifacts::Kind, hex::hex, inputs::InputError};
 use corniche_store::{Artifacts as _, Disk, LocalStore, StoreError, StoredPlan};
 use sha2::{Digest as _, Sha256};
 
-use crate::{BuildError, BuildPlan, Leftovers, Observer, artifacts::Kind, hex::hex};
+use crate::BuildError;
 
 /// Inputs of so many bytes take long to hash: their hashes alone are worth keeping.
 const LONG_TO_HASH_BYTES: u64 = 1 << 30;
@@ -158,20 +162,23 @@ pub(crate) fn after_failure(
 /// Whether the store is of no use any more: it is bound to its inputs and settings, and these must change.
 fn is_final(error: &BuildError) -> bool {
     // An input that is gone may come back, with the disk that it lies on.
-    if let BuildError::Changed { path } = error {
+    if let BuildError::Input(InputError::Changed { path }) = error {
         return path.exists();
     }
     let is_bad_extract = |error: &ReadOsmError| !matches!(error, ReadOsmError::Read { .. });
-    matches!(error, BuildError::Osm(error) if is_bad_extract(error))
+    matches!(error, BuildError::Extract(ExtractError::Osm(error)) if is_bad_extract(error))
         || matches!(
             error,
             BuildError::NoHeights { .. }
                 | BuildError::NoCell { .. }
-                | BuildError::NoRoads { .. }
-                | BuildError::NoOverlap { .. }
+                | BuildError::Extract(
+                    ExtractError::NoRoads { .. }
+                        | ExtractError::NoOverlap { .. }
+                        | ExtractError::Triangulate { .. }
+                        | ExtractError::Encode(_)
+                )
                 | BuildError::NoGround { .. }
-                | BuildError::DamagedPackage { .. }
-                | BuildError::PackageTile { .. }
+                | BuildError::Terrain(TerrainError::Damaged { .. } | TerrainError::Tile { .. })
                 | BuildError::Dem(DemError::Audit(_))
                 | BuildError::Triangulate { .. }
                 | BuildError::Encode(_)

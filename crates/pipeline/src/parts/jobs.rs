@@ -15,6 +15,15 @@ mod tile_costs;
 use std::{num::NonZeroU32, path::PathBuf};
 
 use corniche_geom::TileId;
+use corniche_ground::terrain::ground::GroundSource;
+use corniche_plan::{BuildPlan, Opened, rates};
+use corniche_spec::{
+    PlanSettings, Resources,
+    artifacts::{self, Kind},
+    data_tiles::DataTiles,
+    inputs::InputKind,
+    memory_shares::MemoryShares,
+};
 use corniche_store::Artifacts as _;
 
 use grounds::Grounds;
@@ -28,17 +37,7 @@ use super::{
     planned::open,
     stores::{GivenStores, Stores},
 };
-use crate::{
-    BuildError, BuildPlan, PlanSettings, Resources,
-    artifacts::{self, Kind},
-    heights::data_tiles::DataTiles,
-    inputs::InputKind,
-    memory_shares::MemoryShares,
-    objects::ObjectAccess,
-    plan::{Opened, rates},
-    steps::roads,
-    terrain::ground::GroundSource,
-};
+use crate::{BuildError, objects::ObjectAccess, steps::roads};
 
 /// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* after them takes longer than one of sixteen. Their
 /// number does not depend on that of slots, so that another number of slots goes on with the shares that are there.

@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
+use corniche_ground::terrain::ground::GroundSource;
 use corniche_objects::Requests;
-use corniche_store::LocalStore;
+use corniche_pieces::layers::defects::replay_defects;
+use corniche_plan::BuildPlan;
+use corniche_spec::{Observer, Resources};
+use corniche_store::{Existing, LocalStore};
 use corniche_tileset::Manifest;
 
 use super::{
@@ -14,13 +18,11 @@ use super::{
     stores::{GivenStores, Stores},
 };
 use crate::{
-    BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
+    BuildError, BuildSummary,
     build::destination,
     context::Context,
-    layers::defects::replay_defects,
     objects::ObjectAccess,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
-    terrain::ground::GroundSource,
 };
 
 /// The part that holds what a merge makes, while it runs.
@@ -58,7 +60,7 @@ pub struct MergeSummary {
 /// they are.
 ///
 /// # Errors
-/// See [`BuildError`]; [`BuildError::Missing`] if a part is not there.
+/// See [`BuildError`]; [`BuildError::Artifact`] if a part is not there.
 pub fn merge(
     settings: &MergeSettings,
     observer: &dyn Observer,

@@ -1,10 +1,10 @@
 //! Which parts a step can read from, by their names: others need not be opened, and so many parts do not make each of them slow.
 
 use corniche_geom::TileId;
+use corniche_ground::heights::near::is_near;
 use corniche_osm::Share;
 
 use super::step::Step;
-use crate::heights::near::is_near;
 
 /// Whether the part with this name, without its digest, can hold what the step reads, or what it would make. If the name is none that
 /// [`part_name`] makes, it can.

@@ -6,13 +6,13 @@ use std::{
 };
 
 use corniche_objects::{Bucket, ObjectAddress, ObjectError, Upload};
-use corniche_store::{Claim, PARTS_NAME, PLAN_NAME, STORE_NAME, make_own_folder};
+use corniche_spec::{Observer, PlanSettings, hex::hex};
+use corniche_store::{Claim, Existing, PARTS_NAME, PLAN_NAME, STORE_NAME, make_own_folder};
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    BuildError, Existing, Observer, PlanSettings,
+    BuildError,
     build::destination::{Destination, claim},
-    hex::hex,
     objects::ObjectAccess,
 };
 

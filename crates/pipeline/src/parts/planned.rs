@@ -1,8 +1,9 @@
 //! What a plan is about, opened and compared with the plan.
 
-use crate::{
-    BuildError, BuildPlan, PlanSettings, Resources, memory_shares::MemoryShares, plan::Opened,
-};
+use corniche_plan::{BuildPlan, Opened};
+use corniche_spec::{PlanSettings, Resources, memory_shares::MemoryShares};
+
+use crate::BuildError;
 
 /// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
 pub(crate) fn open(

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use corniche_geom::TileId;
 use corniche_objects::Requests;
 use corniche_osm::Share;
+use corniche_plan::BuildPlan;
+use corniche_spec::{Observer, Resources, inputs::InputError};
 use corniche_store::LocalStore;
 
 use super::{
@@ -14,10 +16,9 @@ use super::{
     stores::{GivenStores, Stores},
 };
 use crate::{
-    BuildError, BuildPlan, Observer, Resources,
+    BuildError,
     build::warn,
     context::Context,
-    inputs::InputError,
     objects::ObjectAccess,
     steps::{hashes, heights, roads, shares, tiles, top},
 };
@@ -56,7 +57,7 @@ pub struct PartSummary {
 /// done is kept beside it, and the same part goes on from there.
 ///
 /// # Errors
-/// See [`BuildError`]; [`BuildError::Missing`] if an earlier step is not in the stores.
+/// See [`BuildError`]; [`BuildError::Artifact`] if an earlier step is not in the stores.
 pub fn make_part(
     settings: &PartSettings,
     observer: &dyn Observer,

@@ -7,6 +7,8 @@ use std::{
 };
 
 use corniche_objects::{ObjectPlace, Requests};
+use corniche_plan::BuildPlan;
+use corniche_spec::{Observer, hex::hex};
 use corniche_store::{
     Disk, Folder, Hold, LocalStore, OwnPart, PartsPlace, Publish as _, SYNC_INTERVAL, SealedParts,
     StoreError, StoredPlan, SystemDisk,
@@ -14,9 +16,8 @@ use corniche_store::{
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    BuildError, BuildPlan, Observer,
+    BuildError,
     build::work_store::{differences, stored},
-    hex::hex,
     objects::{ObjectAccess, address},
 };
 

@@ -3,20 +3,20 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_ground::heights::{pyramid::all_there, rasters};
+use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
+use corniche_work::{Stage, workers};
 
 use super::{tins, top};
 use crate::{
-    BuildError, Stage,
-    artifacts::{Kind, damaged},
+    BuildError,
     context::Context,
-    heights::{pyramid::all_there, rasters},
     tile::{
         encode,
         mesh::Meshed,
         record::{Seen, TileDeviation, TileRecord},
         relief,
     },
-    workers,
 };
 
 /// Makes the coarse tiles beneath and at `scope` that are not there yet. All finest tiles beneath must be there.
@@ -39,7 +39,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         context.threads(),
         (&ids, all),
         || Ok(()),
-        |(), &id| {
+        |(), &id| -> Result<(), BuildError> {
             // Records of finest tiles say that it has ground.
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
@@ -58,7 +58,8 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
             let tile = (meshed, relief);
-            encode::with_ground(context, id, tile, deviation, None, owned)?.put(store, id)
+            encode::with_ground(context, id, tile, deviation, None, owned)?.put(store, id)?;
+            Ok(())
         },
     )
 }
@@ -78,7 +79,7 @@ fn deviations(
     let mut finest_m: BTreeMap<TileId, f64> = BTreeMap::new();
     for id in data.in_order_within(scope) {
         let record = TileRecord::get(store, id)?
-            .ok_or_else(|| BuildError::Missing { what: format!("tile {id}"), step: "tiles" })?;
+            .ok_or_else(|| ArtifactError::Missing { what: format!("tile {id}"), step: "tiles" })?;
         if let Some(ground) = record.ground {
             finest_m.insert(id, ground.deviation.geometric_error_m);
         }

@@ -1,22 +1,21 @@
 //! Step *hashes*: the content of each input, hashed once.
 
+use corniche_ground::photos::source::PhotoSource;
+use corniche_pieces::spans::totals::SpanTotals;
+use corniche_spec::{
+    artifacts::{self, ArtifactError, Kind},
+    inputs::{InputKind, Inputs},
+};
 use corniche_tileset::InputRecord;
 
-use crate::{
-    BuildError,
-    artifacts::{self, Kind},
-    context::Context,
-    inputs::{InputKind, Inputs},
-    plan::PhotoSource,
-    spans::totals::SpanTotals,
-};
+use crate::{BuildError, context::Context};
 
 /// Hashes the inputs that are not hashed yet.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
     let store = context.store;
     let is_done = |index: usize| store.has(Kind::InputHash.item(index as u64));
     context.inputs.hash_each(is_done, context.observer, |index, record| {
-        artifacts::put(store, Kind::InputHash.item(index as u64), &record)
+        Ok(artifacts::put(store, Kind::InputHash.item(index as u64), &record)?)
     })
 }
 
@@ -24,10 +23,10 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
 pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildError> {
     let inputs = context.inputs;
     let mut records = Vec::new();
-    for index in 0..inputs.len() {
+    for index in 0..inputs.count() {
         let record: Option<InputRecord> =
             artifacts::get(context.store, Kind::InputHash.item(index as u64))?;
-        records.push(record.ok_or_else(|| BuildError::Missing {
+        records.push(record.ok_or_else(|| ArtifactError::Missing {
             what: format!("the hash of {}", inputs.name(index)),
             step: "hashes",
         })?);

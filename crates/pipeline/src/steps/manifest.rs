@@ -1,6 +1,17 @@
 //! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
 use corniche_areas::ClassedLayer;
+use corniche_ground::heights::pyramid::HeightSums;
+use corniche_pieces::{
+    layers::{
+        SectionLayer,
+        layer_totals::{AreaTotals, LineTotals},
+        tile_section::SectionSums,
+    },
+    roads::{counts::road_counts, losses, totals::RoadTotals},
+    spans::totals::SpanTotals,
+};
+use corniche_spec::{extent::Outline, manifest_texts, settings_record};
 use corniche_tileset::{
     AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
     LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleErrorRecord,
@@ -8,20 +19,7 @@ use corniche_tileset::{
 };
 
 use super::sums::TileSums;
-use crate::{
-    areas::extent::Outline,
-    context::Context,
-    heights::pyramid::HeightSums,
-    layers::{
-        SectionLayer,
-        layer_totals::{AreaTotals, LineTotals},
-        tile_section::SectionSums,
-    },
-    manifest_texts,
-    roads::{counts::road_counts, losses, totals::RoadTotals},
-    settings_record,
-    spans::totals::SpanTotals,
-};
+use crate::context::Context;
 
 /// Everything that goes into the manifest.
 pub(crate) struct Outcome<'a> {

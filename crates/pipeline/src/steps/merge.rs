@@ -4,8 +4,18 @@ use std::path::Path;
 
 use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
+use corniche_ground::{
+    heights::pyramid::{HeightSums, all_there},
+    terrain::{ground::GroundSource, recorded::RecordedTerrain},
+};
+use corniche_pieces::{
+    layers::{SectionLayer, layer_totals::LayerTotals},
+    roads::losses::LossFold,
+};
+use corniche_spec::artifacts::{self, ArtifactError, Kind};
 use corniche_store::{OpenMode, Scratch, open_own};
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
+use corniche_work::Stage;
 
 use super::{
     hashes,
@@ -14,16 +24,7 @@ use super::{
     sums::TileSums,
     top,
 };
-use crate::{
-    BuildError, Stage,
-    artifacts::{self, Kind},
-    context::Context,
-    heights::pyramid::{HeightSums, all_there},
-    layers::{SectionLayer, layer_totals::LayerTotals},
-    roads::losses::LossFold,
-    terrain::{ground::GroundSource, recorded::RecordedTerrain},
-    tile::record::TileRecord,
-};
+use crate::{BuildError, context::Context, tile::record::TileRecord};
 
 /// Where the package goes.
 pub(crate) struct Target<'a> {
@@ -42,7 +43,7 @@ pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
     }
     top::check_done(context)?;
     let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
-    all_there("the tiles", &context.data().missing(is_missing), "tiles")
+    Ok(all_there("the tiles", &context.data().missing(is_missing), "tiles")?)
 }
 
 /// Adds up all records and writes the package.
@@ -66,7 +67,11 @@ pub(crate) fn make(
         let id = artifacts::tile_of(Kind::Record.item(item))?;
         if let Some(record) = TileRecord::get(context.store, id)? {
             if record.ground.is_some() && !context.store.has(Kind::Payload.item(item)) {
-                return Err(BuildError::Missing { what: format!("the tile {id}"), step: "tiles" });
+                return Err(ArtifactError::Missing {
+                    what: format!("the tile {id}"),
+                    step: "tiles",
+                }
+                .into());
             }
             tiles.add(id, &record);
             if context.store.has(Kind::SpanSection.item(item)) {
@@ -140,7 +145,7 @@ fn check_levels(
         };
         if wanted != *found {
             let what = format!("the tiles of level {} are not what its manifest says", said.level);
-            return Err(terrain.damaged(&what));
+            return Err(terrain.damaged(&what).into());
         }
     }
     Ok(())
@@ -149,7 +154,7 @@ fn check_levels(
 /// The payload of a tile that has one.
 fn payload(context: &Context<'_>, id: TileId) -> Result<Vec<u8>, BuildError> {
     let key = Kind::Payload.of_tile(id);
-    context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))
+    Ok(context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?)
 }
 
 /// Writes the package.

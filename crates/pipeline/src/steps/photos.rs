@@ -2,16 +2,15 @@
 //! subtree.
 
 use corniche_geom::TileId;
-use corniche_photo::PhotoReader;
-
-use crate::{
-    BuildError, Stage,
-    artifacts::Kind,
-    context::Context,
+use corniche_ground::{
     heights::upwards,
     photos::{rasters, textures},
-    workers,
 };
+use corniche_photo::PhotoReader;
+use corniche_spec::artifacts::Kind;
+use corniche_work::{Stage, workers};
+
+use crate::{BuildError, context::Context};
 
 /// Reads the photos beneath and at `scope` that are not there yet, and makes the rasters from there up to the scope's own.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
@@ -26,7 +25,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         context.threads(),
         (&ids, all),
         || Ok(PhotoReader::new(&photos.grid)),
-        |reader, &id| textures::make_finest(context, photos, reader, id),
+        |reader, &id| textures::make_finest(context.textures(), photos, reader, id),
     )?;
     make_rasters(context, scope)
 }
@@ -37,11 +36,11 @@ pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), B
         return Ok(());
     }
     let (store, data) = (context.store, context.data());
-    upwards::make_missing(
+    Ok(upwards::make_missing(
         (store, &data),
         (context.observer, context.threads()),
         Kind::PhotoRaster,
         scope,
         |id| rasters::put_from_children(store, &data, id),
-    )
+    )?)
 }

@@ -7,18 +7,18 @@ use std::{
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
+use corniche_ground::terrain::{
+    border_cells::{BorderCells, CellsAround},
+    recorded::RecordedTerrain,
+};
+use corniche_spec::artifacts::Kind;
 use corniche_tileset::{Terrain, pmtiles_order};
+use corniche_work::{Stage, workers};
 
 use crate::{
-    BuildError, Stage,
-    artifacts::Kind,
+    BuildError,
     context::Context,
-    terrain::{
-        border_cells::{BorderCells, CellsAround},
-        recorded::RecordedTerrain,
-    },
     tile::{encode, mesh::Meshed, record::TileDeviation},
-    workers,
 };
 
 /// What an entry of [`Borders`] takes.
@@ -77,7 +77,7 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
         }
         None => encode::without_ground(context, id, owned)?,
     };
-    record.put(context.store, id)
+    Ok(record.put(context.store, id)?)
 }
 
 /// The grounds of a package, and which cells along the borders of its tiles have ground.

@@ -1,19 +1,19 @@
 //! Step *roads*: the extract to pieces of roads by tile.
 
-use corniche_store::{Artifacts, Scratch};
-
-use crate::{
-    BuildError,
-    artifacts::{self, Kind},
-    context::Context,
+use corniche_pieces::ExtractError;
+use corniche_pieces::{
     extract::partition::{ExtractInput, partition},
     roads::{overlap::check_overlap, totals::RoadTotals},
 };
+use corniche_spec::artifacts::{self, ArtifactError, Kind};
+use corniche_store::{Artifacts, Scratch};
+
+use crate::{BuildError, context::Context};
 
 /// What is known of all roads, which must be there; `None` without an extract.
 pub(crate) fn totals(context: &Context<'_>) -> Result<Option<RoadTotals>, BuildError> {
     check_done(context)?;
-    artifacts::get(context.store, Kind::RoadTotals.item(0))
+    Ok(artifacts::get(context.store, Kind::RoadTotals.item(0))?)
 }
 
 /// Fails if there is an extract and its roads were not partitioned.
@@ -21,7 +21,8 @@ pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
     if context.settings.osm.is_empty() || are_done(context.store) {
         return Ok(());
     }
-    Err(BuildError::Missing { what: "the list of the extract's roads".to_owned(), step: "roads" })
+    let what = "the list of the extract's roads".to_owned();
+    Err(ArtifactError::Missing { what, step: "roads" }.into())
 }
 
 /// Whether the roads of an extract are in a store.
@@ -31,10 +32,8 @@ pub(crate) fn are_done(store: &dyn Artifacts) -> bool {
 
 /// Threads for the reading of an extract.
 pub(crate) fn pool(context: &Context<'_>) -> Result<rayon::ThreadPool, BuildError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(context.threads())
-        .build()
-        .map_err(|error| BuildError::Start { what: error.to_string() })
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(context.threads()).build();
+    Ok(pool.map_err(ExtractError::from)?)
 }
 
 /// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
@@ -66,5 +65,5 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         memory_bytes: context.memory().sorting,
     };
     let totals = partition(&input, context.store, scratch, context.observer)?;
-    check_overlap(&totals, osm, &frame, context.projection, context.grid)
+    Ok(check_overlap(&totals, osm, &frame, context.projection, context.grid)?)
 }

@@ -1,14 +1,13 @@
 //! Steps *ways* and *nodes*: the two passes over a share of the extract. They may be left out: then the step *roads* makes both.
 
 use corniche_osm::{ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
+use corniche_pieces::extract::kept::{kept_in, not_read};
+use corniche_spec::artifacts::ArtifactError;
 use corniche_store::Scratch;
+use corniche_work::Stage;
 
 use super::roads::{are_done, pool};
-use crate::{
-    BuildError, Stage,
-    context::Context,
-    extract::kept::{kept_in, not_read},
-};
+use crate::{BuildError, context::Context};
 
 /// Keeps the road ways of a share that are not there yet; none without an extract, or if the roads are there.
 pub(crate) fn make_ways(
@@ -34,7 +33,8 @@ pub(crate) fn make_nodes(
     })
     .map_err(|error| match kept.missing_ways(share.of()) {
         Some(missing) => {
-            BuildError::Missing { what: format!("share {missing} of the ways"), step: "ways" }
+            let what = format!("share {missing} of the ways");
+            ArtifactError::Missing { what, step: "ways" }.into()
         }
         None => error,
     })

@@ -1,13 +1,9 @@
 //! What a merge does first: the heights of bridges and tunnels on each level, and their runs by tile.
 
 use corniche_geom::{LatticePoint, TileId};
-use corniche_tileset::{OuterGround, Sections, decode};
-use corniche_tin::Tin;
-
-use crate::{
-    BuildError, Defect,
-    artifacts::{self, Kind},
-    context::Context,
+use corniche_ground::terrain::ground::GroundSource;
+use corniche_pieces::{
+    ExtractError,
     layers::{
         SectionLayer,
         tile_section::{SectionOfTile, TileSection},
@@ -18,8 +14,15 @@ use crate::{
         span_network::SpanInputs,
         totals::SpanTotals,
     },
-    terrain::ground::GroundSource,
 };
+use corniche_spec::{
+    Defect,
+    artifacts::{self, Kind},
+};
+use corniche_tileset::{OuterGround, Sections, decode};
+use corniche_tin::Tin;
+
+use crate::{BuildError, context::Context};
 
 /// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
 /// to be known of them.
@@ -59,7 +62,7 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
     match context.source {
         GroundSource::Package(terrain) => {
             let recorded = terrain.manifest().spans.as_ref();
-            solve(&recorded.map_or(&[][..], |spans| &spans.outer_grounds))
+            Ok(solve(&recorded.map_or(&[][..], |spans| &spans.outer_grounds))?)
         }
         GroundSource::Dem(dem) => {
             let levels = context.levels;
@@ -73,7 +76,7 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
 }
 
 /// The TIN of a tile, out of its payload; `None` where it has no ground. TINs by themselves are only with the parts that made them.
-fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, BuildError> {
+fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError> {
     let key = Kind::Payload.of_tile(id);
     let Some(bytes) = context.store.get(key)? else { return Ok(None) };
     let quantum_m = context.levels.quantum_m();

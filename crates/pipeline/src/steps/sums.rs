@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::{SampleSums, SvTails, VerticalRecord};
-
-use crate::{
-    context::Context,
+use corniche_pieces::{
     layers::{
         ByLayer, SectionLayer,
         tile_section::{SectionOfTile, SectionSums},
     },
     roads::lay::ClassSums,
+};
+use corniche_tileset::{SampleSums, SvTails, VerticalRecord};
+
+use crate::{
+    context::Context,
     tile::record::{LevelShare, TileRecord},
 };
 

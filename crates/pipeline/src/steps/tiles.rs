@@ -3,14 +3,14 @@
 
 use corniche_dem::{Dem, Reader};
 use corniche_geom::TileId;
+use corniche_ground::{heights::finest::FinestHeights, terrain::ground::GroundSource};
+use corniche_spec::artifacts::Kind;
+use corniche_work::{Stage, workers};
 
 use super::{coarse_tiles, recorded_tiles, roads, tins, top};
 use crate::{
-    BuildError, Stage,
-    artifacts::Kind,
+    BuildError,
     context::Context,
-    heights::finest::FinestHeights,
-    terrain::ground::GroundSource,
     tile::{
         encode,
         grounds::Grounds,
@@ -19,7 +19,6 @@ use crate::{
         record::{Seen, TileDeviation, TileRecord},
         relief,
     },
-    workers,
 };
 
 /// Makes all tiles beneath and at `scope` that are not there yet. All heights and roads must be there: those of neighbours decide
@@ -84,5 +83,5 @@ fn make_tile(
         }
         None => encode::without_ground(context, id, owned)?,
     };
-    TileRecord { levels, ..record }.put(context.store, id)
+    Ok(TileRecord { levels, ..record }.put(context.store, id)?)
 }

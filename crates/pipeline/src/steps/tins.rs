@@ -1,14 +1,14 @@
 //! The TINs of coarse tiles. Finest tiles need those of all their ancestors.
 
 use corniche_geom::TileId;
+use corniche_ground::heights::rasters;
+use corniche_spec::artifacts::Kind;
+use corniche_work::{Stage, workers};
 
 use crate::{
-    BuildError, Stage,
-    artifacts::Kind,
+    BuildError,
     context::Context,
-    heights::rasters,
     tile::mesh::{Meshed, mesh_tile},
-    workers,
 };
 
 /// Triangulates those of some coarse tiles of the data that are not there yet.
@@ -25,12 +25,12 @@ pub(crate) fn make(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), Bu
         context.threads(),
         (&ids, all),
         || Ok(()),
-        |(), &id| {
+        |(), &id| -> Result<(), BuildError> {
             let meshed = match rasters::with_halo(store, &data, id, 1)? {
                 Some(heights) => mesh_tile(&heights, id, context.levels)?,
                 None => Meshed::default(),
             };
-            meshed.put(store, id)
+            Ok(meshed.put(store, id)?)
         },
     )
 }

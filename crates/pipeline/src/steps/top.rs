@@ -3,14 +3,11 @@
 use std::collections::BTreeSet;
 
 use corniche_geom::TileId;
+use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
 use corniche_tileset::{pmtiles_order, tile_of_order};
 
 use super::{photos, tins};
-use crate::{
-    BuildError,
-    artifacts::{Kind, damaged},
-    context::Context,
-};
+use crate::{BuildError, context::Context};
 
 /// Checks the heights of all subtrees, which must be there, and makes what lies above them.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
@@ -38,7 +35,7 @@ pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
         return Ok(());
     }
     let what = "what lies above the subtrees of heights".to_owned();
-    Err(BuildError::Missing { what, step: "top" })
+    Err(ArtifactError::Missing { what, step: "top" }.into())
 }
 
 /// The step between heights that the DEM can tell apart, metres ([`corniche_dem::Audit::height_step_m`]). Fails if the step *top*

@@ -3,25 +3,13 @@
 use std::collections::BTreeMap;
 
 use corniche_drape::{Neighbours, OwnedBorders};
-use corniche_geom::{HeightGrid, TileId};
-use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{EncodedTile, PayloadContext, Relief, Terrain, TilePayload};
-use corniche_tin::{Placement, Surface};
-
-use super::{
-    mesh::Meshed,
-    record::{GroundRecord, TileDeviation, TileRecord},
-};
-use crate::{
-    BuildError,
-    artifacts::Kind,
-    context::Context,
-    heights::{finest::TILE_NODES, rasters},
+use corniche_geom::{HeightGrid, TILE_NODES, TileId};
+use corniche_ground::{heights::rasters, photos::textures};
+use corniche_pieces::{
     layers::{
         ByLayer, SectionLayer,
         tile_section::{SectionOfTile, TileSection},
     },
-    photos::textures,
     roads::{
         ground_lines,
         lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
@@ -29,6 +17,16 @@ use crate::{
         shares::share,
     },
 };
+use corniche_roads::FunctionalRoadClass;
+use corniche_spec::artifacts::Kind;
+use corniche_tileset::{EncodedTile, PayloadContext, Relief, Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    mesh::Meshed,
+    record::{GroundRecord, TileDeviation, TileRecord},
+};
+use crate::{BuildError, context::Context};
 
 /// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
 ///
@@ -79,7 +77,7 @@ pub(crate) fn with_ground(
         None => corniche_tileset::encode(&payload, &encoding)?,
     };
     let classes = class_sums(laid_classes, &payload, &encoded);
-    let photo = textures::of_tile(context, id, earlier)?;
+    let photo = textures::of_tile(context.textures(), id, earlier)?;
     let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
     let mut bytes = encoded.bytes;
     if let Some(photo) = photo {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use corniche_dem::{Dem, Reader};
 use corniche_geom::{HeightGrid, TileId};
+use corniche_ground::heights::finest::{FinestHeights, own_size};
 use corniche_tileset::SampleSums;
 use corniche_tin::{Tin, WindowPlacement};
 
@@ -11,11 +12,7 @@ use super::{
     grounds::{Ground, Grounds},
     record::{LevelShare, Seen},
 };
-use crate::{
-    BuildError,
-    context::Context,
-    heights::finest::{FinestHeights, own_size},
-};
+use crate::{BuildError, context::Context};
 
 /// The grounds above and on a finest tile, root first; `None` where a level has none there.
 pub(crate) struct Column {

@@ -1,14 +1,14 @@
 //! Heights of a tile to its TIN, and the TINs of coarse tiles as artifacts.
 
 use corniche_geom::{HeightGrid, TileId};
+use corniche_spec::{
+    artifacts::{ArtifactError, Kind, damaged},
+    levels::Levels,
+};
 use corniche_store::Artifacts;
 use corniche_tin::{Tin, TinSpec, TinVertex};
 
-use crate::{
-    BuildError,
-    artifacts::{Kind, damaged},
-    levels::Levels,
-};
+use crate::BuildError;
 
 /// A tile's ground as meshed, before it is measured.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,14 +34,15 @@ pub(crate) fn mesh_tile(
 }
 
 impl Meshed {
-    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), ArtifactError> {
         Ok(store.put(Kind::Tin.of_tile(id), &to_bytes(self))?)
     }
 
     /// The TIN of a coarse tile of the data; `None` where it is empty: the tile has no ground.
-    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
+    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, ArtifactError> {
         let key = Kind::Tin.of_tile(id);
-        let missing = || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
+        let missing =
+            || ArtifactError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
         let bytes = store.get(key)?.ok_or_else(missing)?;
         let meshed = from_bytes(&bytes).ok_or_else(|| damaged(key, &"it is no TIN"))?;
         Ok(Some(meshed).filter(|meshed| !meshed.tin.is_empty()))

@@ -3,18 +3,16 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_ground::heights::patch::union;
+use corniche_pieces::{
+    layers::{ByLayer, tile_section::SectionOfTile},
+    roads::lay::{ClassSums, RoadFate},
+};
+use corniche_spec::artifacts::{self, ArtifactError, Kind};
 use corniche_store::Artifacts;
 use corniche_tileset::SampleSums;
 use corniche_tin::Deviation;
 use serde::{Deserialize, Serialize};
-
-use crate::{
-    BuildError,
-    artifacts::{self, Kind},
-    heights::patch::union,
-    layers::{ByLayer, tile_section::SectionOfTile},
-    roads::lay::{ClassSums, RoadFate},
-};
 
 /// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima: they do not depend on
 /// the order of tiles or on how these are grouped.
@@ -107,11 +105,11 @@ impl TileDeviation {
 }
 
 impl TileRecord {
-    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), ArtifactError> {
         artifacts::put(store, Kind::Record.of_tile(id), self)
     }
 
-    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
+    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, ArtifactError> {
         artifacts::get(store, Kind::Record.of_tile(id))
     }
 }

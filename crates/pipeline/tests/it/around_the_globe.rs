@@ -7,8 +7,11 @@ use std::{path::Path, sync::Mutex};
 
 use crate::support::{Options, settings, write_samples};
 use corniche_geom::Bounds;
-use corniche_pipeline::{Observer, Silent, VerifySettings, build, verify};
+use corniche_pipeline::build;
+use corniche_spec::Observer;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_verify::{VerifySettings, verify};
+use corniche_work::Silent;
 
 /// Metres to a degree of the equator.
 const DEGREE_M: f64 = 20_037_508.342_789_244 / 180.0;

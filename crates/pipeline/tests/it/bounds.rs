@@ -18,11 +18,12 @@ use crate::support::{
 };
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, TileId};
-use corniche_pipeline::{
-    BuildPlan, BuildSettings, CheckId, Defect, Loss, Observer, Silent, VerifyOsm, VerifySettings,
-    build, plan, verify,
-};
+use corniche_pipeline::build;
+use corniche_plan::{BuildPlan, plan};
+use corniche_spec::{BuildSettings, Defect, Loss, Observer};
 use corniche_tileset::{FilePackage, Manifest, Sections};
+use corniche_verify::{CheckId, VerifyOsm, VerifySettings, verify};
+use corniche_work::Silent;
 
 /// What a build told of roads.
 #[derive(Default)]
@@ -332,7 +333,7 @@ fn files_outside_the_bounds_are_not_read() {
         )
     };
     let report = checked(vec![files.at("east.tif"), files.at("west.tif")]).unwrap();
-    assert!(report.checks.iter().all(corniche_pipeline::Check::holds), "{:#?}", report.checks);
+    assert!(report.checks.iter().all(corniche_verify::Check::holds), "{:#?}", report.checks);
     // The grid needs all files, and what is used must be the same.
     assert!(checked(vec![files.at("east.tif")]).is_err());
     assert!(checked(vec![files.at("west.tif"), files.at("dem.tif")]).is_err());

@@ -13,13 +13,15 @@ use std::{
 };
 
 use crate::support::{Options, Raster, extract, settings};
-use corniche_pipeline::{BuildError, BuildSettings, Leftovers, Silent, build_on};
+use corniche_pipeline::{BuildError, build_on};
+use corniche_spec::{BuildSettings, Leftovers};
 use corniche_testing::{
     Random,
     disks::{Failure, MemoryDisk},
     some_of,
 };
 use corniche_tileset::FilePackage;
+use corniche_work::Silent;
 use tempfile::TempDir;
 
 /// Every artifact is made durable at once.

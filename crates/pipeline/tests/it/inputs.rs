@@ -5,10 +5,13 @@
 use std::{fs, path::Path, sync::Mutex};
 
 use crate::support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
-use corniche_pipeline::{
-    BuildError, Observer, Silent, Stage, VerifyError, VerifySettings, build, verify,
-};
+use corniche_pipeline::{BuildError, build};
+use corniche_plan::PlanError;
+use corniche_spec::Observer;
+use corniche_spec::inputs::InputError;
 use corniche_tileset::FilePackage;
+use corniche_verify::{VerifyError, VerifySettings, verify};
+use corniche_work::{Silent, Stage};
 
 fn hills() -> Raster {
     Raster::new([300, 200], [5, 9], |column, row| 100.0 * waves(column, row))
@@ -73,7 +76,7 @@ fn an_input_exchanged_at_any_stage_ends_the_build() {
             build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &exchange);
         let refused = refused.err().unwrap();
         assert!(
-            matches!(&refused, BuildError::Changed { path } if *path == dem),
+            matches!(&refused, BuildError::Input(InputError::Changed { path }) if *path == dem),
             "{stage:?}: {refused}"
         );
         assert!(!refused.is_unusable_input(), "{stage:?}: the input is not to blame");
@@ -139,7 +142,10 @@ fn a_value_that_no_height_has_is_refused_before_anything_is_made_of_it() {
 fn a_tolerance_beyond_what_numbers_hold_is_refused_as_such() {
     for max_error_m in [1.1e9, 1e308, 0.9e-9, 5e-324, 0.0, -1.0, f64::NAN, f64::INFINITY] {
         let refused = build_raster(&hills(), Options::plain(max_error_m)).err().unwrap();
-        assert!(matches!(refused, BuildError::MaxError { .. }), "{max_error_m}: {refused}");
+        assert!(
+            matches!(refused, BuildError::Plan(PlanError::MaxError { .. })),
+            "{max_error_m}: {refused}"
+        );
     }
     // The largest that is not: a tile has its corners, and where the data end in it a few more.
     let built = build_raster(&hills(), Options::plain(1e9)).unwrap();

@@ -4,10 +4,10 @@
 
 use std::fs;
 
-use corniche_pipeline::{
-    BuildPlan, PhotoChoice, PlanOptions, PlanSettings, RoadSettings, TerrainSettings,
-};
+use corniche_dem::PlanOptions;
+use corniche_plan::BuildPlan;
 use corniche_roads::{ClassFilter, FrcTable};
+use corniche_spec::{PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_testing::sample;
 use serde_json::{Value, json};
 

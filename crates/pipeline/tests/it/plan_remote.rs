@@ -7,8 +7,9 @@ use std::{
     thread,
 };
 
-use corniche_pipeline::{BuildPlan, PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
+use corniche_plan::BuildPlan;
 use corniche_roads::{ClassFilter, FrcTable};
+use corniche_spec::{PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_testing::sample;
 
 /// Answers requests for one file, whole or a part of it, with an `ETag`.

@@ -15,11 +15,13 @@ use crate::support::{
     terrain::rough_with_voids,
 };
 use corniche_drape::DrapedVertex;
-use corniche_pipeline::{
-    BuildPlan, BuildSettings, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport,
-    VerifySettings, build, plan, verify,
-};
+use corniche_gis::Polygon;
+use corniche_pipeline::build;
+use corniche_plan::{BuildPlan, plan};
+use corniche_spec::BuildSettings;
 use corniche_tileset::{FilePackage, GeoRoad, Sections};
+use corniche_verify::{VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 
 /// A raster of four by three tiles with voids, and roads all over it and beyond.
 struct Files {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use corniche_pipeline::CheckId;
+use corniche_verify::CheckId;
 
 fn document() -> String {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/promises.md");

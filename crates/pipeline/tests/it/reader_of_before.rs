@@ -3,9 +3,10 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use corniche_pipeline::{Silent, build};
+use corniche_pipeline::build;
 use corniche_roads::Structure;
 use corniche_tileset::{FilePackage, Sections};
+use corniche_work::Silent;
 
 use crate::support::{
     Options,

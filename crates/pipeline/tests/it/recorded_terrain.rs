@@ -17,12 +17,14 @@ use crate::support::{
     terrain::{TERRAINS, scattered_void},
 };
 use corniche_geom::TileId;
-use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, Observer, Silent, Stage, build, plan,
-};
+use corniche_pipeline::{BuildError, build};
+use corniche_plan::plan;
 use corniche_roads::ClassFilter;
+use corniche_spec::{BuildSettings, Leftovers, Observer};
+use corniche_store::Existing;
 use corniche_testing::{Random, some_of};
 use corniche_tileset::{Manifest, Sections, pmtiles_order};
+use corniche_work::{Silent, Stage};
 
 /// Files of one case.
 struct Files {

@@ -10,8 +10,10 @@ use crate::support::{
     terrain::{TERRAINS, scattered_void},
 };
 use corniche_geom::Cell;
-use corniche_pipeline::{Silent, VerifyReport, VerifySettings, build, verify};
+use corniche_pipeline::build;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_verify::{VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 use proptest::prelude::*;
 
 /// East and north: standing, lying, and a square beside them.

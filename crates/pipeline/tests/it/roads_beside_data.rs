@@ -4,8 +4,10 @@
 
 use std::path::Path;
 
-use corniche_pipeline::{Silent, VerifyOsm, VerifySettings, build, verify};
+use corniche_pipeline::build;
 use corniche_tileset::{FilePackage, Manifest, RoadLoss};
+use corniche_verify::{VerifyOsm, VerifySettings, verify};
+use corniche_work::Silent;
 use geo::{Distance as _, Geodesic, Point};
 
 use crate::support::{

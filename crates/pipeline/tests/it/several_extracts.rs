@@ -16,15 +16,16 @@ use std::{
 
 use crate::support::{Options, Raster, extract::utm_to_degrees, settings, table, terrain::waves};
 use corniche_geom::TileId;
-use corniche_pipeline::{
-    BuildPlan, BuildSettings, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build,
-    extract_bounds, extract_names, plan, verify,
-};
+use corniche_pipeline::build;
+use corniche_plan::{BuildPlan, plan};
+use corniche_spec::{BuildSettings, extract_bounds, inputs::extract_names};
 use corniche_testing::{
     pbf::{Block, plain_header, raw},
     real_data,
 };
 use corniche_tileset::{Counts, FilePackage};
+use corniche_verify::{VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 
 /// A raster, and roads with ids from 1 to 60 that share nodes; files hold some of them.
 struct Files {

@@ -18,13 +18,15 @@ use std::{
 
 use corniche_dem::PlanOptions;
 use corniche_geom::{GridFrame, NodeIndex, TileId};
-use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, PhotoChoice, PlanSettings, Resources,
-    RoadSettings, Silent, TerrainSettings, build,
-};
+use corniche_pipeline::{BuildError, build};
 use corniche_roads::{ClassFilter, FrcTable};
+use corniche_spec::{
+    BuildSettings, Leftovers, PhotoChoice, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
+use corniche_store::Existing;
 use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, Terrain, TilePayload};
 use corniche_tin::Tin;
+use corniche_work::Silent;
 
 /// Spacing of the tests' rasters.
 pub(crate) const CELL_M: f64 = 10.0;

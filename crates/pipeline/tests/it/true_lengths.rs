@@ -3,8 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use crate::support::{Built, Options, build_files, extract, write_samples};
-use corniche_pipeline::{Silent, VerifySettings, verify};
 use corniche_tileset::FilePackage;
+use corniche_verify::{VerifySettings, verify};
+use corniche_work::Silent;
 use geo::{Distance, Geodesic, Point};
 
 /// Where the DEMs lie: longitudes and latitudes.

@@ -12,14 +12,16 @@ use crate::support::{
 };
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
-use corniche_pipeline::{
-    CheckId, Needs, Polygon, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build,
-    verify,
-};
+use corniche_gis::Polygon;
+use corniche_pipeline::build;
 use corniche_tileset::{
     AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
     payload_sizes, pmtiles_order, with_areas,
 };
+use corniche_verify::{
+    CheckId, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify,
+};
+use corniche_work::Silent;
 use tempfile::TempDir;
 
 fn table() -> AreaTable {

@@ -10,9 +10,11 @@ use crate::support::{
     settings,
 };
 use corniche_geom::TileId;
-use corniche_pipeline::{CheckId, Silent, VerifyReport, VerifySettings, build, verify};
+use corniche_pipeline::build;
 use corniche_testing::Raster;
 use corniche_tileset::{FilePackage, Manifest};
+use corniche_verify::{CheckId, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 use tempfile::TempDir;
 
 /// A package of the first of two bands in ETRS89, and what it was made of.

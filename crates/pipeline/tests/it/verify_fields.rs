@@ -14,8 +14,8 @@ use crate::support::{
         check, row,
     },
 };
-use corniche_pipeline::CheckId as C;
 use corniche_tileset::Manifest;
+use corniche_verify::CheckId as C;
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 

@@ -6,8 +6,8 @@ use corniche_testing::some_of;
 use std::{fs, io::Read as _, ops::Range, path::Path};
 
 use crate::support::parts::{Against, SOUND, assert_broken, report_on, verify_against};
-use corniche_pipeline::{CheckId, VerifyError};
 use corniche_testing::pmtiles::gzip;
+use corniche_verify::{CheckId, VerifyError};
 use flate2::read::GzDecoder;
 use serde_json::{Value, json};
 

@@ -19,10 +19,10 @@ use crate::support::{
 };
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_geom::{HeightGrid, LatticePoint};
-use corniche_pipeline::CheckId as C;
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Tin, TinVertex};
+use corniche_verify::CheckId as C;
 
 /// Lists fields of types by patterns that name all of them: one that is added does not compile until it is named.
 macro_rules! fields {

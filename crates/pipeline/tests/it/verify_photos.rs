@@ -13,15 +13,15 @@ use crate::support::{
     settings,
 };
 use corniche_geom::TileId;
-use corniche_pipeline::{
-    CheckId, Needs, PhotoChoice, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings,
-    build, verify,
-};
+use corniche_pipeline::build;
+use corniche_spec::{PhotoChoice, PhotoSettings};
 use corniche_testing::ColourImage;
 use corniche_tileset::{
     FilePackage, Manifest, Photo, PhotoSection, Sections, TilePayload, Writer, decode_photo,
     encode_photo, photo_section, pmtiles_order, with_photo,
 };
+use corniche_verify::{CheckId, Needs, VerifyError, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 use tempfile::TempDir;
 
 /// A package with photos, taken apart.

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use crate::support::parts::{Against, Parts, SOUND, assert_broken, encode_in, report_on};
 use corniche_drape::DrapedVertex;
 use corniche_geom::TileId;
-use corniche_pipeline::CheckId;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Distribution, EncodeError, TilePayload};
+use corniche_verify::CheckId;
 
 /// A level above the finest that shows classes of the sample.
 const ABOVE: u8 = 1;

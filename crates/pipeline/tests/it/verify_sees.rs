@@ -9,9 +9,11 @@ use crate::support::{
     settings, write_degrees,
 };
 use corniche_geom::TileId;
-use corniche_pipeline::{CheckId, Silent, VerifySettings, build, verify};
+use corniche_pipeline::build;
 use corniche_tileset::FilePackage;
 use corniche_tin::{NO_TWIN, Tin, TinVertex};
+use corniche_verify::{CheckId, VerifySettings, verify};
+use corniche_work::Silent;
 
 #[test]
 fn no_check_is_broken_when_nothing_was_changed() {

@@ -5,13 +5,15 @@
 use std::path::PathBuf;
 
 use corniche_geom::{LatticePoint, TileId};
-use corniche_pipeline::{CheckId, Needs, Silent, build};
+use corniche_pipeline::build;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{
     FilePackage, Manifest, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun, Writer,
     decode_spans, encode_spans, payload_sizes, with_spans,
 };
 use corniche_tin::{Placement, Surface};
+use corniche_verify::{CheckId, Needs};
+use corniche_work::Silent;
 use tempfile::TempDir;
 
 use crate::support::{

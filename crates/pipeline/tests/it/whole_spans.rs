@@ -11,10 +11,13 @@ use std::{
 
 use corniche_geom::{LatticePoint, TileId};
 use corniche_gis::Polygon;
-use corniche_pipeline::{BuildSettings, Silent, VerifyOsm, VerifySettings, build, verify};
+use corniche_pipeline::build;
+use corniche_spec::BuildSettings;
 use corniche_testing::{cases, real_data, sample};
 use corniche_tileset::{FilePackage, Sections, SpanHeight, SpanRun, decode_spans};
 use corniche_tin::{Placement, Surface};
+use corniche_verify::{VerifyOsm, VerifySettings, verify};
+use corniche_work::Silent;
 
 use crate::support::{Options, settings, table};
 

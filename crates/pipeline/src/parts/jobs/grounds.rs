@@ -3,14 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::{TILE_CELLS, TileId};
+use corniche_ground::terrain::recorded::RecordedTerrain;
+use corniche_plan::{Opened, rates};
+use corniche_spec::data_tiles::DataTiles;
 
 use super::list::micros;
-use crate::{
-    BuildError,
-    heights::data_tiles::DataTiles,
-    plan::{Opened, rates},
-    terrain::recorded::RecordedTerrain,
-};
+use crate::BuildError;
 
 /// Costs of tiles on all levels, microseconds of one core.
 pub(crate) struct Grounds {

@@ -3,10 +3,11 @@
 use std::cmp::Reverse;
 
 use corniche_osm::Share;
+use corniche_plan::rates;
 use serde::Serialize;
 
 use super::tile_costs::{Subtree, TileCosts, tiles_above};
-use crate::{parts::step::Step, plan::rates};
+use crate::parts::step::Step;
 
 /// No part is to be more than this part of what a slot has to do: with the largest first, slots then end nearly together.
 const PARTS_PER_SLOT: u64 = 8;

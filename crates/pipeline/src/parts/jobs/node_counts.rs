@@ -1,8 +1,7 @@
 //! How many nodes of each finest tile lie in the rectangles of files.
 
 use corniche_geom::{GridFrame, NodeIndex, TILE_CELLS, TileId};
-
-use crate::heights::data_tiles::DataTiles;
+use corniche_spec::data_tiles::DataTiles;
 
 /// Nodes of a tile that belong to it.
 const TILE_NODES: u64 = (TILE_CELLS * TILE_CELLS) as u64;

@@ -7,14 +7,14 @@ use std::{
 };
 
 use corniche_geom::{GridFrame, TileId};
-use corniche_pipeline::{
-    CheckId, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
-};
+use corniche_pipeline::build;
 use corniche_tileset::{
     EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
     encode, payload_sizes,
 };
 use corniche_tin::{Placement, Surface, Tin};
+use corniche_verify::{CheckId, VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
+use corniche_work::Silent;
 use sha2::{Digest as _, Sha256};
 
 use super::Options;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_pipeline::{CheckId, Needs, VerifyError};
+use corniche_verify::{CheckId, Needs, VerifyError};
 
 use super::parts::{Against, verify_against};
 

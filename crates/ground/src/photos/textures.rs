@@ -1,0 +1,124 @@
+//! The photo of a tile as its payload has it.
+
+use corniche_geom::{GridFrame, TileId};
+use corniche_photo::{PhotoReader, Texels};
+use corniche_spec::{artifacts::Kind, data_tiles::DataTiles};
+use corniche_store::Artifacts;
+use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
+
+use super::{
+    rasters::{self, SIDE},
+    source::{OpenedPhotos, PhotoSource},
+};
+use crate::{GroundError, TerrainError, terrain::ground::GroundSource};
+
+/// What textures are made from, and where they are kept.
+#[derive(Clone, Copy)]
+pub struct TextureStore<'a> {
+    /// Where textures are kept.
+    pub store: &'a dyn Artifacts,
+    /// The package's grid.
+    pub frame: &'a GridFrame,
+    /// The finest tiles that can have data.
+    pub data: DataTiles,
+    /// Where the ground comes from.
+    pub source: &'a GroundSource,
+    /// Where photos come from.
+    pub photo: &'a PhotoSource,
+}
+
+/// Reads the photo of a finest tile, and keeps its texture and its raster.
+///
+/// # Errors
+/// See [`GroundError`].
+pub fn make_finest(
+    textures: TextureStore<'_>,
+    photos: &OpenedPhotos,
+    reader: &mut PhotoReader<'_>,
+    id: TileId,
+) -> Result<(), GroundError> {
+    let store = textures.store;
+    let key = Kind::PhotoTexture.of_tile(id);
+    let none = || {
+        store.put(key, &[])?;
+        rasters::put(store, id, &Texels::empty(0, 0))
+    };
+    // A rectangle with the border: it is below 8 of 256 texels on each side.
+    let mut bounds = textures.frame.tile_bounds(id);
+    let (east_m, north_m) = (bounds.width() / 32.0, bounds.height() / 32.0);
+    bounds.include([bounds.min_x - east_m, bounds.min_y - north_m]);
+    bounds.include([bounds.max_x + east_m, bounds.max_y + north_m]);
+    if !photos.grid.touches(&bounds) {
+        return none();
+    }
+    let texels = reader.window(photos.grid.texels().tile(id, PHOTO_BORDER))?;
+    let levels = photos.levels();
+    let mut raster = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
+    for _ in 0..levels {
+        raster = raster.halved();
+    }
+    match encode(id, levels, texels, photos.quality)? {
+        Some(section) => store.put(key, section.bytes())?,
+        None => return none(),
+    }
+    // The raster says that the tile is done, so it comes last.
+    rasters::put(store, id, &raster)
+}
+
+/// The photo of a tile; `None` where there is none. `earlier` is its payload in the package that gives the terrain.
+///
+/// # Errors
+/// See [`GroundError`].
+pub fn of_tile(
+    textures: TextureStore<'_>,
+    id: TileId,
+    earlier: Option<&[u8]>,
+) -> Result<Option<PhotoSection>, GroundError> {
+    match textures.photo {
+        PhotoSource::Nothing => Ok(None),
+        PhotoSource::Files(photos) => of_files(textures, photos, id),
+        PhotoSource::Package(_) => {
+            let section = earlier.map(|payload| photo_section(payload, id)).transpose();
+            let section = section.map_err(|source| TerrainError::Tile {
+                path: textures
+                    .source
+                    .package()
+                    .map(|package| package.path().into())
+                    .unwrap_or_default(),
+                source: source.into(),
+            })?;
+            Ok(section.flatten())
+        }
+    }
+}
+
+fn of_files(
+    textures: TextureStore<'_>,
+    photos: &OpenedPhotos,
+    id: TileId,
+) -> Result<Option<PhotoSection>, GroundError> {
+    let store = textures.store;
+    if id.z() == textures.frame.max_level() {
+        let bytes = store.get(Kind::PhotoTexture.of_tile(id))?;
+        let bytes = bytes.ok_or_else(|| rasters::missing(id))?;
+        return Ok((!bytes.is_empty()).then(|| PhotoSection::from_bytes(bytes)));
+    }
+    let levels = photos.record().levels_on(id.z(), textures.frame.max_level());
+    // Texels of children are half a cell.
+    let border = PHOTO_BORDER << (1 - levels);
+    let Some(texels) = rasters::of_children(store, &textures.data, id, border)? else {
+        return Ok(None);
+    };
+    let texels = if levels == 0 { texels.halved() } else { texels };
+    encode(id, levels, texels, photos.quality)
+}
+
+fn encode(
+    id: TileId,
+    levels: u8,
+    texels: Texels,
+    quality: u8,
+) -> Result<Option<PhotoSection>, GroundError> {
+    let photo = Photo { levels, rgba: texels.into_rgba() };
+    Ok(encode_photo(id, &photo, quality)?)
+}

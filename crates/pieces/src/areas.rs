@@ -1,0 +1,5 @@
+//! Areas of the extract: to tiles of each level, and to their sections.
+
+pub mod layer;
+pub(crate) mod sea;
+pub mod split;

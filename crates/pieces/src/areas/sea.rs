@@ -1,0 +1,63 @@
+//! The sea of an extract: its coastlines, closed along the edge of what the data, the extract and the bounds cover.
+
+use corniche_areas::{Area, AreaClass, AreaObject, Coastline, Polygon, Ring, close_sea};
+use corniche_geom::{GridFrame, Projection};
+use corniche_osm::{AreaLoss, AreaSummary, Defect};
+use corniche_spec::{extent::AreaExtent, true_areas::lattice_ring_m2};
+
+/// The sea is no object of OSM.
+const SEA: AreaObject = AreaObject::Way(0);
+
+/// Where the sea is made of coastlines.
+#[derive(Clone, Copy)]
+pub(crate) struct SeaPlace<'a> {
+    pub extent: &'a AreaExtent,
+    pub frame: &'a GridFrame,
+    pub projection: &'a (dyn Projection + Sync),
+}
+
+impl SeaPlace<'_> {
+    /// Makes the sea, if there are coastlines, and counts it in `summary`, and what is wrong with coastlines.
+    pub(crate) fn close(
+        &self,
+        summary: &mut AreaSummary,
+        on_defect: &mut dyn FnMut(Defect),
+    ) -> Option<Area> {
+        let coastlines: Vec<Coastline> = std::mem::take(&mut summary.coastlines);
+        let first = coastlines.iter().map(|coastline| coastline.way_id).min()?;
+        let closed = close_sea(coastlines, &self.extent.polygons);
+        let (polygons, left_out) = match closed {
+            Ok(sea) => {
+                let open = sea.bridged.into_iter();
+                open.for_each(|way_id| on_defect(Defect::OpenCoastline { way_id }));
+                (sea.polygons, sea.left_out)
+            }
+            Err(_) => (Vec::new(), vec![first]),
+        };
+        let loss = AreaLoss::ContradictingCoastline;
+        for &id in &left_out {
+            on_defect(Defect::LostArea { is_relation: false, id, loss });
+        }
+        if !left_out.is_empty() {
+            summary.objects += left_out.len() as u64;
+            *summary.lost.entry(loss).or_default() += left_out.len() as u64;
+        }
+        if polygons.is_empty() {
+            return None;
+        }
+        let area_m2 = polygons.iter().map(|polygon| self.area_m2(polygon)).sum();
+        summary.objects += 1;
+        let kept = summary.kept.entry(AreaClass::Sea).or_default();
+        kept.areas += 1;
+        kept.polygons += polygons.len() as u64;
+        let rings = polygons.iter().flat_map(Polygon::rings);
+        kept.points += rings.map(|ring| ring.points().len() as u64).sum::<u64>();
+        kept.area_m2 += area_m2;
+        Some(Area { object: SEA, class: AreaClass::Sea, name: None, polygons, area_m2 })
+    }
+
+    fn area_m2(&self, polygon: &Polygon) -> f64 {
+        let of_ring = |ring: &Ring| lattice_ring_m2(ring.points(), self.frame, self.projection);
+        polygon.rings().map(of_ring).sum()
+    }
+}

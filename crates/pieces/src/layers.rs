@@ -1,0 +1,135 @@
+//! What the layers of an extract have in common: objects come in, are split by level and tile, and what belongs to a tile is sorted together.
+//!
+//! ```text
+//!  extract ─► objects ─► parts by level and tile ─► sorted by tile ─► one artifact for each tile
+//!                  └───► totals
+//! ```
+//!
+//! Roads are laid on the ground of each tile, so what is kept of them are pieces. The parts of other layers are encoded at once, as a section
+//! of their tile.
+
+pub mod defects;
+pub mod fixed_points;
+pub mod layer_totals;
+pub(crate) mod layer_writer;
+pub(crate) mod parts_by_tile;
+pub(crate) mod plan_splitting;
+pub mod tile_section;
+
+use std::{
+    iter,
+    ops::{Index, IndexMut},
+};
+
+use corniche_areas::ClassedLayer;
+use corniche_geom::TileId;
+use corniche_spec::artifacts::Kind;
+use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize, SpansSection};
+use corniche_work::Stage;
+use serde::{Deserialize, Serialize};
+
+/// A layer of which each tile has a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionLayer {
+    /// Areas of the extract.
+    Areas,
+    /// A layer of lines.
+    Lines(ClassedLayer),
+    /// Bridges and tunnels.
+    Spans,
+}
+
+impl SectionLayer {
+    /// How many there are.
+    const COUNT: usize = 2 + ClassedLayer::ALL.len();
+
+    /// All of them, in the order of their sections.
+    pub fn all() -> impl Iterator<Item = Self> {
+        iter::once(Self::Areas)
+            .chain(ClassedLayer::ALL.map(Self::Lines))
+            .chain(iter::once(Self::Spans))
+    }
+
+    /// The layers that are there before their tiles are: all but spans, which need the ground of all tiles.
+    pub fn of_extract() -> impl Iterator<Item = Self> {
+        Self::all().filter(|layer| *layer != Self::Spans)
+    }
+
+    fn place(self) -> usize {
+        match self {
+            Self::Areas => 0,
+            Self::Lines(layer) => 1 + layer as usize,
+            Self::Spans => Self::COUNT - 1,
+        }
+    }
+
+    /// What is told while its objects are split.
+    pub(crate) fn stage(self) -> Stage {
+        match self {
+            Self::Areas => Stage::MapAreas,
+            Self::Lines(ClassedLayer::Boundaries) => Stage::Boundaries,
+            Self::Spans => Stage::Spans,
+        }
+    }
+
+    /// The artifact that holds the section of a tile.
+    #[must_use]
+    pub fn section(self) -> Kind {
+        match self {
+            Self::Areas => Kind::AreaSection,
+            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundarySection,
+            Self::Spans => Kind::SpanSection,
+        }
+    }
+
+    /// The artifact that holds the totals.
+    #[must_use]
+    pub fn totals(self) -> Kind {
+        match self {
+            Self::Areas => Kind::AreaTotals,
+            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundaryTotals,
+            Self::Spans => Kind::SpanTotals,
+        }
+    }
+
+    /// Adds a section to the payload of a tile.
+    ///
+    /// # Errors
+    /// See [`EncodeError`].
+    pub fn add_to(
+        self,
+        payload: &[u8],
+        id: TileId,
+        section: Vec<u8>,
+    ) -> Result<(Vec<u8>, SectionSize), EncodeError> {
+        match self {
+            Self::Areas => {
+                corniche_tileset::with_areas(payload, id, AreasSection::from_bytes(section))
+            }
+            Self::Lines(layer) => {
+                corniche_tileset::with_lines(payload, id, LinesSection::from_bytes(layer, section))
+            }
+            Self::Spans => {
+                corniche_tileset::with_spans(payload, id, SpansSection::from_bytes(section))
+            }
+        }
+    }
+}
+
+/// A value for each layer that has sections.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ByLayer<T>([T; SectionLayer::COUNT]);
+
+impl<T> Index<SectionLayer> for ByLayer<T> {
+    type Output = T;
+
+    fn index(&self, layer: SectionLayer) -> &T {
+        &self.0[layer.place()]
+    }
+}
+
+impl<T> IndexMut<SectionLayer> for ByLayer<T> {
+    fn index_mut(&mut self, layer: SectionLayer) -> &mut T {
+        &mut self.0[layer.place()]
+    }
+}

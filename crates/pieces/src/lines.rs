@@ -1,0 +1,4 @@
+//! Layers of lines of the extract: their parts by tile.
+
+pub mod layer;
+pub mod split;

@@ -1,0 +1,131 @@
+//! Every tile has the segments of lines that come near it, and junctions stay.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_areas::{BoundaryClass, ClassedLayer};
+use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, NodeIndex};
+use corniche_roads::{ClassFilter, FrcTable};
+use corniche_spec::{RoadSettings, data_tiles::DataTiles};
+
+use super::*;
+
+/// Three levels of tiles with cells of 10, 20 and 40 m.
+fn levels() -> Levels {
+    let frame = GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
+    let settings =
+        RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
+    Levels::new(frame, 1.0, &settings, 1.0)
+}
+
+fn splitting(levels: &Levels) -> LineSplitting<'_> {
+    let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
+    let data = DataTiles::between(levels.frame(), south_west, north_east);
+    let plan = PlanSplitting { frame: levels.frame(), data, clip: None, polygon: None };
+    LineSplitting { plan, levels }
+}
+
+fn line_class(class: BoundaryClass) -> LineClass {
+    ClassedLayer::Boundaries.class(class.number()).unwrap()
+}
+
+/// A wave across the whole of the root, in metres; its middle is a junction.
+fn wave(levels: &Levels, class: BoundaryClass) -> ClassedLine {
+    let point = |k: i32| {
+        let x = f64::from(k) * 20.0 - 5000.0;
+        levels.frame().snap([x, 900.0 * (x / 700.0).sin()]).unwrap()
+    };
+    let points: Vec<LatticePoint> = (0..=500).map(point).collect();
+    ClassedLine { way_id: 7, class: line_class(class), points, fixed: vec![0, 250, 500] }
+}
+
+#[test]
+fn every_tile_has_the_segments_that_come_near_it() {
+    let levels = levels();
+    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let mut by_tile: BTreeMap<TileId, Vec<LineRecord>> = BTreeMap::new();
+    for (id, record) in splitting.split(&boundary) {
+        by_tile.entry(id).or_default().push(record);
+    }
+    for level in levels.numbers() {
+        let line = splitting.line(&boundary, level);
+        let step = splitting.plan.step(level);
+        assert!(line.iter().all(|point| point.u % step == 0 && point.v % step == 0));
+        let margin = levels.margin_steps(level);
+        let side = 1_u32 << level;
+        for id in (0..side * side).map(|k| TileId::new(level, k % side, k / side).unwrap()) {
+            let around = levels.frame().tile_lattice_bounds(id).expanded(margin);
+            let touches =
+                |pair: &&[LatticePoint; 2]| pair.iter().any(|point| around.contains(*point));
+            let needed: BTreeSet<[LatticePoint; 2]> =
+                line.array_windows().filter(touches).copied().collect();
+            let found: BTreeSet<[LatticePoint; 2]> = by_tile
+                .get(&id)
+                .into_iter()
+                .flatten()
+                .flat_map(|record| record.points.array_windows().copied().collect::<Vec<_>>())
+                .collect();
+            assert!(found.is_superset(&needed), "{id}: {} of {}", found.len(), needed.len());
+        }
+    }
+}
+
+#[test]
+fn junctions_stay_and_coarse_levels_have_fewer_points() {
+    let levels = levels();
+    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let lines: Vec<Vec<LatticePoint>> =
+        levels.numbers().map(|level| splitting.line(&boundary, level)).collect();
+    let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
+    assert!(counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
+    for (level, line) in (0..).zip(&lines) {
+        let half = splitting.plan.step(level) / 2 + 1;
+        for &index in &boundary.fixed {
+            let junction = boundary.points[index as usize];
+            let is_near = |point: &LatticePoint| {
+                (point.u - junction.u).abs() <= half && (point.v - junction.v).abs() <= half
+            };
+            assert!(line.iter().any(is_near), "{index} on level {level}");
+        }
+    }
+}
+
+#[test]
+fn small_units_are_stored_where_cells_are_small() {
+    let frame = GridFrame::new([0.0, 0.0], 60.0, NodeIndex { i: -512, j: 512 }, 2).unwrap();
+    let table = FrcTable::new("one", vec![("primary".into(), 0)], Vec::new(), 8).unwrap();
+    let settings =
+        RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
+    let levels = Levels::new(frame, 1.0, &settings, 1.0);
+    let splitting = splitting(&levels);
+    let shown = |class: BoundaryClass| -> Vec<u8> {
+        levels.numbers().filter(|&level| splitting.shows(level, line_class(class))).collect()
+    };
+    // Cells of 240, 120 and 60 m.
+    assert_eq!(shown(BoundaryClass::Admin2), [0, 1, 2]);
+    assert_eq!(shown(BoundaryClass::Admin6), [0, 1, 2]);
+    assert_eq!(shown(BoundaryClass::Admin8), [2]);
+    assert_eq!(shown(BoundaryClass::Protected), [2]);
+}
+
+/// The part of the wave in a square around the middle: cut at the outline on every level, and nothing outside of it.
+#[test]
+fn boundaries_end_at_the_outline_of_a_polygon() {
+    let levels = levels();
+    let corner = |[x, y]: [f64; 2]| levels.frame().snap([x, y]).unwrap();
+    let square = [[-1000.0, -2000.0], [1000.0, -2000.0], [1000.0, 2000.0], [-1000.0, 2000.0]];
+    let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
+    let bounds = region.bounds();
+    let boundary = wave(&levels, BoundaryClass::Admin2);
+    let mut splitting = splitting(&levels);
+    splitting.plan.polygon = Some(&region);
+    let parts = splitting.split(&boundary);
+    for level in 0..=2 {
+        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);
+        let own = LatticeBounds::of(&points.copied().collect::<Vec<_>>()).unwrap();
+        let step = splitting.plan.step(level);
+        assert!(
+            (own.min.u - bounds.min.u).abs() <= step && (own.max.u - bounds.max.u).abs() <= step
+        );
+    }
+}

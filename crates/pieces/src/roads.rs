@@ -1,0 +1,15 @@
+//! Roads of the extract, split into pieces by tile and laid on tiles: for the build, and once more for `verify`.
+
+pub mod counts;
+pub mod ground_lines;
+pub mod lay;
+pub mod layer;
+pub mod losses;
+pub mod near_spans;
+pub mod overlap;
+pub mod pieces;
+
+pub mod shares;
+pub mod split;
+pub mod totals;
+mod varints;

@@ -1,0 +1,134 @@
+//! The roads of the extract: for each tile of each level the pieces that it needs, and the true lengths of all.
+
+use corniche_geom::{LatticeBounds, TileId};
+use corniche_osm::ExtractSummary;
+use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_spec::artifacts::Kind;
+use corniche_store::{Artifacts, Scratch};
+use corniche_work::Stage;
+
+use super::{
+    near_spans::{NearRoad, NearRoadsWriter},
+    pieces::{RoadPiece, TilePiecesWriter},
+    split::{RoadSplitting, SplitRoad},
+    totals::{LengthsWriter, RoadTotals},
+};
+use crate::{
+    ExtractError,
+    layers::{
+        layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
+        parts_by_tile::PartsByTile,
+    },
+};
+
+/// Roads are near a node of a bridge or a tunnel within this, in true metres: their directions there count.
+pub const NEAR_M: f64 = 20.0;
+
+/// Roads as they come in.
+pub(crate) struct RoadLayer<'a> {
+    splitting: RoadSplitting<'a>,
+    store: &'a dyn Artifacts,
+    totals: RoadTotals,
+    lengths: LengthsWriter<'a>,
+    pieces: PartsByTile<'a, u32>,
+    /// Where bridges and tunnels become spans: what may be near them.
+    near_spans: Option<NearRoadsWriter<'a>>,
+}
+
+impl<'a> RoadLayer<'a> {
+    pub(crate) fn new(
+        splitting: RoadSplitting<'a>,
+        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        memory_bytes: u64,
+    ) -> Self {
+        let spans = splitting.spans;
+        Self {
+            splitting,
+            store,
+            totals: RoadTotals {
+                classes: vec![(0, 0); FunctionalRoadClass::COUNT],
+                ..RoadTotals::default()
+            },
+            lengths: LengthsWriter::new(store),
+            pieces: PartsByTile::new(scratch, memory_bytes / 4 * 3),
+            near_spans: spans.then(|| NearRoadsWriter::new(scratch, memory_bytes / 4)),
+        }
+    }
+}
+
+impl TileSplitting for RoadSplitting<'_> {
+    type Object = Road;
+    type Split = (SplitRoad, Vec<(TileId, u32, Vec<u8>)>);
+
+    fn points(road: &Road) -> usize {
+        road.line.points().len()
+    }
+
+    fn split_object(&self, number: u64, road: Road) -> Self::Split {
+        let mut road = self.split(number as u32, &road);
+        let pieces = std::mem::take(&mut road.pieces).into_iter();
+        let piece = |(id, piece): (TileId, RoadPiece)| (id, number as u32, piece.to_bytes());
+        (road, pieces.map(piece).collect())
+    }
+}
+
+impl<'a> TileLayer for RoadLayer<'a> {
+    type Splitting = RoadSplitting<'a>;
+    type Summary = ExtractSummary;
+    type Done = (RoadTotals, ExtractSummary);
+
+    fn stage(&self) -> Stage {
+        Stage::Roads
+    }
+
+    fn splitting(&self) -> &RoadSplitting<'a> {
+        &self.splitting
+    }
+
+    fn take_carrier(&mut self, road: Road) -> Result<(), ExtractError> {
+        let Some(near_spans) = &mut self.near_spans else { return Ok(()) };
+        let is_reached = self.splitting.reaches(&road);
+        near_spans.push(NearRoad::of(&road, None, &[], is_reached))
+    }
+
+    fn take(&mut self, (road, pieces): SplitOf<Self>) -> Result<(), ExtractError> {
+        self.totals.roads += 1;
+        let length_um = road.length.length_um;
+        self.totals.length_um += length_um;
+        let class = &mut self.totals.classes[usize::from(road.class.number())];
+        *class = (class.0 + 1, class.1 + length_um);
+        if let Some(own) = road.bounds {
+            let all =
+                self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
+            self.totals.bounds = Some([all.min, all.max]);
+        }
+        if let Some((near, near_spans)) = road.near.zip(self.near_spans.as_mut()) {
+            near_spans.push(near)?;
+        }
+        self.lengths.push(road.length)?;
+        pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
+    }
+
+    /// Keeps the last lengths and the pieces of all tiles.
+    fn finish(
+        self,
+        _: u64,
+        summary: ExtractSummary,
+        told: &LayerContext<'_>,
+    ) -> Result<Self::Done, ExtractError> {
+        self.lengths.finish()?;
+        self.pieces.for_each_tile(
+            told.observer,
+            |pieces: &mut TilePiecesWriter, _, ordinal, bytes| {
+                pieces.push(ordinal, &bytes);
+                Ok(())
+            },
+            |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
+        )?;
+        if let Some(near_spans) = self.near_spans {
+            let reach = self.splitting.levels.steps_of_true(NEAR_M);
+            near_spans.finish((self.store, told.observer), reach)?;
+        }
+        Ok((self.totals, summary))
+    }
+}

@@ -1,0 +1,242 @@
+//! Which roads were kept at the finest level, which were lost, and why.
+
+use corniche_roads::Structure;
+use corniche_spec::artifacts::ArtifactError;
+use corniche_spec::{Defect, Loss, Observer, true_lengths::UM};
+use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
+use corniche_tileset::RoadLoss;
+
+use super::{
+    lay::RoadFate,
+    totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
+};
+use crate::ExtractError;
+
+/// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
+#[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
+struct Lengths {
+    kept_um: u64,
+    outside_um: u64,
+    void_um: u64,
+    beyond_um: u64,
+}
+
+/// A cut moves a point by less than a lattice step, which is at most a millimetre, so lengths up to 2 mm count as 0.
+fn is_some(length_um: u64) -> bool {
+    length_um > 2_000
+}
+
+impl Lengths {
+    fn is_kept(&self) -> bool {
+        is_some(self.kept_um)
+    }
+
+    fn losses(&self) -> [(Loss, u64); 3] {
+        Loss::ALL.map(|loss| match loss {
+            Loss::OutsideData => (loss, self.outside_um),
+            Loss::NoGround => (loss, self.void_um),
+            Loss::OutsideBounds => (loss, self.beyond_um),
+        })
+    }
+
+    /// The reason under which a completely lost road is counted: that of the longest lost part.
+    fn reason(&self) -> Loss {
+        if self.beyond_um > self.void_um.max(self.outside_um) {
+            Loss::OutsideBounds
+        } else if self.void_um >= self.outside_um {
+            Loss::NoGround
+        } else {
+            Loss::OutsideData
+        }
+    }
+}
+
+/// Sums over all roads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sums {
+    /// Roads of which a part is kept.
+    pub roads_kept: u64,
+    /// Length that is kept, micrometres.
+    pub roads_kept_um: u64,
+    /// What of that is carried by what, in the order of [`Structure::ALL`].
+    pub(crate) kept_by_structure_um: [u64; Structure::ALL.len()],
+    pub(crate) lost: Vec<RoadLoss>,
+    /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
+    pub lost_by_tiles: Vec<RoadLoss>,
+}
+
+/// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.
+pub struct LossFold<'a> {
+    fates: Sorter<'a, FateRecord>,
+}
+
+impl<'a> LossFold<'a> {
+    /// Nothing yet; keeps at most about `memory_bytes` in memory.
+    pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+        Self { fates: Sorter::new(scratch, memory_bytes) }
+    }
+
+    /// Adds what became of roads in one tile. The order of tiles does not matter.
+    ///
+    /// # Errors
+    /// See [`ExtractError`].
+    pub fn add(&mut self, fates: &[(u32, RoadFate)]) -> Result<(), ExtractError> {
+        for &(ordinal, fate) in fates {
+            self.fates.push(FateRecord { ordinal, fate }).map_err(ExtractError::Storage)?;
+        }
+        Ok(())
+    }
+
+    /// Joins it with the lengths of all roads. Reports every road that was lost completely or in part, in the order in which
+    /// roads were read.
+    ///
+    /// # Errors
+    /// See [`ExtractError`].
+    pub fn finish(
+        self,
+        totals: &RoadTotals,
+        store: &dyn Artifacts,
+        observer: &dyn Observer,
+    ) -> Result<Sums, ExtractError> {
+        let mut fates =
+            Fates { sorted: self.fates.finish().map_err(ExtractError::Storage)?, next: None };
+        fates.advance()?;
+        let (mut folded, mut by_tiles) = (Folded::default(), Folded::default());
+        for block in 0..totals.roads.div_ceil(BLOCK_ROADS) {
+            let first = block * BLOCK_ROADS;
+            let roads = BLOCK_ROADS.min(totals.roads - first);
+            for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
+                let RoadFate { kept_um, void_um } = fates.of(ordinal)?;
+                let RoadLength { outside_um, padding_um, beyond_um, .. } = length;
+                by_tiles.add(&Lengths { kept_um, outside_um, void_um, beyond_um });
+                // No ground reaches into the padding of tiles. The two lengths are measured along different cuts.
+                let beside_um = padding_um.min(void_um);
+                let (outside_um, void_um) = (outside_um + beside_um, void_um - beside_um);
+                let road = Lengths { kept_um, outside_um, void_um, beyond_um };
+                folded.add(&road);
+                folded.kept_by_structure_um[length.structure as usize] += kept_um;
+                road.report(length.way_id, observer);
+            }
+        }
+        if let Some(FateRecord { ordinal, .. }) = fates.next {
+            let what = format!("a tile has road {ordinal} of {}", totals.roads);
+            return Err(ArtifactError::Damaged { what }.into());
+        }
+        Ok(Sums { lost_by_tiles: by_tiles.into_sums().lost, ..folded.into_sums() })
+    }
+}
+
+/// What became of a road in one tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct FateRecord {
+    ordinal: u32,
+    fate: RoadFate,
+}
+
+impl SortRecord for FateRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.ordinal.to_le_bytes());
+        bytes.extend(self.fate.kept_um.to_le_bytes());
+        bytes.extend(self.fate.void_um.to_le_bytes());
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (ordinal, rest) = bytes.split_first_chunk()?;
+        let (kept_um, rest) = rest.split_first_chunk()?;
+        let (void_um, rest) = rest.split_first_chunk()?;
+        *bytes = rest;
+        let fate = RoadFate {
+            kept_um: u64::from_le_bytes(*kept_um),
+            void_um: u64::from_le_bytes(*void_um),
+        };
+        Some(Self { ordinal: u32::from_le_bytes(*ordinal), fate })
+    }
+}
+
+/// Fates by ascending ordinal.
+struct Fates<'a> {
+    sorted: Sorted<'a, FateRecord>,
+    next: Option<FateRecord>,
+}
+
+impl Fates<'_> {
+    fn advance(&mut self) -> Result<(), ExtractError> {
+        self.next = self.sorted.next().transpose().map_err(ExtractError::Storage)?;
+        Ok(())
+    }
+
+    /// The whole fate of a road. Roads are asked for in ascending order, none left out.
+    fn of(&mut self, ordinal: u64) -> Result<RoadFate, ExtractError> {
+        let mut whole = RoadFate::default();
+        while let Some(record) = self.next.filter(|record| u64::from(record.ordinal) == ordinal) {
+            whole.merge(&record.fate);
+            self.advance()?;
+        }
+        Ok(whole)
+    }
+}
+
+/// Sums as roads are added.
+#[derive(Default)]
+struct Folded {
+    roads_kept: u64,
+    roads_kept_um: u64,
+    kept_by_structure_um: [u64; Structure::ALL.len()],
+    /// Count and micrometres, in the order of [`Loss::ALL`].
+    lost: [(u64, u64); Loss::ALL.len()],
+}
+
+impl Folded {
+    fn add(&mut self, road: &Lengths) {
+        self.roads_kept_um += road.kept_um;
+        self.roads_kept += u64::from(road.is_kept());
+        for ((count, length_um), (loss, lost_um)) in self.lost.iter_mut().zip(road.losses()) {
+            *length_um += lost_um;
+            *count += u64::from(!road.is_kept() && road.reason() == loss);
+        }
+    }
+
+    fn into_sums(self) -> Sums {
+        let loss = |(loss, (roads, length_um)): (Loss, (u64, u64))| RoadLoss {
+            reason: loss.reason().to_owned(),
+            roads,
+            length_um,
+        };
+        Sums {
+            roads_kept: self.roads_kept,
+            roads_kept_um: self.roads_kept_um,
+            kept_by_structure_um: self.kept_by_structure_um,
+            // Without bounds nothing is lost by them, and they are not named.
+            lost: Loss::ALL
+                .into_iter()
+                .zip(self.lost)
+                .filter(|&(loss, lost)| loss != Loss::OutsideBounds || lost != (0, 0))
+                .map(loss)
+                .collect(),
+            lost_by_tiles: Vec::new(),
+        }
+    }
+}
+
+impl Lengths {
+    fn report(&self, way_id: i64, observer: &dyn Observer) {
+        // What the user left out is no defect.
+        let told = self.losses().into_iter().filter(|&(loss, _)| loss != Loss::OutsideBounds);
+        for (loss, lost_um) in told {
+            // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.
+            let is_counted = !self.is_kept() && self.reason() == loss;
+            if is_counted || is_some(lost_um) {
+                observer.defect(&Defect::LostRoad {
+                    way_id,
+                    loss,
+                    length_m: lost_um as f64 / UM,
+                    is_whole: !self.is_kept(),
+                });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "losses_tests.rs"]
+mod tests;

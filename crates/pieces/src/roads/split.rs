@@ -1,0 +1,336 @@
+//! Splits a road into the pieces that the tiles of all levels need.
+
+use std::{borrow::Cow, sync::Arc};
+
+use corniche_drape::{ClippedPart, OwnedBorders};
+use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
+use corniche_spec::{
+    levels::Levels,
+    tiles_near::for_each_tile_near,
+    true_lengths::{TrueLengths, starts_um},
+};
+
+use super::{
+    near_spans::NearRoad,
+    pieces::{RoadPiece, Run},
+    totals::RoadLength,
+};
+use crate::layers::fixed_points::road_of_part;
+
+/// What splitting needs.
+pub(crate) struct RoadSplitting<'a> {
+    pub levels: &'a Levels,
+    pub lengths: &'a TrueLengths<'a>,
+    /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
+    pub data_bounds: LatticeBounds,
+    /// The data's rectangle: that of all nodes at which data can lie.
+    pub node_bounds: LatticeBounds,
+    /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
+    pub clip: Option<LatticeBounds>,
+    /// The polygon that was asked for: roads end at its outline.
+    pub polygon: Option<&'a LatticeRegion>,
+    /// Whether bridges and tunnels become spans: then pieces tell where along their road they lie, and which nodes they have.
+    pub spans: bool,
+}
+
+/// A road, split.
+pub(crate) struct SplitRoad {
+    pub(crate) length: RoadLength,
+    pub class: FunctionalRoadClass,
+    pub bounds: Option<LatticeBounds>,
+    /// The pieces with their tiles, on all levels.
+    pub pieces: Vec<(TileId, RoadPiece)>,
+    /// Where spans are wanted, what they may need of it.
+    pub(crate) near: Option<NearRoad>,
+}
+
+impl RoadSplitting<'_> {
+    /// The pieces of a road for every level that shows its class, and its true lengths.
+    pub(crate) fn split(&self, ordinal: u32, road: &Road) -> SplitRoad {
+        let is_span = self.spans && road.attributes.structure != Structure::Ground;
+        let segments_um = if is_span {
+            // A deck of bounds is that without: no table of their extent comes in.
+            self.lengths.projected_segments_um(&road.line)
+        } else {
+            self.lengths.segments_um(&road.line)
+        };
+        let length_um: u64 = segments_um.iter().sum();
+        let mut near = self.spans.then(|| NearRoad::of(road, Some(ordinal), &segments_um, false));
+        let parts = self.parts(road, segments_um);
+        let length_in = |bounds: &LatticeBounds| -> u64 {
+            parts.iter().map(|part| part.length_in_um(bounds, self.lengths)).sum()
+        };
+        let clip = self.clip.as_ref();
+        let all_um = || parts.iter().flat_map(|part| &part.segments_um).sum();
+        let asked_um: u64 = clip.map_or_else(all_um, length_in);
+        let inside_um =
+            length_in(&clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds)));
+        // Cuts are rounded to whole micrometres.
+        let outside_um = asked_um.saturating_sub(inside_um);
+        let nodes = &self.node_bounds;
+        let bounds = LatticeBounds::of(road.line.points());
+        let padding_um = if bounds.is_some_and(|own| own.intersection(nodes) == own) {
+            0
+        } else {
+            let on_nodes_um = length_in(&clip.map_or(*nodes, |clip| clip.intersection(nodes)));
+            inside_um.saturating_sub(on_nodes_um)
+        };
+        if let Some(near) = &mut near {
+            near.is_reached = inside_um > 0;
+        }
+        let attributes = Arc::new(road.attributes.clone());
+        let mut pieces = Vec::new();
+        for level in self.levels.numbers() {
+            if self.levels.shows(level, road.class) {
+                self.split_level(&parts, &attributes, level, &mut pieces);
+            }
+        }
+        SplitRoad {
+            near,
+            length: RoadLength {
+                way_id: road.way_id,
+                structure: road.attributes.structure,
+                length_um,
+                outside_um,
+                padding_um,
+                beyond_um: length_um - inside_um - outside_um,
+            },
+            class: road.class,
+            bounds,
+            pieces,
+        }
+    }
+
+    /// Whether a road reaches the data, and what was asked of it.
+    pub(crate) fn reaches(&self, road: &Road) -> bool {
+        let data = self.clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds));
+        let is_inside = |line: &Polyline| {
+            !corniche_drape::clip_parts(line, &data, OwnedBorders::ALL).is_empty()
+        };
+        match self.polygon {
+            None => is_inside(&road.line),
+            Some(region) => corniche_drape::clip_region(&road.line, region)
+                .iter()
+                .any(|part| is_inside(&part.line)),
+        }
+    }
+
+    /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
+    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
+        let Some(region) = self.polygon else {
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
+        };
+        let parts = corniche_drape::clip_region(&road.line, region);
+        if parts.first().is_some_and(|part| part.line == road.line) {
+            return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
+        }
+        parts
+            .into_iter()
+            .map(|part| RoadPart::cut(road, part, &segments_um, self.lengths))
+            .collect()
+    }
+
+    /// The pieces of one level.
+    fn split_level(
+        &self,
+        parts: &[RoadPart<'_>],
+        attributes: &Arc<RoadAttributes>,
+        level: u8,
+        pieces: &mut Vec<(TileId, RoadPiece)>,
+    ) {
+        let levels = self.levels;
+        let lines: Vec<LevelLine<'_>> = parts
+            .iter()
+            .filter(|part| self.is_near(LatticeBounds::of(part.road.line.points()), level))
+            .map(|part| LevelLine::new(part, level, levels, self.spans))
+            .collect();
+        let mut near = Vec::new();
+        for (of, line) in lines.iter().enumerate() {
+            for (index, pair) in line.line.points().windows(2).enumerate() {
+                for_each_tile_near([pair[0], pair[1]], level, levels, |id| {
+                    if self.is_data(id) {
+                        near.push((id, of, index));
+                    }
+                });
+            }
+        }
+        near.sort_unstable();
+        for of_tile in near.chunk_by(|(one, ..), (other, ..)| one == other) {
+            let id = of_tile[0].0;
+            let runs = of_tile
+                .chunk_by(|(_, line, one), (_, other, next)| line == other && one + 1 == *next);
+            let road = &parts[0].road;
+            pieces.push((
+                id,
+                RoadPiece {
+                    way_id: road.way_id,
+                    class: road.class,
+                    attributes: Arc::clone(attributes),
+                    source_points: lines.iter().map(|line| line.source.count(id)).sum(),
+                    simplified_points: lines.iter().map(|line| line.simplified.count(id)).sum(),
+                    runs: runs
+                        .filter_map(|run| lines[run[0].1].run([run[0].2, run[run.len() - 1].2]))
+                        .collect(),
+                },
+            ));
+        }
+    }
+
+    /// Whether a road in this rectangle can meet a tile of a level, margin included. Most roads of an extract that is far larger
+    /// than the data do not.
+    fn is_near(&self, bounds: Option<LatticeBounds>, level: u8) -> bool {
+        // A step of rounding, as where tiles are looked for.
+        let reach = self.levels.margin_steps(level) + 1;
+        let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT).expanded(reach);
+        bounds.is_some_and(|bounds| bounds.intersects(&root))
+    }
+
+    /// Whether a tile can have ground: it shares more than a border with the data's tiles.
+    fn is_data(&self, id: TileId) -> bool {
+        let (tile, data) = (self.levels.frame().tile_lattice_bounds(id), &self.data_bounds);
+        tile.min.u < data.max.u
+            && data.min.u < tile.max.u
+            && tile.min.v < data.max.v
+            && data.min.v < tile.max.v
+    }
+}
+
+/// A part of a road in the polygon that was asked for, or the whole road.
+struct RoadPart<'r> {
+    road: Cow<'r, Road>,
+    /// True lengths of its segments.
+    segments_um: Vec<u64>,
+    /// How far along the road it begins, micrometres.
+    from_um: u64,
+}
+
+impl RoadPart<'_> {
+    /// What was cut out of a road, whose segments have these lengths.
+    fn cut(road: &Road, part: ClippedPart, segments_um: &[u64], lengths: &TrueLengths<'_>) -> Self {
+        let pieces: Vec<[u64; 2]> = lengths.pieces_um(&road.line, &part, segments_um).collect();
+        let before_um: u64 =
+            part.segments.first().map_or(0, |&first| segments_um[..first].iter().sum());
+        Self {
+            from_um: before_um + pieces.first().map_or(0, |[from, _]| *from),
+            segments_um: pieces.iter().map(|[from, to]| to - from).collect(),
+            road: Cow::Owned(road_of_part(road, part)),
+        }
+    }
+
+    fn length_in_um(&self, bounds: &LatticeBounds, lengths: &TrueLengths<'_>) -> u64 {
+        let line = &self.road.line;
+        corniche_drape::clip_parts(line, bounds, OwnedBorders::ALL)
+            .iter()
+            .flat_map(|part| lengths.pieces_um(line, part, &self.segments_um))
+            .map(|[from, to]| to - from)
+            .sum()
+    }
+}
+
+/// A part as a level shows it.
+struct LevelLine<'p> {
+    line: Polyline,
+    /// True lengths of its segments on the finest level, and of bridges and tunnels where they become spans; else empty.
+    segments_um: Cow<'p, [u64]>,
+    /// How far along the road each segment begins; empty where no spans are wanted.
+    starts_um: Vec<u64>,
+    /// Its nodes at which other roads may join, by the index of their point; on the finest level alone.
+    nodes: Vec<(usize, i64)>,
+    source: PointsByTile,
+    simplified: PointsByTile,
+}
+
+impl<'p> LevelLine<'p> {
+    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels, spans: bool) -> Self {
+        let road = &part.road;
+        let line = corniche_roads::simplify(road, levels.simplify_tolerance_steps(level));
+        // On the finest level the line is the source line, not simplified.
+        let is_finest = level == levels.frame().max_level();
+        let is_span = spans && road.attributes.structure != Structure::Ground;
+        let segments_um = match (is_finest, is_span) {
+            (true, _) => Cow::Borrowed(&part.segments_um[..]),
+            (false, true) => {
+                let kept =
+                    corniche_roads::kept_points(road, levels.simplify_tolerance_steps(level));
+                Cow::Owned(simplified_um(&road.line, &part.segments_um, &kept))
+            }
+            (false, false) => Cow::Borrowed(&[][..]),
+        };
+        let nodes = road.fixed.iter().zip(&road.node_ids);
+        let nodes = nodes.filter(|_| spans && is_finest);
+        Self {
+            starts_um: if spans { starts_um(part.from_um, &segments_um) } else { Vec::new() },
+            segments_um,
+            nodes: nodes.filter_map(|(&at, id)| Some((at as usize, (*id)?))).collect(),
+            source: PointsByTile::of(&road.line, level, levels),
+            simplified: PointsByTile::of(&line, level, levels),
+            line,
+        }
+    }
+
+    /// The run from segment `first` to segment `last`, both included.
+    fn run(&self, [first, last]: [usize; 2]) -> Option<Run> {
+        let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
+        let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
+        let [from, to] =
+            [first, last + 2].map(|end| self.nodes.partition_point(|(at, _)| *at < end));
+        let nodes = self.nodes[from..to].iter();
+        Some(Run {
+            line,
+            from_um: self.starts_um.get(first).copied().unwrap_or_default(),
+            segments_um,
+            nodes: nodes.map(|&(at, id)| ((at - first) as u32, id)).collect(),
+        })
+    }
+}
+
+/// The lengths of a line between the points that its simplification keeps, of which equal neighbours are one.
+fn simplified_um(line: &Polyline, segments_um: &[u64], kept: &[usize]) -> Vec<u64> {
+    let points = line.points();
+    let mut lengths_um = Vec::with_capacity(kept.len());
+    let mut before_um = 0;
+    for [from, to] in kept.array_windows() {
+        before_um += segments_um[*from..*to].iter().sum::<u64>();
+        if points[*from] != points[*to] {
+            lengths_um.push(std::mem::take(&mut before_um));
+        }
+    }
+    if let Some(last_um) = lengths_um.last_mut() {
+        *last_um += before_um;
+    }
+    lengths_um
+}
+
+/// How many of a line's points belong to each tile of a level: each point belongs to one tile at most.
+struct PointsByTile {
+    /// Column and row of each point's tile, ascending.
+    tiles: Vec<[i64; 2]>,
+}
+
+impl PointsByTile {
+    fn of(line: &Polyline, level: u8, levels: &Levels) -> Self {
+        let frame = levels.frame();
+        let last = (1_i64 << level) - 1;
+        let outer = frame.tile_lattice_bounds(TileId::ROOT);
+        // The root's own east and south border belong to its last tiles.
+        let tile = |&point: &LatticePoint| {
+            frame.tile_column_row(level, point).map(|index| index.min(last))
+        };
+        let inside = line.points().iter().filter(|&&point| outer.contains(point));
+        let mut tiles: Vec<[i64; 2]> = inside.map(tile).collect();
+        tiles.sort_unstable();
+        Self { tiles }
+    }
+
+    fn count(&self, id: TileId) -> u64 {
+        let own = [i64::from(id.x()), i64::from(id.y())];
+        let before = self.tiles.partition_point(|tile| *tile < own);
+        let up_to = self.tiles.partition_point(|tile| *tile <= own);
+        (up_to - before) as u64
+    }
+}
+
+#[cfg(test)]
+#[path = "split_tests.rs"]
+mod tests;

@@ -1,0 +1,192 @@
+//! What is known of all roads together, and of each road alone: its true lengths.
+
+use std::{cmp::Reverse, collections::BTreeMap};
+
+use corniche_geom::LatticePoint;
+use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
+use corniche_roads::Structure;
+use corniche_spec::{
+    Loss,
+    artifacts::{self, Kind},
+};
+use corniche_store::Artifacts;
+use serde::{Deserialize, Serialize};
+
+use crate::ExtractError;
+
+/// Roads of a block of [`Kind::RoadLengths`].
+pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
+
+/// True lengths of a road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct RoadLength {
+    pub way_id: i64,
+    /// What carries it.
+    pub(crate) structure: Structure,
+    /// The length of the whole road, micrometres.
+    pub length_um: u64,
+    /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
+    pub(crate) outside_um: u64,
+    /// How much of it lies on those tiles, but outside the data's rectangle itself: in their padding. It is not counted under
+    /// `outside_um`.
+    pub(crate) padding_um: u64,
+    /// How much of it lies outside the bounds that were asked for; what does is counted under nothing else.
+    pub(crate) beyond_um: u64,
+}
+
+/// What is known of all roads. It is kept last: when it is in the store, so are all pieces, lengths and
+/// defects.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct RoadTotals {
+    /// How many roads there are: ordinals run from 0 to one less.
+    pub roads: u64,
+    /// The sum of their true lengths, micrometres.
+    pub length_um: u64,
+    /// Per class: roads and true micrometres.
+    pub classes: Vec<(u64, u64)>,
+    /// Counted defects by name.
+    pub defects: BTreeMap<String, u64>,
+    /// What the extract held and what of it is no road.
+    pub extract: ExtractCounts,
+    /// South-west and north-east corner of where roads lie.
+    pub bounds: Option<[LatticePoint; 2]>,
+}
+
+/// The counts of an extract that a manifest records.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ExtractCounts {
+    /// Values of `highway` that the FRC table does not have, with how many ways have each.
+    pub unknown_highways: Vec<(String, u64)>,
+    /// Tags that were understood in another way than they are written, with how often.
+    pub tags_taken_otherwise: Vec<(String, u64)>,
+    /// Blobs without ways of roads.
+    pub blobs_passed_over: u64,
+    /// Ways with the tag `highway`.
+    pub highways_in: u64,
+    /// Ways with a `highway` tag that are no roads here, by reason.
+    pub highways_left_out: Vec<(String, u64)>,
+    /// Ways that the FRC table leaves out, by reason and `highway` value.
+    pub left_out: Vec<LeftOutCount>,
+}
+
+/// Ways that the FRC table leaves out for one reason, with one `highway` value.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LeftOutCount {
+    /// Why they were left out.
+    pub reason: String,
+    /// Their value of `highway`.
+    pub highway: String,
+    /// How many ways.
+    pub ways: u64,
+    /// True length in plan, micrometres.
+    pub length_um: u64,
+}
+
+impl From<&ExtractSummary> for ExtractCounts {
+    fn from(extract: &ExtractSummary) -> Self {
+        let list = |counts: &BTreeMap<String, u64>| -> Vec<(String, u64)> {
+            counts.iter().map(|(name, &count)| (name.clone(), count)).collect()
+        };
+        Self {
+            unknown_highways: list(&extract.unknown_highways),
+            tags_taken_otherwise: list(&extract.tags_taken_otherwise),
+            blobs_passed_over: extract.blobs_passed_over,
+            highways_in: extract.highway_ways,
+            highways_left_out: left_out(extract),
+            left_out: left_out_ways(extract),
+        }
+    }
+}
+
+/// Ways that are left out, by reason, and within one the longest first.
+fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
+    let ways = extract.left_out_ways.iter();
+    let mut counts: Vec<(LeftOutReason, LeftOutCount)> = ways
+        .map(|((reason, highway), found)| {
+            let (text, highway) = (reason.text().to_owned(), highway.clone());
+            let LeftOutWays { ways, length_um } = *found;
+            (*reason, LeftOutCount { reason: text, highway, ways, length_um })
+        })
+        .collect();
+    // The sort keeps the order of values where lengths are the same.
+    counts.sort_by_key(|(reason, count)| (*reason, Reverse(count.length_um)));
+    counts.into_iter().map(|(_, count)| count).collect()
+}
+
+/// Why roads, and ways with a `highway` tag, are not in a package: all reasons, in the words under which packages count them.
+pub fn reasons_left_out() -> impl Iterator<Item = &'static str> {
+    let of_ways = by_reason(&LeftOut::default()).map(|(reason, _)| reason);
+    of_ways.into_iter().chain(Loss::ALL.map(Loss::reason))
+}
+
+fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
+    by_reason(&extract.left_out)
+        .into_iter()
+        .filter(|&(_, ways)| ways > 0)
+        .map(|(reason, ways)| (reason.to_owned(), ways))
+        .collect()
+}
+
+fn by_reason(ways: &LeftOut) -> [(&'static str, u64); 6] {
+    let LeftOut { listed, class_off, unknown, area, duplicate, without_line } = *ways;
+    [
+        (LeftOutReason::Listed.text(), listed),
+        (LeftOutReason::ClassOff.text(), class_off),
+        (LeftOutReason::Unknown.text(), unknown),
+        (LeftOutReason::Area.text(), area),
+        ("id occurs twice", duplicate),
+        ("no line is left", without_line),
+    ]
+}
+
+/// Keeps the lengths of roads, block by block, as they come in the order of their ordinals.
+pub(crate) struct LengthsWriter<'a> {
+    store: &'a dyn Artifacts,
+    blocks: u64,
+    block: Vec<RoadLength>,
+}
+
+impl<'a> LengthsWriter<'a> {
+    pub(crate) fn new(store: &'a dyn Artifacts) -> Self {
+        Self { store, blocks: 0, block: Vec::new() }
+    }
+
+    /// Adds the road with the next ordinal.
+    pub(crate) fn push(&mut self, length: RoadLength) -> Result<(), ExtractError> {
+        self.block.push(length);
+        if self.block.len() as u64 == BLOCK_ROADS { self.flush() } else { Ok(()) }
+    }
+
+    /// Ends the last block.
+    pub(crate) fn finish(mut self) -> Result<(), ExtractError> {
+        if self.block.is_empty() { Ok(()) } else { self.flush() }
+    }
+
+    fn flush(&mut self) -> Result<(), ExtractError> {
+        artifacts::put(self.store, Kind::RoadLengths.item(self.blocks), &self.block)?;
+        self.blocks += 1;
+        self.block.clear();
+        Ok(())
+    }
+}
+
+/// The lengths of a block, which has `roads` roads.
+pub(crate) fn lengths_of_block(
+    store: &dyn Artifacts,
+    block: u64,
+    roads: u64,
+) -> Result<Vec<RoadLength>, ExtractError> {
+    let key = Kind::RoadLengths.item(block);
+    let lengths: Option<Vec<RoadLength>> = artifacts::get(store, key)?;
+    match lengths {
+        Some(lengths) if lengths.len() as u64 == roads => Ok(lengths),
+        Some(_) => {
+            Err(artifacts::damaged(key, &"it does not have the lengths of its roads").into())
+        }
+        None => Err(artifacts::damaged(key, &"it is missing").into()),
+    }
+}
+
+#[cfg(test)]
+#[path = "totals_tests.rs"]
+mod tests;

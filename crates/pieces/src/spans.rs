@@ -1,0 +1,12 @@
+//! Bridges and tunnels above and below the ground: what is read of them, the ground beneath them, and the runs that tiles hold.
+//!
+//! ```text
+//!  pieces of roads ─► roads near spans ─► network ─► spans, crossings ─┐
+//!  tiles ─► ground beneath bridges and tunnels, by tile ──────────────┴─► decks of each level ─► runs by tile
+//! ```
+
+pub mod outer_ground;
+pub mod runs;
+pub mod solving;
+pub mod span_network;
+pub mod totals;

@@ -1,0 +1,31 @@
+//! The table of longitudes and latitudes that a package carries.
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
+
+use crate::PlanError;
+
+/// How far positions that are interpolated from the manifest may be off.
+const COORDINATE_TOLERANCE_M: f64 = 0.01;
+
+/// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
+///
+/// The table has a margin around the rectangle, but does not reach to the root's far corners, which can be very far away.
+/// The margin ends at the poles; if a projection ends within the margin, there is no margin.
+pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, PlanError> {
+    let projection = dem.projection(plan)?;
+    let data = plan.data_bounds;
+    let room_m = 0.1 * data.width().max(data.height()).max(plan.frame.cell().shorter_m());
+    let pole_m = plan.poles_y_m().unwrap_or(f64::INFINITY);
+    let around = Bounds {
+        min_x: data.min_x - room_m,
+        min_y: (data.min_y - room_m).max(-pole_m).min(data.min_y),
+        max_x: data.max_x + room_m,
+        max_y: (data.max_y + room_m).min(pole_m).max(data.max_y),
+    };
+    let sample = |bounds| CoordinateTable::sample(&projection, bounds, COORDINATE_TOLERANCE_M);
+    match sample(around) {
+        Err(CoordinateTableError::TooCurved { .. }) => Ok(sample(data)?),
+        found => Ok(found?),
+    }
+}

@@ -1,0 +1,190 @@
+//! The inputs of a build are opened, and what follows from them before any height is read is worked out.
+
+use std::path::Path;
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::CoordinateTable;
+use corniche_gis::{DemProjection, FileDatums, Polygon};
+use corniche_ground::terrain::{ground::GroundSource, recorded::RecordedTerrain};
+use corniche_ground::{TerrainError, photos::source::PhotoSource};
+use corniche_spec::{
+    PlanSettings, TerrainSettings,
+    inputs::{InputKind, Inputs, OtherInputs, PlannedInput},
+    levels::{Levels, most_scale},
+    settings_record, usual_max_error_m,
+};
+use corniche_tileset::ReliefLevels;
+
+use super::{coordinates::coordinates, facts::terrain_differences};
+use crate::PlanError;
+
+/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
+/// quantum.
+const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// The inputs, opened, and what follows from them and from the settings before a height is read.
+pub struct Opened {
+    /// All input files, as they were found.
+    pub inputs: Inputs,
+    /// Where the ground comes from.
+    pub source: GroundSource,
+    /// The grid of nodes.
+    pub grid: GridPlan,
+    /// Tolerances and margins of levels.
+    pub levels: Levels,
+    /// Tolerance of the finest level, given or derived from the cell.
+    pub max_error_m: f64,
+    /// Longitudes and latitudes over the data.
+    pub coordinates: CoordinateTable,
+    /// WGS84 ⇄ the grid's working CRS.
+    pub projection: DemProjection,
+    /// Photos of the ground.
+    pub photo: PhotoSource,
+    /// Which levels have relief sections.
+    pub relief: ReliefLevels,
+    /// How polygons and photos come to the datum of the grid.
+    pub file_datums: FileDatums,
+}
+
+impl Opened {
+    /// Opens the elevation files and plans the grid.
+    ///
+    /// # Errors
+    /// When a file cannot be used, the files make no grid, or a setting does not fit them.
+    pub fn new(settings: &PlanSettings) -> Result<Self, PlanError> {
+        // The state of the files is noted before anything of them is read.
+        let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
+        let others = OtherInputs { photo: settings.photo.files(), polygon, osm: &settings.osm };
+        let mut inputs = match &settings.terrain_of {
+            Some(package) => Inputs::find_with_package(package, others)?,
+            None => Inputs::find(&settings.dem, others)?,
+        };
+        let planned = match &settings.terrain_of {
+            Some(package) => Self::recorded(settings, package),
+            None => Self::plan(settings),
+        };
+        let checked = planned.and_then(|planned| {
+            let mut file_datums = FileDatums::default();
+            if let Some(polygon) = &settings.terrain.plan.polygon {
+                let found = planned.grid.datums_of_polygon(polygon);
+                file_datums.extend(found.allowed(settings.terrain.allow_ballpark)?);
+            }
+            Ok((planned, file_datums))
+        });
+        match checked {
+            Ok((planned, mut file_datums)) => {
+                let Planned { source, grid, levels, max_error_m, coordinates, projection } =
+                    planned;
+                if let GroundSource::Dem(dem) = &source {
+                    inputs.use_only(&dem.needed_files(&grid)?);
+                }
+                let allow_ballpark = settings.terrain.allow_ballpark;
+                let photo = PhotoSource::open(&settings.photo, allow_ballpark, &source, &grid);
+                let photo =
+                    photo.map_err(|error| inputs.changed_instead_of(PlanError::from(error)))?;
+                if let Some(photos) = photo.files() {
+                    file_datums.extend(photos.datums.clone());
+                }
+                let relief = settings.terrain.relief;
+                Ok(Self {
+                    inputs,
+                    source,
+                    grid,
+                    levels,
+                    max_error_m,
+                    coordinates,
+                    projection,
+                    photo,
+                    relief,
+                    file_datums,
+                })
+            }
+            // A changed input may be the cause of any other error, so it is reported instead.
+            Err(error) => Err(inputs.changed_instead_of(error)),
+        }
+    }
+
+    /// Size of the extract; 0 without one.
+    ///
+    /// # Errors
+    /// See [`PlanError`].
+    pub fn extract_bytes(&self) -> Result<u64, PlanError> {
+        let planned = self.inputs.planned()?;
+        let is_extract = |input: &&PlannedInput| input.kind == InputKind::Osm.name();
+        Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
+    }
+
+    /// The tolerance of the finest level as a share of the cell's shorter side.
+    #[must_use]
+    pub fn tolerance_cells(&self) -> f64 {
+        self.max_error_m / self.grid.frame.cell().shorter_m()
+    }
+
+    /// What follows from elevation files.
+    fn plan(settings: &PlanSettings) -> Result<Planned, PlanError> {
+        let terrain = &settings.terrain;
+        let dem = Dem::open(&settings.dem, &terrain.open)?;
+        let grid = dem.plan(&terrain.plan)?;
+        if !terrain.allow_ballpark {
+            dem.refuse_ballpark(&grid)?;
+        }
+        if !terrain.allow_fine_cell {
+            dem.refuse_oversampling(&grid)?;
+        }
+        let max_error_m = max_error_m(terrain, &grid)?;
+        let widest = most_scale(grid.scale.largest);
+        let levels = Levels::new(grid.frame, max_error_m, &settings.roads, widest);
+        // This fails for files that are too far apart for one package.
+        let coordinates = coordinates(&dem, &grid)?;
+        let source = GroundSource::Dem(Box::new(dem));
+        let projection = source.projection(&grid)?;
+        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
+    }
+
+    /// What follows from a package whose terrain is taken.
+    fn recorded(settings: &PlanSettings, package: &Path) -> Result<Planned, PlanError> {
+        let terrain = RecordedTerrain::open(package, &settings.generator)?;
+        let manifest = terrain.manifest();
+        let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
+        let ours =
+            settings_record::of(&settings.terrain, &settings.roads, max_error_m, None, (None, &[]));
+        let differences = terrain_differences(&ours, &manifest.settings);
+        if !differences.is_empty() {
+            let differences = differences.join("; ");
+            return Err(TerrainError::Other { path: package.to_path_buf(), differences }.into());
+        }
+        let widest = most_scale(manifest.scale.largest);
+        let levels = Levels::new(manifest.frame, max_error_m, &settings.roads, widest);
+        if levels.quantum_m().to_bits() != manifest.vertical.quantum_m.to_bits() {
+            return Err(terrain.damaged("its step of heights does not fit its settings").into());
+        }
+        let coordinates = manifest.coordinates.clone();
+        let mut grid = terrain.grid();
+        if let Some(polygon) = &settings.terrain.plan.polygon {
+            grid = grid.within(polygon)?;
+        }
+        let source = GroundSource::Package(Box::new(terrain));
+        let projection = source.projection(&grid)?;
+        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
+    }
+}
+
+/// What is opened, without the inputs.
+struct Planned {
+    source: GroundSource,
+    grid: GridPlan,
+    levels: Levels,
+    max_error_m: f64,
+    coordinates: CoordinateTable,
+    projection: DemProjection,
+}
+
+/// The tolerance of the finest level: given, or derived from the cell.
+fn max_error_m(terrain: &TerrainSettings, grid: &GridPlan) -> Result<f64, PlanError> {
+    let max_error_m = terrain.max_error_m.unwrap_or_else(|| usual_max_error_m(grid.frame.cell()));
+    if MAX_ERRORS_M.contains(&max_error_m) {
+        Ok(max_error_m)
+    } else {
+        Err(PlanError::MaxError { max_error_m })
+    }
+}

@@ -1,0 +1,516 @@
+//! The files that a run reads: what they are called, their content's hash, and whether they stayed as they were.
+//!
+//! GDAL reads a raster's blocks in any order, and an extract ways first, so content is not hashed while it is used. It is
+//! hashed once, in a pass before. The file system then proves that the bytes used are the bytes hashed: size, times and
+//! inode are noted before a file is first read and compared after it was last read.
+//!
+//! ```text
+//!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
+//! ```
+
+mod planned_input;
+mod servers;
+mod stamp;
+
+use std::{
+    fs::{self, File},
+    io::{self, Read},
+    path::{Path, PathBuf},
+};
+
+use corniche_dem::DemError;
+use corniche_gis::{VirtualFile, raster_files};
+use corniche_tileset::InputRecord;
+use corniche_work::Stage;
+use sha2::{Digest, Sha256};
+
+pub use self::{
+    planned_input::PlannedInput,
+    servers::{elevation_names, extract_names, input_name, photo_names},
+};
+use self::{servers::reach_servers, stamp::Stamp};
+use crate::{Observer, hex::hex};
+
+/// What an input is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputKind {
+    /// A raster that was named.
+    Dem,
+    /// A file that such a raster refers to, or that lies beside it and belongs to it.
+    DemPart,
+    /// A photo that was named.
+    Photo,
+    /// A file that such a photo refers to, or that lies beside it and belongs to it.
+    PhotoPart,
+    /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
+    Terrain,
+    /// The polygon that says which part is wanted.
+    Polygon,
+    /// The extract.
+    Osm,
+}
+
+impl InputKind {
+    /// The kinds that a manifest has.
+    pub const RECORDED: [Self; 6] =
+        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
+    /// The kinds that the terrain is made from.
+    pub const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
+    /// The kinds that photos are made from.
+    pub const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
+
+    /// The word for it in the manifest.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dem => "dem",
+            Self::DemPart => "dem-part",
+            Self::Photo => "photo",
+            Self::PhotoPart => "photo-part",
+            Self::Terrain => "terrain",
+            Self::Polygon => "polygon",
+            Self::Osm => "osm",
+        }
+    }
+
+    /// Whether a record of the manifest is about an input of this kind.
+    #[must_use]
+    pub fn is_of(self, record: &InputRecord) -> bool {
+        record.kind == self.name()
+    }
+}
+
+/// All files of a run, as they were before anything of them was read.
+#[derive(Debug)]
+pub struct Inputs {
+    files: Vec<Input>,
+}
+
+#[derive(Debug)]
+struct Input {
+    kind: InputKind,
+    /// The path as it was given.
+    path: PathBuf,
+    name: String,
+    content: Content,
+    stamp: Stamp,
+    /// False for an elevation file outside the bounds that were asked for: no sample of it is used, so it is not hashed.
+    is_used: bool,
+}
+
+/// What is hashed of an input.
+#[derive(Debug)]
+enum Content {
+    File(PathBuf),
+    /// What GDAL's virtual file system delivers by this name.
+    Virtual(PathBuf),
+    /// A folder, which has no bytes of its own; its files are parts.
+    Folder,
+}
+
+/// Why inputs cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum InputError {
+    #[error("cannot read {path:?}")]
+    Read { path: PathBuf, source: io::Error },
+    #[error(
+        "the name of {path:?} is not UTF-8, and a package records the names of its inputs as text; rename the file"
+    )]
+    Name { path: PathBuf },
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error(transparent)]
+    Dem(#[from] DemError),
+    #[error(transparent)]
+    Address(#[from] corniche_objects::ObjectError),
+    #[error("the run could not be set up: {what}")]
+    Setting { what: String },
+    #[error(
+        "{path:?} changed while it was read, so the package could mix old and new content; nothing was written; run the \
+         same command again when no program writes to the file"
+    )]
+    Changed { path: PathBuf },
+    #[error("interrupted; no package was written")]
+    Interrupted,
+}
+
+corniche_dem::from_dem_errors!(InputError);
+
+impl InputError {
+    /// Whether the cause is an input or a setting, rather than a failure while the run went on.
+    #[must_use]
+    pub fn is_unusable_input(&self) -> bool {
+        match self {
+            Self::Address(error) => error.is_unusable(),
+            Self::Setting { .. } | Self::Changed { .. } | Self::Interrupted => false,
+            _ => true,
+        }
+    }
+}
+
+fn setting(what: String) -> InputError {
+    InputError::Setting { what }
+}
+
+impl Inputs {
+    /// Finds all files and notes what they are, before anything of them is read for use.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
+        let named = dem.iter().map(PathBuf::as_path).chain(others.named());
+        reach_servers(named).map_err(setting)?;
+        let mut files: Vec<Input> = Vec::new();
+        add_rasters(dem, [InputKind::Dem, InputKind::DemPart], &mut files)?;
+        others.add_to(&mut files)?;
+        Ok(Self { files })
+    }
+
+    /// The same where the terrain comes from a package.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn find_with_package(package: &Path, others: OtherInputs<'_>) -> Result<Self, InputError> {
+        reach_servers(others.named()).map_err(setting)?;
+        let mut files = vec![Input::new(InputKind::Terrain, package)?];
+        others.add_to(&mut files)?;
+        Ok(Self { files })
+    }
+
+    /// Says which elevation files are used, in their order; the parts of each go with it.
+    pub fn use_only(&mut self, is_used: &[bool]) {
+        let mut is_used = is_used.iter();
+        let mut last = true;
+        for input in &mut self.files {
+            match input.kind {
+                InputKind::Dem => last = is_used.next().copied().unwrap_or(true),
+                InputKind::DemPart => {}
+                InputKind::Photo
+                | InputKind::PhotoPart
+                | InputKind::Terrain
+                | InputKind::Polygon
+                | InputKind::Osm => continue,
+            }
+            input.is_used = last;
+        }
+    }
+
+    /// How many files there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The name of a file, without folders.
+    #[must_use]
+    pub fn name(&self, index: usize) -> &str {
+        &self.files[index].name
+    }
+
+    /// What a plan says of every file, in their order.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn planned(&self) -> Result<Vec<PlannedInput>, InputError> {
+        self.files.iter().map(Input::planned).collect()
+    }
+
+    /// Hashes the content of every file. The parts of a raster come after it, sorted.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
+        let mut records: Vec<InputRecord> = Vec::new();
+        self.hash_each(
+            |_| false,
+            observer,
+            |_, record| {
+                records.push(record);
+                Ok::<_, InputError>(())
+            },
+        )?;
+        Self::in_order(&mut records);
+        Ok(records)
+    }
+
+    /// Hashes the files that are not done yet and hands on what each of them is.
+    ///
+    /// # Errors
+    /// See [`InputError`]; what `take` fails with.
+    pub fn hash_each<E: From<InputError>>(
+        &self,
+        is_done: impl Fn(usize) -> bool,
+        observer: &dyn Observer,
+        mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let used = self.files.iter().filter(|input| input.is_used);
+        observer.begin(Stage::Hash, used.map(Input::content_bytes).sum());
+        for (index, input) in self.files.iter().enumerate() {
+            if is_done(index) {
+                let bytes = if input.is_used { input.content_bytes() } else { None };
+                observer.already(Stage::Hash, bytes.unwrap_or_default());
+            } else {
+                take(index, input.hash(observer)?)?;
+            }
+        }
+        observer.end(Stage::Hash);
+        Ok(())
+    }
+
+    /// Hashes those elevation files that were not said to be used, but are needed after all: told in their order; the parts of each go with it. Returns the
+    /// place of each, and what it is.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn hash_unused(
+        &self,
+        is_needed: &[bool],
+        observer: &dyn Observer,
+    ) -> Result<Vec<(u32, InputRecord)>, InputError> {
+        let mut is_needed = is_needed.iter();
+        let mut last = false;
+        let mut found = Vec::new();
+        for (index, input) in self.files.iter().enumerate() {
+            match input.kind {
+                InputKind::Dem => last = is_needed.next().copied().unwrap_or_default(),
+                InputKind::DemPart => {}
+                _ => continue,
+            }
+            if last && !input.is_used {
+                found.push((index as u32, input.hash_content(observer)?));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Sorts the parts of each raster, which GDAL lists in any order.
+    pub fn in_order(records: &mut [InputRecord]) {
+        let is_part = |record: &InputRecord| {
+            InputKind::DemPart.is_of(record) || InputKind::PhotoPart.is_of(record)
+        };
+        for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
+            parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
+        }
+    }
+
+    /// The error to report after a failure: a changed input may be the cause of any other error. One that cannot be looked at says
+    /// nothing.
+    pub fn changed_instead_of<E: From<InputError>>(&self, error: E) -> E {
+        match self.check_unchanged() {
+            Err(changed @ InputError::Changed { .. }) => changed.into(),
+            _ => error,
+        }
+    }
+
+    /// Fails if a file is no longer what it was when it was found, or cannot be looked at.
+    ///
+    /// # Errors
+    /// See [`InputError`].
+    pub fn check_unchanged(&self) -> Result<(), InputError> {
+        for input in &self.files {
+            match input.stamp.still_holds() {
+                Ok(true) => {}
+                Ok(false) => return Err(InputError::Changed { path: input.path.clone() }),
+                Err(source) => return Err(InputError::Read { path: input.path.clone(), source }),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Adds rasters and, after each, the files that it refers to or that belong to it.
+fn add_rasters(
+    paths: &[PathBuf],
+    [kind, part]: [InputKind; 2],
+    files: &mut Vec<Input>,
+) -> Result<(), InputError> {
+    for path in paths {
+        // The stamp is taken before GDAL reads the file for the names of its parts.
+        let input = Input::new(kind, path)?;
+        let parts = raster_files(path)?;
+        let is_own = |part: &PathBuf| match &input.content {
+            Content::File(own) | Content::Virtual(own) => part == own || part == path,
+            Content::Folder => part == path,
+        };
+        let parts: Vec<PathBuf> = parts.into_iter().filter(|part| !is_own(part)).collect();
+        files.push(input);
+        for found in parts {
+            files.push(Input::new(part, &found)?);
+        }
+    }
+    Ok(())
+}
+
+/// What is read beside the terrain.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OtherInputs<'a> {
+    /// Photos.
+    pub photo: &'a [PathBuf],
+    /// The polygon that cuts the package.
+    pub polygon: Option<&'a Path>,
+    /// Extracts.
+    pub osm: &'a [PathBuf],
+}
+
+impl<'a> OtherInputs<'a> {
+    fn named(self) -> impl Iterator<Item = &'a Path> {
+        let photos = self.photo.iter().map(PathBuf::as_path);
+        photos.chain(self.polygon).chain(self.osm.iter().map(PathBuf::as_path))
+    }
+
+    fn add_to(self, files: &mut Vec<Input>) -> Result<(), InputError> {
+        add_rasters(self.photo, [InputKind::Photo, InputKind::PhotoPart], files)?;
+        if let Some(path) = self.polygon {
+            files.push(Input::new(InputKind::Polygon, path)?);
+        }
+        for path in self.osm {
+            files.push(Input::new(InputKind::Osm, path)?);
+        }
+        Ok(())
+    }
+}
+
+impl Input {
+    fn new(kind: InputKind, path: &Path) -> Result<Self, InputError> {
+        let failed = |source| InputError::Read { path: path.to_path_buf(), source };
+        // Opening a pipe waits for the program that writes into it, and a pipe cannot be read twice.
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Err(InputError::Stream { path: path.to_path_buf() });
+        }
+        let (content, name) = named(path).ok_or(InputError::Name { path: path.to_path_buf() })?;
+        let stamp = match &content {
+            Content::File(file) => Stamp::of_file(file),
+            Content::Folder => Stamp::of_file(path),
+            Content::Virtual(name) => Stamp::of_virtual(name),
+        };
+        let stamp = stamp.map_err(failed)?;
+        Ok(Self { kind, path: path.to_path_buf(), name, content, stamp, is_used: true })
+    }
+
+    fn planned(&self) -> Result<PlannedInput, InputError> {
+        let failed = |source| InputError::Read { path: self.path.clone(), source };
+        let text = self.path.to_str();
+        let text = text.ok_or_else(|| InputError::Name { path: self.path.clone() })?;
+        let (bytes, modified_ns, etag) = match &self.stamp {
+            Stamp::File(_, state) => (state.size(), state.modified_ns(), None),
+            Stamp::Remote { bytes, etag, .. } => (*bytes, None, etag.clone()),
+        };
+        // The size of a folder is that of the list of its files, and no matter.
+        let bytes = if matches!(self.content, Content::Folder) { 0 } else { bytes };
+        Ok(PlannedInput {
+            kind: self.kind.name().to_owned(),
+            name: self.name.clone(),
+            path: stamp::absolute(text).map_err(failed)?,
+            bytes,
+            modified_ns,
+            etag,
+        })
+    }
+
+    /// Size of what is hashed, as far as it is known before it is read.
+    fn content_bytes(&self) -> Option<u64> {
+        match (&self.content, &self.stamp) {
+            (Content::Folder, _) => Some(0),
+            (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
+            (_, Stamp::Remote { bytes, .. }) => Some(*bytes),
+            // Inside an archive: only the archive's own size is known.
+            (Content::Virtual(_), Stamp::File(..)) => None,
+        }
+    }
+
+    fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+        if !self.is_used {
+            return Ok(InputRecord {
+                kind: self.kind.name().to_owned(),
+                name: self.name.clone(),
+                bytes: self.content_bytes().unwrap_or_default(),
+                sha256: String::new(),
+            });
+        }
+        self.hash_content(observer)
+    }
+
+    fn hash_content(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+        let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
+        let mut hasher = Sha256::new();
+        let bytes = match &self.content {
+            Content::Folder => Some(0),
+            Content::File(path) => {
+                let mut file = File::open(path).map_err(failed)?;
+                digest(&mut file, &mut hasher, observer).map_err(failed)?
+            }
+            Content::Virtual(path) => {
+                let mut file = VirtualFile::open(path).map_err(failed)?;
+                digest(&mut file, &mut hasher, observer).map_err(failed)?
+            }
+        };
+        Ok(InputRecord {
+            kind: self.kind.name().to_owned(),
+            name: self.name.clone(),
+            bytes: bytes.ok_or(InputError::Interrupted)?,
+            sha256: hex(&hasher.finalize()),
+        })
+    }
+}
+
+/// How many bytes were hashed; `None` when the run was interrupted.
+fn digest(
+    file: &mut dyn Read,
+    hasher: &mut Sha256,
+    observer: &dyn Observer,
+) -> io::Result<Option<u64>> {
+    let mut buffer = vec![0; 1 << 20];
+    let mut bytes = 0;
+    loop {
+        if observer.is_cancelled() {
+            return Ok(None);
+        }
+        match file.read(&mut buffer) {
+            Ok(0) => return Ok(Some(bytes)),
+            Ok(read) => {
+                hasher.update(&buffer[..read]);
+                bytes += read as u64;
+                observer.advance(Stage::Hash, read as u64);
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// What holds the bytes of an input, and the input's name without folders; `None` where the name is not UTF-8.
+///
+/// They differ for a raster inside a container, as GDAL names it (`GPKG:dem.gpkg:heights`, `NETCDF:"dem.nc":Band1`).
+fn named(path: &Path) -> Option<(Content, String)> {
+    let short = |path: &Path| path.file_name().unwrap_or_default().to_str().map(str::to_owned);
+    if path.is_dir() {
+        return Some((Content::Folder, short(path)?));
+    }
+    if path.exists() {
+        return Some((Content::File(path.to_path_buf()), short(path)?));
+    }
+    let text = path.to_str()?;
+    // As text, because `Path::starts_with` compares whole components, and these are /vsizip, /vsicurl and so on.
+    if text.starts_with("/vsi") {
+        // The part after a question mark may hold a secret key for the server.
+        let shown = short(Path::new(text.split('?').next().unwrap_or(text)))?;
+        return Some((Content::Virtual(path.to_path_buf()), shown));
+    }
+    let container =
+        text.split(':').map(|part| part.trim_matches('"')).find(|part| Path::new(part).is_file());
+    match container {
+        Some(container) => {
+            let name = text.replace(container, &short(Path::new(container))?);
+            Some((Content::File(PathBuf::from(container)), name))
+        }
+        None => Some((Content::File(path.to_path_buf()), short(path)?)),
+    }
+}
+
+#[cfg(test)]
+#[path = "inputs_tests.rs"]
+mod tests;

@@ -1,0 +1,175 @@
+//! Size, times and identity of a file, by which a change of its content is noticed.
+
+use std::{
+    fs::{self, Metadata},
+    io,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, SystemTime},
+};
+
+use corniche_gis::VirtualFile;
+
+/// Common file systems other than FAT note times at least this finely. Two writes within this time may carry the same time.
+const CLOCK: Duration = Duration::from_millis(20);
+
+/// What is noted of a file before it is read.
+#[derive(Debug)]
+pub(crate) enum Stamp {
+    /// A file on disk; for a raster in an archive, the archive.
+    File(PathBuf, FileState),
+    /// A file on a server: its size, and its `ETag` if the server gives one.
+    Remote { path: PathBuf, bytes: u64, etag: Option<String> },
+}
+
+/// The content of a file cannot change without a change of one of these values: neither by writing, nor by exchanging the
+/// file, nor by exchanging it and setting its old time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FileState {
+    size: u64,
+    modified: Option<SystemTime>,
+    /// Device and inode, and the time of the last change of anything, which nobody can set.
+    #[cfg(unix)]
+    identity: [i64; 4],
+}
+
+impl Stamp {
+    pub(super) fn of_file(path: &Path) -> io::Result<Self> {
+        Ok(Self::File(path.to_path_buf(), settled(path)?))
+    }
+
+    /// The stamp of a name that GDAL's virtual file systems understand.
+    pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
+        if let Some(container) = path.to_str().and_then(container) {
+            return Self::of_file(&container);
+        }
+        let bytes = VirtualFile::open(path)?.into_size()?;
+        Ok(Self::Remote { path: path.to_path_buf(), bytes, etag: VirtualFile::etag(path) })
+    }
+
+    /// Whether the file is still there and what it was; an error where it cannot be looked at.
+    pub(crate) fn still_holds(&self) -> io::Result<bool> {
+        match self {
+            Self::File(path, state) => match fs::metadata(path) {
+                Ok(now) => Ok(FileState::of(&now) == *state),
+                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+                Err(error) => Err(error),
+            },
+            Self::Remote { path, bytes, etag } => {
+                // Else GDAL answers without asking the server.
+                VirtualFile::forget(path);
+                let now = VirtualFile::open(path)?.into_size()?;
+                match (etag, VirtualFile::etag(path)) {
+                    (Some(_), None) => Err(io::Error::other("the server does not tell its ETag")),
+                    (then, etag) => Ok(now == *bytes && etag == *then),
+                }
+            }
+        }
+    }
+}
+
+impl FileState {
+    /// The size in bytes.
+    pub(super) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// When it was written last, nanoseconds after the start of 1970 (negative: before); `None` where the file system does not
+    /// tell.
+    pub(super) fn modified_ns(&self) -> Option<i64> {
+        let time = self.modified?;
+        let nanoseconds = match time.duration_since(SystemTime::UNIX_EPOCH) {
+            Ok(after) => i64::try_from(after.as_nanos()).ok()?,
+            Err(before) => -i64::try_from(before.duration().as_nanos()).ok()?,
+        };
+        Some(nanoseconds)
+    }
+
+    fn of(found: &Metadata) -> Self {
+        Self {
+            size: found.len(),
+            modified: found.modified().ok(),
+            #[cfg(unix)]
+            identity: {
+                use std::os::unix::fs::MetadataExt as _;
+                [
+                    found.dev().cast_signed(),
+                    found.ino().cast_signed(),
+                    found.ctime(),
+                    found.ctime_nsec(),
+                ]
+            },
+        }
+    }
+}
+
+/// The state of a file, once enough time has passed since its last change for the next one to carry another time.
+fn settled(path: &Path) -> io::Result<FileState> {
+    let mut found = fs::metadata(path)?;
+    // A file that is written continuously never settles. Its next change is then noticed by its time.
+    for _ in 0..3 {
+        let age = found.modified().ok().and_then(|time| time.elapsed().ok());
+        if age.is_none_or(|age| age >= CLOCK) {
+            break;
+        }
+        thread::sleep(CLOCK);
+        found = fs::metadata(path)?;
+    }
+    Ok(FileState::of(&found))
+}
+
+/// A name as GDAL takes it, with the path of the file on disk in it made absolute: of a virtual file's archive, of a container
+/// (`GPKG:dem.gpkg:heights`), or the whole name. Names of files on a server stay as they are.
+pub(super) fn absolute(name: &str) -> io::Result<String> {
+    let file = if name.starts_with("/vsi") {
+        match container(name) {
+            Some(file) => file,
+            None => return Ok(name.to_owned()),
+        }
+    } else if Path::new(name).exists() {
+        PathBuf::from(name)
+    } else {
+        let part = name.split(':').map(|part| part.trim_matches('"'));
+        part.map(Path::new).find(|part| part.is_file()).unwrap_or(Path::new(name)).to_path_buf()
+    };
+    if file.is_absolute() {
+        return Ok(name.to_owned());
+    }
+    let whole = std::path::absolute(&file)?;
+    // Both are made of `name`, which is text.
+    Ok(name.replacen(&*file.to_string_lossy(), &whole.to_string_lossy(), 1))
+}
+
+/// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,
+/// `/vsizip/{/data/a}/inner.hgt`.
+///
+/// `None` for a file on a server, even if a part of its name is the path of a local file.
+fn container(name: &str) -> Option<PathBuf> {
+    const LOCAL: [&str; 7] =
+        ["vsizip", "vsigzip", "vsitar", "vsi7z", "vsirar", "vsisubfile", "vsisparse"];
+    let handlers = name.match_indices("/vsi").map(|(at, _)| {
+        let rest = &name[at + 1..];
+        &rest[..rest.find('/').unwrap_or(rest.len())]
+    });
+    let mut handlers = handlers.map(|handler| LOCAL.contains(&handler)).peekable();
+    if handlers.peek().is_none() || handlers.any(|is_local| !is_local) {
+        return None;
+    }
+    let starts = name.match_indices(['/', ',', '{']).flat_map(|(at, sign)| {
+        let is_root = sign == "/" && at > 0;
+        is_root.then_some(at).into_iter().chain([at + 1])
+    });
+    for start in starts {
+        let rest = &name[start..];
+        let ends = rest.match_indices(['/', '}', '?']).map(|(at, _)| at).chain([rest.len()]);
+        let file = ends.map(|end| Path::new(&rest[..end])).find(|path| path.is_file());
+        if let Some(file) = file {
+            return Some(file.to_path_buf());
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+#[path = "stamp_tests.rs"]
+mod tests;

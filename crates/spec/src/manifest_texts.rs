@@ -1,0 +1,97 @@
+//! Texts and records that every manifest has: written by the build, compared by `verify`.
+
+use corniche_dem::{Clip, GridPlan};
+use corniche_geom::LatticePoint;
+use corniche_gis::{DatumOperation, libraries};
+use corniche_tileset::{ClipRecord, DatumOperationRecord, Manifest, VerticalRecord};
+
+use crate::extent::Outline;
+
+/// How tiles are numbered.
+pub const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
+                                 north; not the web's tile scheme";
+
+/// Unit of heights.
+pub const HEIGHT_UNIT: &str = "metre";
+
+/// The outline of the elevation files.
+#[must_use]
+pub fn outline(outline: &Outline) -> Vec<Vec<Vec<[i64; 2]>>> {
+    let ring = |ring: &Vec<LatticePoint>| ring.iter().map(|at| [at.u, at.v]).collect();
+    outline.iter().map(|rings| rings.iter().map(ring).collect()).collect()
+}
+
+/// The part of the elevation files that the package is of.
+#[must_use]
+pub fn clip(plan: &GridPlan) -> Option<ClipRecord> {
+    plan.clip.map(|Clip { nodes, whole_data_bounds, whole_wgs84_bounds }| ClipRecord {
+        nodes,
+        whole_data_bounds,
+        whole_wgs84_bounds,
+    })
+}
+
+/// How positions come from one datum to another, as packages record it.
+#[must_use]
+pub fn datum_operations(found: &[DatumOperation]) -> Vec<DatumOperationRecord> {
+    let record = |found: &DatumOperation| DatumOperationRecord {
+        from: found.from.clone(),
+        to: found.to.clone(),
+        operation: found.name.clone(),
+        accuracy_m: found.accuracy_m,
+        ballpark: found.is_ballpark,
+    };
+    found.iter().map(record).collect()
+}
+
+/// An operation between datums in words.
+#[must_use]
+pub fn operation_words(found: &DatumOperationRecord) -> String {
+    let DatumOperationRecord { from, to, operation, accuracy_m, ballpark: _ } = found;
+    let accuracy = accuracy_m.map_or("unknown accuracy".to_owned(), |m| format!("{m} m"));
+    format!("{operation:?} from {from} to {to} ({accuracy})")
+}
+
+/// What is to be said where PROJ takes other operations between datums than those that are recorded.
+#[must_use]
+pub fn other_operations(said: &[DatumOperationRecord], found: &[DatumOperationRecord]) -> String {
+    let list = |all: &[DatumOperationRecord]| match all {
+        [] => "none".to_owned(),
+        all => all.iter().map(operation_words).collect::<Vec<_>>().join("; "),
+    };
+    format!(
+        "between datums the package records {}; PROJ now takes {}: one of its grids may have been installed or removed since the build, so \
+         build the package again",
+        list(said),
+        list(found)
+    )
+}
+
+/// Whether a package tells of operations between datums that this program can compare with its own: its PROJ has the same registry. Packages
+/// of before tell of none, and can have the same `generator`.
+#[must_use]
+pub fn has_comparable_operations(manifest: &Manifest) -> bool {
+    !manifest.datum_operations.is_empty() && manifest.generator.ends_with(&libraries())
+}
+
+/// The same from what a package records.
+#[must_use]
+pub fn recorded_datum_operations(manifest: &Manifest) -> Vec<DatumOperation> {
+    let operation = |found: &DatumOperationRecord| DatumOperation {
+        from: found.from.clone(),
+        to: found.to.clone(),
+        name: found.operation.clone(),
+        accuracy_m: found.accuracy_m,
+        is_ballpark: found.ballpark,
+        // The build was allowed to use it, and what would have been better is not recorded.
+        must_be_allowed: false,
+        better: None,
+    };
+    manifest.datum_operations.iter().map(operation).collect()
+}
+
+/// What heights are measured from.
+#[must_use]
+pub fn datum(plan: &GridPlan) -> &str {
+    plan.vertical_datum.as_deref().unwrap_or(VerticalRecord::UNKNOWN_DATUM)
+}

@@ -1,0 +1,159 @@
+//! The settings that determine, for given inputs, the tiles of a package and the heights in them: those of [`SettingsRecord`].
+//!
+//! The other settings change the manifest at most: the credits, the name of the program, and the names of the input files.
+//!
+//! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
+//! and the extract as the build did.
+
+use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_gis::Polygon;
+use corniche_roads::{ClassFilter, FrcTable};
+use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
+use sha2::{Digest, Sha256};
+
+use crate::{RoadSettings, TerrainSettings, hex::hex};
+
+/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell; the levels of `photo`
+/// are given or derived from the photos.
+pub fn of(
+    terrain: &TerrainSettings,
+    roads: &RoadSettings,
+    max_error_m: f64,
+    photo: Option<PhotoRecord>,
+    (areas, lines): (Option<&AreaTable>, &[ClassedLayer]),
+) -> SettingsRecord {
+    // Every field is named, so that a new one cannot be forgotten here.
+    let TerrainSettings {
+        open,
+        plan,
+        height_range_m,
+        allow_fine_cell: _,
+        allow_ballpark: _,
+        max_error_m: _,
+        relief,
+    } = terrain;
+    let OpenOptions {
+        band,
+        dem_crs,
+        vertical_unit,
+        nodata,
+        dem_vertical_crs,
+        vertical_crs,
+        vertical_shift_m,
+    } = open;
+    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
+        plan;
+    let RoadSettings { table, filter, simplify_cells, spans } = roads;
+    SettingsRecord {
+        max_error_m,
+        fill_voids: *fill_voids,
+        nodata: nodata.clone(),
+        height_range_m: *height_range_m,
+        dem_band: *band,
+        dem_crs: dem_crs.clone(),
+        dem_vertical_crs: dem_vertical_crs.clone(),
+        vertical_crs: vertical_crs.clone(),
+        vertical_shift_m: *vertical_shift_m,
+        vertical_unit: vertical_unit.clone(),
+        crs: crs.clone(),
+        cell_m: *cell,
+        cell_every: *cell_every,
+        scale_latitude_deg: *scale_latitude_deg,
+        bounds_deg: *bounds_deg,
+        polygon: polygon.as_ref().map(polygon_record),
+        relief: *relief,
+        frc_table: table.name().to_owned(),
+        frc_table_sha256: table_sha256(table),
+        class_labels: table.recorded_labels().map(Vec::from),
+        classes: table.chosen_classes(),
+        class_max_cell_m: filter.class_max_cell_m().to_vec(),
+        simplify_cells: *simplify_cells,
+        photo,
+        areas: areas.map(area_table_record),
+        boundaries: lines.contains(&ClassedLayer::Boundaries),
+        spans: *spans,
+    }
+}
+
+/// What is recorded of a table of areas.
+#[must_use]
+pub fn area_table_record(table: &AreaTable) -> AreaTableRecord {
+    let sha256 = hex(&Sha256::digest(table.canonical_text()));
+    AreaTableRecord { table: table.name().to_owned(), sha256 }
+}
+
+/// What is recorded of a polygon: the name of its file, and the hash of what it encloses.
+fn polygon_record(polygon: &Polygon) -> PolygonRecord {
+    let name = polygon.path().file_name().unwrap_or(polygon.path().as_os_str());
+    PolygonRecord { name: name.to_string_lossy().into_owned(), sha256: polygon_sha256(polygon) }
+}
+
+/// SHA-256 of a polygon's coordinate system and corners, whatever the format of its file.
+#[must_use]
+pub fn polygon_sha256(polygon: &Polygon) -> String {
+    hex(&Sha256::digest(polygon.canonical_bytes()))
+}
+
+/// The settings for the ground that a package records. Of a polygon only the hash is recorded, so it is left out here: it comes from its
+/// file.
+#[must_use]
+pub fn terrain(record: &SettingsRecord) -> TerrainSettings {
+    TerrainSettings {
+        open: OpenOptions {
+            band: record.dem_band,
+            dem_crs: record.dem_crs.clone(),
+            vertical_unit: record.vertical_unit.clone(),
+            nodata: record.nodata.clone(),
+            dem_vertical_crs: record.dem_vertical_crs.clone(),
+            vertical_crs: record.vertical_crs.clone(),
+            vertical_shift_m: record.vertical_shift_m,
+        },
+        plan: PlanOptions {
+            crs: record.crs.clone(),
+            cell: record.cell_m,
+            cell_every: record.cell_every,
+            scale_latitude_deg: record.scale_latitude_deg,
+            fill_voids: record.fill_voids,
+            bounds_deg: record.bounds_deg,
+            polygon: None,
+        },
+        height_range_m: record.height_range_m,
+        // The build has begun already.
+        allow_fine_cell: true,
+        allow_ballpark: true,
+        max_error_m: Some(record.max_error_m),
+        relief: record.relief,
+    }
+}
+
+/// The settings for roads that a package records, with its table of classes; `None` where the record makes no filter.
+#[must_use]
+pub fn roads(record: &SettingsRecord, table: FrcTable) -> Option<RoadSettings> {
+    let &SettingsRecord { simplify_cells, spans, .. } = record;
+    Some(RoadSettings { table, filter: filter(record)?, simplify_cells, spans })
+}
+
+/// Which levels show which class; `None` where the record makes no filter.
+#[must_use]
+pub fn filter(record: &SettingsRecord) -> Option<ClassFilter> {
+    ClassFilter::new(record.class_max_cell_m.as_slice().try_into().ok()?).ok()
+}
+
+/// SHA-256 of a record as JSON.
+#[must_use]
+pub fn sha256(record: &SettingsRecord) -> String {
+    // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
+    let json = serde_json::to_string(record).unwrap_or_else(|_| format!("{record:?}"));
+    hex(&Sha256::digest(json))
+}
+
+/// SHA-256 of an FRC table's text.
+#[must_use]
+pub fn table_sha256(table: &FrcTable) -> String {
+    hex(&Sha256::digest(table.canonical_text()))
+}
+
+#[cfg(test)]
+#[path = "settings_record_tests.rs"]
+mod tests;

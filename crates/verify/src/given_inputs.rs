@@ -1,0 +1,76 @@
+//! The files that a verification is given, found to be those of the build before the long work begins.
+
+use std::path::PathBuf;
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_spec::{
+    Observer,
+    inputs::{Inputs, OtherInputs},
+};
+use corniche_tileset::Manifest;
+
+use super::{
+    checks::{Check, Findings},
+    dem_inputs,
+    error::VerifyError,
+    given_files::GivenFiles,
+    osm, osm_layers, photo_files,
+    verify_settings::VerifySettings,
+};
+
+/// What was given beside the package.
+pub(crate) struct GivenInputs {
+    /// The elevation files as the build opened them; `None` inside where their grid is not the package's.
+    pub dem: Option<GivenFiles<Option<(Dem, GridPlan)>>>,
+    pub photo: Option<GivenFiles<()>>,
+    /// The extracts, in the order in which the build read them.
+    pub osm: Option<GivenFiles<Vec<PathBuf>>>,
+    /// What was seen of them.
+    pub(crate) findings: Findings,
+}
+
+impl GivenInputs {
+    /// Fails where one of the files, or a table, is not that of the build.
+    pub(crate) fn open(
+        manifest: &Manifest,
+        settings: &VerifySettings,
+        observer: &dyn Observer,
+    ) -> Result<Self, VerifyError> {
+        let mut findings = Findings::default();
+        let mut checks: Vec<Check> = Vec::new();
+        let dem = (!settings.dem.is_empty()).then(|| {
+            looked_at(Inputs::find(&settings.dem, OtherInputs::default())?, |inputs| {
+                dem_inputs::open(settings, inputs, manifest, &mut checks, observer)
+            })
+        });
+        let dem = dem.transpose()?;
+        findings.merge(checks);
+        let photo = (!settings.photo.is_empty()).then(|| {
+            let others = OtherInputs { photo: &settings.photo, ..OtherInputs::default() };
+            looked_at(Inputs::find(&[], others)?, |inputs| {
+                let given = inputs.hash(observer)?;
+                photo_files::check_inputs(manifest, &settings.photo, &given, &mut findings)
+            })
+        });
+        let photo = photo.transpose()?;
+        let osm = settings.osm.as_ref().map(|asked| {
+            let others = OtherInputs { osm: &asked.paths, ..OtherInputs::default() };
+            looked_at(Inputs::find(&[], others)?, |inputs| {
+                let paths = osm::check_inputs(manifest, asked, inputs, &mut findings, observer)?;
+                osm_layers::table(asked.areas.as_ref(), manifest)?;
+                Ok(paths)
+            })
+        });
+        let osm = osm.transpose()?;
+        Ok(Self { dem, photo, osm, findings })
+    }
+}
+
+fn looked_at<T>(
+    inputs: Inputs,
+    look: impl FnOnce(&Inputs) -> Result<T, VerifyError>,
+) -> Result<GivenFiles<T>, VerifyError> {
+    let found = look(&inputs);
+    let found = VerifyError::unless_changed(&inputs, found)?;
+    Ok(GivenFiles { inputs, found })
+}

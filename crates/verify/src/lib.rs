@@ -1,0 +1,130 @@
+//! Checks whether a package keeps its promises, by looking at every tile.
+
+pub mod area_seams;
+mod areas;
+mod attributes;
+mod checks;
+mod decoded_tiles;
+mod dem;
+mod dem_inputs;
+mod derived_records;
+mod deviation_checks;
+mod deviations;
+mod each_tile;
+mod elevation;
+mod error;
+mod geo_against_sv;
+mod georeference;
+mod given_files;
+mod given_inputs;
+mod grid;
+mod header;
+mod layer_sums;
+mod line_names;
+mod lines;
+mod manifest_sums;
+mod near_index;
+mod network;
+mod one_tile;
+mod osm;
+mod osm_layers;
+mod osm_tile;
+mod photo_against_files;
+mod photo_files;
+mod photos;
+mod polygon;
+mod polygon_cut;
+mod read_again;
+mod relief;
+mod report;
+mod roads_of_parent;
+mod roads_on_tin;
+mod samples;
+mod seams;
+mod span_order;
+mod spans;
+mod temporary_store;
+mod tile_place;
+mod tile_sums;
+mod tiles;
+mod tin_against_parent;
+mod triangle_soup;
+mod verify_settings;
+mod vertices_against_dem;
+
+use corniche_areas::ClassedLayer;
+use corniche_spec::Observer;
+use corniche_tileset::FilePackage;
+
+use decoded_tiles::DecodedTiles;
+use given_inputs::GivenInputs;
+
+pub use self::{
+    checks::{Check, CheckId, Needs},
+    elevation::RecordedElevation,
+    error::VerifyError,
+    line_names::line_names,
+    network::network,
+    report::{ErrorFigures, GapFigures, VerifyReport},
+    verify_settings::{VerifyOsm, VerifySettings},
+};
+
+/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or
+/// the extract it also checks what the package says about them. [`CheckId`] lists the checks.
+///
+/// # Errors
+/// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of the build. A broken promise is a
+/// finding, not an error.
+pub fn verify(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
+    let report = look_at_all(package, settings, observer);
+    // Not all checks look after each tile.
+    each_tile::check_readable(package)?;
+    report
+}
+
+fn look_at_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
+    // Before the long work.
+    if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
+        polygon::check(package.manifest(), settings.polygon.as_ref())?;
+    }
+    let GivenInputs { dem, photo, osm, findings: of_inputs } =
+        GivenInputs::open(package.manifest(), settings, observer)?;
+    let mut given = vec![Needs::Package];
+    let tiles = DecodedTiles::new(package);
+    let (mut report, mut findings) = tiles::verify(&tiles, settings.threads, observer)?;
+    findings.merge(of_inputs);
+    photos::verify(package, settings.threads, &mut findings, observer)?;
+    areas::verify(package, settings.threads, &mut findings, observer)?;
+    for layer in ClassedLayer::ALL {
+        lines::verify(package, layer, settings.threads, &mut findings, observer)?;
+    }
+    spans::verify(&tiles, settings.threads, &mut findings, observer)?;
+    manifest_sums::verify(package.manifest(), &mut findings);
+    derived_records::verify(package.manifest(), &mut findings);
+    header::verify(package, &mut findings)?;
+    grid::verify(package.manifest(), &mut findings);
+    georeference::verify(package.manifest(), &mut findings);
+    if let Some(files) = &dem {
+        given.push(Needs::Dem);
+        dem::verify(&tiles, files, settings, &mut report, observer)?;
+    }
+    if let Some(files) = &photo {
+        given.push(Needs::Photo);
+        photo_files::verify(package, files, settings, &mut findings, observer)?;
+    }
+    if let (Some(asked), Some(files)) = (&settings.osm, &osm) {
+        given.push(Needs::Osm);
+        osm::verify(&tiles, asked, files, settings, &mut findings, observer)?;
+    }
+    findings.merge(std::mem::take(&mut report.checks));
+    report.checks = findings.into_checks(&given);
+    Ok(report)
+}

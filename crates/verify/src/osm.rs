@@ -1,0 +1,308 @@
+//! Reads the extract again, clips its roads and lays them on the package's own ground, and compares the result with the
+//! package, tile by tile. Whether roads lie on the ground is checked elsewhere, without the extract and with other geometry.
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use corniche_geom::TileId;
+use corniche_pieces::ExtractError;
+use corniche_pieces::{
+    extract::partition::{ExtractInput, partition},
+    roads::{
+        counts::road_counts,
+        ground_lines,
+        lay::ClassSums,
+        losses::{LossFold, Sums},
+        pieces::TilePieces,
+        totals::RoadTotals,
+    },
+    spans::{outer_ground::whole_rectangle, span_network::SpanInputs},
+};
+use corniche_roads::FrcTable;
+use corniche_spec::{
+    Observer,
+    data_tiles::DataTiles,
+    inputs::{InputKind, Inputs},
+    levels::{Levels, most_scale},
+    settings_record,
+    true_lengths::TrueLengths,
+};
+use corniche_store::Artifacts;
+use corniche_tileset::{InputRecord, Manifest, pmtiles_order};
+use corniche_work::{Silent, Stage, workers};
+
+use super::{
+    checks::{CheckId, Findings, as_json},
+    decoded_tiles::DecodedTiles,
+    error::VerifyError,
+    georeference,
+    given_files::GivenFiles,
+    grid, osm_layers,
+    osm_tile::{Found, Laying, look_at},
+    polygon_cut,
+    temporary_store::TemporaryStore,
+    verify_settings::{VerifyOsm, VerifySettings},
+};
+
+pub(crate) fn verify(
+    tiles: &DecodedTiles<'_>,
+    osm: &VerifyOsm,
+    files: &GivenFiles<Vec<PathBuf>>,
+    settings: &VerifySettings,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let compared = compare_all(tiles, osm, settings, &files.found, findings, observer);
+    VerifyError::unless_changed(&files.inputs, compared)
+}
+
+fn compare_all(
+    tiles: &DecodedTiles<'_>,
+    osm: &VerifyOsm,
+    request: &VerifySettings,
+    paths: &[PathBuf],
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let package = tiles.package;
+    let manifest = package.manifest();
+    let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
+    // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
+    let (Some(settings), Some([first, last])) = (
+        settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
+        grid::data_tiles(manifest),
+    ) else {
+        return Ok(());
+    };
+    let Ok(crs) = georeference::recorded(manifest) else { return Ok(()) };
+    let projection = crs.projection(manifest.area_deg())?;
+    let frame = manifest.frame;
+    let polygon = request.polygon.as_ref();
+    let polygon = polygon
+        .map(|polygon| crs.working().polygon_on_lattice(polygon, manifest.area_deg(), &frame))
+        .transpose()?;
+    let widest = most_scale(manifest.scale.largest);
+    let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
+    let lines = manifest.settings.lines();
+    let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
+    let work = TemporaryStore::new(observer)?;
+    let (store, scratch) = (&work.store, work.scratch()?);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(request.threads)
+        .build()
+        .map_err(ExtractError::from)?;
+    let outline = manifest.data_outline();
+    let input = ExtractInput {
+        osm: paths,
+        settings: &settings,
+        areas: area_table,
+        lines: &lines,
+        data: DataTiles::spanning(first, last),
+        projection: &projection,
+        levels: &levels,
+        lengths: &lengths,
+        data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
+        node_bounds: frame.lattice_bounds(manifest.data_nodes()),
+        clip: grid::clip_of(manifest),
+        bounds_deg: manifest.settings.bounds_deg,
+        outline: outline.as_ref(),
+        area_deg: manifest.area_deg(),
+        polygon: polygon.as_ref(),
+        pool: &pool,
+        memory_bytes: osm.memory_bytes,
+    };
+    let roads = partition(&input, store, &scratch, observer)?;
+    let mut fates = LossFold::new(&scratch, osm.memory_bytes);
+    let spans = settings.spans;
+    let laying = Laying { tiles, levels: &levels, data: [first, last], spans, lengths: &lengths };
+    let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
+    let losses = fates.finish(&roads, store, &Silent)?;
+    check_counts(manifest, &roads, &losses, findings);
+    if area_table.is_some() {
+        osm_layers::compare_areas(package, store, request.threads, findings, observer)?;
+    }
+    for &layer in &lines {
+        osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
+    }
+    if settings.spans {
+        let whole = whole_rectangle(&frame, &manifest.whole_data_bounds());
+        let inputs = SpanInputs { store, frame: &frame, projection: &projection, whole };
+        let spans = (inputs, &losses);
+        osm_layers::compare_spans(tiles, spans, request.threads, findings, observer)?;
+    }
+    if let Some(region) = &polygon {
+        polygon_cut::verify(package, region, request.threads, findings, observer)?;
+    }
+    check_growth(manifest, &classes, findings);
+    Ok(())
+}
+
+/// The table with the classes on that the package has chosen.
+pub(crate) fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
+    let classes = manifest.settings.classes.as_deref();
+    // Classes that make no choice are not those of the table's hash either.
+    let chosen = classes.and_then(|classes| table.clone().with_classes(classes).ok());
+    chosen.unwrap_or_else(|| table.clone())
+}
+
+/// Checks that the extracts and the table of classes are those of the build. Returns the extracts in the order in which they were
+/// read: where versions are the same, the first one counts, and files may have other names now.
+pub(crate) fn check_inputs(
+    manifest: &Manifest,
+    osm: &VerifyOsm,
+    inputs: &Inputs,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<Vec<PathBuf>, VerifyError> {
+    if !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
+        return Err(VerifyError::NoExtract);
+    }
+    let given = inputs.hash(observer)?;
+    let extracts = || manifest.inputs.iter().filter(|input| InputKind::Osm.is_of(input));
+    // By content, not by name or order: files may have been renamed.
+    let in_order = |records: &mut dyn Iterator<Item = &InputRecord>| {
+        let mut records: Vec<InputRecord> = records.cloned().collect();
+        records.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+        records
+    };
+    let (said, found) = (in_order(&mut extracts()), in_order(&mut given.iter()));
+    let hashes = |records: &[InputRecord]| -> Vec<String> {
+        records.iter().map(|record| record.sha256.clone()).collect()
+    };
+    if hashes(&said) != hashes(&found) {
+        let expected = extracts().map(|input| input.name.clone()).collect();
+        return Err(VerifyError::OtherOsm { paths: osm.paths.clone(), expected });
+    }
+    for (said, found) in said.iter().zip(&found) {
+        findings.look(CheckId::OsmInputs, said.bytes == found.bytes, || {
+            format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+        });
+    }
+    let settings = &manifest.settings;
+    if settings_record::table_sha256(&chosen(&osm.table, manifest)) != settings.frc_table_sha256 {
+        let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());
+        return Err(if given == expected {
+            VerifyError::OtherTableOfThatName { name: expected }
+        } else {
+            VerifyError::OtherTable { given, expected }
+        });
+    }
+    // Packages of before recorded no names of classes.
+    let names_of_classes = settings.class_labels.as_ref();
+    let is_so_called = names_of_classes.is_none_or(|labels| osm.table.class_labels() == **labels);
+    findings.look(CheckId::OsmInputs, is_so_called, || {
+        format!("the classes of FRC table {:?} are not called as recorded", settings.frc_table)
+    });
+    findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {
+        format!("the FRC table is {:?}, {:?} is recorded", osm.table.name(), settings.frc_table)
+    });
+    let mut hashed: Vec<(&InputRecord, &PathBuf)> = given.iter().zip(&osm.paths).collect();
+    let in_order = extracts().filter_map(|said| {
+        let at = hashed.iter().position(|(found, _)| found.sha256 == said.sha256)?;
+        Some(hashed.remove(at).1.clone())
+    });
+    Ok(in_order.collect())
+}
+
+/// Lays all roads again and compares each tile with the package. What becomes of the roads goes to `fates`; the sums by level
+/// and class are those of the roads laid again.
+fn lay(
+    laying: &Laying<'_>,
+    store: &dyn Artifacts,
+    fates: &mut LossFold<'_>,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
+    let [first, last] = laying.data;
+    let mut ids = laying.tiles.package.tile_ids()?;
+    for y in first.y()..=last.y() {
+        for x in first.x()..=last.x() {
+            ids.extend(TileId::new(first.z(), x, y).ok());
+        }
+    }
+    ids.sort_unstable_by_key(|&id| pmtiles_order(id));
+    ids.dedup();
+    observer.begin(Stage::Tiles, Some(ids.len() as u64));
+    let mut classes: BTreeMap<(u8, u8), ClassSums> = BTreeMap::new();
+    workers::in_order_unless_cancelled(
+        observer,
+        threads,
+        ids.len(),
+        || Ok::<_, VerifyError>(()),
+        |(), index| {
+            let id = ids[index];
+            Ok(look_at(laying, id, &TilePieces::load(store, id)?))
+        },
+        |index, found: Found| {
+            findings.merge(found.findings);
+            fates.add(&found.fates)?;
+            ground_lines::put(&found.ground_lines, store, ids[index])?;
+            for (class, found) in found.classes {
+                classes.entry((ids[index].z(), class)).or_default().merge(&found);
+            }
+            observer.advance(Stage::Tiles, 1);
+            Ok(())
+        },
+    )?;
+    observer.end(Stage::Tiles);
+    Ok(classes)
+}
+
+/// Compares the counts and lengths of roads.
+fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings: &mut Findings) {
+    let said = &manifest.counts;
+    let wanted = road_counts(said.samples, roads, losses);
+    let mut same = |what: &str, said: String, found: String| {
+        findings.look(CheckId::OsmCounts, said == found, || {
+            format!("{what}: {said} are recorded, {found} are in the extract")
+        });
+    };
+    same("roads_in", as_json(&said.roads_in), as_json(&wanted.roads_in));
+    same("roads_kept", as_json(&said.roads_kept), as_json(&wanted.roads_kept));
+    same("defects", as_json(&said.defects), as_json(&wanted.defects));
+    same("unknown_highways", as_json(&said.unknown_highways), as_json(&wanted.unknown_highways));
+    same("blobs_passed_over", as_json(&said.blobs_passed_over), as_json(&wanted.blobs_passed_over));
+    same(
+        "tags_taken_otherwise",
+        as_json(&said.tags_taken_otherwise),
+        as_json(&wanted.tags_taken_otherwise),
+    );
+    same("highways_in", as_json(&said.highways_in), as_json(&wanted.highways_in));
+    same("highways_left_out", as_json(&said.highways_left_out), as_json(&wanted.highways_left_out));
+    same("left_out", as_json(&said.left_out), as_json(&wanted.left_out));
+    same("roads_in_um", as_json(&said.roads_in_um), as_json(&wanted.roads_in_um));
+    same("roads_kept_um", as_json(&said.roads_kept_um), as_json(&wanted.roads_kept_um));
+    // Packages of before count otherwise what is lost in the padding of tiles.
+    let is_of_before = said.roads_lost == losses.lost_by_tiles;
+    let lost = if is_of_before { &losses.lost_by_tiles } else { &wanted.roads_lost };
+    same("roads_lost", as_json(&said.roads_lost), as_json(lost));
+    same("classes", as_json(&said.classes), as_json(&wanted.classes));
+}
+
+/// Compares the numbers of source points and simplified points of each level and class.
+fn check_growth(
+    manifest: &Manifest,
+    classes: &BTreeMap<(u8, u8), ClassSums>,
+    findings: &mut Findings,
+) {
+    let wanted: BTreeMap<(u8, u8), [u64; 2]> = classes
+        .iter()
+        .filter(|(_, sums)| sums.source_vertices > 0)
+        .map(|(&key, sums)| (key, [sums.source_vertices, sums.simplified_vertices]))
+        .collect();
+    let said: BTreeMap<(u8, u8), [u64; 2]> = manifest
+        .growth
+        .iter()
+        .map(|row| ((row.level, row.class), [row.source_vertices, row.simplified_vertices]))
+        .collect();
+    let keys: std::collections::BTreeSet<_> = wanted.keys().chain(said.keys()).collect();
+    for key in keys {
+        let (said, wanted) = (said.get(key), wanted.get(key));
+        findings.look(CheckId::OsmGrowth, said == wanted, || {
+            format!(
+                "level {} class {}: {said:?} source and simplified points are recorded, {wanted:?} were found",
+                key.0, key.1
+            )
+        });
+    }
+}

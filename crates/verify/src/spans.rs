@@ -1,0 +1,399 @@
+//! The bridges and tunnels of all tiles: where they end, on which side of the ground they are, which is above, and what neighbours have of them.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+};
+
+use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
+use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_spans::{SpanKind, SpanReason};
+use corniche_spec::{Observer, inputs::InputKind};
+use corniche_tileset::{
+    Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode, decode_spans,
+    payload_sizes,
+};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
+    error::VerifyError,
+    layer_sums::{Counts, OfTile, look_at_layer},
+    near_index::NearIndex,
+    span_order::{self, OrderedCrossing, Piece},
+    tile_place::TilePlace,
+    triangle_soup::TriangleSoup,
+};
+
+/// A bridge may be below the ground by this, and a tunnel above it: points are put on a lattice of a millimetre.
+const SIDE_M: f64 = 0.01;
+/// The upper one of two spans that cross may be below the other by this: their lines are simplified, and the crossing moves.
+const LEVEL_M: f64 = 0.05;
+/// Places on the lattice are the same within so many steps.
+const NEAR_STEPS: f64 = 2.0;
+
+/// Steps of work on a tile: each vertex that is compared with a segment of a run is one.
+const MOST_STEPS: u64 = 1 << 28;
+
+/// An end of a way's line on the border of a tile: its level, way and place.
+type BorderEnd = (u8, i64, LatticePoint);
+/// What a tile has there: the height of a run in steps, `None` on the ground.
+type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
+
+pub(crate) fn verify(
+    tiles: &DecodedTiles<'_>,
+    threads: usize,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let package = tiles.package;
+    let manifest = package.manifest();
+    let record = manifest.spans.as_ref();
+    let has_extract = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
+    let is_wanted = manifest.settings.spans && has_extract;
+    findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
+        "spans are counted and were not asked for, or the other way round".to_owned()
+    });
+    let levels = record.iter().flat_map(|record| &record.levels);
+    let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
+    let ends: Mutex<EndsByPlace> = Mutex::default();
+    let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
+    // Heights of both are rounded away from the ground.
+    let least_m = LEVEL_M.max(2.0 * manifest.vertical.quantum_m);
+    let look_at = |id| look_at(tiles, id, least_m, (&ends, &crossings));
+    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
+    look_at_reversed(told(manifest, SpanReason::OrderReversed), crossings, findings);
+    let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
+    for ((level, way_id, at), of_tiles) in ends {
+        let [(first, height), others @ ..] = &of_tiles[..] else { continue };
+        let agree = others.iter().all(|(_, other)| other == height);
+        findings.look(CheckId::SpanSeams, agree, || {
+            format!("way {way_id} at {at:?} of level {level}: {height:?} steps in tile {first}, {others:?} beside it")
+        });
+    }
+    Ok(())
+}
+
+/// The crossings against the order of layers: only these are kept. The others are counted.
+fn reversed(
+    all: Vec<OrderedCrossing>,
+    least_m: f64,
+    findings: &mut Findings,
+) -> Vec<OrderedCrossing> {
+    let (reversed, ordered): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|crossing| crossing.free_m < -least_m);
+    for _ in ordered {
+        findings.look(CheckId::SpanOrder, true, String::new);
+    }
+    reversed
+}
+
+/// Bridges cross against the order of their layers as often as the manifest tells.
+fn look_at_reversed(
+    told: u64,
+    mut crossings: Vec<(TileId, OrderedCrossing)>,
+    findings: &mut Findings,
+) {
+    crossings.sort_by_key(|&(id, crossing)| (id, crossing.way_ids));
+    for (number, (id, crossing)) in (1..).zip(crossings) {
+        let OrderedCrossing { way_ids: [upper, lower], free_m } = crossing;
+        findings.look(CheckId::SpanOrder, number <= told, || {
+            let below_m = -free_m;
+            format!(
+                "in tile {id} way {upper} is {below_m:.3} m below way {lower}, whose layer is lower"
+            )
+        });
+    }
+}
+
+/// How often the manifest tells a reason to look at bridges or tunnels.
+fn told(manifest: &Manifest, wanted: SpanReason) -> u64 {
+    let reasons = manifest.spans.iter().flat_map(|record| &record.counts.reasons);
+    reasons.filter(|(reason, _)| reason == wanted.id()).map(|(_, count)| count).sum()
+}
+
+/// What is collected of all tiles: what lies on borders, and where spans cross on the finest level against the order of their layers.
+type Collected<'a> = (&'a Mutex<EndsByPlace>, &'a Mutex<Vec<(TileId, OrderedCrossing)>>);
+
+/// The upper one of two spans that cross may be below the other by `least_m`.
+fn look_at(
+    tiles: &DecodedTiles<'_>,
+    id: TileId,
+    least_m: f64,
+    (ends, crossings): Collected<'_>,
+) -> OfTile {
+    let mut found = OfTile::default();
+    // Tiles that cannot be read are told elsewhere.
+    let Some(bytes) = tiles.package.tile(id).ok().flatten() else { return found };
+    let manifest = tiles.package.manifest();
+    let quantum_m = manifest.vertical.quantum_m;
+    let Ok(runs) = decode_spans(&bytes, id, &manifest.frame, quantum_m) else { return found };
+    let of_structures = structures(&bytes, id, manifest);
+    if runs.is_empty() && of_structures.is_empty() {
+        return found;
+    }
+    let whole = tiles.of(id);
+    let alone;
+    let payload = if let Some(payload) = whole.payload() {
+        payload
+    } else {
+        // Damage of other sections is told elsewhere.
+        let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
+        let read = decode(&bytes, id, &manifest.frame, quantum_m, wanted);
+        let Ok(read) = read else { return found };
+        alone = read;
+        &alone
+    };
+    let Some(terrain) = &payload.terrain else { return found };
+    let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
+    let surface = Surface::new(&terrain.tin, placement);
+    let lines = lines_of_structures(payload, &of_structures, &surface);
+    let bounds = manifest.frame.tile_lattice_bounds(id);
+    put_ends((id, &bounds), &lines, &runs, ends);
+    let place = TilePlace::of(&manifest.frame, id);
+    let ground = tiles.ground(id);
+    let work = Work::new(MOST_STEPS);
+    let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
+    for run in &runs {
+        let own = lines.get(&(run.way_id, run.class, run.structure == Structure::Tunnel));
+        tile.look_at_ends(run, own, &mut found.findings);
+        tile.look_at_side(run, own, &mut found.findings);
+        if let Err(error) = work.check() {
+            found.findings.look(CheckId::SpanSide, false, || {
+                format!(
+                    "tile {id}: it has more runs over more ground than any writer has made: {error}"
+                )
+            });
+            break;
+        }
+    }
+    // Lifts are those of the finest level.
+    if id.z() == manifest.frame.max_level() {
+        match span_order::crossings(&tile.pieces(&runs, &of_structures), &work) {
+            Ok(all) => {
+                let reversed = reversed(all, least_m, &mut found.findings);
+                let reversed = reversed.into_iter().map(|crossing| (id, crossing));
+                crossings.lock().unwrap_or_else(PoisonError::into_inner).extend(reversed);
+            }
+            Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
+                format!("tile {id}: more of its runs lie over each other than any writer has made: {error}")
+            }),
+        }
+    }
+    let points = runs.iter().map(|run| run.points.len() as u64).sum();
+    let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
+    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
+    found
+}
+
+/// The GEO lines of a bridge or a tunnel: places in lattice steps, with heights.
+struct WayLines {
+    /// First and last place of each line.
+    ends: Vec<[[f64; 2]; 2]>,
+    /// The straight pieces of all lines.
+    pieces: Vec<[[f64; 3]; 2]>,
+    near: NearIndex,
+}
+
+impl WayLines {
+    fn new(lines: &[Vec<[f64; 3]>]) -> Self {
+        let flat = |[u, v, _]: [f64; 3]| [u, v];
+        let ends_of = |line: &Vec<[f64; 3]>| Some([flat(*line.first()?), flat(*line.last()?)]);
+        let pieces: Vec<[[f64; 3]; 2]> =
+            lines.iter().flat_map(|line| line.array_windows().copied()).collect();
+        let near = NearIndex::new(pieces.iter().map(|piece| piece.map(flat)));
+        Self { ends: lines.iter().filter_map(ends_of).collect(), pieces, near }
+    }
+
+    /// The pieces that come near a box, and perhaps others.
+    fn near(&self, corners: [[f64; 2]; 2], work: &Work) -> impl Iterator<Item = [[f64; 3]; 2]> {
+        // Places along a line are measured as far beyond its ends as across it.
+        self.near.near(corners, 2.0 * NEAR_STEPS, work).map(|number| self.pieces[number])
+    }
+}
+
+/// Lines by way, class and whether it is a tunnel.
+type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), WayLines>;
+
+/// The ways of a tile that are bridges or tunnels, with their layers.
+fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (Structure, i8)> {
+    let quantum_m = manifest.vertical.quantum_m;
+    let read = decode(bytes, id, &manifest.frame, quantum_m, Sections::ATTRIBUTES);
+    let records = read.map(|payload| payload.attributes).unwrap_or_default();
+    let ways = records
+        .into_iter()
+        .map(|record| (record.way_id, (record.attributes.structure, record.attributes.layer)));
+    ways.filter(|(_, (structure, _))| *structure != Structure::Ground).collect()
+}
+
+fn lines_of_structures(
+    payload: &TilePayload,
+    structures: &BTreeMap<i64, (Structure, i8)>,
+    surface: &Surface,
+) -> Lines {
+    let mut lines: BTreeMap<_, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
+    for road in &payload.roads_geo {
+        let Some((structure, _)) = structures.get(&road.way_id) else { continue };
+        if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
+            let key = (road.way_id, road.class, *structure == Structure::Tunnel);
+            lines.entry(key).or_default().push(vertices);
+        }
+    }
+    lines.into_iter().map(|(key, own)| (key, WayLines::new(&own))).collect()
+}
+
+/// Adds what a tile has on its border: ends of lines, and the heights of runs that end there.
+fn put_ends(
+    (id, bounds): (TileId, &LatticeBounds),
+    lines: &Lines,
+    runs: &[SpanRun],
+    all: &Mutex<EndsByPlace>,
+) {
+    let mut own: BTreeMap<BorderEnd, Option<i64>> = BTreeMap::new();
+    let is_on_border = |at: &LatticePoint| {
+        at.u == bounds.min.u || at.u == bounds.max.u || at.v == bounds.min.v || at.v == bounds.max.v
+    };
+    for (&(way_id, ..), own_lines) in lines {
+        for &[u, v] in own_lines.ends.iter().flatten() {
+            let at = LatticePoint::new(u.round() as i64, v.round() as i64);
+            if is_on_border(&at) {
+                own.entry((id.z(), way_id, at)).or_default();
+            }
+        }
+    }
+    for run in runs {
+        for end in [run.points.first(), run.points.last()].into_iter().flatten() {
+            if let (SpanHeight::Steps(steps), true) = (end.height, is_on_border(&end.at)) {
+                own.insert((id.z(), run.way_id, end.at), Some(steps));
+            }
+        }
+    }
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    for (place, height) in own {
+        all.entry(place).or_default().push((id, height));
+    }
+}
+
+/// The ground of a tile.
+struct Tile<'a> {
+    id: TileId,
+    place: TilePlace,
+    ground: &'a TriangleSoup,
+    surface: &'a Surface,
+    quantum_m: f64,
+    work: &'a Work,
+}
+
+impl Tile<'_> {
+    /// A run ends on the ground of its way, in the triangle that it names, or where the line of its way ends.
+    fn look_at_ends(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
+        for end in [run.points.first(), run.points.last()].into_iter().flatten() {
+            let [u, v] = end.at.in_steps();
+            let is_near =
+                |[a, b]: [f64; 2]| (a - u).abs() <= NEAR_STEPS && (b - v).abs() <= NEAR_STEPS;
+            let holds = match end.height {
+                SpanHeight::Ground { triangle } => {
+                    let is_on_line = lines.is_some_and(|lines| {
+                        let mut near = lines.near([[u, v]; 2], self.work);
+                        near.any(|piece| share_of(piece, [u, v]).is_some())
+                    });
+                    is_on_line && self.holds(triangle, end.at)
+                }
+                SpanHeight::Steps(_) => lines.is_some_and(|lines| {
+                    self.work.add(lines.ends.len());
+                    lines.ends.iter().flatten().copied().any(is_near)
+                }),
+            };
+            findings.look(CheckId::SpanEnds, holds, || {
+                format!("a run of way {} in tile {} ends at {:?}", run.way_id, self.id, end.at)
+            });
+        }
+    }
+
+    /// Whether a triangle of the tile holds a point. Where two triangles meet, a point that was rounded may lie a step beside its own.
+    fn holds(&self, triangle: u32, at: LatticePoint) -> bool {
+        let is_there = (triangle as usize) < self.surface.triangles().len();
+        let around =
+            [-1, 0, 1].map(|du| [-1, 0, 1].map(|dv| LatticePoint::new(at.u + du, at.v + dv)));
+        is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
+    }
+
+    /// The pieces of runs, where their heights are known.
+    fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<Piece> {
+        let of_run = |run: &SpanRun| {
+            let kind = SpanKind::of(run.structure);
+            let tagged = ways.get(&run.way_id).map_or(0, |(_, layer)| *layer);
+            let last = run.points.len().saturating_sub(2);
+            let pairs = run.points.array_windows().enumerate().map(move |(index, [from, to])| {
+                let kind = kind?;
+                let is_end = [index == 0, index == last];
+                let heights_m = [self.height_m(from)?, self.height_m(to)?];
+                let (ends, layer) = ([from.at, to.at], tagged);
+                Some(Piece { way_id: run.way_id, kind, layer, ends, is_end, heights_m })
+            });
+            pairs.flatten().collect::<Vec<_>>()
+        };
+        runs.iter().flat_map(of_run).collect()
+    }
+
+    fn height_m(&self, point: &SpanPoint) -> Option<f64> {
+        match point.height {
+            SpanHeight::Steps(steps) => Some(steps as f64 * self.quantum_m),
+            SpanHeight::Ground { .. } => self.ground_m(point.at.in_steps()),
+        }
+    }
+
+    /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
+    fn look_at_side(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
+        let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
+        let mut lowest_m = f64::INFINITY;
+        for [from, to] in run.points.array_windows() {
+            let (Some(from_m), Some(to_m)) = (self.height_m(from), self.height_m(to)) else {
+                continue;
+            };
+            let [a, b] = [from.at.in_steps(), to.at.in_steps()];
+            let ends = [[a[0], a[1], from_m], [b[0], b[1], to_m]];
+            let is_beside =
+                |of: [f64; 2], [u, v]: [f64; 2]| (of[0] - u).hypot(of[1] - v) <= NEAR_STEPS;
+            let near = lines.into_iter().flat_map(|lines| lines.near([a, b], self.work));
+            let inner = near.flatten().filter_map(|[u, v, ground_m]| {
+                // The ends are looked at themselves: beside a wall the ground is another one within a step.
+                let share = share_of(ends, [u, v])
+                    .filter(|_| !is_beside(a, [u, v]) && !is_beside(b, [u, v]))?;
+                Some(away * (from_m + share * (to_m - from_m) - ground_m))
+            });
+            lowest_m = inner.fold(lowest_m, f64::min);
+            for (point, own_m) in [(a, from_m), (b, to_m)] {
+                if let Some(ground_m) = self.ground_m(point) {
+                    lowest_m = lowest_m.min(away * (own_m - ground_m));
+                }
+            }
+        }
+        findings.look(CheckId::SpanSide, lowest_m >= -SIDE_M, || {
+            format!(
+                "a run of way {} in tile {} is {:.3} m on the wrong side of the ground",
+                run.way_id, self.id, -lowest_m
+            )
+        });
+    }
+
+    fn ground_m(&self, at: [f64; 2]) -> Option<f64> {
+        self.ground.height_m(self.place.cells(self.place.local_of(at)))
+    }
+}
+
+/// Where a place lies on a straight line in plan, as a share of it; `None` where it is not on it.
+fn share_of([[au, av, _], [bu, bv, _]]: [[f64; 3]; 2], [u, v]: [f64; 2]) -> Option<f64> {
+    let [du, dv] = [bu - au, bv - av];
+    let length = du.hypot(dv);
+    let along = ((u - au) * du + (v - av) * dv) / length;
+    let across = ((u - au) * dv - (v - av) * du) / length;
+    let is_on = across.abs() <= NEAR_STEPS && along >= -NEAR_STEPS && along <= length + NEAR_STEPS;
+    is_on.then_some((along / length).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+#[path = "spans_tests.rs"]
+mod tests;

@@ -1,0 +1,54 @@
+//! Where `verify` keeps what does not fit in memory.
+
+use std::{io, sync::Arc, time::Duration};
+
+use corniche_spec::Observer;
+use corniche_store::{LocalScratch, LocalStore, StoreError, StoredPlan, SystemDisk};
+use tempfile::TempDir;
+
+use super::error::VerifyError;
+
+/// A store in a temporary folder, which is removed with it.
+pub(crate) struct TemporaryStore {
+    pub(crate) store: LocalStore,
+    _folder: TempDir,
+}
+
+impl TemporaryStore {
+    pub(crate) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
+        let folder = private_folder().map_err(VerifyError::Work)?;
+        observer.temporary(folder.path());
+        // Nothing is gone on from here, so it is bound to nothing, and nothing has to be durable.
+        let plan = StoredPlan { hash: [0; 32], bytes: Vec::new() };
+        let store = LocalStore::create(Arc::new(SystemDisk), folder.path(), &plan, Duration::MAX)
+            .map_err(failed)?;
+        Ok(Self { store, _folder: folder })
+    }
+
+    pub(crate) fn scratch(&self) -> Result<LocalScratch, VerifyError> {
+        self.store.scratch().map_err(failed)
+    }
+}
+
+/// A folder that its owner alone can look into.
+fn private_folder() -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    builder.tempdir()
+}
+
+impl Drop for TemporaryStore {
+    /// Nothing has to reach the disk any more.
+    fn drop(&mut self) {
+        self.store.give_up();
+    }
+}
+
+fn failed(error: StoreError) -> VerifyError {
+    VerifyError::Work(error.into())
+}
+
+#[cfg(all(test, unix))]
+#[path = "temporary_store_tests.rs"]
+mod tests;

@@ -1,0 +1,179 @@
+//! Sums over tiles, beside those that the manifest has of each level and class.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{LatticeBounds, LatticePoint, TileId};
+use corniche_pieces::roads::shares::share;
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::{Distribution, FilePackage, GrowthRow, PayloadSizes, TilePayload};
+
+use super::{
+    checks::{CheckId, Findings, as_json},
+    geo_against_sv::source_points,
+    seams::Borders,
+};
+
+/// What is kept of a tile to compare it with others.
+pub(crate) struct Kept {
+    pub vertices: u64,
+    pub triangles: u64,
+    pub geometric_error_m: f64,
+    pub height_range_m: [f64; 2],
+    pub borders: Borders,
+    /// `None` without a relief.
+    pub(crate) relief_borders: Option<[u64; 4]>,
+}
+
+/// What of a tile goes into the manifest's sums.
+#[derive(Default)]
+pub(crate) struct TileSums {
+    terrain_bytes: u64,
+    relief_bytes: u64,
+    uncovered_nodes: u64,
+    classes: BTreeMap<u8, Row>,
+}
+
+/// What of a growth row follows from the tiles.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+pub(crate) struct Row {
+    geo_vertices: u64,
+    sv_vertices: u64,
+    geo_stored_bytes: u64,
+    sv_stored_bytes: u64,
+    /// Source points of GEO lines inside the tiles: where there is one, there is a row.
+    inner_points: u64,
+}
+
+impl TileSums {
+    pub(crate) fn of(payload: &TilePayload, sizes: &PayloadSizes, bounds: LatticeBounds) -> Self {
+        let terrain = payload.terrain.as_ref();
+        let mut sums = Self {
+            terrain_bytes: sizes.terrain.stored,
+            relief_bytes: sizes.relief.stored,
+            uncovered_nodes: terrain.map_or(0, |terrain| terrain.uncovered_nodes),
+            classes: BTreeMap::new(),
+        };
+        let LatticeBounds { min, max } = bounds;
+        for road in &payload.roads_geo {
+            let row = sums.classes.entry(road.class.number()).or_default();
+            row.geo_vertices += road.line.vertices.len() as u64;
+            // On a border a point may be a cut.
+            let is_inside = |point: &LatticePoint| {
+                (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)
+            };
+            row.inner_points += source_points(&road.line).filter(is_inside).count() as u64;
+        }
+        for road in &payload.roads_sv {
+            sums.classes.entry(road.class.number()).or_default().sv_vertices +=
+                road.line.points.len() as u64;
+        }
+        for class in FunctionalRoadClass::all().map(FunctionalRoadClass::number) {
+            if let Some(row) = sums.classes.get_mut(&class) {
+                let index = usize::from(class);
+                row.geo_stored_bytes = share(sizes.roads_geo.stored, &sizes.geo_class_bytes, index);
+                row.sv_stored_bytes = share(sizes.roads_sv.stored, &sizes.sv_class_bytes, index);
+            }
+        }
+        sums
+    }
+
+    pub(crate) fn add(&mut self, other: Self) {
+        self.terrain_bytes += other.terrain_bytes;
+        self.relief_bytes += other.relief_bytes;
+        self.uncovered_nodes += other.uncovered_nodes;
+        for (class, row) in other.classes {
+            let sum = self.classes.entry(class).or_default();
+            sum.geo_vertices += row.geo_vertices;
+            sum.sv_vertices += row.sv_vertices;
+            sum.geo_stored_bytes += row.geo_stored_bytes;
+            sum.sv_stored_bytes += row.sv_stored_bytes;
+            sum.inner_points += row.inner_points;
+        }
+    }
+}
+
+/// Tiles, triangles, bytes and errors of each level.
+pub(crate) fn check_levels(
+    package: &FilePackage,
+    ids: &[TileId],
+    kept: &BTreeMap<TileId, Kept>,
+    sums: &BTreeMap<u8, TileSums>,
+    findings: &mut Findings,
+) {
+    let nothing = TileSums::default();
+    for level in &package.manifest().levels {
+        let found = ids.iter().filter(|id| id.z() == level.level).count() as u64;
+        findings.look(CheckId::LevelSums, found == level.tiles, || {
+            format!("level {} has {found} tiles, {} are recorded", level.level, level.tiles)
+        });
+        let tiles = || kept.iter().filter(|(id, _)| id.z() == level.level).map(|(_, tile)| tile);
+        let triangles: u64 = tiles().map(|tile| tile.triangles).sum();
+        let vertices: u64 = tiles().map(|tile| tile.vertices).sum();
+        let errors_m = Distribution::of(tiles().map(|tile| tile.geometric_error_m).collect());
+        let largest_m = errors_m.map_or(0.0, |errors_m| errors_m.max);
+        let sums = sums.get(&level.level).unwrap_or(&nothing);
+        let stored = [sums.terrain_bytes, sums.relief_bytes];
+        let said_stored = [level.terrain_bytes, level.relief_bytes];
+        let said = (level.triangles, level.vertices, said_stored, level.errors_m);
+        let agrees = (triangles, vertices, stored, errors_m) == said
+            && largest_m.to_bits() == level.geometric_error_m.to_bits()
+            // Nodes where there is no tile count for the level alone.
+            && sums.uncovered_nodes <= level.uncovered_nodes;
+        findings.look(CheckId::LevelSums, agrees, || {
+            format!(
+                "level {} has {triangles} triangles, {vertices} vertices, {} bytes of ground, {} of relief, error {largest_m} m, \
+                 {} uncovered nodes",
+                level.level, sums.terrain_bytes, sums.relief_bytes, sums.uncovered_nodes
+            )
+        });
+    }
+}
+
+/// The rows of the growth table, as far as they follow from the tiles.
+pub(crate) fn check_growth(
+    rows: &[GrowthRow],
+    sums: &BTreeMap<u8, TileSums>,
+    findings: &mut Findings,
+) {
+    let mut left: BTreeMap<(u8, u8), Row> = sums
+        .iter()
+        .flat_map(|(&level, sums)| {
+            sums.classes.iter().map(move |(&class, &row)| ((level, class), row))
+        })
+        .collect();
+    let mut last = None;
+    for row in rows {
+        let key = (row.level, row.class);
+        let found = left.remove(&key).unwrap_or_default();
+        let said = Row {
+            geo_vertices: row.geo_vertices,
+            sv_vertices: row.sv_vertices,
+            geo_stored_bytes: row.geo_stored_bytes,
+            sv_stored_bytes: row.sv_stored_bytes,
+            inner_points: found.inner_points,
+        };
+        findings.look(CheckId::Growth, found == said && last < Some(key), || {
+            format!(
+                "level {} class {}: {} in the tiles, {} recorded",
+                row.level,
+                row.class,
+                as_json(&found),
+                as_json(row)
+            )
+        });
+        last = Some(key);
+        // Pairs and triples of f64; the level's lines have no point that the source has not.
+        let plain = [row.source_vertices * 16, row.simplified_vertices * 16, row.geo_vertices * 24];
+        let bytes = [row.source_bytes, row.simplified_bytes, row.geo_raw_bytes];
+        let thinned = row.simplified_vertices <= row.source_vertices;
+        findings.look(CheckId::Growth, plain == bytes && thinned, || {
+            format!("level {} class {}: {bytes:?} bytes for {plain:?}", row.level, row.class)
+        });
+    }
+    // A class of which no point lies in a tile with ground has no row.
+    for ((level, class), row) in left {
+        findings.look(CheckId::Growth, row.inner_points == 0, || {
+            format!("level {level} class {class} has no row, but {} in the tiles", as_json(&row))
+        });
+    }
+}
