@@ -516,7 +516,7 @@ impl Audit {
             samples,
             height_m: entry.height_m,
             gap_m,
-            side: if entry.height_m <= low_m.midpoint(high_m) { "below" } else { "above" },
+            is_below: entry.height_m <= low_m.midpoint(high_m),
             low_m: low_m.floor(),
             high_m: high_m.ceil(),
         })

@@ -62,7 +62,8 @@ impl Dem {
         let (points_deg, wgs84_bounds) = data_extent::wgs84(&sources, &mosaics, &to_wgs84)?;
         // Files all around the earth have no middle; any will do.
         let center_deg = center_deg(&points_deg).unwrap_or([0.0; 2]);
-        let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)?;
+        let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)
+            .map_err(Box::new)?;
         Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
     }
 

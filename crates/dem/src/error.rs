@@ -62,7 +62,7 @@ pub enum OpenDemError {
     #[error(transparent)]
     Crs(#[from] CrsError),
     #[error(transparent)]
-    Datum(#[from] HeightDatumError),
+    Datum(#[from] Box<HeightDatumError>),
 }
 
 /// Why what heights are measured from is not known, or cannot become what is asked for.
@@ -213,9 +213,10 @@ pub enum ReadHeightsError {
 #[non_exhaustive]
 pub enum AuditError {
     #[error(
-        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {side} all others: a value that means \"no \
+        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {} all others: a value that means \"no \
          data\" and is not declared as such; give it with --nodata {stored}, or if they are heights of {height_m} m allow \
-         them with --height-range {low_m},{high_m}"
+         them with --height-range {low_m},{high_m}",
+        side(*.is_below)
     )]
     Sentinel {
         files: String,
@@ -224,7 +225,7 @@ pub enum AuditError {
         samples: u64,
         height_m: f64,
         gap_m: f64,
-        side: &'static str,
+        is_below: bool,
         low_m: f64,
         high_m: f64,
     },
@@ -283,6 +284,10 @@ macro_rules! from_dem_errors {
             }
         })+
     };
+}
+
+fn side(is_below: bool) -> &'static str {
+    if is_below { "below" } else { "above" }
 }
 
 /// What to give in place of a file without heights, which may be another input.

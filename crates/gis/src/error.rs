@@ -213,11 +213,16 @@ pub enum CrsError {
     #[error("--bounds {bounds} has no position in {crs}; choose another --crs or other bounds")]
     BoundsOutside { bounds: String, crs: String },
     #[error(
-        "{whose}: PROJ knows nothing between the datums of {from} and {to}, and would take the one for the other ({operation:?}): ground, roads and \
+        "{whose}: PROJ knows nothing between the datums of {} and {}, and would take the one for the other ({:?}): ground, roads and \
          what else is put together can then lie 100 m and more beside each other; name the true coordinate system (gdal_edit.py -a_srs EPSG:n; \
-         for vectors ogr2ogr -a_srs), or give --allow-ballpark if you want this"
+         for vectors ogr2ogr -a_srs), or give --allow-ballpark if you want this",
+        .between[0], .between[1], .between[2]
     )]
-    Ballpark { whose: String, from: String, to: String, operation: String },
+    Ballpark {
+        whose: String,
+        /// The datums from which and to which, and the operation.
+        between: Box<[String; 3]>,
+    },
 }
 
 /// Why a vector file could not be opened, or not read to its end.

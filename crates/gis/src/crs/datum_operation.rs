@@ -127,9 +127,8 @@ impl DatumOperation {
     /// The error for what has its datum, or would come to it.
     #[must_use]
     pub fn refusal(&self, whose: String) -> CrsError {
-        let Self { from, to, name, .. } = self;
-        let (from, to, operation) = (from.clone(), to.clone(), name.clone());
-        CrsError::Ballpark { whose, from, to, operation }
+        let between = Box::new([&self.from, &self.to, &self.name].map(Clone::clone));
+        CrsError::Ballpark { whose, between }
     }
 
     /// Its accuracy in words.
