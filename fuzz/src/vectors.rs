@@ -2,7 +2,7 @@
 
 use std::{fs, path::PathBuf, sync::LazyLock};
 
-use corniche_dem::Polygon;
+use corniche_gis::Polygon;
 use corniche_overlay::{LineFile, SavedLine, place, read};
 use corniche_testing::package;
 use corniche_tileset::Manifest;

@@ -64,7 +64,7 @@ use failure::Failure;
 
 fn main() -> process::ExitCode {
     if let Ok(program) = env::current_exe() {
-        corniche_dem::use_files_beside(&program);
+        corniche_gis::use_files_beside(&program);
     }
     let arguments = match Arguments::checked_from(env::args_os()) {
         Ok(arguments) => arguments,

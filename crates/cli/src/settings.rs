@@ -8,8 +8,9 @@ use std::{
 };
 
 use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_dem::{OpenOptions, PlanOptions, Polygon};
+use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::Cell;
+use corniche_gis::Polygon;
 use corniche_ground::terrain::recorded::TerrainRecord;
 use corniche_presets::{
     AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions,

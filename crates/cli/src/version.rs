@@ -6,7 +6,7 @@ use crate::messages;
 
 /// GDAL and PROJ, as they were found when the program was started.
 pub(crate) fn libraries() -> String {
-    corniche_dem::libraries()
+    corniche_gis::libraries()
 }
 
 /// Whether the command line asks for more than the program's own version: `--version`, not `-V`.
@@ -17,7 +17,7 @@ pub(crate) fn is_long_asked_for() -> bool {
 /// Prints the program's version, then what else a report of an error should name.
 pub(crate) fn print_long() -> io::Result<()> {
     let backends = corniche_viewer::gpu::backends();
-    let missing = corniche_dem::missing_formats();
+    let missing = corniche_gis::missing_formats();
     let text = format!(
         "corniche {}\n{}\nformats: package {}, plan {}, store {}\ninputs: {}\npage: {}\nwgpu backends: {}\n",
         env!("CARGO_PKG_VERSION"),

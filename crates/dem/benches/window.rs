@@ -14,7 +14,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 const SAMPLES: usize = 3000;
 const NODES: usize = 1024;
 
-/// A rolling ground of 30 m samples in UTM, or of 0.0003° in degrees, with a void in every 1000 samples if asked.
+/// A rolling ground of 30 m samples in UTM, or of 0.0003° in degrees, with a void in every 1000
+/// samples if asked.
 fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
     let path = folder.join(format!("{epsg}-{void_every}.tif"));
     let (west, north, step) =

@@ -1,7 +1,8 @@
 //! Finds samples that cannot be heights, by looking at every sample once.
 //!
-//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a value can be
-//! recognised: it is one of those that programs usually write, or it occurs many times; and it lies far beyond all true heights.
+//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a
+//! value can be recognised: it is one of those that programs usually write, or it occurs many
+//! times; and it lies far beyond all true heights.
 //!
 //! ```text
 //!   how often │                                                ▄▄▄
@@ -13,24 +14,25 @@
 
 mod spikes;
 
+use corniche_gis::{CrsError, RasterError, first_names};
 use gdal::Dataset;
 use serde::{Deserialize, Serialize};
 
 use crate::audit::spikes::{Spike, Spikes};
-use crate::file_names::first_names;
 use crate::files::source::Source;
+use crate::mosaics::mosaic::SampleRect;
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
 use crate::plan::clip::{needed_samples, parts_of_file};
-use crate::{Dem, DemError, GridPlan};
+use crate::{AuditError, Dem, GridPlan};
 
-/// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
+/// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8
+/// 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
 
 /// A repeated value that lies this far beyond all others is not a height.
 const FAR_M: f64 = 1000.0;
-/// Values that programs write for "no data", as they are stored. One of them that lies so far beyond all others is refused even if a single
-/// sample has it.
+/// Values that programs write for "no data", as they are stored. One of them that lies so far
+/// beyond all others is refused even if a single sample has it.
 const USUAL_NO_DATA: [f64; 13] = [
     -999.0,
     -9999.0,
@@ -52,10 +54,11 @@ const ONE_IN: u64 = 10_000;
 const KEPT: usize = 16;
 /// Sea levels are within this of 0, whatever they are measured from.
 const SEA_LEVEL_M: f64 = 12.0;
-/// No dry land lies lower: files that hold one value alone, and a lower one, hold none. (The Dead Sea: −430 m.)
+/// No dry land lies lower: files that hold one value alone, and a lower one, hold none. (The Dead
+/// Sea: −430 m.)
 const LOWEST_LAND_M: f64 = -500.0;
-/// Side of the blocks that are read. From a file that is stored in rows, the same number of samples is read in whole
-/// rows.
+/// Side of the blocks that are read. From a file that is stored in rows, the same number of samples
+/// is read in whole rows.
 const BLOCK_SAMPLES: usize = 512;
 
 /// A rectangle of one file's samples.
@@ -75,10 +78,12 @@ struct Entry {
     count: u64,
 }
 
-/// The outermost different heights at one end, the outermost first, at most [`KEPT`]; their counts are exact.
+/// The outermost different heights at one end, the outermost first, at most [`KEPT`]; their counts
+/// are exact.
 ///
-/// An entry is removed only when [`KEPT`] others lie farther out, and those are never removed for one farther in: so
-/// an entry that was removed cannot come back. Neither the order of samples nor the order of merges matters.
+/// An entry is removed only when [`KEPT`] others lie farther out, and those are never removed for
+/// one farther in: so an entry that was removed cannot come back. Neither the order of samples nor
+/// the order of merges matters.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct End {
     entries: Vec<Entry>,
@@ -120,14 +125,15 @@ pub struct Auditor<'a> {
 }
 
 impl Dem {
-    /// All samples of all files that the plan's nodes can depend on, and no others, each in one block, in a fixed order: what is found depends
-    /// on the part of the data that is asked for, and on neither how its files are stored nor how work is split.
+    /// All samples of all files that the plan's nodes can depend on, and no others, each in one
+    /// block, in a fixed order: what is found depends on the part of the data that is asked for,
+    /// and on neither how its files are stored nor how work is split.
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, DemError> {
+    pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, CrsError> {
         let mut needed: Vec<Vec<SampleRect>> = vec![Vec::new(); self.sources.len()];
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
                 needed[file.index] = without_overlap(parts_of_file(mosaic, file, &rect));
@@ -165,7 +171,8 @@ impl Dem {
         Ok(blocks)
     }
 
-    /// Where the middle of a block lies, working metres; not finite where the working CRS does not reach.
+    /// Where the middle of a block lies, working metres; not finite where the working CRS does not
+    /// reach.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -173,8 +180,8 @@ impl Dem {
         &self,
         block: &AuditBlock,
         plan: &GridPlan,
-    ) -> Result<[f64; 2], DemError> {
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+    ) -> Result<[f64; 2], CrsError> {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let Some(file) = mosaic.files.iter().find(|file| file.index == block.file) else {
                 continue;
             };
@@ -195,7 +202,7 @@ impl Dem {
         Auditor {
             dem: self,
             range_m,
-            files: OpenFiles::new(),
+            files: OpenFiles::default(),
             stored: Vec::new(),
             heights_m: Vec::new(),
         }
@@ -203,12 +210,13 @@ impl Dem {
 }
 
 impl Auditor<'_> {
-    /// Examines every sample of a block, in metres as the file gives them: after scale and unit, but before the
-    /// change to another vertical CRS and before the shift. Memory is bounded by the block.
+    /// Examines every sample of a block, in metres as the file gives them: after scale and unit,
+    /// but before the change to another vertical CRS and before the shift. Memory is bounded by the
+    /// block.
     ///
     /// # Errors
     /// When the file cannot be read.
-    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, DemError> {
+    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, RasterError> {
         let source = &self.dem.sources[block.file];
         let dataset: &Dataset = self.files.dataset(block.file, source)?;
         source.read_stored(dataset, block.start, block.size, &mut self.stored)?;
@@ -234,7 +242,7 @@ impl Auditor<'_> {
     }
 
     /// Whether a sample is a spike among its neighbours in the file, also those of other blocks.
-    fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, DemError> {
+    fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, RasterError> {
         let source = &self.dem.sources[file];
         let start = [column.saturating_sub(1), row.saturating_sub(1)];
         let end = [(column + 2).min(source.columns as usize), (row + 2).min(source.rows as usize)];
@@ -283,15 +291,16 @@ impl FileAudit {
 
     /// The value that must mean "no data", and its distance from the next value.
     ///
-    /// At the high end it must be farther from sea level than the next value. Otherwise the next value is the odd
-    /// one, for example a single −9999 in a plateau.
+    /// At the high end it must be farther from sea level than the next value. Otherwise the next
+    /// value is the odd one, for example a single −9999 in a plateau.
     fn sentinel(&self) -> Option<(Entry, f64)> {
         let low = self.lowest.sentinel(self.samples, |_| true);
         let high = self
             .highest
             .sentinel(self.samples, |[outer, inner]| outer.height_m.abs() > inner.height_m.abs());
         match (low, high) {
-            // Where there are only two values, far apart, the one nearer to sea level is the ground.
+            // Where there are only two values, far apart, the one nearer to sea level is the
+            // ground.
             (Some(low), Some(high)) if self.lowest.entries.len() == 2 => {
                 let is_low = low.0.height_m.abs() >= high.0.height_m.abs();
                 Some(if is_low { low } else { high })
@@ -338,8 +347,8 @@ impl End {
         self.entries.truncate(KEPT);
     }
 
-    /// The outermost value that is usual for "no data" or repeated, and far from the next value. `may_be` can refuse a pair of neighbouring
-    /// values.
+    /// The outermost value that is usual for "no data" or repeated, and far from the next value.
+    /// `may_be` can refuse a pair of neighbouring values.
     fn sentinel(&self, samples: u64, may_be: impl Fn([Entry; 2]) -> bool) -> Option<(Entry, f64)> {
         let gap_m = |[outer, inner]: [Entry; 2]| (inner.height_m - outer.height_m).abs();
         self.entries
@@ -375,15 +384,16 @@ impl Audit {
 
     /// Refuses values that are no heights: of each file, then of all files together.
     ///
-    /// - One that programs usually write for "no data", or that is repeated in more than 0.01 % of the samples, and that lies 1000 m or
-    ///   more beyond all others means "no data"; where several such values are found, the outermost is named. With `is_range_given` this test is left
+    /// - One that programs usually write for "no data", or that is repeated in more than 0.01 % of
+    ///   the samples, and that lies 1000 m or more beyond all others means "no data"; where several
+    ///   such values are found, the outermost is named. With `is_range_given` this test is left
     ///   out: a user who gives the range knows the values.
     /// - A value that all samples share is refused below −500 m.
     /// - None may lie outside the range.
     ///
     /// # Errors
-    /// [`DemError::Sentinel`] or [`DemError::OutOfRange`].
-    pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), DemError> {
+    /// [`AuditError::Sentinel`] or [`AuditError::OutOfRange`].
+    pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), AuditError> {
         if !is_range_given && let Some(error) = self.sentinel_error(dem) {
             return Err(error);
         }
@@ -399,7 +409,7 @@ impl Audit {
             [_, Some(high)] => high,
             _ => return Ok(()),
         };
-        Err(DemError::OutOfRange {
+        Err(AuditError::OutOfRange {
             path: source.path.clone(),
             count: file.outside,
             samples: file.samples,
@@ -410,8 +420,9 @@ impl Audit {
         })
     }
 
-    /// The step between heights that the files can tell apart, metres: that of whole numbers where all samples are stored so, which is
-    /// a metre for most files from satellites. The smallest of all files that have heights; 0 if a file has fractions.
+    /// The step between heights that the files can tell apart, metres: that of whole numbers where
+    /// all samples are stored so, which is a metre for most files from satellites. The smallest of
+    /// all files that have heights; 0 if a file has fractions.
     #[must_use]
     pub fn height_step_m(&self, dem: &Dem) -> f64 {
         let files = dem.sources.iter().zip(&self.files).filter(|(_, file)| file.samples > 0);
@@ -421,8 +432,8 @@ impl Audit {
         files.map(step_m).reduce(f64::min).unwrap_or_default()
     }
 
-    /// What a user should know of single samples that stand far above or below all of their neighbours: one text for each file that
-    /// has some.
+    /// What a user should know of single samples that stand far above or below all of their
+    /// neighbours: one text for each file that has some.
     #[must_use]
     pub fn spikes(&self, dem: &Dem) -> Vec<String> {
         let text = |(source, file): (&Source, &FileAudit)| {
@@ -457,13 +468,14 @@ impl Audit {
         dem.sources.iter().zip(&self.files).filter(with_spikes).map(text).collect()
     }
 
-    /// The error when all samples of all files have the same value, and it is lower than any dry land.
-    fn nothing_error(&self, dem: &Dem) -> Option<DemError> {
+    /// The error when all samples of all files have the same value, and it is lower than any dry
+    /// land.
+    fn nothing_error(&self, dem: &Dem) -> Option<AuditError> {
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
         let [only] = all.lowest.entries.as_slice() else { return None };
         let source = dem.sources.first()?;
-        (only.height_m < LOWEST_LAND_M).then(|| DemError::OutOfRange {
+        (only.height_m < LOWEST_LAND_M).then(|| AuditError::OutOfRange {
             path: source.path.clone(),
             count: only.count,
             samples: all.samples,
@@ -474,12 +486,12 @@ impl Audit {
         })
     }
 
-    fn sentinel_error(&self, dem: &Dem) -> Option<DemError> {
+    fn sentinel_error(&self, dem: &Dem) -> Option<AuditError> {
         let files = || dem.sources.iter().zip(&self.files);
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
-        // First a value that stands out in a file of its own; else one that stands out only among the values of all
-        // files.
+        // First a value that stands out in a file of its own; else one that stands out only among
+        // the values of all files.
         let own = self.files.iter().find_map(FileAudit::sentinel);
         // A file that holds only sea, beside files of high land, does not hold "no data" alone.
         let across = || all.sentinel().filter(|(entry, _)| entry.height_m.abs() > SEA_LEVEL_M);
@@ -497,22 +509,22 @@ impl Audit {
         };
         let [low_m, high_m] = all.range_m()?;
         let names = holders.iter().map(|(source, _)| source.path.display().to_string());
-        Some(DemError::Sentinel {
+        Some(AuditError::Sentinel {
             files: first_names(names),
             stored: first.stored_text(entry.stored),
             count: holders.iter().map(|(_, file)| count_in(file)).sum(),
             samples,
             height_m: entry.height_m,
             gap_m,
-            side: if entry.height_m <= low_m.midpoint(high_m) { "below" } else { "above" },
+            is_below: entry.height_m <= low_m.midpoint(high_m),
             low_m: low_m.floor(),
             high_m: high_m.ceil(),
         })
     }
 }
 
-/// Parts of one file, of the same rows, as parts that have no sample in common: where a grid goes all around the earth, its file can be there more than
-/// once.
+/// Parts of one file, of the same rows, as parts that have no sample in common: where a grid goes
+/// all around the earth, its file can be there more than once.
 fn without_overlap(mut parts: Vec<SampleRect>) -> Vec<SampleRect> {
     parts.sort_by_key(|part| part.min[0]);
     let mut apart: Vec<SampleRect> = Vec::new();

@@ -1,19 +1,18 @@
-//! Elevation files that are described but not held open, and settings of GDAL for the whole process.
+//! Elevation files that are described but not held open.
 
 use std::path::PathBuf;
 
 use corniche_geom::Bounds;
+use corniche_gis::{
+    Crs, CrsOperation, FileBlocks, FileUse, RasterError, center_deg, first_names, quiet,
+};
 
-use crate::crs::horizontal::Crs;
-use crate::crs::operation::Operation;
-use crate::crs::scale;
-use crate::file_names::first_names;
-use crate::files::file_blocks::{self, FileBlocks};
+use crate::OpenDemError;
 use crate::files::source::Source;
+use crate::files::stored_values::OpenOptions;
 use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::{self, Mosaic};
 use crate::mosaics::vertical_target::{self, HeightReference};
-use crate::{DemError, OpenOptions, library_error};
 
 /// The international foot.
 const FOOT_M: f64 = 0.3048;
@@ -34,34 +33,37 @@ pub struct Dem {
 impl Dem {
     /// Looks into all files; reads no heights yet.
     ///
-    /// Files on one grid are read as one raster, so that interpolation crosses their seams; where they overlap
-    /// the first named wins, sample by sample, and a void in it falls through to the next. Files on other grids
-    /// serve the nodes at which the grids named before have no data.
+    /// Files on one grid are read as one raster, so that interpolation crosses their seams; where
+    /// they overlap the first named wins, sample by sample, and a void in it falls through to the
+    /// next. Files on other grids serve the nodes at which the grids named before have no data.
     ///
-    /// Heights are those of the only band, or of [`OpenOptions::band`]; a mask, an alpha band or a nodata value says where there are none.
-    /// With [`OpenOptions::vertical_crs`] each sample's height is carried there at the sample's own position;
-    /// without, all files must agree on what their heights are measured from.
+    /// Heights are those of the only band, or of [`OpenOptions::band`]; a mask, an alpha band or a
+    /// nodata value says where there are none. With [`OpenOptions::vertical_crs`] each sample's
+    /// height is carried there at the sample's own position; without, all files must agree on what
+    /// their heights are measured from.
     ///
     /// # Errors
-    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere on earth; when a
-    /// single row or column of samples encloses no ground; when heights cannot be carried to the vertical CRS asked
-    /// for without guessing, or files disagree on it and none is asked for.
-    pub fn open(files: &[PathBuf], options: &OpenOptions) -> Result<Self, DemError> {
-        library_error::quiet();
+    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere
+    /// on earth; when a single row or column of samples encloses no ground; when heights cannot be
+    /// carried to the vertical CRS asked for without guessing, or files disagree on it and none is
+    /// asked for.
+    pub fn open(files: &[PathBuf], options: &OpenOptions) -> Result<Self, OpenDemError> {
+        quiet();
         if files.is_empty() {
-            return Err(DemError::NoFiles);
+            return Err(OpenDemError::NoFiles);
         }
         let mut sources: Vec<Source> =
             files.iter().map(|path| Source::open(path, options)).collect::<Result<_, _>>()?;
         let mosaics = mosaic::group(&sources);
         mosaic::refuse_lines(&sources, &mosaics)?;
         let wgs84 = Crs::wgs84()?;
-        let to_wgs84: Vec<Operation> =
-            mosaics.iter().map(|mosaic| Operation::new(&mosaic.crs, &wgs84, None)).collect();
+        let to_wgs84: Vec<CrsOperation> =
+            mosaics.iter().map(|mosaic| CrsOperation::new(&mosaic.crs, &wgs84, None)).collect();
         let (points_deg, wgs84_bounds) = data_extent::wgs84(&sources, &mosaics, &to_wgs84)?;
         // Files all around the earth have no middle; any will do.
-        let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
-        let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)?;
+        let center_deg = center_deg(&points_deg).unwrap_or([0.0; 2]);
+        let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)
+            .map_err(Box::new)?;
         Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
     }
 
@@ -82,36 +84,13 @@ impl Dem {
         })
     }
 
-    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers to.
+    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers
+    /// to.
     ///
     /// # Errors
     /// When a file cannot be opened any more.
-    pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, DemError> {
-        let mut found = Vec::new();
-        for source in &self.sources {
-            found.extend(file_blocks::of_file(&source.path, source.band)?);
-        }
-        Ok(found)
+    pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, RasterError> {
+        let blocks = |source: &Source| FileBlocks::of_file(&source.path, source.band, FileUse::Dem);
+        Ok(self.sources.iter().map(blocks).collect::<Result<Vec<_>, _>>()?.concat())
     }
-}
-
-/// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it GDAL takes up to
-/// 5 % of the machine's. To be called before the first [`Dem::open`].
-///
-/// # Errors
-/// When GDAL refuses.
-pub fn limit_block_cache(bytes: u64) -> Result<(), gdal::errors::GdalError> {
-    // GDAL reads small numbers as megabytes; a megabyte is the least that is sensible anyway.
-    gdal::config::set_config_option("GDAL_CACHEMAX", &bytes.max(1 << 20).to_string())
-}
-
-/// Sets one of GDAL's options for the whole process, unless the user has set it, in the environment or in GDAL's own settings file.
-///
-/// # Errors
-/// When GDAL refuses.
-pub fn set_unless_set(option: &str, value: &str) -> Result<(), gdal::errors::GdalError> {
-    if gdal::config::get_config_option(option, "")?.is_empty() {
-        gdal::config::set_config_option(option, value)?;
-    }
-    Ok(())
 }

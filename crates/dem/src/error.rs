@@ -1,70 +1,18 @@
-//! Errors of opening, planning and reading elevation files.
+//! Errors of elevation files, an enum for each activity, and their sum.
+
+#![expect(missing_docs, reason = "each message documents its variant")]
 
 use std::path::{Path, PathBuf};
 
 use corniche_geom::{Cell, GridFrameError};
+use corniche_gis::{CrsError, LibraryError, NameError, PolygonError, RasterError};
 
-use crate::LibraryError;
-
-/// Why elevation files could not be opened, planned or read.
+/// Why elevation files could not be opened.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
-pub enum DemError {
+pub enum OpenDemError {
     #[error("no DEM file is given")]
     NoFiles,
-    #[error("cannot read {path:?}, which was to name files")]
-    List { path: PathBuf, source: std::io::Error },
-    #[error("the list {path:?} names no file; write the name of a file on each line")]
-    EmptyList { path: PathBuf },
-    #[error(
-        "the folder {path:?} holds no elevation file (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
-    )]
-    EmptyFolder { path: PathBuf, endings: String },
-    #[error(
-        "the folder {path:?} holds no extract (names ending in .pbf); folders in it are not looked into, so name the files or the right folder"
-    )]
-    NoExtracts { path: PathBuf },
-    #[error(
-        "the folder {path:?} holds no photo (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
-    )]
-    NoPhotos { path: PathBuf, endings: String },
-    #[error("the pattern {pattern:?} names no file: {reason}")]
-    Pattern { pattern: String, reason: String },
-    #[error(
-        "{path:?} is no archive with an elevation file (names ending in {endings}) that GDAL can read; unpack it, or name the file in it as /vsizip/ARCHIVE/FILE"
-    )]
-    Archive { path: PathBuf, endings: String },
-    #[error("cannot open DEM {path:?}")]
-    Missing { path: PathBuf, source: std::io::Error },
-    #[error(
-        "{path:?} is {found}, not a file; a raster is read in any order and more than once, so save it to a file first"
-    )]
-    Stream { path: PathBuf, found: &'static str },
-    #[error(
-        "the name of DEM {path:?} is not UTF-8, and GDAL takes no other names here; rename the file (or its folder)"
-    )]
-    NotUtf8 { path: PathBuf },
-    #[error("{path:?} is not a file; name the raster itself")]
-    NotAFile { path: PathBuf },
-    #[error("{path:?} is empty (0 bytes); fetch it again")]
-    Empty { path: PathBuf },
-    #[error(
-        "{path:?} is not a raster that GDAL can read; it is damaged, cut off, or of an unknown format"
-    )]
-    Open { path: PathBuf, source: Box<LibraryError> },
-    #[error(
-        "{path:?} has {bytes} bytes; whole .hgt files have 2884802 (cells of 3″), 25934402 (1″) or 12970802 (2″ × 1″), so it is cut off or of another kind: fetch it again"
-    )]
-    HgtSize { path: PathBuf, bytes: u64 },
-    #[error(
-        "the name of {path:?} does not say where it lies, and nothing else of an .hgt file does: call it like N47E009.hgt, after its south-western corner"
-    )]
-    HgtName { path: PathBuf },
-    #[error("cannot read {path:?}: {advice}")]
-    NoDriver { path: PathBuf, advice: String },
-    #[error("{path:?} is {found}; {advice}")]
-    StandIn { path: PathBuf, found: &'static str, advice: &'static str },
     #[error("{path:?} has no raster band; {}", what_to_give(path))]
     NoBand { path: PathBuf },
     #[error("{path:?} holds several rasters; give the one with the heights by its name: {names}")]
@@ -106,47 +54,21 @@ pub enum DemError {
     )]
     Scale { path: PathBuf, band: usize, scale: f64, offset: f64 },
     #[error(
-        "{path:?} has no georeference (geotransform); add one with gdal_translate -a_ullr or a world file"
+        "{path:?} lies nowhere on earth by its coordinate system {crs}; name its true CRS with gdal_translate -a_srs"
     )]
-    NoGeoTransform { path: PathBuf },
-    #[error(
-        "the geotransform ({}) of {path:?} is not usable, it has no inverse; correct it with gdal_translate -a_ullr",
-        .coefficients.map(|value| value.to_string()).join(", ")
-    )]
-    GeoTransform { path: PathBuf, coefficients: [f64; 6] },
-    #[error(
-        "{path:?} has a corner at {x}, {y}, which is not a longitude and latitude in {crs}; name its true CRS with gdal_translate -a_srs"
-    )]
-    OffGlobe { path: PathBuf, x: f64, y: f64, crs: String },
-    #[error("{path:?} names no usable coordinate system; give it with --dem-crs EPSG:n")]
-    NoCrs { path: PathBuf },
-    #[error(
-        "{path:?} has coordinate system {name:?}, which is neither projected nor geographic; give it with --dem-crs EPSG:n"
-    )]
-    UnusableCrs { path: PathBuf, name: String },
-    #[error(
-        "PROJ does not even know EPSG:4326: its tables (proj.db) are not found, or those of another PROJ are; correct the installation, or the \
-         variables of the environment that are read (PROJ_DATA, PROJ_LIB)"
-    )]
-    NoProjTables { source: Box<LibraryError> },
-    #[error("{option} {text:?} is not a coordinate system that PROJ knows; write EPSG:n or WKT")]
-    CrsText { option: &'static str, text: String, source: Box<LibraryError> },
-    #[error(
-        "--crs {text:?} is not a coordinate system that PROJ knows; write dem (the DEM's own), utm, EPSG:n or WKT"
-    )]
-    WorkingCrsText { text: String, source: Box<LibraryError> },
-    #[error(
-        "--crs {text} is not a projected CRS; give one that is, such as EPSG:2056, or degrees of WGS84: EPSG:4326, which ETRS89 is within a metre of, and EPSG:4979 with heights"
-    )]
-    NotProjected { text: String },
-    #[error(
-        "{option} {text:?} is neither projected nor geographic; write EPSG:n or WKT of one that is"
-    )]
-    CrsKind { option: &'static str, text: String },
-    #[error(
-        "{option} {text:?} is not a vertical coordinate system that PROJ knows; write EPSG:n or WKT, such as EPSG:5773"
-    )]
-    VerticalCrsText { option: &'static str, text: String, source: Option<Box<LibraryError>> },
+    Nowhere { path: PathBuf, crs: String },
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+    #[error(transparent)]
+    Datum(#[from] Box<HeightDatumError>),
+}
+
+/// Why what heights are measured from is not known, or cannot become what is asked for.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HeightDatumError {
     #[error(
         "--vertical-shift {shift_m} is not usable; give metres between -{limit_m} and {limit_m}"
     )]
@@ -159,10 +81,6 @@ pub enum DemError {
         "heights of {path:?} cannot be carried from {from} to {to}: {unnamed} names no datum, so it is not known how the two are related; name the true vertical CRS (gdal_translate -a_srs, --dem-vertical-crs, --vertical-crs), or leave out --vertical-crs and give --vertical-shift"
     )]
     NoVerticalDatum { path: PathBuf, from: String, to: String, unnamed: String },
-    #[error(
-        "vertical coordinate system {name:?} gives its axis no unit of length; name one that does, such as EPSG:5773"
-    )]
-    VerticalUnit { name: String },
     #[error(
         "heights of {first:?} are {first_says}, those of {other:?} {other_says}; name a common one with --vertical-crs, and with --dem-vertical-crs that of files that name none"
     )]
@@ -182,35 +100,27 @@ pub enum DemError {
         source: Option<Box<LibraryError>>,
     },
     #[error(
-        "the sample at column {column}, row {row} of {path:?} has no height in {to}: it lies outside PROJ's geoid grids; leave out --vertical-crs, or cut the file to where they reach"
-    )]
-    VerticalPosition { path: PathBuf, column: usize, row: usize, to: String },
-    #[error(
         "geoid grid {grids:?} is marked optional (@), so that heights would stay as they are where it is missing; write it without @"
     )]
     OptionalGeoidGrid { grids: String },
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+}
+
+/// Why no grid could be planned.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    #[error(
+        "--crs {text:?} is not a coordinate system that PROJ knows; write dem (the DEM's own), utm, EPSG:n or WKT"
+    )]
+    WorkingCrsText { text: String, source: Box<LibraryError> },
     #[error(
         "--crs {text:?} is not a projected coordinate system with x to the right of y, nor the DEM's own; choose one that is"
     )]
     WorkingCrs { text: String },
-    #[error("coordinate system {name:?} cannot be written down as WKT; give another by EPSG:n")]
-    Wkt { name: String, source: Box<LibraryError> },
-    #[error(
-        "PROJ knows no transformation from {from} to {to}; choose another --crs, or correct the files' CRS with gdal_translate -a_srs"
-    )]
-    Transform { from: String, to: String, source: Box<LibraryError> },
-    #[error(
-        "{whose}: PROJ knows nothing between the datums of {from} and {to}, and would take the one for the other ({operation:?}): ground, roads and \
-         what else is put together can then lie 100 m and more beside each other; name the true coordinate system (gdal_edit.py -a_srs EPSG:n; \
-         for vectors ogr2ogr -a_srs), or give --allow-ballpark if you want this"
-    )]
-    Ballpark { whose: String, from: String, to: String, operation: String },
     #[error("the DEM's centre has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
-    #[error(transparent)]
-    Polygon(#[from] crate::PolygonError),
-    #[error("--bounds {bounds} has no position in {crs}; choose another --crs or other bounds")]
-    BoundsOutsideCrs { bounds: String, crs: String },
     #[error(
         "{asked} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give a part of these data (--bounds takes west,south,east,north in degrees{swapped})"
     )]
@@ -229,10 +139,6 @@ pub enum DemError {
     BoundsAtBothEnds { asked: String },
     #[error("{path:?} has no position in {crs}; choose another --crs, or leave the file out")]
     FileOutsideCrs { path: PathBuf, crs: String },
-    #[error(
-        "{path:?} lies nowhere on earth by its coordinate system {crs}; name its true CRS with gdal_translate -a_srs"
-    )]
-    Nowhere { path: PathBuf, crs: String },
     #[error(
         "--cell {cell} is not usable; give metres between 0.001 and 1000000: a number, or east,north"
     )]
@@ -276,10 +182,41 @@ pub enum DemError {
          would be interpolated; use a larger --cell, or give --force if you want this"
     )]
     Oversampling { cell: Cell, nodes: f64, limit: f64 },
+    #[error("--fill-voids {cells} is too far; at most {limit} cells")]
+    FillVoids { cells: u32, limit: u32 },
+    #[error("the DEM's grid cannot be made")]
+    Frame(#[from] GridFrameError),
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+    #[error(transparent)]
+    Polygon(#[from] PolygonError),
+}
+
+/// Why heights could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadHeightsError {
+    #[error("windows of stride {stride} are not read from the DEM, only of stride 1")]
+    Stride { stride: i64 },
     #[error(
-        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {side} all others: a value that means \"no \
+        "the sample at column {column}, row {row} of {path:?} has no height in {to}: it lies outside PROJ's geoid grids; leave out --vertical-crs, or cut the file to where they reach"
+    )]
+    VerticalPosition { path: PathBuf, column: usize, row: usize, to: String },
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+}
+
+/// Why values are taken for no heights.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AuditError {
+    #[error(
+        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {} all others: a value that means \"no \
          data\" and is not declared as such; give it with --nodata {stored}, or if they are heights of {height_m} m allow \
-         them with --height-range {low_m},{high_m}"
+         them with --height-range {low_m},{high_m}",
+        side(*.is_below)
     )]
     Sentinel {
         files: String,
@@ -288,7 +225,7 @@ pub enum DemError {
         samples: u64,
         height_m: f64,
         gap_m: f64,
-        side: &'static str,
+        is_below: bool,
         low_m: f64,
         high_m: f64,
     },
@@ -306,23 +243,51 @@ pub enum DemError {
         low_m: f64,
         high_m: f64,
     },
-    #[error("--fill-voids {cells} is too far; at most {limit} cells")]
-    FillVoids { cells: u32, limit: u32 },
-    #[error("the DEM's grid cannot be made")]
-    Frame(#[from] GridFrameError),
-    #[error("windows of stride {stride} are not read from the DEM, only of stride 1")]
-    Stride { stride: i64 },
-    #[error(
-        "cannot read {columns} × {rows} samples at column {column}, row {row} of {path:?}; the file, or one that it refers to, is damaged, cut off or gone: fetch it again"
-    )]
-    Read {
-        path: PathBuf,
-        column: usize,
-        row: usize,
-        columns: usize,
-        rows: usize,
-        source: Box<LibraryError>,
-    },
+}
+
+/// Whatever can go wrong with elevation files: for callers that do all of it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DemError {
+    #[error(transparent)]
+    Names(#[from] NameError),
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+    #[error(transparent)]
+    Polygon(#[from] PolygonError),
+    #[error(transparent)]
+    Open(#[from] OpenDemError),
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    #[error(transparent)]
+    Read(#[from] ReadHeightsError),
+    #[error(transparent)]
+    Audit(#[from] AuditError),
+}
+
+/// Lets an error that has a variant `Dem(DemError)` be made of the error of each activity.
+#[macro_export]
+macro_rules! from_dem_errors {
+    ($error:ty) => {
+        $crate::from_dem_errors!(
+            $error: corniche_gis::NameError, corniche_gis::RasterError, corniche_gis::CrsError,
+            corniche_gis::PolygonError,
+            $crate::OpenDemError, $crate::GridError, $crate::ReadHeightsError, $crate::AuditError
+        );
+    };
+    ($error:ty: $($activity:ty),+) => {
+        $(impl From<$activity> for $error {
+            fn from(error: $activity) -> Self {
+                Self::Dem(error.into())
+            }
+        })+
+    };
+}
+
+fn side(is_below: bool) -> &'static str {
+    if is_below { "below" } else { "above" }
 }
 
 /// What to give in place of a file without heights, which may be another input.

@@ -1,9 +1,8 @@
-//! All elevation files together: those of one grid as one raster, where they lie, and one vertical CRS for all.
+//! All elevation files together: those of one grid as one raster, where they lie, and one vertical
+//! CRS for all.
 
 pub(crate) mod mosaic;
 pub(crate) mod open_files;
-pub(crate) mod sample_rect;
 
 pub(crate) mod data_extent;
-pub(crate) mod spacing;
 pub(crate) mod vertical_target;

@@ -2,20 +2,15 @@
 
 pub(crate) mod grid_plan;
 pub(crate) mod planning;
-pub(crate) mod recorded_grid;
 
 pub(crate) mod clip;
 pub(crate) mod layout;
 pub(crate) mod sample_steps;
 pub(crate) mod working_crs;
 
-pub(crate) mod alignment;
 pub(crate) mod kernel;
 pub(crate) mod node_positions;
 
-pub(crate) mod file_nodes;
-pub(crate) mod footprint;
-
 pub(crate) mod datum_operations;
 pub(crate) mod description;
-pub(crate) mod oversampling;
+pub(crate) mod footprint;

@@ -1,6 +1,6 @@
 //! What the heights of a package are measured from, said when it is exported.
 
-use corniche_dem::RecordedHeights;
+use corniche_gis::RecordedHeights;
 use corniche_tileset::{FilePackage, VerticalRecord};
 
 use crate::error::ExportError;

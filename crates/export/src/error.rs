@@ -6,9 +6,10 @@ use std::{
 };
 
 use corniche_areas::AreaObject;
-use corniche_dem::{DemError, LibraryError};
+use corniche_dem::ReadHeightsError;
 use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId};
+use corniche_gis::{CrsError, LibraryError};
 use corniche_store::LackOfRoom;
 use corniche_tileset::{OpenError, ReadError};
 use corniche_work::Interrupted;
@@ -143,7 +144,7 @@ pub enum ExportError {
     )]
     KnownDatum { datum: String },
     #[error("--dem-vertical-crs cannot be used")]
-    VerticalCrs(#[source] Box<DemError>),
+    VerticalCrs(#[source] Box<CrsError>),
     #[error(
         "--dem-vertical-crs {text} is not in metres upwards, and the package has taken its heights for metres; build it again with \
          --dem-vertical-crs {text}"
@@ -153,20 +154,20 @@ pub enum ExportError {
         "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
          (Debian: package proj-bin), or keep the heights as they are with --heights as-is"
     )]
-    Heights { datum: String, source: Box<DemError> },
+    Heights { datum: String, source: Box<CrsError> },
     #[error(
         "a height of {datum:?} near {lon:.5}, {lat:.5} has no height above the ellipsoid of WGS84: the geoid grid ends before; keep \
          the heights as they are with --heights as-is"
     )]
     NoHeightHere { datum: String, lon: f64, lat: f64 },
     #[error("the package's CRS cannot be used")]
-    Crs(#[source] Box<DemError>),
+    Crs(#[source] Box<CrsError>),
     #[error("positions cannot be carried to WGS84")]
     Project(#[from] ProjectError),
     #[error("a position of the ground has no longitude and latitude in WGS84")]
     NoGroundPosition,
     #[error("the coordinates cannot be made")]
-    OtherCrs(#[source] Box<DemError>),
+    OtherCrs(#[source] Box<CrsError>),
     #[error(
         "a position of {object} has no place in the CRS that is asked for; choose another with --crs, or cut with --bounds"
     )]
@@ -188,7 +189,7 @@ pub enum ExportError {
     )]
     RasterNotWhole { path: PathBuf, room: Option<LackOfRoom> },
     #[error("the elevation files cannot be read")]
-    Elevation(#[source] Box<DemError>),
+    Elevation(#[source] Box<ReadHeightsError>),
     #[error("cannot read {path:?} again")]
     ReadAgain { path: PathBuf, source: io::Error },
     #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]

@@ -1,8 +1,8 @@
 //! Where vertices are, in the coordinates that were asked for.
 
 use corniche_areas::AreaObject;
-use corniche_dem::{DemError, DemProjection, ProjectedCrs, RecordedCrs, RecordedHeights};
 use corniche_geom::{LatticePoint, Projection as _, known_line_length_m};
+use corniche_gis::{CrsError, DemProjection, ProjectedCrs, RecordedCrs, RecordedHeights};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -33,7 +33,7 @@ enum Target {
     Projected(Box<ProjectedCrs>),
 }
 
-fn crs_failed(source: DemError) -> ExportError {
+fn crs_failed(source: CrsError) -> ExportError {
     ExportError::Crs(Box::new(source))
 }
 

@@ -26,6 +26,15 @@ impl Bounds {
         max_y: f64::NEG_INFINITY,
     };
 
+    /// The smallest rectangle around those points that are finite; empty where none is.
+    #[must_use]
+    pub fn around<'a>(points: impl IntoIterator<Item = &'a [f64; 2]>) -> Self {
+        let mut bounds = Self::EMPTY;
+        let is_finite = |point: &&[f64; 2]| point[0].is_finite() && point[1].is_finite();
+        points.into_iter().filter(is_finite).for_each(|&point| bounds.include(point));
+        bounds
+    }
+
     /// Makes the rectangle large enough to hold `point`.
     pub fn include(&mut self, point: [f64; 2]) {
         self.min_x = self.min_x.min(point[0]);

@@ -25,6 +25,8 @@ pub enum GroundError {
     Interrupted,
 }
 
+corniche_dem::from_dem_errors!(GroundError);
+
 impl From<Interrupted> for GroundError {
     fn from(_: Interrupted) -> Self {
         Self::Interrupted

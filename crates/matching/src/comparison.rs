@@ -1,4 +1,5 @@
-//! Roads of the finest level are compared with a photo or with the slope of the ground, and their offsets are measured.
+//! Roads of the finest level are compared with a photo or with the slope of the ground, and their
+//! offsets are measured.
 
 use std::collections::BTreeMap;
 
@@ -37,9 +38,10 @@ pub struct MatchRequest {
 
 /// Measures how far the roads of the finest level lie beside what `target` shows.
 ///
-/// At each place on a road, and for each shift of it, the image is asked whether there is a line: whether the middle is darker, or
-/// brighter, than both sides. What the places on some sixty metres of a road answer together is a vote for each shift, and the shift
-/// with most votes is the offset. Places beside the edge of the image are left out.
+/// At each place on a road, and for each shift of it, the image is asked whether there is a line:
+/// whether the middle is darker, or brighter, than both sides. What the places on some sixty metres
+/// of a road answer together is a vote for each shift, and the shift with most votes is the offset.
+/// Places beside the edge of the image are left out.
 ///
 /// # Errors
 /// When the package has no roads or cannot be read, a photo cannot, or `observer` ends it.

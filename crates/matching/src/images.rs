@@ -5,14 +5,18 @@ use corniche_geom::{GridFrame, TILE_CELLS, TileId};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, TexelWindow};
 use corniche_tileset::{FilePackage, Manifest, Relief, Sections};
 
-use crate::{error::MatchError, grey::Grey, response::TexelScale};
+use crate::{
+    error::MatchError,
+    response::{Grey, TexelScale},
+};
 
 /// What roads are compared with.
 #[derive(Debug)]
 pub enum Target<'a> {
     /// Photos, brought onto this grid of the package.
     Photos(&'a Photos, &'a GridPlan),
-    /// How steep the ground is, as the relief of the finest tiles has it: roads are flatter across than their banks.
+    /// How steep the ground is, as the relief of the finest tiles has it: roads are flatter across
+    /// than their banks.
     Slope,
 }
 
@@ -72,7 +76,8 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The image in a window of texels, which lies in tile `id` or around a part of it; NaN where there is none.
+    /// The image in a window of texels, which lies in tile `id` or around a part of it; NaN where
+    /// there is none.
     pub(crate) fn window(&mut self, id: TileId, window: TexelWindow) -> Result<Grey, MatchError> {
         let first = [window.u, window.v];
         let columns = window.columns;
@@ -100,7 +105,8 @@ fn relief(package: &FilePackage, id: TileId) -> Result<Option<Relief>, MatchErro
     payload.relief.map_or(Err(MatchError::NoRelief), |relief| Ok(Some(relief)))
 }
 
-/// The steepness of each cell of a window, degrees, as far as the tile has heights at its corners. A texel is a cell.
+/// The steepness of each cell of a window, degrees, as far as the tile has heights at its corners.
+/// A texel is a cell.
 fn slopes(
     manifest: &Manifest,
     relief: Option<&Relief>,

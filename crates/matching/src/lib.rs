@@ -1,4 +1,5 @@
-//! How far the roads of a package lie beside what a photo, or the slope of the ground, shows of them.
+//! How far the roads of a package lie beside what a photo, or the slope of the ground, shows of
+//! them.
 //!
 //! ```text
 //!  GEO lines of finest tiles ─► samples along roads ─┐
@@ -9,15 +10,15 @@
 //!
 //! It measures and changes nothing: roads of a package are those of the extract.
 //!
-//! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*, section 7 and
-//! Figure 16: roads and terrain come from different sources, and may not fit.
+//! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on
+//! High-Resolution DEMs*, section 7 and Figure 16: roads and terrain come from different sources,
+//! and may not fit.
 
 mod comparison;
 mod error;
 mod images;
 mod report;
 
-mod grey;
 mod response;
 mod samples;
 mod votes;

@@ -53,7 +53,8 @@ pub struct MatchedRoad {
     pub across_offset: Option<AlongOffset>,
     /// The direction across the road, of length 1, eastwards.
     pub across: [f64; 2],
-    /// 0 for a straight road, whose offset is known across it alone; 1 for one that goes in all directions alike.
+    /// 0 for a straight road, whose offset is known across it alone; 1 for one that goes in all
+    /// directions alike.
     pub bends: f64,
     /// Its lines, working metres.
     pub lines: Vec<Vec<[f64; 2]>>,

@@ -18,10 +18,11 @@ pub struct Offset {
     pub east_m: f64,
     /// The same northwards.
     pub north_m: f64,
-    /// How many times the scatter of the votes the best shift stands above their median. From about 6 on it is one that the image
-    /// shows.
+    /// How many times the scatter of the votes the best shift stands above their median. From about
+    /// 6 on it is one that the image shows.
     pub confidence: f64,
-    /// Whether the best shift lies at the edge of those that were tried: the true one may lie beyond.
+    /// Whether the best shift lies at the edge of those that were tried: the true one may lie
+    /// beyond.
     pub is_at_edge: bool,
 }
 
@@ -79,8 +80,8 @@ pub(crate) struct Votes {
 }
 
 impl Votes {
-    /// A run of samples along a road votes with the size of what all of them answer together: what is now darker and now brighter is
-    /// no road.
+    /// A run of samples along a road votes with the size of what all of them answer together: what
+    /// is now darker and now brighter is no road.
     pub(crate) fn add(&mut self, answers: &[f32], samples: u64, normals: [f64; 3]) {
         if self.sums.is_empty() {
             self.sums = vec![0.0; answers.len()];
@@ -94,8 +95,9 @@ impl Votes {
         }
     }
 
-    /// The direction across which the roads say most, of length 1 and eastwards, and how much the roads bend away from it: 0 for one
-    /// straight road, 1 for roads in all directions alike. Along a straight road nothing can be said.
+    /// The direction across which the roads say most, of length 1 and eastwards, and how much the
+    /// roads bend away from it: 0 for one straight road, 1 for roads in all directions alike. Along
+    /// a straight road nothing can be said.
     pub(crate) fn across(&self) -> ([f64; 2], f64) {
         let [ee, en, nn] = self.normals;
         let angle = 0.5 * (2.0 * en).atan2(ee - nn);
@@ -105,8 +107,8 @@ impl Votes {
         ([angle.cos(), angle.sin()], bends)
     }
 
-    /// The same for shifts in one direction alone, of length 1 and eastwards: how far, and the confidence. For roads that are nearly
-    /// straight, of which nothing is known along them.
+    /// The same for shifts in one direction alone, of length 1 and eastwards: how far, and the
+    /// confidence. For roads that are nearly straight, of which nothing is known along them.
     pub(crate) fn offset_along(
         &self,
         [east, north]: [f64; 2],
@@ -142,7 +144,8 @@ impl Votes {
         Some(mix(south, north, fy))
     }
 
-    /// The shift with most votes, to a part of a step. `None` without votes, or where all shifts have the same.
+    /// The shift with most votes, to a part of a step. `None` without votes, or where all shifts
+    /// have the same.
     pub(crate) fn offset(&self, search: &Search) -> Option<Offset> {
         let side = search.side();
         let best = (0..self.sums.len()).max_by(|&a, &b| self.sums[a].total_cmp(&self.sums[b]))?;
@@ -166,9 +169,11 @@ impl Votes {
     }
 }
 
-/// How many times the scatter of the sums the best one stands above their median; `None` where they do not scatter.
+/// How many times the scatter of the sums the best one stands above their median; `None` where they
+/// do not scatter.
 ///
-/// The scatter is taken from the sums below the median: those above hold the ridges along which straight roads fit, too.
+/// The scatter is taken from the sums below the median: those above hold the ridges along which
+/// straight roads fit, too.
 fn confidence(sums: &[f32], best: usize) -> Option<f64> {
     let mut sorted = sums.to_vec();
     sorted.sort_unstable_by(f32::total_cmp);

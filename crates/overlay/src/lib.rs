@@ -4,17 +4,15 @@
 //!  GeoJSON, GPX, GeoPackage, Shapefile ──read──► VectorLines (WGS84) ──place──► points on the package's lattice
 //! ```
 //!
-//! What is drawn is what the file has: lines are not simplified, joined or moved here. [`LineFile`] is a file of lines that a person
-//! draws: what was not changed is saved as it was.
+//! What is drawn is what the file has: lines are not simplified, joined or moved here. [`LineFile`]
+//! is a file of lines that a person draws: what was not changed is saved as it was.
 
 mod error;
-mod heights;
 mod line_file;
 mod place_lines;
 mod read;
 
 pub use error::OverlayError;
-pub use heights::EllipsoidHeights;
 pub use line_file::{LineFile, SavedLine, Shape};
-pub use place_lines::{Placed, place};
+pub use place_lines::{EllipsoidHeights, Placed, place};
 pub use read::{MOST_POINTS, VectorLine, VectorLines, read};

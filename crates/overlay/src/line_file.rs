@@ -2,6 +2,7 @@
 
 use std::{fs, io::Read as _, path::Path};
 
+use corniche_gis::{FileUse, VectorError};
 use geo::{LineString, Winding as _};
 use serde_json::{Map, Value, json};
 
@@ -10,7 +11,8 @@ use crate::{OverlayError, read::MOST_POINTS};
 /// Far more than a person draws.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// A file of lines and areas that a person draws, as GeoJSON (RFC 7946). Other features, and all properties, are kept as they are.
+/// A file of lines and areas that a person draws, as GeoJSON (RFC 7946). Other features, and all
+/// properties, are kept as they are.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LineFile {
     /// What the collection has beside its features.
@@ -49,7 +51,8 @@ impl LineFile {
     pub fn read(path: &Path) -> Result<Self, OverlayError> {
         let failed = |source| OverlayError::Read { path: path.to_path_buf(), source };
         if !fs::metadata(path).map_err(failed)?.is_file() {
-            return Err(OverlayError::Stream { path: path.to_path_buf() });
+            let (kind, path) = (FileUse::Lines, path.to_path_buf());
+            return Err(VectorError::Stream { kind, path }.into());
         }
         let mut text = String::new();
         let file = fs::File::open(path).map_err(failed)?;
@@ -95,7 +98,8 @@ impl LineFile {
         }
     }
 
-    /// All features that are one line, or one area without holes, with their numbers. Longitude and latitude of each point.
+    /// All features that are one line, or one area without holes, with their numbers. Longitude and
+    /// latitude of each point.
     #[must_use]
     pub fn lines(&self) -> Vec<(usize, Shape, Vec<[f64; 2]>)> {
         let features = self.features.iter().enumerate();
@@ -110,8 +114,9 @@ impl LineFile {
         self.features.iter().filter(|feature| line_of(feature).is_none()).count()
     }
 
-    /// The text of a file with these lines in the place of those that this one has. A line whose points are as they were stays as it is,
-    /// heights included. An area of two points is a line. What has one point is left out.
+    /// The text of a file with these lines in the place of those that this one has. A line whose
+    /// points are as they were stays as it is, heights included. An area of two points is a line.
+    /// What has one point is left out.
     #[must_use]
     pub fn text_with(&self, lines: &[SavedLine]) -> String {
         let known = |number: usize| lines.iter().find(|line| line.feature == Some(number));
@@ -141,8 +146,8 @@ impl LineFile {
     }
 }
 
-/// The points of a feature that is one line, or one area without holes, with valid positions. An area's first point is not repeated at
-/// the end.
+/// The points of a feature that is one line, or one area without holes, with valid positions. An
+/// area's first point is not repeated at the end.
 fn line_of(feature: &Value) -> Option<(Shape, Vec<[f64; 2]>)> {
     let geometry = feature.get("geometry")?;
     let coordinates = geometry.get("coordinates")?.as_array()?;

@@ -1,9 +1,11 @@
 //! Lines are read from all layers of a vector file and carried to WGS84.
 
-use std::{collections::HashMap, path::Path};
+use std::{collections::HashSet, path::Path};
 
-use corniche_dem::{DemError, FileDatums, NotOpened, ToWgs84, failure, forget, open_vectors};
 use corniche_geom::MOST_TILE_STEPS;
+use corniche_gis::{
+    CrsError, FileDatums, FileUse, ToWgs84, for_each_feature, forget, open_vectors,
+};
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten,
 };
@@ -13,7 +15,8 @@ use crate::OverlayError;
 /// Steps of work for a point of a line that crosses little ground, as a track of a walker does.
 const STEPS_OF_POINT: u64 = 64;
 
-/// Points that the lines of a file may have, a million: as many as one tile can show, for they may all lie on one.
+/// Points that the lines of a file may have, a million: as many as one tile can show, for they may
+/// all lie on one.
 pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 
 /// A line of a file.
@@ -21,7 +24,8 @@ pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 pub struct VectorLine {
     /// The feature's `name`, if it has one.
     pub name: Option<String>,
-    /// Longitude and latitude of each point, degrees of WGS84. NaN where a point has no such position.
+    /// Longitude and latitude of each point, degrees of WGS84. NaN where a point has no such
+    /// position.
     pub positions_deg: Vec<[f64; 2]>,
 }
 
@@ -63,50 +67,30 @@ impl VectorLines {
 
     /// How many lines have the positions of one before them, in the same order or from end to begin.
     fn repeated(&self) -> usize {
-        let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
-        let mut repeated = 0;
-        for (number, line) in self.lines.iter().enumerate() {
-            let with_same_key = known.entry(line.key()).or_default();
-            if with_same_key.iter().any(|&before| self.lines[before].is_same_as(line)) {
-                repeated += 1;
-            } else {
-                with_same_key.push(number);
-            }
-        }
-        repeated
+        let mut known = HashSet::new();
+        self.lines.iter().filter(|line| !known.insert(line.bits())).count()
     }
 }
 
 impl VectorLine {
-    fn bits(&self) -> impl DoubleEndedIterator<Item = [u64; 2]> {
-        self.positions_deg.iter().map(|position| position.map(f64::to_bits))
-    }
-
-    /// A number that lines with the same positions have in common, whichever way they go.
-    fn key(&self) -> u64 {
-        let mix =
-            |[lon, lat]: [u64; 2]| lon.rotate_left(32).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ lat;
-        self.bits().map(mix).fold(0, u64::wrapping_add)
-    }
-
-    fn is_same_as(&self, other: &Self) -> bool {
-        self.bits().eq(other.bits()) || self.bits().eq(other.bits().rev())
+    /// The bits of its positions, the same whichever way it goes.
+    fn bits(&self) -> Vec<[u64; 2]> {
+        let bits: Vec<_> = self.positions_deg.iter().map(|at| at.map(f64::to_bits)).collect();
+        let back = bits.iter().rev().copied().collect();
+        bits.min(back)
     }
 }
 
-/// Reads the lines of all layers of a vector file, each in its own coordinate system. With `allow_ballpark` its datum may be taken for that of
-/// WGS84 where PROJ knows nothing between the two.
+/// Reads the lines of all layers of a vector file, each in its own coordinate system. With
+/// `allow_ballpark` its datum may be taken for that of WGS84 where PROJ knows nothing between the
+/// two.
 ///
 /// # Errors
-/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no coordinate system, or one of an unknown datum.
+/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no
+/// coordinate system, or one of an unknown datum.
 pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
-    let dataset = open_vectors(path).map_err(|error| match error {
-        NotOpened::Missing(source) => OverlayError::Missing { path: own(), source },
-        NotOpened::Stream => OverlayError::Stream { path: own() },
-        NotOpened::NoDriver(advice) => OverlayError::NoDriver { path: own(), advice },
-        NotOpened::Unreadable(source) => OverlayError::Open { path: own(), source },
-    })?;
+    let dataset = open_vectors(path, FileUse::Lines)?;
     let is_gpx = dataset.driver().short_name() == "GPX";
     let mut reading = Reading { path, found: VectorLines::default(), points: 0, allow_ballpark };
     let [mut routes, mut tracks] = [0; 2];
@@ -143,38 +127,34 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     fn layer(&mut self, layer: &mut Layer<'_>) -> Result<(), OverlayError> {
-        let path = || self.path.to_path_buf();
-        let (name, claimed) = (layer.name(), layer.try_feature_count());
-        let unusable = |source: DemError| OverlayError::Crs {
-            path: path(),
+        let path = self.path;
+        let (own, name) = (|| path.to_path_buf(), layer.name());
+        let unusable = |source: CrsError| OverlayError::Crs {
+            path: own(),
             layer: name.clone(),
             source: Box::new(source),
         };
         let to_wgs84 = layer.spatial_ref().as_ref().map(ToWgs84::new).transpose();
         let to_wgs84 = to_wgs84.map_err(unusable)?;
         let before = self.found.lines.len();
-        let mut features = 0;
-        forget();
-        for feature in layer.features() {
-            features += 1;
-            let label = label_of(&feature);
+        for_each_feature(layer, (path, FileUse::Lines), |feature| {
+            let label = label_of(feature);
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else {
-                continue;
+                return Ok(());
             };
             let mut parts = Vec::new();
             take(geometry, &mut parts);
             if parts.is_empty() {
                 self.found.others += 1;
-                continue;
+                return Ok(());
             }
             let Some(to_wgs84) = &to_wgs84 else {
-                return Err(OverlayError::NoCrs { path: self.path.to_path_buf(), layer: name });
+                return Err(OverlayError::NoCrs { path: own(), layer: name.clone() });
             };
             for mut part in parts {
                 self.points += part.len();
                 if self.points > MOST_POINTS {
-                    let (path, limit) = (self.path.to_path_buf(), MOST_POINTS);
-                    return Err(OverlayError::TooManyPoints { path, limit });
+                    return Err(OverlayError::TooManyPoints { path: own(), limit: MOST_POINTS });
                 }
                 to_wgs84.apply(&mut part).map_err(unusable)?;
                 let (name, positions_deg) = (label.clone(), part);
@@ -182,21 +162,14 @@ impl Reading<'_> {
             }
             // What PROJ says of single points is no failure to read the file.
             forget();
-        }
-        // The iterator ends where a feature cannot be read, and does not tell.
-        let path = self.path.to_path_buf();
-        if let Some(source) = failure() {
-            return Err(OverlayError::Damaged { path, source });
-        }
-        if let Some(claimed) = claimed.filter(|claimed| *claimed != features) {
-            return Err(OverlayError::CutOff { path, layer: name, claimed, found: features });
-        }
+            Ok(())
+        })?;
         let Some(to_wgs84) = to_wgs84 else { return Ok(()) };
         let first = |line: &VectorLine| {
             line.positions_deg.iter().find(|position| position[0].is_finite()).copied()
         };
         let places_deg: Vec<_> = self.found.lines[before..].iter().filter_map(first).collect();
-        let datums = to_wgs84.datums(&path, &places_deg).allowed(self.allow_ballpark);
+        let datums = to_wgs84.datums(path, &places_deg).allowed(self.allow_ballpark);
         self.found.datums.extend(datums.map_err(|error| OverlayError::Datum(Box::new(error)))?);
         Ok(())
     }

@@ -2,6 +2,8 @@
 
 use std::{fs, path::PathBuf};
 
+use corniche_gis::VectorError;
+
 use super::*;
 use crate::LineFile;
 
@@ -44,7 +46,8 @@ fn a_track_of_gpx_is_one_line() {
     assert_eq!(found.lines[0].name.as_deref(), Some("up"));
 }
 
-/// One line as a route and as a track, as planners save it: the first time exactly the same, the second time with fewer points.
+/// One line as a route and as a track, as planners save it: the first time exactly the same, the
+/// second time with fewer points.
 #[test]
 fn a_line_that_counts_twice_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -95,10 +98,11 @@ fn what_gives_no_lines_is_told() {
     assert!(told("half.geojson", &GEOJSON[..300]).contains("half.geojson"));
     assert!(told("empty.gpx", "").contains("not a vector file"));
     let missing = read(&folder.path().join("missing.gpx"), false).unwrap_err();
-    assert!(matches!(missing, OverlayError::Missing { .. }), "{missing}");
+    assert!(matches!(missing, OverlayError::Vector(VectorError::Missing { .. })), "{missing}");
 }
 
-/// As many as a file may have are read, and one more is refused; also by what takes drawn lines up again.
+/// As many as a file may have are read, and one more is refused; also by what takes drawn lines up
+/// again.
 #[test]
 fn a_file_has_a_million_points_at_most() {
     let folder = tempfile::tempdir().unwrap();

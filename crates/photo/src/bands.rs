@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_dem::LibraryError;
+use corniche_gis::{FileUse, RasterError, forget, has_own_mask};
 use gdal::Dataset;
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, GdalDataType};
@@ -18,7 +18,8 @@ pub(crate) struct Bands {
     alpha: Option<usize>,
     /// The file says by a mask where it has no data.
     has_mask: bool,
-    /// The value for no data of each band of the colour: pixels in which all bands have it are none.
+    /// The value for no data of each band of the colour: pixels in which all bands have it are
+    /// none.
     nodata: Option<Vec<u8>>,
 }
 
@@ -53,8 +54,7 @@ impl Bands {
             }
         }
         let first = dataset.rasterband(colour.bands()[0]).map_err(broken)?;
-        let flags = first.mask_flags().map_err(broken)?;
-        let is_own_nodata = flags.is_nodata() && !flags.is_per_dataset();
+        let has_mask = has_own_mask(&first).map_err(broken)?;
         let mut nodata = Vec::new();
         for number in colour.bands() {
             let band = dataset.rasterband(number).map_err(broken)?;
@@ -65,7 +65,6 @@ impl Bands {
             nodata.extend(value.map(|value| value as u8));
         }
         let nodata = (nodata.len() == colour.bands().len()).then_some(nodata);
-        let has_mask = !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata;
         Ok(Self { colour, alpha, has_mask, nodata })
     }
 
@@ -122,7 +121,7 @@ impl Bands {
         dataset: &Dataset,
         [column, row]: [usize; 2],
         [columns, rows]: [usize; 2],
-    ) -> Result<Pixels, PhotoError> {
+    ) -> Result<Pixels, RasterError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
         let mut values = vec![0_u8; columns * rows];
         let mut rgba = vec![[0, 0, 0, 255]; columns * rows];
@@ -163,13 +162,12 @@ impl Bands {
             }
             Ok(())
         };
-        corniche_dem::forget();
-        read().map_err(|source| PhotoError::Read {
+        forget();
+        read().map_err(|source| RasterError::Read {
+            kind: FileUse::Photo,
             path: path.to_path_buf(),
-            column,
-            row,
-            columns,
-            rows,
+            start: [column, row],
+            size: [columns, rows],
             source: source.into(),
         })?;
         Ok(Pixels { start: [column as i64, row as i64], columns, rows, rgba })
@@ -187,6 +185,5 @@ impl Colour {
 }
 
 fn opening(path: &Path, source: GdalError) -> PhotoError {
-    let source: Box<LibraryError> = source.into();
-    PhotoError::Raster(corniche_dem::DemError::Open { path: path.to_path_buf(), source })
+    RasterError::unreadable(path, source).into()
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{DemError, LibraryError};
+use corniche_gis::{CrsError, RasterError};
 
 /// Why photos could not be opened or read.
 #[derive(Debug, thiserror::Error)]
@@ -11,12 +11,6 @@ use corniche_dem::{DemError, LibraryError};
 pub enum PhotoError {
     #[error("no photo is given")]
     NoFiles,
-    #[error("cannot open photo {path:?}")]
-    Missing { path: PathBuf, source: std::io::Error },
-    #[error(
-        "the name of photo {path:?} is not UTF-8, and GDAL takes no other names here; rename the file (or its folder)"
-    )]
-    NotUtf8 { path: PathBuf },
     #[error(
         "photo {path:?} names no usable coordinate system; write it into the file with gdal_edit.py -a_srs EPSG:n"
     )]
@@ -50,27 +44,18 @@ pub enum PhotoError {
         "photo {path:?} has {pixels:.0} pixels along a texel, more than {most}; give a higher --photo-levels, or thin it with gdal_translate -outsize 10% 10% -r average"
     )]
     TooFine { path: PathBuf, pixels: f64, most: f64 },
-    #[error(
-        "cannot read {columns} × {rows} pixels at column {column}, row {row} of photo {path:?}; it is damaged or cut off, fetch it again"
-    )]
-    Read {
-        path: PathBuf,
-        column: usize,
-        row: usize,
-        columns: usize,
-        rows: usize,
-        source: Box<LibraryError>,
-    },
     #[error(transparent)]
-    Raster(DemError),
+    Raster(RasterError),
+    #[error(transparent)]
+    Crs(#[from] CrsError),
 }
 
-impl From<DemError> for PhotoError {
-    fn from(error: DemError) -> Self {
+impl From<RasterError> for PhotoError {
+    fn from(error: RasterError) -> Self {
         match error {
-            DemError::Missing { path, source } => Self::Missing { path, source },
-            DemError::NotUtf8 { path } => Self::NotUtf8 { path },
-            DemError::NoCrs { path } | DemError::UnusableCrs { path, .. } => Self::NoCrs { path },
+            RasterError::NoCrs { path } | RasterError::UnusableCrs { path, .. } => {
+                Self::NoCrs { path }
+            }
             other => Self::Raster(other),
         }
     }

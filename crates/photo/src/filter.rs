@@ -18,9 +18,10 @@ pub(crate) struct Light {
     pub(crate) opacity: f64,
 }
 
-/// Weights of the pixels along one axis: a tent as wide as two texels, or two pixels where these are larger. That is bilinear
-/// interpolation where the photo is coarser, and where it is finer an average over the texel that fades into its neighbours, so
-/// that detail finer than a texel does not alias.
+/// Weights of the pixels along one axis: a tent as wide as two texels, or two pixels where these
+/// are larger. That is bilinear interpolation where the photo is coarser, and where it is finer an
+/// average over the texel that fades into its neighbours, so that detail finer than a texel does
+/// not alias.
 #[derive(Default)]
 pub(crate) struct Weights {
     first: i64,

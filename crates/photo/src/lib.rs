@@ -5,13 +5,13 @@
 //!            (bands, CRS)     (grid, levels)  (PROJ, filter, mosaic)            (exact, in whole numbers)
 //! ```
 //!
-//! A texel has the same colour, bit for bit, whichever window it is read through: its place follows from its global index, its
-//! colour from the pixels around that place.
+//! A texel has the same colour, bit for bit, whichever window it is read through: its place follows
+//! from its global index, its colour from the pixels around that place.
 //!
-//! This crate never encodes, never triangulates, and never guesses where an image lies or what its values mean.
+//! This crate never encodes, never triangulates, and never guesses where an image lies or what its
+//! values mean.
 
 mod error;
-mod photo_grid;
 mod photos;
 mod reader;
 
@@ -23,7 +23,7 @@ mod texel_grid;
 mod texels;
 
 pub use error::PhotoError;
-pub use photo_grid::PhotoGrid;
+pub use photo_file::PhotoGrid;
 pub use photos::{LevelChoice, Photos};
 pub use reader::PhotoReader;
 pub use texel_grid::{MAX_LEVELS, TexelGrid, TexelWindow};

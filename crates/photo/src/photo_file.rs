@@ -1,12 +1,13 @@
-//! One photo file, and its place on the grid of a package.
+//! One photo file and its place on the grid of a package, and all photos of a build there.
 
 use std::path::Path;
 
-use corniche_dem::{GridPlan, PlacedRaster, RasterOnGrid};
+use corniche_dem::GridPlan;
 use corniche_geom::Bounds;
+use corniche_gis::{FileUse, PlacedRaster, RasterOnGrid, stored_text};
 
-use crate::PhotoError;
 use crate::bands::Bands;
+use crate::{PhotoError, TexelGrid};
 
 /// One photo, described but not held open.
 #[derive(Debug, Clone)]
@@ -33,18 +34,18 @@ const SIDE_POINTS: usize = 33;
 
 impl PhotoFile {
     pub(crate) fn open(path: &Path) -> Result<Self, PhotoError> {
-        let (raster, dataset) = PlacedRaster::open(path)?;
+        let (raster, dataset) = PlacedRaster::open(path, FileUse::Photo)?;
         if dataset.raster_count() == 0 {
             return Err(PhotoError::NoBand { path: path.to_path_buf() });
         }
         let bands = Bands::of(path, &dataset)?;
-        let credit = corniche_dem::stored_text(&dataset, "TIFFTAG_COPYRIGHT");
+        let credit = stored_text(&dataset, "TIFFTAG_COPYRIGHT");
         let credit = credit.map(|text| text.trim().to_owned()).filter(|text| !text.is_empty());
         Ok(Self { raster, bands, credit })
     }
 
     pub(crate) fn on(&self, grid: &GridPlan) -> Result<PlacedPhoto, PhotoError> {
-        let on_grid = self.raster.on(grid);
+        let on_grid = self.raster.on(&grid.working, grid.area_deg());
         let nowhere = || PhotoError::Nowhere { path: self.raster.path().to_path_buf() };
         let [columns, rows] = self.raster.size().map(|pixels| pixels as f64);
         let shares = (0..SIDE_POINTS).map(|k| k as f64 / (SIDE_POINTS - 1) as f64);
@@ -53,10 +54,7 @@ impl PhotoFile {
             .map(|[c, r]| [c * columns, r * rows])
             .collect();
         on_grid.working_from_pixels(&mut border)?;
-        let mut bounds = Bounds::EMPTY;
-        for point in border.into_iter().filter(|point| point[0].is_finite()) {
-            bounds.include(point);
-        }
+        let bounds = Bounds::around(&border);
         if bounds.is_empty() {
             return Err(nowhere());
         }
@@ -72,4 +70,36 @@ impl PhotoFile {
         }
         Ok(PlacedPhoto { file: self.clone(), on_grid, bounds, pixel_m })
     }
+}
+
+/// Photos on a package's grid. May be shared between threads.
+#[derive(Debug, Clone)]
+pub struct PhotoGrid {
+    pub(crate) photos: Vec<PlacedPhoto>,
+    pub(crate) texels: TexelGrid,
+}
+
+impl PhotoGrid {
+    /// The texels of the finest level.
+    #[must_use]
+    pub fn texels(&self) -> &TexelGrid {
+        &self.texels
+    }
+
+    /// Whether a photo may lie in a rectangle, working metres.
+    #[must_use]
+    pub fn touches(&self, bounds: &Bounds) -> bool {
+        self.photos.iter().any(|photo| overlap(&photo.bounds, bounds))
+    }
+
+    /// Area of the rectangles around the photos, square metres of the grid; where they overlap it
+    /// counts twice.
+    #[must_use]
+    pub fn area_m2(&self) -> f64 {
+        self.photos.iter().map(|photo| photo.bounds.width() * photo.bounds.height()).sum()
+    }
+}
+
+pub(crate) fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y
 }

@@ -1,15 +1,17 @@
-//! Photo files that are described but not held open, and the choice of how fine their texels become.
+//! Photo files that are described but not held open, and the choice of how fine their texels
+//! become.
 
 use std::path::PathBuf;
 
-use corniche_dem::{FileBlocks, GridPlan, PlacedRaster};
+use corniche_dem::GridPlan;
 use corniche_geom::Bounds;
+use corniche_gis::{FileBlocks, FileUse, PlacedRaster};
 
-use crate::photo_file::PhotoFile;
-use crate::photo_grid::overlap;
+use crate::photo_file::{PhotoFile, overlap};
 use crate::{PhotoError, PhotoGrid, TexelGrid};
 
-/// The most levels finer than the finest cell that are taken where nobody says how many: a finest tile then has 2048 texels a side.
+/// The most levels finer than the finest cell that are taken where nobody says how many: a finest
+/// tile then has 2048 texels a side.
 const USUAL_LEVELS: u8 = 3;
 /// The most levels at all.
 const MOST_LEVELS: u8 = 16;
@@ -31,8 +33,8 @@ pub enum LevelChoice {
     OfPhotos,
     /// There are so many levels.
     Given(u8),
-    /// There are as many levels as the finest photo has detail for, or as make texels of so many metres if that is coarser; to
-    /// be read by windows, not by whole tiles.
+    /// There are as many levels as the finest photo has detail for, or as make texels of so many
+    /// metres if that is coarser; to be read by windows, not by whole tiles.
     NotCoarserThan(f64),
 }
 
@@ -45,7 +47,8 @@ impl Photos {
     /// Looks into all files; reads no pixel yet. Where photos overlap, the first named lies on top.
     ///
     /// # Errors
-    /// When a file cannot be opened, lacks georeference or CRS, has other samples than 8 bits, or bands that are no colours.
+    /// When a file cannot be opened, lacks georeference or CRS, has other samples than 8 bits, or
+    /// bands that are no colours.
     pub fn open(files: &[PathBuf]) -> Result<Self, PhotoError> {
         if files.is_empty() {
             return Err(PhotoError::NoFiles);
@@ -71,18 +74,15 @@ impl Photos {
     /// # Errors
     /// When a file cannot be opened any more.
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, PhotoError> {
-        let mut found = Vec::new();
-        for file in &self.files {
-            found.extend(file.raster.blocks()?);
-        }
-        Ok(found)
+        let blocks = |file: &PhotoFile| FileBlocks::of_file(file.raster.path(), 1, FileUse::Photo);
+        Ok(self.files.iter().map(blocks).collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Puts the photos on a grid.
     ///
     /// # Errors
-    /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far more detail than the texels, or
-    /// there are too many levels.
+    /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far
+    /// more detail than the texels, or there are too many levels.
     pub fn on(&self, grid: &GridPlan, choice: LevelChoice) -> Result<PhotoGrid, PhotoError> {
         let mut photos = Vec::with_capacity(self.files.len());
         let mut all = Bounds::EMPTY;

@@ -1,12 +1,14 @@
 //! Where texels lie among a photo's pixels.
 
-use corniche_dem::RasterOnGrid;
+use corniche_gis::{CrsError, RasterOnGrid};
 
-use crate::{PhotoError, TexelGrid};
+use crate::TexelGrid;
 
-/// Texels along a side of a mesh. Meshes are those of the global grid, so a texel's position depends on nothing but its index.
+/// Texels along a side of a mesh. Meshes are those of the global grid, so a texel's position
+/// depends on nothing but its index.
 pub(crate) const MESH: i64 = 32;
-/// Largest error of a position, in texels and in pixels. Where interpolation is worse, each texel is transformed.
+/// Largest error of a position, in texels and in pixels. Where interpolation is worse, each texel
+/// is transformed.
 const TOLERANCE: f64 = 0.05;
 
 /// The positions of a mesh's texels among the pixels of one photo.
@@ -36,7 +38,7 @@ impl MeshPositions {
         grid: &TexelGrid,
         photo: &RasterOnGrid,
         at: [i64; 2],
-    ) -> Result<Option<Self>, PhotoError> {
+    ) -> Result<Option<Self>, CrsError> {
         let half = MESH / 2;
         let mut points: Vec<[f64; 2]> = (0..3)
             .flat_map(|row| (0..3).map(move |column| [column, row]))
@@ -90,7 +92,8 @@ impl MeshPositions {
         }
     }
 
-    /// Lowest and highest position of the mesh, with the reach of the filter: pixels outside do not count for any texel.
+    /// Lowest and highest position of the mesh, with the reach of the filter: pixels outside do not
+    /// count for any texel.
     pub(crate) fn reach(&self) -> [[f64; 2]; 2] {
         let points = || self.corners.iter().chain(self.exact.iter().flatten());
         let finite = |axis: usize| {

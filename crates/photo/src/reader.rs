@@ -1,16 +1,13 @@
 //! The reader of texels: windows of them are made of the pixels of photos, block by block.
 
 use corniche_geom::Bounds;
-use gdal::Dataset;
+use corniche_gis::{FileUse, OpenRasters, RasterError};
 
 use crate::filter::{Filter, Light, Pixels};
-use crate::photo_file::PlacedPhoto;
-use crate::photo_grid::overlap;
+use crate::photo_file::{PlacedPhoto, overlap};
 use crate::positions::{MESH, MeshPositions};
 use crate::{PhotoError, PhotoGrid, TexelGrid, TexelWindow, Texels};
 
-/// Files that a reader keeps open; each may hold an operating system's handle.
-const OPEN_FILES: usize = 32;
 /// Pixels that are read at once, unless a single mesh needs more.
 const MOST_PIXELS: i64 = 1 << 21;
 /// Meshes along a side of the texels that are made at once.
@@ -19,8 +16,7 @@ const BLOCK_MESHES: i64 = 8;
 /// Reads texels out of photos.
 pub struct PhotoReader<'a> {
     grid: &'a PhotoGrid,
-    /// Open files, those used last first.
-    open: Vec<(usize, Dataset)>,
+    open: OpenRasters,
     filter: Filter,
 }
 
@@ -35,7 +31,7 @@ impl<'a> PhotoReader<'a> {
     /// Reads the texels of these photos; each thread has a reader of its own.
     #[must_use]
     pub fn new(grid: &'a PhotoGrid) -> Self {
-        Self { grid, open: Vec::new(), filter: Filter::default() }
+        Self { grid, open: OpenRasters::default(), filter: Filter::default() }
     }
 
     /// The texels of a window.
@@ -123,21 +119,16 @@ impl<'a> PhotoReader<'a> {
         photo: &PlacedPhoto,
         start: [i64; 2],
         size: [i64; 2],
-    ) -> Result<Pixels, PhotoError> {
-        if let Some(at) = self.open.iter().position(|(open, _)| *open == index) {
-            self.open[..=at].rotate_right(1);
-        } else {
-            let dataset = photo.file.raster.dataset()?;
-            self.open.truncate(OPEN_FILES - 1);
-            self.open.insert(0, (index, dataset));
-        }
+    ) -> Result<Pixels, RasterError> {
         let path = photo.file.raster.path();
+        let dataset = self.open.dataset(index, path, FileUse::Photo)?;
         let [start, size] = [start, size].map(|pair| pair.map(|value| value as usize));
-        photo.file.bands.read(path, &self.open[0].1, start, size)
+        photo.file.bands.read(path, dataset, start, size)
     }
 }
 
-/// The pixels that meshes need: first, and one past the last. `None` where that is none of the photo's.
+/// The pixels that meshes need: first, and one past the last. `None` where that is none of the
+/// photo's.
 fn pixels_of(meshes: &[MeshPositions], size: [usize; 2]) -> Option<[[i64; 2]; 2]> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];

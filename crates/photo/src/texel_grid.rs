@@ -9,8 +9,8 @@ pub const MAX_LEVELS: u8 = 4;
 
 /// Texels over the finest tiles of a package: a cell has 2^levels along each side.
 ///
-/// Texel (u, v) lies between nodes: u counts eastwards and v southwards from node (0, 0), in texels. So texels are the same for every
-/// tile that holds them.
+/// Texel (u, v) lies between nodes: u counts eastwards and v southwards from node (0, 0), in
+/// texels. So texels are the same for every tile that holds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelGrid {
     frame: GridFrame,
@@ -71,7 +71,8 @@ impl TexelGrid {
         TexelWindow { u: first(corner.i), v: first(-corner.j), columns: side, rows: side }
     }
 
-    /// Position in working metres of a point, given in texels from node (0, 0) eastwards and southwards.
+    /// Position in working metres of a point, given in texels from node (0, 0) eastwards and
+    /// southwards.
     pub(crate) fn position_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [x0, y0] = self.frame.origin_m();
         let cell = self.frame.cell();

@@ -19,8 +19,9 @@ impl Texels {
         Self { columns, rows, rgba: vec![0; columns * rows * 4] }
     }
 
-    /// Takes red, green, blue and alpha of each texel; alpha is 255 for texels with a photo, and 0 for others, which have no colour.
-    /// `None` if there are not four bytes for each texel, or other values.
+    /// Takes red, green, blue and alpha of each texel; alpha is 255 for texels with a photo, and 0
+    /// for others, which have no colour. `None` if there are not four bytes for each texel, or
+    /// other values.
     #[must_use]
     pub fn new(columns: usize, rows: usize, rgba: Vec<u8>) -> Option<Self> {
         let is_texel = |texel: &[u8]| texel[3] == 255 || *texel == NONE;
@@ -73,7 +74,8 @@ impl Texels {
         self.rgba[at..at + 4].copy_from_slice(&texel);
     }
 
-    /// Copies a rectangle of `from`, which begins at `[column, row]` there and has `size` columns and rows, to `to` here.
+    /// Copies a rectangle of `from`, which begins at `[column, row]` there and has `size` columns
+    /// and rows, to `to` here.
     ///
     /// # Panics
     /// When one of the two rectangles is not inside its texels.
@@ -104,11 +106,12 @@ impl Texels {
         part
     }
 
-    /// Texels twice as large: of each square of four the mean of those that have a photo, halves rounded up. A texel has a photo if
-    /// at least two of its four have one.
+    /// Texels twice as large: of each square of four the mean of those that have a photo, halves
+    /// rounded up. A texel has a photo if at least two of its four have one.
     ///
-    /// Means are taken of the stored values, as GDAL and the makers of map tiles take them, and not of linear light: a photo that is
-    /// averaged here is the same as one that was averaged before it came. In whole numbers, so the same on every processor.
+    /// Means are taken of the stored values, as GDAL and the makers of map tiles take them, and not
+    /// of linear light: a photo that is averaged here is the same as one that was averaged before
+    /// it came. In whole numbers, so the same on every processor.
     ///
     /// # Panics
     /// When there is an odd number of columns or rows.

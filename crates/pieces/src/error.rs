@@ -2,8 +2,8 @@
 
 use std::{io, path::PathBuf};
 
-use corniche_dem::listed_files;
 use corniche_geom::Bounds;
+use corniche_gis::listed_files;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::{LackOfRoom, StoreError};
 use corniche_work::Interrupted;
@@ -42,6 +42,8 @@ pub enum ExtractError {
     #[error("interrupted; no package was written")]
     Interrupted,
 }
+
+corniche_dem::from_dem_errors!(ExtractError);
 
 impl From<Interrupted> for ExtractError {
     fn from(_: Interrupted) -> Self {

@@ -14,8 +14,9 @@ pub(crate) mod work_store;
 
 use std::{sync::Arc, time::Duration};
 
-use corniche_dem::{DatumOperation, GridPlan};
+use corniche_dem::GridPlan;
 use corniche_geom::TileId;
+use corniche_gis::DatumOperation;
 use corniche_ground::terrain::ground::GroundSource;
 use corniche_plan::{BuildPlan, Opened, check_room, network_differences};
 use corniche_spec::{

@@ -1,7 +1,8 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
-use corniche_dem::{Dem, DemError, DemProjection, FileDatums, GridPlan};
+use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
+use corniche_gis::{CrsError, DemProjection, FileDatums};
 use corniche_ground::{
     heights::pyramid::Pyramid,
     photos::{source::PhotoSource, textures::TextureStore},
@@ -99,7 +100,7 @@ impl<'a> Context<'a> {
     }
 
     /// The outline of the elevation files, where they fill no rectangle.
-    pub(crate) fn data_outline(&self) -> Result<Option<Outline>, DemError> {
+    pub(crate) fn data_outline(&self) -> Result<Option<Outline>, CrsError> {
         match self.source {
             GroundSource::Dem(dem) => data_outline(dem, self.grid, self.projection),
             GroundSource::Package(package) => Ok(package.manifest().data_outline()),

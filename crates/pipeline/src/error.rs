@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use corniche_dem::listed_files;
+use corniche_gis::listed_files;
 use corniche_ground::{GroundError, TerrainError};
 use corniche_pieces::ExtractError;
 use corniche_plan::{PlanError, PlanFileError};
@@ -94,6 +94,8 @@ pub enum BuildError {
     #[error("interrupted; no package was written")]
     Interrupted,
 }
+
+corniche_dem::from_dem_errors!(BuildError);
 
 /// What is lacking where a package could not be written.
 fn room_of(error: &WriteError) -> String {

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use corniche_areas::{AreaTable, AreaTableError};
-use corniche_dem::Polygon;
 use corniche_geom::{Bounds, Cell, GridFrame, NodeIndex, TileId};
+use corniche_gis::Polygon;
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, data_tiles::DataTiles, hex::hex,

@@ -32,7 +32,7 @@ pub enum PlanFileError {
     #[error("the plan's table of areas names a class that does not exist; make the plan again")]
     AreaClass,
     #[error(transparent)]
-    Polygon(#[from] corniche_dem::PolygonError),
+    Polygon(#[from] corniche_gis::PolygonError),
     #[error(
         "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
         differences.join("; ")
@@ -73,6 +73,8 @@ pub enum PlanError {
     #[error("interrupted; no package was written")]
     Interrupted,
 }
+
+corniche_dem::from_dem_errors!(PlanError);
 
 impl From<Interrupted> for PlanError {
     fn from(_: Interrupted) -> Self {

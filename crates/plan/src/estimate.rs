@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use corniche_dem::{Dem, FileBlocks};
+use corniche_dem::Dem;
 use corniche_geom::TILE_CELLS;
+use corniche_gis::FileBlocks;
 use corniche_ground::photos::source::PhotoSource;
 use corniche_ground::terrain::ground::GroundSource;
 use corniche_spec::{Observer, Resources, machine::thread_time};

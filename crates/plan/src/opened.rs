@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use corniche_dem::{Dem, DemProjection, FileDatums, GridPlan, Polygon};
+use corniche_dem::{Dem, GridPlan};
 use corniche_geom::CoordinateTable;
+use corniche_gis::{DemProjection, FileDatums, Polygon};
 use corniche_ground::terrain::{ground::GroundSource, recorded::RecordedTerrain};
 use corniche_ground::{TerrainError, photos::source::PhotoSource};
 use corniche_spec::{

@@ -11,8 +11,9 @@
 use std::cell::Cell;
 
 use corniche_areas::{OutlineError, Polygon, intersection};
-use corniche_dem::{Dem, DemError, Footprint, GridPlan};
+use corniche_dem::{Dem, Footprint, GridPlan};
 use corniche_geom::{LatticeBounds, LatticePoint, Projection};
+use corniche_gis::CrsError;
 
 use crate::extent::AreaExtent;
 use crate::extent::Imaging;
@@ -22,12 +23,12 @@ use crate::extent::Outline;
 /// working CRS can show. Samples without a height count, too.
 ///
 /// # Errors
-/// See [`DemError`].
+/// See [`CrsError`].
 pub fn data_outline(
     dem: &Dem,
     plan: &GridPlan,
     projection: &(dyn Projection + Sync),
-) -> Result<Option<Outline>, DemError> {
+) -> Result<Option<Outline>, CrsError> {
     let frame = &plan.frame;
     let imaging = Imaging { frame, seam: projection.seam() };
     let nodes = frame.lattice_bounds([plan.south_west, plan.north_east]);
@@ -51,7 +52,7 @@ fn image(
     imaging: &Imaging<'_>,
     footprint: &Footprint<'_>,
     ring: &[LatticePoint],
-) -> Result<Option<Vec<LatticePoint>>, DemError> {
+) -> Result<Option<Vec<LatticePoint>>, CrsError> {
     let corners: Vec<[f64; 2]> = ring.iter().map(|corner| corner.in_steps()).collect();
     let failed = Cell::new(None);
     let image = imaging.image(&corners, &|places| {

@@ -1,8 +1,8 @@
 //! Areas end where the data, the boxes of extracts and the bounds end, whatever shape these have in the working CRS.
 
 use corniche_areas::Polygon;
-use corniche_dem::RecordedCrs;
 use corniche_geom::{NodeIndex, wgs84};
+use corniche_gis::RecordedCrs;
 
 use super::*;
 use crate::true_areas::lattice_ring_m2;

@@ -18,7 +18,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{DemError, VirtualFile, raster_files};
+use corniche_dem::DemError;
+use corniche_gis::{VirtualFile, raster_files};
 use corniche_tileset::InputRecord;
 use corniche_work::Stage;
 use sha2::{Digest, Sha256};
@@ -136,6 +137,8 @@ pub enum InputError {
     #[error("interrupted; no package was written")]
     Interrupted,
 }
+
+corniche_dem::from_dem_errors!(InputError);
 
 impl InputError {
     /// Whether the cause is an input or a setting, rather than a failure while the run went on.
@@ -328,7 +331,7 @@ fn add_rasters(
     for path in paths {
         // The stamp is taken before GDAL reads the file for the names of its parts.
         let input = Input::new(kind, path)?;
-        let parts = raster_files(path).map_err(InputError::Dem)?;
+        let parts = raster_files(path)?;
         let is_own = |part: &PathBuf| match &input.content {
             Content::File(own) | Content::Virtual(own) => part == own || part == path,
             Content::Folder => part == path,

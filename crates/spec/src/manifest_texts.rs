@@ -1,7 +1,8 @@
 //! Texts and records that every manifest has: written by the build, compared by `verify`.
 
-use corniche_dem::{Clip, DatumOperation, GridPlan, libraries};
+use corniche_dem::{Clip, GridPlan};
 use corniche_geom::LatticePoint;
+use corniche_gis::{DatumOperation, libraries};
 use corniche_tileset::{ClipRecord, DatumOperationRecord, Manifest, VerticalRecord};
 
 use crate::extent::Outline;

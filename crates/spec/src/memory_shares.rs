@@ -32,7 +32,7 @@ impl MemoryShares {
     /// # Errors
     /// See [`InputError`].
     pub fn limit_raster_cache(resources: Resources) -> Result<(), InputError> {
-        corniche_dem::limit_block_cache(Self::of(resources.memory_bytes).raster_cache)
+        corniche_gis::limit_block_cache(Self::of(resources.memory_bytes).raster_cache)
             .map_err(|error| InputError::Setting { what: error.to_string() })
     }
 }

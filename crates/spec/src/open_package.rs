@@ -11,7 +11,7 @@ use corniche_tileset::{FilePackage, OpenError};
 pub fn open_package(path: &Path) -> Result<FilePackage, OpenError> {
     FilePackage::open(path).map_err(|error| match error {
         OpenError::File { path, source } if matches!(*source, OpenError::NotPmtiles) => {
-            let found = corniche_dem::stand_in(&path);
+            let found = corniche_gis::stand_in(&path);
             let told = found.map(|(found, advice)| OpenError::StandIn { found, advice }.into());
             OpenError::File { path, source: told.unwrap_or(source) }
         }

@@ -6,7 +6,8 @@
 //! and the extract as the build did.
 
 use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_dem::{OpenOptions, PlanOptions, Polygon};
+use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_gis::Polygon;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};

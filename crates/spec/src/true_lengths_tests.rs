@@ -1,7 +1,7 @@
 //! The true lengths of pieces add up to that of the segment, exactly, and each cut lies at its true place.
 
-use corniche_dem::{DemProjection, RecordedCrs};
 use corniche_geom::{Bounds, NodeIndex};
+use corniche_gis::{DemProjection, RecordedCrs};
 use proptest::prelude::*;
 
 use super::*;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{Dem, DemError, GridPlan, OpenOptions};
+use corniche_dem::{Dem, GridPlan, OpenDemError, OpenOptions};
 use corniche_spec::{
     Observer,
     data_outline::data_outline,
@@ -74,9 +74,9 @@ pub(crate) fn open(
 }
 
 /// Opens elevation files with recorded options. Packages of before the band was recorded were made of the first one, also of files with several.
-fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, DemError> {
+fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, OpenDemError> {
     match Dem::open(files, options) {
-        Err(DemError::SeveralBands { .. }) => {
+        Err(OpenDemError::SeveralBands { .. }) => {
             Dem::open(files, &OpenOptions { band: Some(1), ..options.clone() })
         }
         opened => opened,

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::{Dem, GridPlan, Polygon};
+use corniche_dem::{Dem, GridPlan};
+use corniche_gis::Polygon;
 use corniche_spec::{
     Observer,
     inputs::{Inputs, OtherInputs},

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_dem::listed_files;
+use corniche_gis::listed_files;
 use corniche_ground::GroundError;
 use corniche_pieces::ExtractError;
 use corniche_spec::{
@@ -96,6 +96,8 @@ pub enum VerifyError {
     #[error("interrupted")]
     Interrupted,
 }
+
+corniche_dem::from_dem_errors!(VerifyError);
 
 impl From<Interrupted> for VerifyError {
     fn from(_: Interrupted) -> Self {

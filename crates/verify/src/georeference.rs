@@ -1,7 +1,7 @@
 //! Where on Earth a package lies: its CRS, and what it says in degrees.
 
-use corniche_dem::{DemError, RecordedCrs};
 use corniche_geom::{Bounds, Projection, Seam};
+use corniche_gis::{CrsError, RecordedCrs};
 use corniche_spec::manifest_texts;
 use corniche_tileset::Manifest;
 
@@ -42,7 +42,7 @@ fn datum_operations(
     manifest: &Manifest,
     crs: &RecordedCrs,
     findings: &mut Findings,
-) -> Result<(), DemError> {
+) -> Result<(), CrsError> {
     if !manifest_texts::has_comparable_operations(manifest) {
         return Ok(());
     }
@@ -67,7 +67,7 @@ fn datum_operations(
 }
 
 /// The CRS with the factors of the package.
-pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, DemError> {
+pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, CrsError> {
     RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.whole_data_bounds())
 }
 
@@ -75,7 +75,7 @@ fn positions(
     manifest: &Manifest,
     crs: &RecordedCrs,
     findings: &mut Findings,
-) -> Result<(), DemError> {
+) -> Result<(), CrsError> {
     // Scales are those of all elevation files, also of a package of a part of them.
     let data = manifest.whole_data_bounds();
     let projection = crs.projection(manifest.area_deg())?;

@@ -78,7 +78,7 @@ fn compare_all(
     let frame = manifest.frame;
     let polygon = request.polygon.as_ref();
     let polygon = polygon
-        .map(|polygon| crs.polygon_on_lattice(polygon, manifest.area_deg(), &frame))
+        .map(|polygon| crs.working().polygon_on_lattice(polygon, manifest.area_deg(), &frame))
         .transpose()?;
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);

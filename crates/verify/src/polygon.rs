@@ -1,6 +1,6 @@
 //! Whether the polygon that is given is the one that the package was cut with.
 
-use corniche_dem::Polygon;
+use corniche_gis::Polygon;
 use corniche_spec::settings_record::polygon_sha256;
 use corniche_tileset::Manifest;
 

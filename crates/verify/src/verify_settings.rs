@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use corniche_areas::AreaTable;
-use corniche_dem::Polygon;
+use corniche_gis::Polygon;
 use corniche_roads::FrcTable;
 
 /// The inputs with which a package is verified.

@@ -82,9 +82,7 @@ pub(crate) fn verify(
 fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyError> {
     match audited {
         Ok(()) => Ok(None),
-        Err(GroundError::Dem(
-            error @ (DemError::OutOfRange { .. } | DemError::Sentinel { .. }),
-        )) => Ok(Some(error.to_string())),
+        Err(GroundError::Dem(error @ DemError::Audit(_))) => Ok(Some(error.to_string())),
         Err(error) => Err(error.into()),
     }
 }

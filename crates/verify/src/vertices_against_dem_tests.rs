@@ -1,5 +1,6 @@
 //! Gradients beside gaps are one-sided, and only refused samples are findings.
 
+use corniche_dem::AuditError;
 use corniche_spec::artifacts::ArtifactError;
 
 use super::*;
@@ -17,7 +18,7 @@ fn a_gradient_beside_a_gap_is_taken_from_one_side_and_between_gaps_is_none() {
 #[test]
 fn only_what_the_audit_refuses_is_a_finding() {
     assert!(matches!(refusal(Ok(())), Ok(None)));
-    let no_height = DemError::OutOfRange {
+    let no_height = AuditError::OutOfRange {
         path: "a.tif".into(),
         count: 1,
         samples: 9,
@@ -26,7 +27,7 @@ fn only_what_the_audit_refuses_is_a_finding() {
         low_m: -500.0,
         high_m: 9000.0,
     };
-    assert!(refusal(Err(GroundError::Dem(no_height))).unwrap().unwrap().contains("70000"));
+    assert!(refusal(Err(GroundError::Dem(no_height.into()))).unwrap().unwrap().contains("70000"));
     let interrupted = refusal(Err(GroundError::Interrupted));
     assert!(matches!(interrupted, Err(VerifyError::Interrupted)));
     let damaged = ArtifactError::Damaged { what: "heights".to_owned() };

@@ -34,14 +34,14 @@ const THREADS: [(&str, &str); 11] = [
 /// Crates with `unsafe` code.
 const UNSAFE: [(&str, &str); 2] = [
     ("cli", "a call of the C library, by which free memory goes back to the system"),
-    ("dem", "functions of GDAL and PROJ that the `gdal` crate does not hand out"),
+    ("gis", "functions of GDAL and PROJ that the `gdal` crate does not hand out"),
 ];
 
 /// Crates that open files.
 const FILES: [(&str, &str); 12] = [
     ("cli", "settings, styles, lists, pages and everything that commands write"),
-    ("dem", "elevation files, polygons, lists of files"),
     ("export", "the files that it makes, and scratch space"),
+    ("gis", "rasters, polygons, vector files, lists of files"),
     ("objects", "the file that is sent, and the note of an upload that was begun"),
     ("osm", "extracts"),
     ("overlay", "the file of lines that a person draws"),

@@ -2,11 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A sample that stands alone is at least this far beyond each of its neighbours: no slope of the earth is so long and so steep on all sides …
+/// A sample that stands alone is at least this far beyond each of its neighbours: no slope of the
+/// earth is so long and so steep on all sides …
 const LEAST_M: f64 = 2000.0;
-/// … unless samples are kilometres apart. On grids of half a degree islands stand alone in the ocean, but not on slopes as steep as this.
+/// … unless samples are kilometres apart. On grids of half a degree islands stand alone in the
+/// ocean, but not on slopes as steep as this.
 const STEEPNESS: f64 = 2.0 / 3.0;
-/// No summit of the earth stands as far above all that surrounds it, be it the bottom of the sea (Mauna Kea: some 9200 m).
+/// No summit of the earth stands as far above all that surrounds it, be it the bottom of the sea
+/// (Mauna Kea: some 9200 m).
 const MOST_M: f64 = 9500.0;
 /// With fewer neighbours nothing is known of a sample.
 const FEWEST_NEIGHBOURS: usize = 3;
@@ -28,7 +31,8 @@ pub(crate) struct Spike {
     pub(crate) stored: f64,
 }
 
-/// How many spikes there are in some samples of a file, and the first of them, row by row. Parts merge in any order.
+/// How many spikes there are in some samples of a file, and the first of them, row by row. Parts
+/// merge in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Spikes {
     pub(crate) count: u64,
@@ -54,8 +58,8 @@ impl Spikes {
     }
 }
 
-/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside it. Those off its rim are some; one on the rim
-/// can have neighbours outside.
+/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside
+/// it. Those off its rim are some; one on the rim can have neighbours outside.
 pub(crate) fn candidates(heights_m: &[f64], columns: usize, limit_m: f64) -> Vec<[usize; 2]> {
     let size = [columns, heights_m.len() / columns];
     let mut found = Vec::new();
@@ -87,7 +91,8 @@ pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2], limit_
     stands_alone(heights_m, columns, at, (FEWEST_NEIGHBOURS, limit_m))
 }
 
-/// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at least `fewest`; one without any lies beyond all.
+/// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at
+/// least `fewest`; one without any lies beyond all.
 fn stands_alone(
     heights_m: &[f64],
     columns: usize,

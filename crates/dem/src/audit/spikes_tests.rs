@@ -1,4 +1,5 @@
-//! A sample far beyond all of its neighbours is a spike; one beside another, or on a cliff, is none.
+//! A sample far beyond all of its neighbours is a spike; one beside another, or on a cliff, is
+//! none.
 
 use super::*;
 

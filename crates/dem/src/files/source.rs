@@ -4,18 +4,15 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use corniche_geom::{GeoTransform, wgs84::SEMI_MAJOR_M};
+use corniche_gis::{
+    Crs, FileUse, Georeference, HeightOperation, RasterError, VerticalCrs, names_up_to, open_raster,
+};
 use gdal::errors::GdalError;
 use gdal::raster::{ColorInterpretation, RasterBand};
 use gdal::{Dataset, Metadata};
 
-use crate::crs::height_operation::HeightOperation;
-use crate::crs::horizontal::Crs;
-use crate::crs::vertical::VerticalCrs;
-use crate::file_names::names_up_to;
-use crate::files::georeference::{crs_of, geo_transform, refuse_off_globe};
-use crate::files::open::open_dataset;
-use crate::files::stored_values::StoredValues;
-use crate::{DemError, OpenOptions};
+use crate::files::stored_values::{OpenOptions, StoredValues};
+use crate::{OpenDemError, ReadHeightsError};
 
 /// Most bands that a message names.
 const MOST_BANDS_NAMED: usize = 12;
@@ -46,36 +43,24 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, DemError> {
-        let dataset = open_dataset(path)?;
-        let own = || path.to_path_buf();
-        let broken = |source: GdalError| DemError::Open { path: own(), source: source.into() };
+    pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, OpenDemError> {
+        let dataset = open_raster(path, FileUse::Dem)?;
         if dataset.raster_count() == 0 {
             return Err(no_band(path, &dataset));
         }
         let number = band_number(path, &dataset, options.band)?;
-        let band = dataset.rasterband(number).map_err(broken)?;
+        let band =
+            dataset.rasterband(number).map_err(|source| RasterError::unreadable(path, source))?;
         let (columns, rows) = dataset.raster_size();
-        let (crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
-        let reference =
-            if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
-        let (crs, vertical) = crs_of(path, reference, options)?;
-        if crs_from_pixel.pixel_from_crs([0.0, 0.0]).is_none()
-            || !crs_from_pixel.coefficients.iter().all(|value| value.is_finite())
-        {
-            return Err(DemError::GeoTransform {
-                path: own(),
-                coefficients: crs_from_pixel.coefficients,
-            });
-        }
-        refuse_off_globe(path, &crs, &crs_from_pixel, dataset.raster_size())?;
+        let Georeference { crs_from_pixel, crs, vertical } =
+            Georeference::of(path, &dataset, options.dem_crs.as_deref())?;
         let given = || {
             let text = options.dem_vertical_crs.as_deref();
             text.map(|text| VerticalCrs::from_text("--dem-vertical-crs", text)).transpose()
         };
         let vertical = if vertical.is_some() { vertical } else { given()? };
         Ok(Self {
-            path: own(),
+            path: path.to_path_buf(),
             columns: columns as i64,
             rows: rows as i64,
             crs_from_pixel,
@@ -100,11 +85,11 @@ impl Source {
         [column, row]: [usize; 2],
         [columns, rows]: [usize; 2],
         heights_m: &mut Vec<f64>,
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         self.read_stored(dataset, [column, row], [columns, rows], heights_m)?;
         self.values.convert(heights_m);
         if let Some(operation) = &self.to_target {
-            operation.apply(&self.path, &self.crs_from_pixel, [column, row], columns, heights_m)?;
+            self.carry(operation, [column, row], columns, heights_m)?;
         }
         if self.shift_m != 0.0 {
             for height_m in heights_m.iter_mut() {
@@ -114,7 +99,38 @@ impl Source {
         Ok(())
     }
 
-    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS and the shift asked for.
+    /// Carries heights in metres to the vertical CRS asked for, in place; voids (NaN) stay.
+    ///
+    /// Each height is carried at the position of its own sample, counted in the whole file: the
+    /// result does not depend on the rectangle that is read.
+    fn carry(
+        &self,
+        operation: &HeightOperation,
+        [column, row]: [usize; 2],
+        columns: usize,
+        heights_m: &mut [f64],
+    ) -> Result<(), ReadHeightsError> {
+        let sample = |at: usize| [column + at % columns, row + at / columns];
+        let places: Vec<usize> =
+            (0..heights_m.len()).filter(|&at| !heights_m[at].is_nan()).collect();
+        let position = |&at: &usize| {
+            self.crs_from_pixel.crs_from_pixel(sample(at).map(|index| index as f64 + 0.5))
+        };
+        let mut carried_m: Vec<f64> = places.iter().map(|&at| heights_m[at]).collect();
+        operation.carry_m(places.iter().map(position).collect(), &mut carried_m)?;
+        for (at, carried_m) in places.into_iter().zip(carried_m) {
+            if carried_m.is_nan() {
+                let ([column, row], to) = (sample(at), operation.target().to_owned());
+                let path = self.path.clone();
+                return Err(ReadHeightsError::VerticalPosition { path, column, row, to });
+            }
+            heights_m[at] = carried_m;
+        }
+        Ok(())
+    }
+
+    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS
+    /// and the shift asked for.
     pub(crate) fn convert(&self, values: &mut [f64]) {
         self.values.convert(values);
     }
@@ -129,14 +145,15 @@ impl Source {
         self.values.m_per_whole()
     }
 
-    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says that there is none.
+    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says
+    /// that there is none.
     pub(crate) fn read_stored(
         &self,
         dataset: &Dataset,
         [column, row]: [usize; 2],
         [columns, rows]: [usize; 2],
         values: &mut Vec<f64>,
-    ) -> Result<(), DemError> {
+    ) -> Result<(), RasterError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
         let mut read = || -> Result<(), GdalError> {
             values.resize(columns * rows, 0.0);
@@ -152,13 +169,11 @@ impl Source {
             }
             Ok(())
         };
-        let path = || self.path.clone();
-        read().map_err(|source| DemError::Read {
-            path: path(),
-            column,
-            row,
-            columns,
-            rows,
+        read().map_err(|source| RasterError::Read {
+            kind: FileUse::Dem,
+            path: self.path.clone(),
+            start: [column, row],
+            size: [columns, rows],
             source: source.into(),
         })
     }
@@ -180,7 +195,7 @@ fn alpha_band(dataset: &Dataset) -> Option<usize> {
 }
 
 /// The error for a file without a raster band: it may be a container of several rasters.
-fn no_band(path: &Path, dataset: &Dataset) -> DemError {
+fn no_band(path: &Path, dataset: &Dataset) -> OpenDemError {
     let names: Vec<String> = dataset
         .metadata_domain("SUBDATASETS")
         .unwrap_or_default()
@@ -191,14 +206,15 @@ fn no_band(path: &Path, dataset: &Dataset) -> DemError {
         .collect();
     let path = path.to_path_buf();
     if names.is_empty() {
-        DemError::NoBand { path }
+        OpenDemError::NoBand { path }
     } else {
-        DemError::Subdatasets { path, names: names.join(", ") }
+        OpenDemError::Subdatasets { path, names: names.join(", ") }
     }
 }
 
 impl Source {
-    /// How far samples are from their neighbours, along the axis where they are farther, metres; in degrees as at the equator.
+    /// How far samples are from their neighbours, along the axis where they are farther, metres; in
+    /// degrees as at the equator.
     pub(crate) fn spacing_m(&self) -> f64 {
         let c = self.crs_from_pixel.coefficients;
         let around_m = TAU * SEMI_MAJOR_M;
@@ -207,9 +223,10 @@ impl Source {
     }
 }
 
-/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A raster with several is refused where none is
-/// asked for: which of them has heights is not to be guessed.
-fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, DemError> {
+/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A
+/// raster with several is refused where none is asked for: which of them has heights is not to be
+/// guessed.
+fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, OpenDemError> {
     let count = dataset.raster_count();
     if asked.is_none() {
         refuse_imagery(path, dataset)?;
@@ -222,7 +239,7 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
         // There is no band 0 of any file.
         (Some(asked), bands) if asked == 0 || bands.len() > 1 => match asked as usize {
             number if (1..=count).contains(&number) => Ok(number),
-            _ => Err(DemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
+            _ => Err(OpenDemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
         },
         (_, []) => Ok(1),
         (_, [(number, _)]) => Ok(*number),
@@ -231,7 +248,7 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
                 Ok(name) if !name.trim().is_empty() => format!("{number} {name:?}"),
                 _ => format!("{number} (no name, {})", band.band_type()),
             });
-            Err(DemError::SeveralBands {
+            Err(OpenDemError::SeveralBands {
                 path: path.to_path_buf(),
                 bands: names_up_to(MOST_BANDS_NAMED, names),
             })
@@ -239,13 +256,12 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
     }
 }
 
-/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can have one for
-/// display.
-fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), DemError> {
+/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can
+/// have one for display.
+fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), OpenDemError> {
     use ColorInterpretation as C;
-    let broken =
-        |source: GdalError| DemError::Open { path: path.to_path_buf(), source: source.into() };
-    let interpretation = dataset.rasterband(1).map_err(broken)?.color_interpretation();
+    let band = dataset.rasterband(1).map_err(|source| RasterError::unreadable(path, source))?;
+    let interpretation = band.color_interpretation();
     let is_colour = matches!(
         interpretation,
         C::RedBand
@@ -258,7 +274,7 @@ fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), DemError> {
             | C::BlackBand
     );
     if is_colour && dataset.raster_count() >= 3 {
-        return Err(DemError::Imagery {
+        return Err(OpenDemError::Imagery {
             path: path.to_path_buf(),
             bands: dataset.raster_count(),
             interpretation: interpretation.name().to_lowercase(),

@@ -1,20 +1,51 @@
-//! From stored values to heights in metres.
+//! From stored values to heights in metres, and the options that say how to understand a file where
+//! it does not say so itself.
 
 use std::path::Path;
 
+use corniche_gis::{RasterError, VerticalCrs, has_own_mask};
 use gdal::Metadata;
 use gdal::raster::{GdalDataType, RasterBand};
 
-use crate::crs::vertical::VerticalCrs;
-use crate::{DemError, OpenOptions};
+use crate::OpenDemError;
 
-/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing here", and the centre
-/// of the earth is only 6 400 km from sea level.
+/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing
+/// here", and the centre of the earth is only 6 400 km from sea level.
 const NO_HEIGHT_M: f64 = 1e7;
 /// The value for "nothing here" in the 16-bit files of SRTM, also where they do not declare it.
 const SRTM_VOID: f64 = -32768.0;
-/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
+/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for
+/// survey feet.
 const SAME_UNIT: f64 = 1e-5;
+
+/// How an elevation file is to be understood where it does not say so itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OpenOptions {
+    /// Band with the heights, from 1 on, of the files that have several. `None` refuses those.
+    pub band: Option<u32>,
+    /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
+    pub dem_crs: Option<String>,
+    /// The unit of heights, whatever bands and vertical CRSs say of it; `None` takes theirs, and
+    /// refuses a band's that is not known.
+    pub vertical_unit: Option<String>,
+    /// Stored values that mean "no height", besides the one that the file declares.
+    pub nodata: Vec<f64>,
+    /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A
+    /// file that names one keeps it.
+    pub dem_vertical_crs: Option<String>,
+    /// The vertical CRS that heights are wanted in, "EPSG:n" or WKT; `None` leaves them as they
+    /// are.
+    ///
+    /// PROJ takes the best operation for which it has the grids; approximations without any are not
+    /// allowed. Where the grid of the best is not installed but that of a lesser one is, an older
+    /// model of the geoid say, PROJ takes the lesser one and does not tell. It is not asked for the
+    /// best alone, which GDAL can do since 3.8 only (PROJ since 9.2 has an environment variable for
+    /// it, `PROJ_ONLY_BEST_DEFAULT`). Instead [`crate::GridPlan::vertical`] records the offset
+    /// found at the centre, to the millimetre: runs with grids that differ there read differently.
+    pub vertical_crs: Option<String>,
+    /// Added to every height, after all else, metres.
+    pub vertical_shift_m: f64,
+}
 
 /// How stored values become heights.
 #[derive(Debug, Clone)]
@@ -38,11 +69,11 @@ impl StoredValues {
         (number, band): (usize, &RasterBand<'_>),
         vertical: Option<&VerticalCrs>,
         options: &OpenOptions,
-    ) -> Result<Self, DemError> {
+    ) -> Result<Self, OpenDemError> {
         let kind = band.band_type();
         // Complex numbers of all kinds are among the unknown here.
         if kind == GdalDataType::Unknown {
-            return Err(DemError::SampleType { path: path.to_path_buf(), band: number });
+            return Err(OpenDemError::SampleType { path: path.to_path_buf(), band: number });
         }
         let mut nodata: Vec<f64> =
             declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
@@ -52,12 +83,10 @@ impl StoredValues {
         let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
         if !(scale.is_finite() && offset.is_finite()) || scale == 0.0 {
             let path = path.to_path_buf();
-            return Err(DemError::Scale { path, band: number, scale, offset });
+            return Err(OpenDemError::Scale { path, band: number, scale, offset });
         }
-        let flags = band
-            .mask_flags()
-            .map_err(|source| DemError::Open { path: path.to_path_buf(), source: source.into() })?;
-        let is_own_nodata = flags.is_nodata() && !flags.is_per_dataset();
+        let has_mask =
+            has_own_mask(band).map_err(|source| RasterError::unreadable(path, source))?;
         let pixel_type = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
         Ok(Self {
             nodata,
@@ -66,14 +95,14 @@ impl StoredValues {
             scale,
             offset,
             unit_m: m_per_value(path, &band.unit(), vertical, options.vertical_unit.as_deref())?,
-            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers
-            // all types. A nodata mask of the whole dataset is another thing: its item NODATA_VALUES, which no band has.
-            has_mask: !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata,
+            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves
+            // is exact, and covers all types.
+            has_mask,
         })
     }
 
-    /// A stored value as text, with no more digits than the file has: the user may give it as the value for "no
-    /// data".
+    /// A stored value as text, with no more digits than the file has: the user may give it as the
+    /// value for "no data".
     pub(crate) fn stored_text(&self, value: f64) -> String {
         match value {
             value if self.is_signed_byte && value > 127.0 => (value - 256.0).to_string(),
@@ -108,36 +137,37 @@ impl StoredValues {
 /// The value that the file declares to mean nothing.
 fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
     match kind {
-        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the samples read.
+        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the
+        // samples read.
         GdalDataType::Int64 => band.no_data_value_i64().map(|value| value as f64),
         GdalDataType::UInt64 => band.no_data_value_u64().map(|value| value as f64),
         _ => band.no_data_value(),
     }
 }
 
-/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or metres where none of them says.
+/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or
+/// metres where none of them says.
 fn m_per_value(
     path: &Path,
     band_unit: &str,
     vertical: Option<&VerticalCrs>,
     given: Option<&str>,
-) -> Result<f64, DemError> {
+) -> Result<f64, OpenDemError> {
     if let Some(given) = given {
         let metres = unit_m(given.trim());
-        let metres = metres.ok_or_else(|| DemError::UnitName { text: given.to_owned() })?;
+        let metres = metres.ok_or_else(|| OpenDemError::UnitName { text: given.to_owned() })?;
         return Ok(vertical.map_or(metres, |vertical| metres.copysign(vertical.m_per_value())));
     }
-    let named =
-        match band_unit.trim() {
-            "" => None,
-            unit => Some(unit_m(unit).ok_or_else(|| DemError::Unit {
-                path: path.to_path_buf(),
-                unit: unit.to_owned(),
-            })?),
-        };
+    let named = match band_unit.trim() {
+        "" => None,
+        unit => Some(unit_m(unit).ok_or_else(|| OpenDemError::Unit {
+            path: path.to_path_buf(),
+            unit: unit.to_owned(),
+        })?),
+    };
     let Some(vertical) = vertical else { return Ok(named.unwrap_or(1.0)) };
     if named.is_some_and(|unit_m| (unit_m / vertical.unit_m - 1.0).abs() > SAME_UNIT) {
-        return Err(DemError::UnitsDisagree {
+        return Err(OpenDemError::UnitsDisagree {
             path: path.to_path_buf(),
             unit: band_unit.trim().to_owned(),
             vertical: vertical.name.clone(),

@@ -1,14 +1,14 @@
 //! Where a DEM's files lie, from positions along their sides and inside them.
 
 use corniche_geom::{Bounds, Seam};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::DemError;
-use crate::crs::operation::Operation;
+use crate::OpenDemError;
 use crate::files::source::Source;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
-/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
+/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole
+/// sagitta.
 const SIDE_POSITIONS: usize = 65;
 /// Positions across the inside of a file, each way: a pole may lie there.
 const INNER_POSITIONS: usize = 9;
@@ -21,7 +21,8 @@ pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
     samples.iter().map(|&sample| mosaic.crs_from_sample.crs_from_pixel(sample)).collect()
 }
 
-/// Points on the rim and inside of a rectangle between two corners: the rim first, all the way around.
+/// Points on the rim and inside of a rectangle between two corners: the rim first, all the way
+/// around.
 pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -> Vec<[f64; 2]> {
     let corners = [[west, north], [east, north], [east, south], [west, south]];
     let between = |from: f64, to: f64, t: f64| from + (to - from) * t;
@@ -42,27 +43,24 @@ pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -
     samples
 }
 
-/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim positions
-/// included; empty where the CRS does not reach.
+/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim
+/// positions included; empty where the CRS does not reach.
 pub(crate) fn bounds(
     mosaic: &Mosaic,
     rect: &SampleRect,
-    operation: &Operation,
-) -> Result<Bounds, DemError> {
+    operation: &CrsOperation,
+) -> Result<Bounds, CrsError> {
     let mut points = positions(mosaic, rect);
     operation.apply(&mut points)?;
     Ok(with_bend(&points))
 }
 
-/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included; empty where there are none.
+/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included;
+/// empty where there are none.
 pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    let is_point = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
-    for &point in points.iter().filter(|point| is_point(point)) {
-        bounds.include(point);
-    }
-    // The distance of a position from the straight line between its two neighbours is 4 times the bend between two
-    // positions.
+    let mut bounds = Bounds::around(points);
+    // The distance of a position from the straight line between its two neighbours is 4 times the
+    // bend between two positions.
     let mut bend = 0.0_f64;
     for side in points[..4 * SIDE_POSITIONS].chunks_exact(SIDE_POSITIONS) {
         for [a, b, c] in side.windows(3).filter_map(|three| <[[f64; 2]; 3]>::try_from(three).ok()) {
@@ -81,13 +79,14 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     bounds
 }
 
-/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes are continuous:
-/// across the antimeridian they go on beyond ±180. Refuses a file of which no position is on earth.
+/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes
+/// are continuous: across the antimeridian they go on beyond ±180. Refuses a file of which no
+/// position is on earth.
 pub(crate) fn wgs84(
     sources: &[Source],
     mosaics: &[Mosaic],
-    operations: &[Operation],
-) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
+    operations: &[CrsOperation],
+) -> Result<(Vec<[f64; 2]>, Bounds), OpenDemError> {
     let mut all = Vec::new();
     let mut bounds = Bounds::EMPTY;
     for (mosaic, operation) in mosaics.iter().zip(operations) {
@@ -109,10 +108,10 @@ pub(crate) fn wgs84(
             points.retain(|point| point[0].is_finite() && point[1].is_finite());
             if points.is_empty() {
                 let path = sources[file.index].path.clone();
-                return Err(DemError::Nowhere { path, crs: mosaic.crs.label.clone() });
+                return Err(OpenDemError::Nowhere { path, crs: mosaic.crs.label.clone() });
             }
-            let turns =
-                of_mosaic.unwrap_or_else(|| turns_beside(around(&points).center()[0], bounds));
+            let turns = of_mosaic
+                .unwrap_or_else(|| turns_beside(Bounds::around(&points).center()[0], bounds));
             for point in &mut points {
                 point[0] -= 360.0 * turns;
                 bounds.include(*point);
@@ -130,7 +129,8 @@ pub(crate) fn wgs84(
     Ok((all, moved_back(bounds, away)))
 }
 
-/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies within.
+/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies
+/// within.
 pub(crate) fn turns_beyond(bounds: Bounds) -> f64 {
     let is_beyond = bounds.min_x >= 180.0 || bounds.max_x <= -180.0;
     if is_beyond { Seam::of_degrees().turns(bounds.center()[0]) } else { 0.0 }
@@ -142,8 +142,9 @@ pub(crate) fn moved_back(bounds: Bounds, turns: f64) -> Bounds {
     Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds }
 }
 
-/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved next to the one before it, which is
-/// near. Inside, each is moved next to the middle of the rim: neighbours in the list can be as far apart as the rectangle is wide.
+/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved
+/// next to the one before it, which is near. Inside, each is moved next to the middle of the rim:
+/// neighbours in the list can be as far apart as the rectangle is wide.
 pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
     let is_somewhere = |point: &&mut [f64; 2]| point[0].is_finite();
@@ -152,22 +153,14 @@ pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
         seam.around(first).unroll(rim);
     }
     // If no position of the rim is on earth, the first inner position is used.
-    let mut near = first.map(|_| around(rim).center()[0]);
+    let mut near = first.map(|_| Bounds::around(&*rim).center()[0]);
     for point in inside.iter_mut().filter(is_somewhere) {
         point[0] = seam.around(*near.get_or_insert(point[0])).image(point[0]);
     }
 }
 
-/// The rectangle around those positions that are somewhere.
-fn around(points: &[[f64; 2]]) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
-        bounds.include(point);
-    }
-    bounds
-}
-
-/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and none from an empty one.
+/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and
+/// none from an empty one.
 fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     if bounds.is_empty() {
         return 0.0;

@@ -1,20 +1,61 @@
-//! Files of one grid as one raster of samples.
+//! Files of one grid as one raster of samples: its rectangles, its spacing and phase without the
+//! rounding of the program that wrote the files.
 
 use corniche_geom::{GeoTransform, Seam};
+use corniche_gis::Crs;
 
-use crate::DemError;
-use crate::crs::horizontal::Crs;
+use crate::OpenDemError;
 use crate::files::source::Source;
-use crate::mosaics::sample_rect::SampleRect;
-use crate::mosaics::spacing::nice;
 
 /// Grids are the same when, over the whole extent, their samples are no farther apart than this.
 const SAME_GRID_PX: f64 = 1e-3;
 /// After a full turn of longitude, samples may be this far from where they started, in samples.
 const SAME_PLACE_PX: f64 = 0.01;
 
-/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the first of the
-/// first file, and a position between samples has fractions.
+/// Numbers with few digits may move samples by this, over the whole extent, in cells.
+const NOISE_CELLS: f64 = 5e-4;
+/// Rounding of a grid's phase, in steps per unit: small enough that it removes only the noise in
+/// corner coordinates.
+const PHASE_STEPS: f64 = 1e6;
+/// The same in degrees, in steps per cell: degrees are written with fewer digits. Rounding moves
+/// nodes by half a step at most.
+const PHASE_STEPS_DEGREES: f64 = 1e4;
+
+/// A rectangle of samples: `min` inclusive, `max` exclusive, as `[column, row]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SampleRect {
+    pub(crate) min: [i64; 2],
+    pub(crate) max: [i64; 2],
+}
+
+impl SampleRect {
+    pub(crate) fn columns(&self) -> usize {
+        (self.max[0] - self.min[0]).max(0) as usize
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        (self.max[1] - self.min[1]).max(0) as usize
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns() == 0 || self.rows() == 0
+    }
+
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
+        let low = |axis: usize| self.min[axis].max(other.min[axis]);
+        let high = |axis: usize| self.max[axis].min(other.max[axis]);
+        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+    }
+
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        let low = |axis: usize| self.min[axis].min(other.min[axis]);
+        let high = |axis: usize| self.max[axis].max(other.max[axis]);
+        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+    }
+}
+
+/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the
+/// first of the first file, and a position between samples has fractions.
 #[derive(Debug, Clone)]
 pub(crate) struct Mosaic {
     pub(crate) crs: Crs,
@@ -60,8 +101,8 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// How many columns make a full turn around the earth; `None` when this is not a whole number. A spacing that is
-/// written with few digits is read as the number that is meant.
+/// How many columns make a full turn around the earth; `None` when this is not a whole number. A
+/// spacing that is written with few digits is read as the number that is meant.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
     let reach = source.columns.max(source.rows) as f64;
@@ -71,9 +112,9 @@ fn period(source: &Source) -> Option<i64> {
 }
 
 /// Refuses grids of a single row or column: ground lies between samples, and they enclose none.
-pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), DemError> {
+pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), OpenDemError> {
     match mosaics.iter().find(|mosaic| mosaic.extent.columns() < 2 || mosaic.extent.rows() < 2) {
-        Some(Mosaic { extent, files, .. }) => Err(DemError::Line {
+        Some(Mosaic { extent, files, .. }) => Err(OpenDemError::Line {
             path: sources[files[0].index].path.clone(),
             columns: extent.columns(),
             rows: extent.rows(),
@@ -82,7 +123,8 @@ pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(),
     }
 }
 
-/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel in.
+/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel
+/// in.
 fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
     let mut coefficients = crs_from_pixel.coefficients;
     [coefficients[0], coefficients[3]] = crs_from_pixel.crs_from_pixel([0.5, 0.5]);
@@ -90,13 +132,14 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
-    /// Whether it goes all around the earth with one sample in each cell: between its last column and its first one there is ground, too.
+    /// Whether it goes all around the earth with one sample in each cell: between its last column
+    /// and its first one there is ground, too.
     pub(crate) fn is_ring(&self) -> bool {
         self.period == Some(self.extent.max[0] - self.extent.min[0])
     }
 
-    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has the ring's first column once more, so that the
-    /// ring ends where it begins.
+    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has
+    /// the ring's first column once more, so that the ring ends where it begins.
     ///
     /// ```text
     ///   │ 0 │ 1 │ … │ 359 ┊ 0 ┊     A globe with cells of a degree: 360 columns of samples, 361 of nodes.
@@ -125,8 +168,8 @@ impl Mosaic {
         self.crs.turn.map(|turn| Seam::new(self.middle()[0], turn))
     }
 
-    /// The samples that a position can refer to. A grid all around the earth repeats, so its columns go on to both
-    /// sides.
+    /// The samples that a position can refer to. A grid all around the earth repeats, so its
+    /// columns go on to both sides.
     pub(crate) fn reachable(&self) -> SampleRect {
         let around = self.period.unwrap_or(0);
         let SampleRect { min, max } = self.extent;
@@ -167,4 +210,32 @@ impl Mosaic {
         }
         self.crs.is_same(&source.crs).then_some([min[0] as i64, min[1] as i64])
     }
+}
+
+/// A spacing without the rounding of the program that wrote the file: a whole number of samples per
+/// unit (1/1200 of a degree), or a number of few decimal digits. If neither is near, the spacing
+/// stays as it is.
+pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
+    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
+    let digits = rounded(spacing, 9);
+    let to_a_unit = 1.0 / (1.0 / spacing).round();
+    [to_a_unit, digits]
+        .into_iter()
+        .find(|&nice| nice.is_finite() && is_noise(nice))
+        .unwrap_or(spacing)
+}
+
+/// Where samples lie between two multiples of their spacing, so that adjoining files of one product
+/// have the same grid.
+pub(crate) fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
+    let (unit, steps) =
+        if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };
+    let phase = (at.rem_euclid(spacing) / unit * steps).round() / steps * unit;
+    // A phase just below the spacing is the next multiple, so 0.
+    if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
+}
+
+/// A number rounded to so many significant decimal digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }

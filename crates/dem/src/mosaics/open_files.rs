@@ -1,36 +1,29 @@
-//! A reader keeps a limited number of rasters open and closes the least recently used one first.
+//! The samples of a mosaic, read from files that are kept open.
 
+use corniche_gis::{FileUse, OpenRasters, RasterError};
 use gdal::Dataset;
 
-use crate::DemError;
-use crate::files::open::open_dataset;
+use crate::ReadHeightsError;
 use crate::files::source::Source;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
-/// Files that a reader keeps open; each may hold an operating system's handle.
-const OPEN_FILES: usize = 32;
-
-/// Files kept open by one reader, the least lately used closed first.
+/// Files kept open by one reader.
+#[derive(Default)]
 pub(crate) struct OpenFiles {
-    open: Vec<(usize, Dataset)>,
+    open: OpenRasters,
     buffer: Vec<f64>,
 }
 
 impl OpenFiles {
-    pub(crate) fn new() -> Self {
-        Self { open: Vec::new(), buffer: Vec::new() }
-    }
-
-    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first file falls
-    /// through to the next.
+    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first
+    /// file falls through to the next.
     pub(crate) fn read(
         &mut self,
         sources: &[Source],
         mosaic: &Mosaic,
         rect: &SampleRect,
         heights_m: &mut Vec<f64>,
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         heights_m.clear();
         heights_m.resize(rect.columns() * rect.rows(), f64::NAN);
         let images = mosaic
@@ -59,14 +52,11 @@ impl OpenFiles {
     }
 
     /// A file, opened if need be.
-    pub(crate) fn dataset(&mut self, index: usize, source: &Source) -> Result<&Dataset, DemError> {
-        if let Some(at) = self.open.iter().position(|(open, _)| *open == index) {
-            self.open[..=at].rotate_right(1);
-        } else {
-            let dataset = open_dataset(&source.path)?;
-            self.open.truncate(OPEN_FILES - 1);
-            self.open.insert(0, (index, dataset));
-        }
-        Ok(&self.open[0].1)
+    pub(crate) fn dataset(
+        &mut self,
+        index: usize,
+        source: &Source,
+    ) -> Result<&Dataset, RasterError> {
+        self.open.dataset(index, &source.path, FileUse::Dem)
     }
 }

@@ -1,17 +1,19 @@
-//! One vertical CRS for the heights of all files: the one that is asked for, or the one that they agree on.
+//! One vertical CRS for the heights of all files: the one that is asked for, or the one that they
+//! agree on.
 
 use std::path::Path;
 
 use corniche_geom::Bounds;
+use corniche_gis::{
+    Crs, CrsError, CrsOperation, HeightOperation, LibraryError, VerticalCrs, forget, grid_names,
+};
 
-use crate::crs::height_operation::HeightOperation;
-use crate::crs::horizontal::Crs;
-use crate::crs::operation::Operation;
-use crate::crs::vertical::{VerticalCrs, file_names};
+use crate::HeightDatumError;
 use crate::files::source::Source;
-use crate::{DemError, LibraryError, OpenOptions, library_error};
+use crate::files::stored_values::OpenOptions;
 
-/// The largest shift that is accepted: the deepest trench and the highest mountain differ by only 20 km.
+/// The largest shift that is accepted: the deepest trench and the highest mountain differ by only
+/// 20 km.
 const MAX_SHIFT_M: f64 = 100_000.0;
 
 /// What the heights that a DEM hands out are measured from.
@@ -23,34 +25,35 @@ pub(crate) struct HeightReference {
     pub(crate) conversion: String,
 }
 
-/// The operation that carries a file's heights from one vertical CRS to another; and the offset it gives, in words.
+/// The operation that carries a file's heights from one vertical CRS to another; and the offset it
+/// gives, in words.
 ///
-/// PROJ must know a true operation: its "ballpark" ones, which leave heights as they are where a grid is
-/// missing, are not allowed.
+/// PROJ must know a true operation: its "ballpark" ones, which leave heights as they are where a
+/// grid is missing, are not allowed.
 fn height_operation(
     source: &Source,
     [from, to]: [&VerticalCrs; 2],
     area_deg: Bounds,
     center_deg: [f64; 2],
-) -> Result<(HeightOperation, String), DemError> {
+) -> Result<(HeightOperation, String), HeightDatumError> {
     for vertical in [from, to] {
         // PROJ skips a grid marked so when it is missing, and leaves heights as they are.
         if let Some(grids) = vertical.grids().filter(|grids| grids.contains('@')) {
-            return Err(DemError::OptionalGeoidGrid { grids });
+            return Err(HeightDatumError::OptionalGeoidGrid { grids });
         }
     }
     let found = HeightOperation::new(&source.crs, [from, to], area_deg);
     let mut center = [center_deg];
-    Operation::new(&Crs::wgs84()?, &source.crs, Some(area_deg)).apply(&mut center)?;
+    CrsOperation::new(&Crs::wgs84()?, &source.crs, Some(area_deg)).apply(&mut center)?;
     // A missing grid shows when the operation is made, or in that nothing has an image.
-    library_error::forget();
+    forget();
     let points: Vec<[f64; 2]> = center.into_iter().chain(probes(source)).collect();
     let mut offsets_m = vec![0.0; points.len()];
     match found.carry(points.clone(), &mut offsets_m) {
-        Err(DemError::Transform { source: reason, .. }) => {
+        Err(CrsError::Transform { source: reason, .. }) => {
             return Err(no_operation(source, [from, to], Some(reason)));
         }
-        Err(other) => return Err(other),
+        Err(other) => return Err(other.into()),
         Ok(()) => {}
     }
     if offsets_m[1..].iter().all(|offset_m| offset_m.is_nan()) {
@@ -79,13 +82,13 @@ fn probes(source: &Source) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a file can be
-/// looked for.
+/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a
+/// file can be looked for.
 fn no_operation(
     source: &Source,
     systems: [&VerticalCrs; 2],
     reason: Option<Box<LibraryError>>,
-) -> DemError {
+) -> HeightDatumError {
     let path = source.path.clone();
     let [from, to] = systems.map(|vertical| vertical.name.clone());
     let named = systems.iter().filter_map(|vertical| vertical.grids());
@@ -96,10 +99,10 @@ fn no_operation(
     };
     let gone: Vec<&str> = grids.iter().flat_map(|all| all.split(',')).filter(is_gone).collect();
     if !gone.is_empty() {
-        return DemError::NoGeoidGrid { path, from, to, grids: gone.join(", ") };
+        return HeightDatumError::NoGeoidGrid { path, from, to, grids: gone.join(", ") };
     }
     let grids = grids.map_or("PROJ does not say which".to_owned(), |all| all.replace(',', ", "));
-    DemError::VerticalOperation { path, from, to, grids, source: reason }
+    HeightDatumError::VerticalOperation { path, from, to, grids, source: reason }
 }
 
 /// Decides which vertical CRS the heights get, and prepares the files for it.
@@ -108,10 +111,10 @@ pub(crate) fn resolve(
     options: &OpenOptions,
     area_deg: Bounds,
     center_deg: [f64; 2],
-) -> Result<HeightReference, DemError> {
+) -> Result<HeightReference, HeightDatumError> {
     let shift_m = options.vertical_shift_m;
     if shift_m.is_nan() || shift_m.abs() > MAX_SHIFT_M {
-        return Err(DemError::VerticalShift { shift_m, limit_m: MAX_SHIFT_M });
+        return Err(HeightDatumError::VerticalShift { shift_m, limit_m: MAX_SHIFT_M });
     }
     let target = options.vertical_crs.as_deref();
     let target = target.map(|text| VerticalCrs::from_text("--vertical-crs", text)).transpose()?;
@@ -135,13 +138,13 @@ fn carry(
     target: &VerticalCrs,
     area_deg: Bounds,
     center_deg: [f64; 2],
-) -> Result<HeightReference, DemError> {
+) -> Result<HeightReference, HeightDatumError> {
     // What was done, and the offset in the first file to which it was done.
     let mut texts: Vec<[String; 2]> = Vec::new();
     for source in sources.iter_mut() {
         let Some(own) = source.vertical.clone() else {
             let to = target.name.clone();
-            return Err(DemError::NoVerticalCrs { path: source.path.clone(), to });
+            return Err(HeightDatumError::NoVerticalCrs { path: source.path.clone(), to });
         };
         let text = if own.is_same_datum(target) {
             // Unit and direction are handled where stored values become metres.
@@ -151,7 +154,7 @@ fn carry(
             if let Some(unnamed) =
                 [&own, target].into_iter().find(|vertical| vertical.datum.is_none())
             {
-                return Err(DemError::NoVerticalDatum {
+                return Err(HeightDatumError::NoVerticalDatum {
                     path: source.path.clone(),
                     from: own.name.clone(),
                     to: target.name.clone(),
@@ -164,7 +167,7 @@ fn carry(
             let grids: Vec<String> = [&own, target]
                 .iter()
                 .filter_map(|vertical| vertical.grids())
-                .map(|grids| file_names(&grids))
+                .map(|grids| grid_names(&grids))
                 .collect();
             let through = if grids.is_empty() {
                 String::new()
@@ -182,7 +185,7 @@ fn carry(
 }
 
 /// Heights as they are, when all files say the same of them.
-fn agree(sources: &[Source]) -> Result<HeightReference, DemError> {
+fn agree(sources: &[Source]) -> Result<HeightReference, HeightDatumError> {
     let Some(first) = sources.first() else { return Ok(HeightReference::default()) };
     let is_other = |source: &&Source| match (&first.vertical, &source.vertical) {
         (Some(own), Some(other)) => !own.is_same_datum(other),
@@ -196,7 +199,7 @@ fn agree(sources: &[Source]) -> Result<HeightReference, DemError> {
             Some(vertical) => format!("in {}", vertical.name),
             None => "in no named vertical CRS".to_owned(),
         };
-        return Err(DemError::MixedVertical {
+        return Err(HeightDatumError::MixedVertical {
             first: first.path.clone(),
             first_says: say(first),
             other: other.path.clone(),

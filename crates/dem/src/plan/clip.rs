@@ -1,22 +1,19 @@
-//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the samples that these need.
+//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the
+//! samples that these need.
 //!
-//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which of its nodes are made.
+//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which
+//! of its nodes are made.
 
 use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex, Seam};
+use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, Polygon, PolygonError};
 
-use crate::crs::horizontal::Crs;
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
-use crate::mosaics::mosaic::{Mosaic, Placed};
-use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
+use crate::mosaics::mosaic::{Mosaic, Placed, SampleRect};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, node_bounds_m};
 use crate::plan::layout::Layout;
-use crate::polygons::image::{Image, region};
-use crate::polygons::polygon::Polygon;
-use crate::{Dem, DemError};
+use crate::{Dem, GridError};
 
 /// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
 const ON_NODE: f64 = 1e-6;
@@ -26,19 +23,24 @@ const LEAST_ROOM_DEG: f64 = 1e-3;
 /// Samples around those under the nodes asked for, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
-/// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
+/// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes, its south-western
+/// and north-eastern one, rounded outwards. They may reach beyond the data. `area_deg` is the
+/// rectangle for which PROJ chooses its operation.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
-pub(crate) fn nodes_of(
+///
+/// # Errors
+/// When the bounds have no place in the CRS.
+pub fn nodes_within(
     bounds_deg: [f64; 4],
-    working: &Working,
+    working: &GridCrs,
     area_deg: Bounds,
     origin_m: [f64; 2],
     cell: Cell,
-) -> Result<[NodeIndex; 2], DemError> {
+) -> Result<[NodeIndex; 2], CrsError> {
     let [west, south, east, north] = around_the_earth_as(area_deg, continuous(bounds_deg));
     let mut points = rim_and_inside([west, north], [east, south]);
-    let operation = Operation::into_working(&Crs::wgs84()?, working, Some(area_deg));
+    let operation = CrsOperation::into_working(&Crs::wgs84()?, working, Some(area_deg));
     operation.around(None).apply(&mut points)?;
     if let Some(seam_m) = working.seam_m() {
         // The whole rectangle lies where the data's middle is near.
@@ -51,7 +53,7 @@ pub(crate) fn nodes_of(
     let bounds_m = with_bend(&points);
     if bounds_m.is_empty() {
         let crs = working.crs.label.clone();
-        return Err(DemError::BoundsOutsideCrs { bounds: bounds_text(bounds_deg), crs });
+        return Err(CrsError::BoundsOutside { bounds: bounds_text(bounds_deg), crs });
     }
     Ok(nodes_around(bounds_m, origin_m, cell))
 }
@@ -83,17 +85,17 @@ impl Asked {
         options: &PlanOptions,
         layout: &Layout,
         area_deg: Bounds,
-    ) -> Result<Option<Self>, DemError> {
+    ) -> Result<Option<Self>, GridError> {
         let Layout { working, origin_m, cell, .. } = layout;
         let mut asked: Option<Self> = None;
         if let Some(bounds_deg) = options.bounds_deg {
-            let nodes = nodes_of(bounds_deg, working, area_deg, *origin_m, *cell)?;
+            let nodes = nodes_within(bounds_deg, working, area_deg, *origin_m, *cell)?;
             let text = format!("--bounds {}", bounds_text(bounds_deg));
             asked = Some(Self { nodes, text, bounds_deg: Some(bounds_deg) });
         }
         if let Some(polygon) = &options.polygon {
-            let image = Image::new(polygon, working, area_deg, cell.shorter_m())?;
-            let own = nodes_around(image.bounds, *origin_m, *cell);
+            let bounds = working.polygon_bounds_m(polygon, area_deg, cell.shorter_m())?;
+            let own = nodes_around(bounds, *origin_m, *cell);
             let text = format!("--polygon {}", polygon.path().display());
             asked = Some(match asked {
                 Some(bounds) => Self {
@@ -123,8 +125,8 @@ fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     [west, south, if west > east { east + 360.0 } else { east }, north]
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of the data there, with some room on all
-/// sides. Others stay.
+/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of
+/// the data there, with some room on all sides. Others stay.
 fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -> [f64; 4] {
     if east - west < 360.0 {
         return [west, south, east, north];
@@ -145,14 +147,14 @@ fn bounds_text(bounds_deg: [f64; 4]) -> String {
     bounds_deg.map(|deg| deg.to_string()).join(",")
 }
 
-/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on both ends of data that go
-/// around the earth.
+/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on
+/// both ends of data that go around the earth.
 pub(crate) fn cut(
     asked: &Asked,
     whole: [NodeIndex; 2],
     around_the_earth: Option<i64>,
     dem: &Dem,
-) -> Result<[NodeIndex; 2], DemError> {
+) -> Result<[NodeIndex; 2], GridError> {
     let Asked { nodes: asked, text, bounds_deg } = asked;
     let common = common(*asked, whole);
     let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
@@ -164,7 +166,7 @@ pub(crate) fn cut(
             high.i - low.i > 1 && low.j < high.j
         };
         if has_cell(common) && (is_at_other_end(columns) || is_at_other_end(-columns)) {
-            return Err(DemError::BoundsAtBothEnds { asked: text.clone() });
+            return Err(GridError::BoundsAtBothEnds { asked: text.clone() });
         }
     }
     if has_cell(common) {
@@ -176,28 +178,28 @@ pub(crate) fn cut(
         .filter(|own| own[0] < east && own[2] > west && own[1] < north && own[3] > south)
         .map(|own| format!("; {} has some", bounds_text(own)))
         .unwrap_or_default();
-    Err(DemError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
+    Err(GridError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
 }
 
 /// The rectangle of nodes that two have in common; its corners change places where there is none.
-fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
+pub(crate) fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
     [
         NodeIndex { i: a[0].i.max(b[0].i), j: a[0].j.max(b[0].j) },
         NodeIndex { i: a[1].i.min(b[1].i), j: a[1].j.min(b[1].j) },
     ]
 }
 
-/// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes go on beyond ±180, as those
-/// of the whole DEM do.
+/// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes
+/// go on beyond ±180, as those of the whole DEM do.
 pub(crate) fn wgs84_bounds(
     data: Bounds,
-    working: &Working,
+    working: &GridCrs,
     whole_deg: Bounds,
-) -> Result<Bounds, DemError> {
+) -> Result<Bounds, GridError> {
     let own = rim_and_inside([data.min_x, data.max_y], [data.max_x, data.min_y]);
     let mut points = own.clone();
     let degrees = Seam::of_degrees();
-    Operation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
+    CrsOperation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
     if let Some(turn) = working.crs.turn_angle() {
         let to_degrees = 360.0 / turn / working.metres_per_unit[0];
         for (point, own) in points.iter_mut().zip(&own) {
@@ -206,24 +208,22 @@ pub(crate) fn wgs84_bounds(
     } else {
         unwrap(&mut points, degrees);
     }
-    let mut bounds = Bounds::EMPTY;
-    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
-        bounds.include(point);
-    }
+    let bounds = Bounds::around(&points);
     if bounds.is_empty() {
-        return Err(DemError::OutsideCrs { crs: working.crs.label.clone() });
+        return Err(GridError::OutsideCrs { crs: working.crs.label.clone() });
     }
     let away = degrees.around(whole_deg.center()[0]).turns(bounds.center()[0]);
     let bounds = moved_back(bounds, away);
     Ok(moved_back(bounds, turns_beyond(bounds)))
 }
 
-/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.
+/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them
+/// without bounds.
 pub(crate) fn needed_samples(
     plan: &GridPlan,
     mosaic: &Mosaic,
     role: &MosaicRole,
-) -> Result<SampleRect, DemError> {
+) -> Result<SampleRect, CrsError> {
     if plan.clip.is_none() {
         return Ok(mosaic.reachable());
     }
@@ -235,11 +235,11 @@ pub(crate) fn needed_samples(
     ];
     let (min, max) = match &role.method {
         Method::Aligned(alignment) => {
-            let (a, b) = (alignment.sample(nodes[0]), alignment.sample(nodes[1]));
-            ([0, 1].map(|axis| a[axis].min(b[axis])), [0, 1].map(|axis| a[axis].max(b[axis])))
+            let SampleRect { min, max } = alignment.samples(nodes);
+            (min, max.map(|end| end - 1))
         }
         Method::Resampled(positions, kernel) => {
-            let Bounds { min_x, min_y, max_x, max_y } = bounds_of(&plan.frame, nodes);
+            let Bounds { min_x, min_y, max_x, max_y } = node_bounds_m(&plan.frame, nodes);
             let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
             positions.samples_of(&mut points)?;
             let bounds = with_bend(&points);
@@ -262,14 +262,14 @@ pub(crate) fn needed_samples(
 }
 
 impl Dem {
-    /// Tells for each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
-    /// plan's bounds were looked into for the grid alone.
+    /// Tells for each file, in the order in which they were given, whether the plan's nodes can
+    /// depend on its samples. Files outside the plan's bounds were looked into for the grid alone.
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, DemError> {
+    pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, CrsError> {
         let mut is_needed = vec![false; self.sources.len()];
-        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
             let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
                 is_needed[file.index] = !parts_of_file(mosaic, file, &rect).is_empty();
@@ -305,12 +305,13 @@ impl GridPlan {
         Self { clip: None, polygon: None, ..self.clone() }
     }
 
-    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its bounds stay.
+    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its
+    /// bounds stay.
     ///
     /// # Errors
     /// When the polygon has no place in the working CRS, or encloses nothing.
-    pub fn within(mut self, polygon: &Polygon) -> Result<Self, DemError> {
-        let region = region(polygon, &self.working, self.area_deg(), &self.frame)?;
+    pub fn within(mut self, polygon: &Polygon) -> Result<Self, PolygonError> {
+        let region = self.working.polygon_on_lattice(polygon, self.area_deg(), &self.frame)?;
         self.polygon = Some(Arc::new(region));
         Ok(self)
     }

@@ -1,12 +1,14 @@
 //! How nodes relate to samples, in words.
 
-use crate::Dem;
-use crate::file_names::first_names;
-use crate::mosaics::mosaic::{Mosaic, Placed};
-use crate::plan::alignment::Alignment;
-use crate::plan::grid_plan::{Method, MosaicRole};
+use corniche_gis::first_names;
 
-/// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first named first.
+use crate::Dem;
+use crate::mosaics::mosaic::{Mosaic, Placed};
+use crate::plan::grid_plan::{Method, MosaicRole};
+use crate::plan::kernel::Alignment;
+
+/// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first
+/// named first.
 pub(crate) fn describe(dem: &Dem, roles: &[MosaicRole]) -> String {
     let is_one = dem.mosaics.len() == 1;
     let mut texts: Vec<String> = Vec::new();

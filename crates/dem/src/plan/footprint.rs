@@ -1,18 +1,58 @@
-//! Where files have samples, grid by grid.
+//! Where files have samples, grid by grid, and between which nodes.
 
-use crate::crs::operation::Operation;
+use corniche_geom::NodeIndex;
+use corniche_gis::{CrsError, CrsOperation};
+
+use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::Mosaic;
-use crate::{Dem, DemError, GridPlan};
+use crate::plan::clip::common;
+use crate::plan::grid_plan::Method;
+use crate::{Dem, GridPlan};
 
 /// The samples of the files that lie on one grid.
 pub struct Footprint<'a> {
-    /// For each file its first and its last sample: column, row. On a grid all around the earth, one more column closes it.
+    /// For each file its first and its last sample: column, row. On a grid all around the earth,
+    /// one more column closes it.
     pub rects: Vec<[[i64; 2]; 2]>,
     mosaic: &'a Mosaic,
-    working_from_crs: &'a Operation,
+    working_from_crs: &'a CrsOperation,
 }
 
 impl Dem {
+    /// The south-western and the north-eastern node of each file, between which it can have data,
+    /// within the plan's. Files that have no node between their samples there are left out.
+    ///
+    /// # Errors
+    /// When a file's place cannot be transformed.
+    pub fn file_nodes(&self, plan: &GridPlan) -> Result<Vec<[NodeIndex; 2]>, CrsError> {
+        let mut found = Vec::new();
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
+            for file in &mosaic.files {
+                let own = match &role.method {
+                    Method::Aligned(alignment) => alignment.nodes(&mosaic.closed(&file.rect)),
+                    Method::Resampled(..) => {
+                        let bounds =
+                            data_extent::bounds(mosaic, &file.rect, &role.working_from_crs)?;
+                        let (origin_m, cell_m) =
+                            (plan.frame.origin_m(), plan.frame.cell().to_array());
+                        let cells =
+                            |metres: f64, axis: usize| (metres - origin_m[axis]) / cell_m[axis];
+                        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
+                        [
+                            corner(cells(bounds.min_x, 0).ceil(), cells(bounds.min_y, 1).ceil()),
+                            corner(cells(bounds.max_x, 0).floor(), cells(bounds.max_y, 1).floor()),
+                        ]
+                    }
+                };
+                let [south_west, north_east] = common(own, [plan.south_west, plan.north_east]);
+                if south_west.i <= north_east.i && south_west.j <= north_east.j {
+                    found.push([south_west, north_east]);
+                }
+            }
+        }
+        Ok(found)
+    }
+
     /// Where its files have samples. Those of several grids may overlap.
     #[must_use]
     pub fn footprints<'a>(&'a self, plan: &'a GridPlan) -> Vec<Footprint<'a>> {
@@ -23,7 +63,7 @@ impl Dem {
             });
             rects.collect()
         };
-        let all = self.mosaics.iter().zip(&plan.roles);
+        let all = self.mosaics.iter().zip(&plan.roles.0);
         all.map(|(mosaic, role)| Footprint {
             rects: of_mosaic(mosaic),
             mosaic,
@@ -34,11 +74,12 @@ impl Dem {
 }
 
 impl Footprint<'_> {
-    /// Carries places among the samples (column, row) to working metres; those without a place there become NaN.
+    /// Carries places among the samples (column, row) to working metres; those without a place
+    /// there become NaN.
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn to_working_m(&self, places: &mut [[f64; 2]]) -> Result<(), DemError> {
+    pub fn to_working_m(&self, places: &mut [[f64; 2]]) -> Result<(), CrsError> {
         for place in &mut *places {
             *place = self.mosaic.crs_from_sample.crs_from_pixel(*place);
         }

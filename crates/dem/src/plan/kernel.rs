@@ -1,8 +1,12 @@
-//! Heights between samples: bilinear, or area averages where a cell holds several samples.
+//! How nodes get heights from samples: they are samples, or lie between some: bilinear, or area
+//! averages where a cell holds several.
 
-use crate::mosaics::sample_rect::SampleRect;
+use corniche_geom::NodeIndex;
 
-/// A position this close to a sample, in samples, is on it: what is left of rounding in transformations.
+use crate::mosaics::mosaic::SampleRect;
+
+/// A position this close to a sample, in samples, is on it: what is left of rounding in
+/// transformations.
 const ON_SAMPLE: f64 = 1e-6;
 /// Averaging starts where a cell is as wide as this many samples.
 const AVERAGE_FROM: f64 = 2.0;
@@ -11,14 +15,55 @@ const LEAST_WEIGHT: f64 = 0.5;
 /// Samples with a smaller variance than this, in samples squared, do not determine a plane.
 const LEAST_SPREAD: f64 = 1e-3;
 
+/// Sample (column, row) = (`way[0]` · (`every` · i − `first[0]`), `way[1]` · (`every` · j −
+/// `first[1]`)).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Alignment {
+    /// Index of sample (0, 0), counted in samples from node (0, 0).
+    pub(crate) first: [i64; 2],
+    pub(crate) way: [i64; 2],
+    pub(crate) every: i64,
+}
+
+impl Alignment {
+    /// The samples under the nodes between two.
+    pub(crate) fn samples(&self, nodes: [NodeIndex; 2]) -> SampleRect {
+        let [a, b] = nodes.map(|node| self.sample(node));
+        let min = [0, 1].map(|axis| a[axis].min(b[axis]));
+        SampleRect { min, max: [0, 1].map(|axis| a[axis].max(b[axis]) + 1) }
+    }
+
+    /// The south-western and the north-eastern node on samples of a rectangle. Rounded inwards: the
+    /// outermost samples can lie between two nodes.
+    pub(crate) fn nodes(&self, samples: &SampleRect) -> [NodeIndex; 2] {
+        let ends = |axis: usize| {
+            let at = |index: i64| self.first[axis] + self.way[axis] * index;
+            let (a, b) = (at(samples.min[axis]), at(samples.max[axis] - 1));
+            (-(-a.min(b)).div_euclid(self.every), a.max(b).div_euclid(self.every))
+        };
+        let ((west, east), (south, north)) = (ends(0), ends(1));
+        [NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]
+    }
+
+    /// The sample under a node.
+    pub(crate) fn sample(&self, node: NodeIndex) -> [i64; 2] {
+        [
+            self.way[0] * (self.every * node.i - self.first[0]),
+            self.way[1] * (self.every * node.j - self.first[1]),
+        ]
+    }
+}
+
 /// How heights at nodes come from samples.
 ///
-/// Along each axis on its own: below two samples to a cell, linear between the two nearest samples; from two on, the
-/// mean of that linear interpolant over the cell's width. Both reproduce planes exactly.
+/// Along each axis on its own: below two samples to a cell, linear between the two nearest samples;
+/// from two on, the mean of that linear interpolant over the cell's width. Both reproduce planes
+/// exactly.
 ///
-/// A linear node without all its samples of positive weight is void. An averaged node is void when less than
-/// half of the weight has data; with some missing, the plane that fits the rest best (weighted least squares),
-/// taken at the node, replaces the mean, which would be that of another place.
+/// A linear node without all its samples of positive weight is void. An averaged node is void when
+/// less than half of the weight has data; with some missing, the plane that fits the rest best
+/// (weighted least squares), taken at the node, replaces the mean, which would be that of another
+/// place.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernel {
     /// Width of the average in samples, columns and rows; 0 is linear.
@@ -145,7 +190,8 @@ impl AxisWeights {
             return;
         }
         let (from, to) = (at - width / 2.0, at + width / 2.0);
-        // A sample counts only when the interval of the average overlaps its hat function by more than rounding.
+        // A sample counts only when the interval of the average overlaps its hat function by more
+        // than rounding.
         self.first = (from + ON_SAMPLE).floor() as i64;
         let last = (to - ON_SAMPLE).ceil() as i64;
         for sample in self.first..=last {
@@ -155,8 +201,8 @@ impl AxisWeights {
     }
 }
 
-/// Integral from −1 to `x` of the hat function, which is 1 at 0 and falls to 0 at ±1: the share of a sample in the
-/// linear interpolant.
+/// Integral from −1 to `x` of the hat function, which is 1 at 0 and falls to 0 at ±1: the share of
+/// a sample in the linear interpolant.
 fn hat_integral(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     if x <= 0.0 { (1.0 + x).powi(2) / 2.0 } else { 1.0 - (1.0 - x).powi(2) / 2.0 }
@@ -191,7 +237,8 @@ fn plane_fit(
         (xx / w - mean_x * mean_x, xy / w - mean_x * mean_y, yy / w - mean_y * mean_y);
     let (cxh, cyh) = (xh / w - mean_x * mean_h, yh / w - mean_y * mean_h);
     let determinant = cxx * cyy - cxy * cxy;
-    // Samples on one line do not determine the slope of a plane; their spread across the line is only rounding.
+    // Samples on one line do not determine the slope of a plane; their spread across the line is
+    // only rounding.
     if cxx.min(cyy) < LEAST_SPREAD
         || determinant <= LEAST_SPREAD * cxx * cyy
         || determinant.is_nan()

@@ -1,16 +1,14 @@
 //! Where nodes lie: cell, phase, and the factors of the working CRS that go with them.
 
 use corniche_geom::{Bounds, Cell, NodeIndex};
+use corniche_gis::{CrsOperation, GridCrs};
 
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::data_extent;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::spacing::{nice, phase, rounded};
-use crate::plan::alignment::Alignment;
+use crate::mosaics::mosaic::{Mosaic, nice, phase, rounded};
 use crate::plan::grid_plan::PlanOptions;
+use crate::plan::kernel::Alignment;
 use crate::plan::sample_steps::spacing_m;
-use crate::{Dem, DemError};
+use crate::{Dem, GridError};
 
 /// Nodes coincide with samples when none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
@@ -19,30 +17,32 @@ const MAX_EVERY: i64 = 1000;
 
 /// Cell, phase and the working CRS with its final factors.
 pub(crate) struct Layout {
-    pub(crate) working: Working,
+    pub(crate) working: GridCrs,
     pub(crate) origin_m: [f64; 2],
     pub(crate) cell: Cell,
-    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are aligned.
+    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are
+    /// aligned.
     every: i64,
 }
 
-/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the nodes.
+/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the
+/// nodes.
 pub(crate) fn layout(
     dem: &Dem,
     options: &PlanOptions,
-    working: Working,
-    into_working: &dyn Fn(&Working) -> Vec<Operation>,
-) -> Result<Layout, DemError> {
+    working: GridCrs,
+    into_working: &dyn Fn(&GridCrs) -> Vec<CrsOperation>,
+) -> Result<Layout, GridError> {
     let first = &dem.mosaics[0];
     let every = i64::from(options.cell_every.unwrap_or(1));
     if !(1..=MAX_EVERY).contains(&every) {
-        return Err(DemError::CellEvery {
+        return Err(GridError::CellEvery {
             every: options.cell_every.unwrap_or(0),
             limit: MAX_EVERY,
         });
     }
     if options.cell_every.is_some() && options.cell.is_some() {
-        return Err(DemError::CellTwice);
+        return Err(GridError::CellTwice);
     }
     let is_own = first.crs.is_same(&working.crs) && first.crs_from_sample.is_axis_parallel();
     if is_own && options.cell.is_none() {
@@ -69,7 +69,7 @@ pub(crate) fn layout(
 }
 
 /// Every n-th sample was asked for, and nodes are not samples: what to do instead.
-fn not_samples(first: &Mosaic, options: &PlanOptions, working: &Working) -> DemError {
+fn not_samples(first: &Mosaic, options: &PlanOptions, working: &GridCrs) -> GridError {
     let is_turned = first.crs.is_same(&working.crs);
     let way_out = match options.crs {
         _ if is_turned => "the DEM's rows and columns do not run along its axes, so give --cell",
@@ -79,33 +79,33 @@ fn not_samples(first: &Mosaic, options: &PlanOptions, working: &Working) -> DemE
              place of --cell-every"
         }
     };
-    DemError::CellEveryResampled { crs: working.crs.label.clone(), way_out }
+    GridError::CellEveryResampled { crs: working.crs.label.clone(), way_out }
 }
 
 /// The cell as asked, else a square with the shorter spacing of the first mosaic's samples as side.
 fn asked_or_square(
     dem: &Dem,
     options: &PlanOptions,
-    working: &Working,
-    into_working: &dyn Fn(&Working) -> Vec<Operation>,
-) -> Result<Cell, DemError> {
+    working: &GridCrs,
+    into_working: &dyn Fn(&GridCrs) -> Vec<CrsOperation>,
+) -> Result<Cell, GridError> {
     let first = &dem.mosaics[0];
     let cell = if let Some(cell) = options.cell {
         cell
     } else {
         let operations = into_working(working);
         let spacing_m = spacing_m(first, working, &operations[0])?
-            .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
+            .ok_or_else(|| GridError::OutsideCrs { crs: working.crs.label.clone() })?;
         let shorter_m = spacing_m[0].min(spacing_m[1]);
         let is_turned = first.crs.is_same(&working.crs);
         Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
     };
     if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
         if options.cell.is_some() {
-            return Err(DemError::Cell { cell });
+            return Err(GridError::Cell { cell });
         }
         let path = dem.sources[first.files[0].index].path.clone();
-        return Err(DemError::CellOfFile { path, cell, crs: working.crs.label.clone() });
+        return Err(GridError::CellOfFile { path, cell, crs: working.crs.label.clone() });
     }
     Ok(cell)
 }
@@ -113,9 +113,9 @@ fn asked_or_square(
 impl Layout {
     /// Nodes at every `every`-th sample of a mosaic that lies along the axes of the working CRS.
     ///
-    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a whole number of
-    /// lattice steps.
-    fn of_samples(mosaic: &Mosaic, mut working: Working, every: i64) -> Self {
+    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a
+    /// whole number of lattice steps.
+    fn of_samples(mosaic: &Mosaic, mut working: GridCrs, every: i64) -> Self {
         let c = mosaic.crs_from_sample.coefficients;
         let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
         let spacing = [c[1], c[5]].map(|step| nice(step.abs(), reach));
@@ -163,8 +163,8 @@ impl Layout {
                 [at[0] - (i + way[0] * sample[0]) as f64, at[1] - (j + way[1] * sample[1]) as f64];
             off.iter().all(|off| off.abs() <= ALIGNED_CELLS)
         });
-        // For a single row or column the positions alone do not test the spacing, so both spacings must equal the
-        // cell.
+        // For a single row or column the positions alone do not test the spacing, so both spacings
+        // must equal the cell.
         let is_cell = [0, 1]
             .iter()
             .all(|&axis| (steps[axis].abs() / between[axis] - 1.0).abs() <= ALIGNED_CELLS);
@@ -176,19 +176,10 @@ impl Layout {
         &self,
         dem: &Dem,
         mosaic: &Mosaic,
-        operation: &Operation,
-    ) -> Result<[NodeIndex; 2], DemError> {
-        if let Some(Alignment { first, way, every }) = self.alignment(mosaic) {
-            let closed = mosaic.closed(&mosaic.extent);
-            let (low, high) = (closed.min, closed.max.map(|index| index - 1));
-            let ends = |axis: usize| {
-                let (a, b) =
-                    (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
-                // Rounded inwards: the outermost samples can lie between two nodes.
-                (-(-a.min(b)).div_euclid(every), a.max(b).div_euclid(every))
-            };
-            let ((west, east), (south, north)) = (ends(0), ends(1));
-            return Ok([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]);
+        operation: &CrsOperation,
+    ) -> Result<[NodeIndex; 2], GridError> {
+        if let Some(alignment) = self.alignment(mosaic) {
+            return Ok(alignment.nodes(&mosaic.closed(&mosaic.extent)));
         }
         let mut bounds = Bounds::EMPTY;
         for file in &mosaic.files {
@@ -197,7 +188,7 @@ impl Layout {
                 // Without this error the heights of the file would be lost without notice.
                 let path = dem.sources[file.index].path.clone();
                 let crs = self.working.crs.label.clone();
-                return Err(DemError::FileOutsideCrs { path, crs });
+                return Err(GridError::FileOutsideCrs { path, crs });
             }
             bounds.include([found.min_x, found.min_y]);
             bounds.include([found.max_x, found.max_y]);

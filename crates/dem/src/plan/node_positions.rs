@@ -1,14 +1,14 @@
 //! Where nodes lie among the DEM's samples.
 
-use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow, Seam};
+use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::DemError;
-use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 
 /// Largest error of a position, as a share of a sample or of a cell, whichever is smaller.
 const TOLERANCE: f64 = 0.01;
-/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the tolerance above.
+/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the
+/// tolerance above.
 const PLAN_TOLERANCE: f64 = 0.005;
 /// Lattice spacings tried, in nodes; at 1 every node is transformed.
 const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
@@ -25,14 +25,14 @@ const TRIAL_MESHES: i64 = 12;
 ///   o───·───o───·───o      the bilinear mean of its corners, nodes are interpolated, in others transformed.
 /// ```
 ///
-/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All five halfway
-/// points are tested: with a conformal projection the errors cancel in the middle of a mesh, but not on its sides.
+/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All
+/// five halfway points are tested: with a conformal projection the errors cancel in the middle of a
+/// mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
-    pub(crate) crs_from_working: Operation,
+    /// Around the seam of the mosaic's CRS.
+    crs_from_working: CrsOperation,
     crs_from_sample: GeoTransform,
-    /// The seam of the mosaic's CRS around its middle.
-    seam: Option<Seam>,
     step: i64,
     /// The tolerance, in samples.
     tolerance: f64,
@@ -43,18 +43,15 @@ impl NodePositions {
     /// `samples_per_node` samples to a cell.
     pub(crate) fn new(
         mosaic: &Mosaic,
-        crs_from_working: Operation,
+        crs_from_working: CrsOperation,
         frame: &GridFrame,
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
-    ) -> Result<Self, DemError> {
-        let seam = mosaic.seam();
-        let crs_from_sample = mosaic.crs_from_sample;
+    ) -> Result<Self, CrsError> {
         let scale = samples_per_node.min(1.0);
         let mut positions = Self {
-            crs_from_working,
-            crs_from_sample,
-            seam,
+            crs_from_working: crs_from_working.around(mosaic.seam()),
+            crs_from_sample: mosaic.crs_from_sample,
             step: 1,
             tolerance: PLAN_TOLERANCE * scale,
         };
@@ -73,7 +70,7 @@ impl NodePositions {
         self.step
     }
 
-    fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, DemError> {
+    fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, CrsError> {
         if self.step == 1 {
             return Ok(true);
         }
@@ -94,12 +91,13 @@ impl NodePositions {
         Ok(true)
     }
 
-    /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there is none.
+    /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there
+    /// is none.
     pub(crate) fn of(
         &self,
         frame: &GridFrame,
         window: &NodeWindow,
-    ) -> Result<Vec<[f64; 2]>, DemError> {
+    ) -> Result<Vec<[f64; 2]>, CrsError> {
         let mut positions = vec![[f64::NAN; 2]; window.columns * window.rows];
         let (west, north) = (window.corner.i, window.corner.j);
         let (east, south) = (west + window.columns as i64 - 1, north - window.rows as i64 + 1);
@@ -152,23 +150,16 @@ impl NodePositions {
     }
 
     /// Positions in working metres to samples, in place; NaN where there is none.
-    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         self.transform(points)
     }
 
     /// Working CRS to samples, in place.
-    fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+    fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         if points.is_empty() {
             return Ok(());
         }
-        self.crs_from_working.apply(points)?;
-        for point in points {
-            if let Some(seam) = self.seam {
-                point[0] = seam.image(point[0]);
-            }
-            *point = self.crs_from_sample.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
-        }
-        Ok(())
+        self.crs_from_working.apply_to_pixels(&self.crs_from_sample, points)
     }
 
     fn lattice(
@@ -176,7 +167,7 @@ impl NodePositions {
         frame: &GridFrame,
         first: [i64; 2],
         meshes: [usize; 2],
-    ) -> Result<Lattice, DemError> {
+    ) -> Result<Lattice, CrsError> {
         let columns = 2 * meshes[0] + 1;
         let half = self.step / 2;
         let mut halves = Vec::with_capacity(columns * (2 * meshes[1] + 1));

@@ -1,25 +1,21 @@
 //! From a DEM and what the user says to the grid of a package.
 
-use std::sync::LazyLock;
-
 use corniche_geom::{GridFrame, NodeIndex};
-use gdal::version::VersionInfo;
+use corniche_gis::{CrsError, CrsOperation, DemProjection, GridCrs, libraries};
 
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::{self, Asked};
 use crate::plan::datum_operations::datum_operations;
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{
-    Clip, GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of,
+    Clip, GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling, node_bounds_m,
 };
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;
 use crate::plan::sample_steps::{samples_to_a_cell, steps_m};
 use crate::plan::working_crs;
-use crate::{Dem, DemError, DemProjection};
+use crate::{Dem, GridError};
 
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
 const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
@@ -29,25 +25,30 @@ const MAX_FILL_VOIDS: u32 = 1024;
 impl Dem {
     /// Chooses working CRS, cell and extent.
     ///
-    /// - Working CRS: `options.crs`; else the first file's own, if lengths in working metres are then true within 3 % all
-    ///   over the data; else the UTM zone of the centre, if it is true to scale within 1 % all over the data and the data
-    ///   lies between 80° S and 84° N; else Lambert's azimuthal equal-area about the centre.
-    /// - Working metres are its coordinates times two factors. In degrees: metres per degree at the standard latitude, by
-    ///   the radii of curvature of the ellipsoid. In a projection: its unit, where that is true to scale within 1 % along
-    ///   both axes and all over the data; else the unit divided by the scale along each axis, at the standard latitude and
-    ///   the middle longitude. Axes that count westwards or southwards are turned. The standard latitude is the middle of
-    ///   the data to half a degree, or `options.scale_latitude_deg`; one that is given decides, at the middle longitude
-    ///   alone, whether a projection keeps its unit.
-    /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
-    ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
-    /// - Bounds: `options.bounds_deg` and `options.polygon` leave out nodes and nothing else. All of the above is chosen from the
-    ///   whole DEM.
-    /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide
-    ///   with samples; otherwise node (0, 0) is the CRS's zero. Files on other grids are resampled.
+    /// - Working CRS: `options.crs`; else the first file's own, if lengths in working metres are
+    ///   then true within 3 % all over the data; else the UTM zone of the centre, if it is true to
+    ///   scale within 1 % all over the data and the data lies between 80° S and 84° N; else
+    ///   Lambert's azimuthal equal-area about the centre.
+    /// - Working metres are its coordinates times two factors. In degrees: metres per degree at the
+    ///   standard latitude, by the radii of curvature of the ellipsoid. In a projection: its unit,
+    ///   where that is true to scale within 1 % along both axes and all over the data; else the
+    ///   unit divided by the scale along each axis, at the standard latitude and the middle
+    ///   longitude. Axes that count westwards or southwards are turned. The standard latitude is
+    ///   the middle of the data to half a degree, or `options.scale_latitude_deg`; one that is
+    ///   given decides, at the middle longitude alone, whether a projection keeps its unit.
+    /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where
+    ///   that file is in another CRS or turned against it, a square with the shorter spacing as
+    ///   side (two significant digits in another CRS).
+    /// - Bounds: `options.bounds_deg` and `options.polygon` leave out nodes and nothing else. All
+    ///   of the above is chosen from the whole DEM.
+    /// - Where the cell is the spacing of the first file's samples, or a multiple by
+    ///   `options.cell_every`, nodes coincide with samples; otherwise node (0, 0) is the CRS's
+    ///   zero. Files on other grids are resampled.
     ///
     /// # Errors
-    /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is too large.
-    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, DemError> {
+    /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is
+    /// too large.
+    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, GridError> {
         plan(self, options)
     }
 
@@ -55,7 +56,7 @@ impl Dem {
     ///
     /// # Errors
     /// When PROJ knows no operation.
-    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
+    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, CrsError> {
         // The middle of what packages record, so that all that read them find the same seam.
         let data_m = plan.clip.map_or(plan.data_bounds, |clip| clip.whole_data_bounds);
         let working = plan.working.clone().around(data_m);
@@ -63,18 +64,19 @@ impl Dem {
     }
 }
 
-fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
+fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
     if options.fill_voids > MAX_FILL_VOIDS {
-        return Err(DemError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
+        return Err(GridError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
     }
     let working = working_crs::choose(dem, options.crs.as_deref(), options.scale_latitude_deg)?;
-    let into_working = |working: &Working| -> Vec<Operation> {
-        let of =
-            |mosaic: &Mosaic| Operation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds));
+    let into_working = |working: &GridCrs| -> Vec<CrsOperation> {
+        let of = |mosaic: &Mosaic| {
+            CrsOperation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds))
+        };
         dem.mosaics.iter().map(of).collect()
     };
     let layout = layout::layout(dem, options, working, &into_working)?;
-    let scale = layout.working.scale(dem)?;
+    let scale = working_crs::scale(&layout.working, dem)?;
     let operations = into_working(&layout.working);
     let steps: Vec<Option<[[f64; 2]; 2]>> = dem
         .mosaics
@@ -89,7 +91,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         .map(|(mosaic, operation)| layout.nodes(dem, mosaic, operation))
         .collect::<Result<_, _>>()?;
     let [south_west, north_east] = around(&extents)
-        .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+        .ok_or_else(|| GridError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
     if let Some(every) = options.cell_every {
         refuse_line(every, [south_west, north_east])?;
     }
@@ -101,7 +103,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         None => whole,
     };
     let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
-    let datum_operations = datum_operations(dem, &layout.working, bounds_of(&frame, whole))?;
+    let datum_operations = datum_operations(dem, &layout.working, node_bounds_m(&frame, whole))?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()
@@ -112,12 +114,12 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
             let method = method(dem, mosaic, &layout, &frame, nodes, steps)?;
             Ok(MosaicRole { nodes, method, working_from_crs })
         })
-        .collect::<Result<_, DemError>>()?;
+        .collect::<Result<_, GridError>>()?;
     let working = layout.working;
-    let data_bounds = bounds_of(&frame, [south_west, north_east]);
+    let data_bounds = node_bounds_m(&frame, [south_west, north_east]);
     let clip = asked.map(|asked| Clip {
         nodes: clip::on_lattice(&frame, asked.nodes),
-        whole_data_bounds: bounds_of(&frame, whole),
+        whole_data_bounds: node_bounds_m(&frame, whole),
         whole_wgs84_bounds: area_deg,
     });
     let wgs84_bounds = match clip {
@@ -145,11 +147,11 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         datum_operations,
         libraries: libraries(),
         fill_voids: options.fill_voids,
-        roles,
+        roles: MosaicRoles(roles),
         working,
     };
     match &options.polygon {
-        Some(polygon) => plan.within(polygon),
+        Some(polygon) => Ok(plan.within(polygon)?),
         None => Ok(plan),
     }
 }
@@ -171,13 +173,13 @@ fn columns_of_a_turn(layout: &Layout) -> Option<i64> {
 }
 
 /// Refuses to take so few samples that a single row or column of nodes is left.
-fn refuse_line(every: u32, [south_west, north_east]: [NodeIndex; 2]) -> Result<(), DemError> {
+fn refuse_line(every: u32, [south_west, north_east]: [NodeIndex; 2]) -> Result<(), GridError> {
     let [columns, rows] = [north_east.i - south_west.i + 1, north_east.j - south_west.j + 1];
     if columns.min(rows) >= 2 {
         return Ok(());
     }
     let [columns, rows] = [columns, rows].map(|nodes| nodes.max(0));
-    Err(DemError::CellEveryLeaves { every, columns, rows })
+    Err(GridError::CellEveryLeaves { every, columns, rows })
 }
 
 fn resampling(roles: &[MosaicRole]) -> Resampling {
@@ -201,7 +203,7 @@ fn method(
     frame: &GridFrame,
     nodes: [NodeIndex; 2],
     steps: Option<[[f64; 2]; 2]>,
-) -> Result<Method, DemError> {
+) -> Result<Method, GridError> {
     if let Some(alignment) = layout.alignment(mosaic) {
         return Ok(Method::Aligned(alignment));
     }
@@ -212,23 +214,10 @@ fn method(
         .unwrap_or([1.0; 2]);
     let most = samples_per_node[0].max(samples_per_node[1]);
     if most > MAX_SAMPLES_PER_NODE {
-        return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
+        return Err(GridError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
     }
-    let back = Operation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let back = CrsOperation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
     let least = samples_per_node[0].min(samples_per_node[1]);
     let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
-}
-
-/// Releases of GDAL and PROJ that this program runs with, as packages record them.
-#[must_use]
-pub fn libraries() -> String {
-    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and another thread may find it half written.
-    static LIBRARIES: LazyLock<String> = LazyLock::new(|| {
-        let proj = VersionInfo::build_info()
-            .remove("PROJ_RUNTIME_VERSION")
-            .unwrap_or_else(|| "unknown".to_owned());
-        format!("GDAL {}, PROJ {proj}", VersionInfo::release_name())
-    });
-    LIBRARIES.clone()
 }

@@ -1,29 +1,35 @@
-//! How far a mosaic's samples lie from each other in working metres.
+//! How far samples are apart in working metres, and whether a grid asks for far more nodes than the
+//! files have samples.
 
 use corniche_geom::Cell;
+use corniche_gis::{CrsError, CrsOperation, GridCrs};
 
-use crate::DemError;
-use crate::crs::operation::Operation;
-use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
+use crate::{Dem, GridError, GridPlan};
+
+/// More nodes than this per sample, along either axis, are probably a mistake: they are
+/// interpolated, cost as much as nodes with data of their own, and add no information.
+const MOST_NODES_PER_SAMPLE: f64 = 16.0;
+/// Tolerance for the rounding of a spacing.
+const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
 pub(crate) fn spacing_m(
     mosaic: &Mosaic,
-    working: &Working,
-    operation: &Operation,
-) -> Result<Option<[f64; 2]>, DemError> {
+    working: &GridCrs,
+    operation: &CrsOperation,
+) -> Result<Option<[f64; 2]>, CrsError> {
     let steps = steps_m(mosaic, working, operation)?;
     Ok(steps.map(|steps| steps.map(|[x, y]| x.hypot(y))))
 }
 
-/// The way from a sample to the next column and to the next row, at a mosaic's centre: working metres east and north each;
-/// `None` outside the CRS.
+/// The way from a sample to the next column and to the next row, at a mosaic's centre: working
+/// metres east and north each; `None` outside the CRS.
 pub(crate) fn steps_m(
     mosaic: &Mosaic,
-    working: &Working,
-    operation: &Operation,
-) -> Result<Option<[[f64; 2]; 2]>, DemError> {
+    working: &GridCrs,
+    operation: &CrsOperation,
+) -> Result<Option<[[f64; 2]; 2]>, CrsError> {
     let c = mosaic.crs_from_sample.coefficients;
     if mosaic.crs.is_same(&working.crs) {
         let [fx, fy] = working.metres_per_unit;
@@ -40,11 +46,38 @@ pub(crate) fn steps_m(
     Ok(steps.iter().all(is_way).then_some(steps))
 }
 
-/// Columns and rows of samples that a cell is long: one cell east and one north, carried among the samples.
+/// Columns and rows of samples that a cell is long: one cell east and one north, carried among the
+/// samples.
 pub(crate) fn samples_to_a_cell([column, row]: [[f64; 2]; 2], cell: Cell) -> [f64; 2] {
     let area = column[0] * row[1] - column[1] * row[0];
     [
         (row[1] * cell.east_m / area).hypot(row[0] * cell.north_m / area),
         (column[1] * cell.east_m / area).hypot(column[0] * cell.north_m / area),
     ]
+}
+
+impl Dem {
+    /// Refuses a grid with more than 16 nodes to a sample of even the finest files, along either
+    /// axis.
+    ///
+    /// # Errors
+    /// [`GridError::Oversampling`] where it is so, and when a spacing cannot be found.
+    pub fn refuse_oversampling(&self, plan: &GridPlan) -> Result<(), GridError> {
+        let cell = plan.frame.cell();
+        let mut fewest: Option<f64> = None;
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
+            let steps = steps_m(mosaic, &plan.working, &role.working_from_crs)?;
+            let Some(samples) = steps.map(|steps| samples_to_a_cell(steps, cell)) else {
+                continue;
+            };
+            let nodes = samples[0].recip().max(samples[1].recip());
+            fewest = Some(fewest.map_or(nodes, |fewest| fewest.min(nodes)));
+        }
+        match fewest {
+            Some(nodes) if nodes > MOST_NODES_PER_SAMPLE * ROUNDING => {
+                Err(GridError::Oversampling { cell, nodes, limit: MOST_NODES_PER_SAMPLE })
+            }
+            _ => Ok(()),
+        }
+    }
 }

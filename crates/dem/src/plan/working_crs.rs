@@ -1,29 +1,26 @@
 //! The working CRS: which one, and how its coordinates become working metres.
 
 use corniche_geom::Bounds;
+use corniche_gis::{
+    Crs, CrsError, CrsOperation, GridCrs, LocalScale, SCALES, crs_from_text, scales,
+};
 use gdal::errors::GdalError;
 use gdal::spatial_ref::SpatialRef;
 
-use crate::crs::compound;
-use crate::crs::horizontal::Crs;
-use crate::crs::operation::Operation;
-use crate::crs::scale::{self, SCALES, Scale};
-use crate::crs::working::Working;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::spacing::rounded;
+use crate::mosaics::mosaic::{Mosaic, rounded};
 use crate::plan::grid_plan::PlanScale;
-use crate::{Dem, DemError};
+use crate::{Dem, GridError};
 
-/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
-/// samples themselves are worth more than 3 % of a width.
+/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data:
+/// nodes that are the samples themselves are worth more than 3 % of a width.
 const OWN_TOLERANCE: f64 = 0.03;
-/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is taken where it is so in
-/// all directions.
+/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is
+/// taken where it is so in all directions.
 const TRUE_TOLERANCE: f64 = 0.01;
 /// UTM is defined between these latitudes.
 const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
-/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in a hundred kilometres,
-/// few enough that versions of PROJ agree.
+/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in
+/// a hundred kilometres, few enough that versions of PROJ agree.
 const FACTOR_DIGITS: usize = 9;
 
 /// The standard latitude: the latitude at which lengths are true.
@@ -34,116 +31,122 @@ struct StandardLatitude {
     is_given: bool,
 }
 
-impl Working {
-    fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<Self, DemError> {
-        let own = &dem.mosaics[0];
-        let middle = if crs.is_same(&own.crs) {
-            own.middle()[0]
-        } else {
-            // Files all around the earth end where they begin, and not half a turn from the mean of their positions.
-            let [lon, lat] = dem.center_deg;
-            let is_ring = dem.mosaics.iter().any(Mosaic::is_ring);
-            let lon = if is_ring { dem.wgs84_bounds.center()[0] } else { lon };
-            let mut middle = [[lon, lat]];
-            Operation::new(&Crs::wgs84()?, &crs, Some(dem.wgs84_bounds)).apply(&mut middle)?;
-            middle[0][0]
-        };
-        Ok(Self { crs, metres_per_unit, middle, is_scaled: false })
-    }
+/// A CRS with factors, around the middle of the data.
+fn around_data(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<GridCrs, CrsError> {
+    let own = &dem.mosaics[0];
+    let middle = if crs.is_same(&own.crs) {
+        own.middle()[0]
+    } else {
+        // Files all around the earth end where they begin, and not half a turn from the mean of
+        // their positions.
+        let [lon, lat] = dem.center_deg;
+        let is_ring = dem.mosaics.iter().any(Mosaic::is_ring);
+        let lon = if is_ring { dem.wgs84_bounds.center()[0] } else { lon };
+        let mut middle = [[lon, lat]];
+        CrsOperation::new(&Crs::wgs84()?, &crs, Some(dem.wgs84_bounds)).apply(&mut middle)?;
+        middle[0][0]
+    };
+    Ok(GridCrs { crs, metres_per_unit, middle, is_scaled: false })
+}
 
-    /// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
-    ///
-    /// Whether a projection is true to scale without factors is asked all over the data; with a latitude that was given,
-    /// there and at the middle longitude alone, so that packages of adjoining regions fit.
-    fn with_true_lengths(
-        dem: &Dem,
-        crs: &Crs,
-        latitude: StandardLatitude,
-    ) -> Result<Option<Self>, DemError> {
-        let scaled = |factors: [f64; 2]| {
-            let plain = Self::new(crs.clone(), factors, dem)?;
-            Ok(Some(Self { is_scaled: true, ..plain }))
-        };
-        if let Some(factors) = crs.metres_per_turn_unit(latitude.deg)? {
-            return scaled(factors);
-        }
-        let unit = crs.signs().map(|sign| sign * crs.unit_m);
-        let plain = Self::new(crs.clone(), unit, dem)?;
-        let is_true = |scale: &Option<Scale>| {
-            let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
-            scale.is_some_and(|scale| scale.along.iter().all(is_near))
-        };
-        let [lon, _] = dem.wgs84_bounds.center();
-        let scale = plain.scale_at(dem, [lon, latitude.deg])?;
-        let is_plain = if latitude.is_given {
-            is_true(&scale)
-        } else {
-            plain.rim_scales(dem)?.iter().all(is_true)
-        };
-        if is_plain {
-            return Ok(Some(plain));
-        }
-        let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
-        let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
-        scaled([0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS)))
+/// A CRS with the factors that make lengths true at the standard latitude; `None` where it has
+/// none, outside its reach.
+///
+/// Whether a projection is true to scale without factors is asked all over the data; with a
+/// latitude that was given, there and at the middle longitude alone, so that packages of adjoining
+/// regions fit.
+fn with_true_lengths(
+    dem: &Dem,
+    crs: &Crs,
+    latitude: StandardLatitude,
+) -> Result<Option<GridCrs>, CrsError> {
+    let scaled = |factors: [f64; 2]| {
+        let plain = around_data(crs.clone(), factors, dem)?;
+        Ok(Some(GridCrs { is_scaled: true, ..plain }))
+    };
+    if let Some(factors) = crs.metres_per_turn_unit(latitude.deg)? {
+        return scaled(factors);
     }
+    let unit = crs.signs().map(|sign| sign * crs.unit_m);
+    let plain = around_data(crs.clone(), unit, dem)?;
+    let is_true = |scale: &Option<LocalScale>| {
+        let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
+        scale.is_some_and(|scale| scale.along.iter().all(is_near))
+    };
+    let [lon, _] = dem.wgs84_bounds.center();
+    let scale = scale_at(&plain, dem, [lon, latitude.deg])?;
+    let is_plain = if latitude.is_given {
+        is_true(&scale)
+    } else {
+        rim_scales(&plain, dem)?.iter().all(is_true)
+    };
+    if is_plain {
+        return Ok(Some(plain));
+    }
+    let is_usable = |scale: &LocalScale| scale.along.iter().all(|at| SCALES.contains(at));
+    let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
+    scaled([0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS)))
+}
 
-    /// Scale at a place.
-    fn scale_at(&self, dem: &Dem, place_deg: [f64; 2]) -> Result<Option<Scale>, DemError> {
-        let wgs84 = Crs::wgs84()?;
-        let mut points = [place_deg];
-        Operation::into_working(&wgs84, self, Some(dem.wgs84_bounds)).apply(&mut points)?;
-        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
-        Ok(scale::scales(&back, &points)?[0])
-    }
+/// Scale at a place.
+fn scale_at(
+    working: &GridCrs,
+    dem: &Dem,
+    place_deg: [f64; 2],
+) -> Result<Option<LocalScale>, CrsError> {
+    let wgs84 = Crs::wgs84()?;
+    let mut points = [place_deg];
+    CrsOperation::into_working(&wgs84, working, Some(dem.wgs84_bounds)).apply(&mut points)?;
+    let back = CrsOperation::out_of_working(working, &wgs84, Some(dem.wgs84_bounds));
+    Ok(scales(&back, &points)?[0])
+}
 
-    /// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside the CRS.
-    fn rim_scales(&self, dem: &Dem) -> Result<Vec<Option<Scale>>, DemError> {
-        let wgs84 = Crs::wgs84()?;
-        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
-        let mut all = Vec::new();
-        for mosaic in &dem.mosaics {
-            let mut points = rim_of(mosaic);
-            Operation::into_working(&mosaic.crs, self, Some(dem.wgs84_bounds))
-                .apply(&mut points)?;
-            all.extend(scale::scales(&back, &points)?);
-        }
-        Ok(all)
+/// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside
+/// the CRS.
+fn rim_scales(working: &GridCrs, dem: &Dem) -> Result<Vec<Option<LocalScale>>, CrsError> {
+    let wgs84 = Crs::wgs84()?;
+    let back = CrsOperation::out_of_working(working, &wgs84, Some(dem.wgs84_bounds));
+    let mut all = Vec::new();
+    for mosaic in &dem.mosaics {
+        let mut points = rim_of(mosaic);
+        CrsOperation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds))
+            .apply(&mut points)?;
+        all.extend(scales(&back, &points)?);
     }
+    Ok(all)
+}
 
-    /// Whether lengths are true within `tolerance` in every direction, all over the data.
-    fn is_true_within(&self, dem: &Dem, tolerance: f64) -> Result<bool, DemError> {
-        let is_true =
-            |scale: &Option<Scale>| scale.is_some_and(|scale| scale.deviation <= tolerance);
-        Ok(self.rim_scales(dem)?.iter().all(is_true))
-    }
+/// Whether lengths are true within `tolerance` in every direction, all over the data.
+fn is_true_within(working: &GridCrs, dem: &Dem, tolerance: f64) -> Result<bool, CrsError> {
+    let is_true =
+        |scale: &Option<LocalScale>| scale.is_some_and(|scale| scale.deviation <= tolerance);
+    Ok(rim_scales(working, dem)?.iter().all(is_true))
+}
 
-    /// How long lengths come out.
-    pub(crate) fn scale(&self, dem: &Dem) -> Result<PlanScale, DemError> {
-        let outside = || DemError::OutsideCrs { crs: self.crs.label.clone() };
-        // The middle of the rectangle, because the standard latitude is taken there; the mean of all positions may
-        // lie far from any data.
-        let center = match self.scale_at(dem, dem.wgs84_bounds.center())? {
-            Some(center) => center,
-            None => self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?,
+/// How long lengths come out.
+pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<PlanScale, GridError> {
+    let outside = || GridError::OutsideCrs { crs: working.crs.label.clone() };
+    // The middle of the rectangle, because the standard latitude is taken there; the mean of all
+    // positions may lie far from any data.
+    let center = match scale_at(working, dem, dem.wgs84_bounds.center())? {
+        Some(center) => center,
+        None => scale_at(working, dem, dem.center_deg)?.ok_or_else(outside)?,
+    };
+    // Corners outside the area of the CRS (which the user may have chosen) are left out.
+    let mut scale = PlanScale { center: center.along, least: center.along, largest: center.along };
+    for LocalScale { along, .. } in rim_scales(working, dem)?.into_iter().flatten() {
+        let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
+            [pick(known[0], along[0]), pick(known[1], along[1])]
         };
-        // Corners outside the area of the CRS (which the user may have chosen) are left out.
-        let mut scale =
-            PlanScale { center: center.along, least: center.along, largest: center.along };
-        for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
-            let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
-                [pick(known[0], along[0]), pick(known[1], along[1])]
-            };
-            scale.least = merge(scale.least, f64::min);
-            scale.largest = merge(scale.largest, f64::max);
-        }
-        let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
-        Ok(PlanScale {
-            center: recorded(scale.center),
-            least: recorded(scale.least),
-            largest: recorded(scale.largest),
-        })
+        scale.least = merge(scale.least, f64::min);
+        scale.largest = merge(scale.largest, f64::max);
     }
+    let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
+    Ok(PlanScale {
+        center: recorded(scale.center),
+        least: recorded(scale.least),
+        largest: recorded(scale.largest),
+    })
 }
 
 /// Chooses the working CRS; see [`Dem::plan`].
@@ -151,15 +154,15 @@ pub(crate) fn choose(
     dem: &Dem,
     asked: Option<&str>,
     scale_latitude_deg: Option<f64>,
-) -> Result<Working, DemError> {
+) -> Result<GridCrs, GridError> {
     let latitude = match scale_latitude_deg {
         Some(given) if (-89.0..=89.0).contains(&given) => {
             StandardLatitude { deg: given, is_given: true }
         }
-        Some(given) => return Err(DemError::ScaleLatitude { latitude_deg: given }),
+        Some(given) => return Err(GridError::ScaleLatitude { latitude_deg: given }),
         None => StandardLatitude { deg: standard_latitude_deg(dem.wgs84_bounds), is_given: false },
     };
-    let own = || Working::with_true_lengths(dem, &dem.mosaics[0].crs, latitude);
+    let own = || with_true_lengths(dem, &dem.mosaics[0].crs, latitude);
     let word = asked.map(str::to_ascii_lowercase);
     match word.as_deref() {
         None => {}
@@ -167,52 +170,53 @@ pub(crate) fn choose(
             let crs = || dem.mosaics[0].crs.label.clone();
             return match own()? {
                 Some(own) if is_right_handed(&own, dem)? => Ok(own),
-                _ => Err(DemError::OwnCrs { crs: crs() }),
+                _ => Err(GridError::OwnCrs { crs: crs() }),
             };
         }
         Some("utm") => {
             if let Some(latitude_deg) = scale_latitude_deg {
-                return Err(DemError::ScaleLatitudeUtm { latitude_deg });
+                return Err(GridError::ScaleLatitudeUtm { latitude_deg });
             }
             let bounds = dem.wgs84_bounds;
-            return utm(dem)?.ok_or(DemError::NoUtm { south: bounds.min_y, north: bounds.max_y });
+            return utm(dem)?.ok_or(GridError::NoUtm { south: bounds.min_y, north: bounds.max_y });
         }
         Some(_) => {
             let text = asked.unwrap_or_default();
-            let (crs, _) = compound::from_text("--crs", text).map_err(|error| match error {
-                DemError::CrsText { text, source, .. } => DemError::WorkingCrsText { text, source },
-                other => other,
+            let (crs, _) = crs_from_text("--crs", text).map_err(|error| match error {
+                CrsError::Text { text, source, .. } => GridError::WorkingCrsText { text, source },
+                other => other.into(),
             })?;
-            let refuse = || DemError::WorkingCrs { text: text.to_owned() };
+            let refuse = || GridError::WorkingCrs { text: text.to_owned() };
             if !crs.is_projected() && !crs.is_same(&dem.mosaics[0].crs) {
                 return Err(refuse());
             }
-            let outside = || DemError::OutsideCrs { crs: crs.label.clone() };
-            let working = Working::with_true_lengths(dem, &crs, latitude)?.ok_or_else(outside)?;
+            let outside = || GridError::OutsideCrs { crs: crs.label.clone() };
+            let working = with_true_lengths(dem, &crs, latitude)?.ok_or_else(outside)?;
             return if is_right_handed(&working, dem)? { Ok(working) } else { Err(refuse()) };
         }
     }
     if let Some(own) = own()?
-        && own.is_true_within(dem, OWN_TOLERANCE)?
+        && is_true_within(&own, dem, OWN_TOLERANCE)?
     {
         return Ok(own);
     }
     if let Some(utm) = utm(dem)?
-        && utm.is_true_within(dem, TRUE_TOLERANCE)?
+        && is_true_within(&utm, dem, TRUE_TOLERANCE)?
     {
         return Ok(utm);
     }
-    equal_area(dem)
+    Ok(equal_area(dem)?)
 }
 
 /// Whether y lies to the left of x in the middle of the data.
-fn is_right_handed(working: &Working, dem: &Dem) -> Result<bool, DemError> {
-    let scale = working.scale_at(dem, dem.center_deg)?;
+fn is_right_handed(working: &GridCrs, dem: &Dem) -> Result<bool, CrsError> {
+    let scale = scale_at(working, dem, dem.center_deg)?;
     Ok(scale.is_some_and(|scale| scale.deviation.is_finite()))
 }
 
-/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then to the nearest half
-/// degree (ties towards the equator), so that small changes of the extent leave the grid where it is.
+/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then
+/// to the nearest half degree (ties towards the equator), so that small changes of the extent leave
+/// the grid where it is.
 fn standard_latitude_deg(bounds: Bounds) -> f64 {
     let middle = (bounds.center()[1] * 1e6).round() / 1e6;
     let halves = middle.abs() * 2.0;
@@ -222,7 +226,7 @@ fn standard_latitude_deg(bounds: Bounds) -> f64 {
 }
 
 /// The UTM zone of the data's centre; `None` where UTM is not defined.
-fn utm(dem: &Dem) -> Result<Option<Working>, DemError> {
+fn utm(dem: &Dem) -> Result<Option<GridCrs>, CrsError> {
     let bounds = dem.wgs84_bounds;
     if bounds.min_y < UTM_LATITUDES_DEG[0] || bounds.max_y > UTM_LATITUDES_DEG[1] {
         return Ok(None);
@@ -230,23 +234,25 @@ fn utm(dem: &Dem) -> Result<Option<Working>, DemError> {
     let [lon, lat] = dem.center_deg;
     let zone = (((lon + 180.0) / 6.0).floor() as u32).min(59) + 1;
     let code = if lat < 0.0 { 32700 } else { 32600 } + zone;
-    let (crs, _) = compound::from_text("the chosen", &format!("EPSG:{code}"))?;
-    Ok(Some(Working::new(crs, [1.0; 2], dem)?))
+    let (crs, _) = crs_from_text("the chosen", &format!("EPSG:{code}"))?;
+    Ok(Some(around_data(crs, [1.0; 2], dem)?))
 }
 
-/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
-/// extent leave the grid where it is.
-fn equal_area(dem: &Dem) -> Result<Working, DemError> {
+/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small
+/// changes of the extent leave the grid where it is.
+fn equal_area(dem: &Dem) -> Result<GridCrs, CrsError> {
     let [lon, lat] = dem.center_deg.map(f64::round);
     let text = format!(
         "+proj=laea +lat_0={lat} +lon_0={lon} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
     );
-    let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| {
-        DemError::CrsText { option: "the chosen", text, source: source.into() }
+    let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| CrsError::Text {
+        option: "the chosen",
+        text,
+        source: source.into(),
     })?;
     let mut crs = Crs::from_spatial_ref(&reference)?;
     crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
-    Working::new(crs, [1.0; 2], dem)
+    around_data(crs, [1.0; 2], dem)
 }
 
 /// CRS positions of the corners, the middles of the sides and the centre of every file.

@@ -15,8 +15,8 @@ const DIRECTIONS: [[i64; 2]; 8] =
 ///   nodes: so the result does not depend on the window that is read.
 /// ```
 ///
-/// `heights_m` holds `columns` nodes a row, with `reach` nodes of halo on every side. What comes back are the
-/// indices of the filled nodes within it, and their heights.
+/// `heights_m` holds `columns` nodes a row, with `reach` nodes of halo on every side. What comes
+/// back are the indices of the filled nodes within it, and their heights.
 pub(crate) fn fill(
     heights_m: &[f32],
     columns: usize,

@@ -2,15 +2,13 @@
 
 use corniche_geom::{HeightGrid, NodeWindow};
 
-use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::alignment::Alignment;
 use crate::plan::grid_plan::Method;
-use crate::plan::kernel::{Kernel, Samples, Scratch};
+use crate::plan::kernel::{Alignment, Kernel, Samples, Scratch};
 use crate::reading::fill_voids;
 use crate::reading::window_parts::{Target, WindowPart, intersection};
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
 pub(crate) const MOST_SAMPLES: usize = 1 << 22;
@@ -32,7 +30,8 @@ struct Wanted {
     is_wanted: Vec<bool>,
 }
 
-/// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its buffers.
+/// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its
+/// buffers.
 pub struct Reader<'a> {
     pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a GridPlan,
@@ -48,7 +47,7 @@ impl Dem {
         Reader {
             dem: self,
             plan,
-            files: OpenFiles::new(),
+            files: OpenFiles::default(),
             samples: Vec::new(),
             scratch: Scratch::default(),
         }
@@ -56,21 +55,22 @@ impl Dem {
 }
 
 impl Reader<'_> {
-    /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds or its polygon are gaps.
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds
+    /// or its polygon are gaps.
     ///
     /// A node has the same bits whichever window it is read through.
     ///
     /// # Errors
     /// When the stride is not 1 or a file cannot be read.
-    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, ReadHeightsError> {
         if window.stride != 1 {
-            return Err(DemError::Stride { stride: window.stride });
+            return Err(ReadHeightsError::Stride { stride: window.stride });
         }
         if self.plan.clip.is_none() {
             return self.filled_window(window);
         }
-        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so that nodes have the same heights as
-        // without bounds.
+        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so
+        // that nodes have the same heights as without bounds.
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         let (mut filled, mut is_filled) = (0, Vec::new());
         let within = intersection(&window, [self.plan.south_west, self.plan.north_east]);
@@ -102,7 +102,8 @@ impl Reader<'_> {
         Ok(DemWindow { heights, filled, is_filled })
     }
 
-    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them; `None` where it leaves none.
+    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them;
+    /// `None` where it leaves none.
     fn wanted(&self, window: NodeWindow) -> Option<Wanted> {
         let Some(region) = &self.plan.polygon else {
             return Some(Wanted { part: window, is_wanted: Vec::new() });
@@ -125,7 +126,7 @@ impl Reader<'_> {
     }
 
     /// The same without regard to bounds.
-    fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+    fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, ReadHeightsError> {
         let mut heights_m = self.nodes(window)?;
         let mut is_filled = Vec::new();
         let mut filled = 0;
@@ -149,13 +150,14 @@ impl Reader<'_> {
         })
     }
 
-    /// The heights of a window widened by `reach` nodes on every side, of which the inside is known.
+    /// The heights of a window widened by `reach` nodes on every side, of which the inside is
+    /// known.
     fn with_halo(
         &mut self,
         window: NodeWindow,
         inside_m: &[f32],
         reach: usize,
-    ) -> Result<Vec<f32>, DemError> {
+    ) -> Result<Vec<f32>, ReadHeightsError> {
         let wide = window.with_halo(reach);
         let mut heights_m = vec![f32::NAN; wide.columns * wide.rows];
         let mut put = |[left, top]: [usize; 2], columns: usize, part_m: &[f32]| {
@@ -180,10 +182,10 @@ impl Reader<'_> {
     }
 
     /// Heights of nodes from the mosaics, voids not filled (NaN), row by row from the north.
-    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, DemError> {
+    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
-        for (role, mosaic) in plan.roles.iter().zip(&dem.mosaics) {
+        for (role, mosaic) in plan.roles.0.iter().zip(&dem.mosaics) {
             let Some(part) = intersection(&window, role.nodes) else {
                 continue;
             };
@@ -211,22 +213,18 @@ impl Reader<'_> {
         part: &NodeWindow,
         target: &Target,
         heights_m: &mut [f32],
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         // Bands of rows, so that a window of any size needs bounded memory.
         let every = alignment.every as usize;
         let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
         for top in (0..part.rows).step_by(band) {
             let rows = band.min(part.rows - top);
-            let sample = |column: usize, row: usize| alignment.sample(part.node(column, row));
-            let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
-            let rect = SampleRect {
-                min: [a[0].min(b[0]), a[1].min(b[1])],
-                max: [a[0].max(b[0]) + 1, a[1].max(b[1]) + 1],
-            };
+            let ends = [part.node(0, top), part.node(part.columns - 1, top + rows - 1)];
+            let rect = alignment.samples(ends);
             self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
             let width = rect.columns();
             for row in 0..rows {
-                let [_, line] = sample(0, top + row);
+                let [_, line] = alignment.sample(part.node(0, top + row));
                 let from = (line - rect.min[1]) as usize * width;
                 let line = &self.samples[from..from + width];
                 for column in 0..part.columns {
@@ -242,7 +240,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the samples are in `at`.
+    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the
+    /// samples are in `at`.
     fn interpolate(
         &mut self,
         mosaic: &Mosaic,
@@ -251,7 +250,7 @@ impl Reader<'_> {
         part: &WindowPart,
         target: &Target,
         heights_m: &mut [f32],
-    ) -> Result<(), DemError> {
+    ) -> Result<(), ReadHeightsError> {
         let open = part.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
         let Some(rect) =
             around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.reachable())

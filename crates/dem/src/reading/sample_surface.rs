@@ -1,43 +1,41 @@
 //! How far lines are from the surface of the DEM's own samples.
 
-use std::{
-    collections::{HashMap, VecDeque},
-    rc::Rc,
-};
+use std::sync::Arc;
 
-use crate::crs::operation::Operation;
+use corniche_gis::CrsOperation;
+use corniche_work::Recent;
+
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
-use crate::mosaics::sample_rect::SampleRect;
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples along each side of a block.
 const BLOCK_SAMPLES: i64 = 64;
-/// Blocks that are kept: 17 MB.
-const MOST_BLOCKS: usize = 512;
+/// Bytes of the blocks that are kept, about 512.
+const KEPT_BYTES: u64 = 17 << 20;
 
 /// Heights of the samples of a block, row by row.
-type Block = Rc<[f64]>;
+type Block = Arc<Vec<f64>>;
 /// A mosaic, by its place, and a block of its samples.
 type BlockKey = (usize, [i64; 2]);
 /// From where to where along a segment, as shares of it.
 type Stretch = [f64; 2];
 
-/// The surface of the DEM's samples, as the files have them: bilinear between four of one grid. Where grids overlap, the one that is named first and
-/// has all four counts. It does not depend on the grid of a package.
+/// The surface of the DEM's samples, as the files have them: bilinear between four of one grid.
+/// Where grids overlap, the one that is named first and has all four counts. It does not depend on
+/// the grid of a package.
 pub struct SampleSurface<'a> {
     dem: &'a Dem,
     /// For each mosaic the operation from working metres to its CRS.
-    crs_from_working: Vec<Operation>,
+    crs_from_working: Vec<CrsOperation>,
     files: OpenFiles,
-    kept: HashMap<BlockKey, Block>,
-    /// The blocks that are kept, the oldest first.
-    order: VecDeque<BlockKey>,
+    kept: Recent<BlockKey, Vec<f64>>,
     /// The block that was asked for last.
     last: Option<(BlockKey, Block)>,
 }
 
-/// A half of a straight part of a line: from one place among a mosaic's samples to another, and how far beside the straight way between them the line
-/// may be there, in samples.
+/// A half of a straight part of a line: from one place among a mosaic's samples to another, and how
+/// far beside the straight way between them the line may be there, in samples.
 #[derive(Clone, Copy)]
 struct Half {
     from: [f64; 2],
@@ -49,25 +47,26 @@ impl Dem {
     /// The surface of its samples, beneath lines in the working metres of a plan.
     #[must_use]
     pub fn sample_surface<'a>(&'a self, plan: &GridPlan) -> SampleSurface<'a> {
-        let operation = |mosaic: &crate::mosaics::mosaic::Mosaic| {
-            Operation::out_of_working(&plan.working, &mosaic.crs, Some(self.wgs84_bounds))
+        let operation = |mosaic: &Mosaic| {
+            CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(self.wgs84_bounds))
                 .around(mosaic.seam())
         };
         SampleSurface {
             dem: self,
             crs_from_working: self.mosaics.iter().map(operation).collect(),
-            files: OpenFiles::new(),
-            kept: HashMap::new(),
-            order: VecDeque::new(),
+            files: OpenFiles::default(),
+            kept: Recent::new(KEPT_BYTES),
             last: None,
         }
     }
 }
 
 impl SampleSurface<'_> {
-    /// The largest vertical distance between a line and the surface, metres, over the whole line; `None` where nothing of the surface lies beneath it.
+    /// The largest vertical distance between a line and the surface, metres, over the whole line;
+    /// `None` where nothing of the surface lies beneath it.
     ///
-    /// The line has ends of straight parts, and between each two of them their middle: an odd number of places in working metres, with heights.
+    /// The line has ends of straight parts, and between each two of them their middle: an odd
+    /// number of places in working metres, with heights.
     ///
     /// ```text
     ///   ●─────┬──m──┬──────●     ●  ends of a straight part,  m  its middle
@@ -76,14 +75,14 @@ impl SampleSurface<'_> {
     ///
     /// # Errors
     /// When a file cannot be read, or PROJ fails.
-    pub fn largest_distance_m(&mut self, line: &[[f64; 3]]) -> Result<Option<f64>, DemError> {
+    pub fn largest_distance_m(
+        &mut self,
+        line: &[[f64; 3]],
+    ) -> Result<Option<f64>, ReadHeightsError> {
         let mut places = Vec::with_capacity(self.crs_from_working.len());
         for (mosaic, operation) in self.dem.mosaics.iter().zip(&self.crs_from_working) {
             let mut at: Vec<[f64; 2]> = line.iter().map(|&[x, y, _]| [x, y]).collect();
-            operation.apply(&mut at)?;
-            for place in &mut at {
-                *place = mosaic.crs_from_sample.pixel_from_crs(*place).unwrap_or([f64::NAN; 2]);
-            }
+            operation.apply_to_pixels(&mosaic.crs_from_sample, &mut at)?;
             places.push(at);
         }
         let mut most_m: Option<f64> = None;
@@ -103,14 +102,15 @@ impl SampleSurface<'_> {
         Ok(most_m)
     }
 
-    /// The largest distance along a stretch of a segment; of what has no surface of this mosaic beneath it the stretches are left.
+    /// The largest distance along a stretch of a segment; of what has no surface of this mosaic
+    /// beneath it the stretches are left.
     fn stretch_m(
         &mut self,
         (mosaic, half): (usize, Half),
         heights_m: [f64; 2],
         [begin, end]: Stretch,
         left: &mut Vec<Stretch>,
-    ) -> Result<Option<f64>, DemError> {
+    ) -> Result<Option<f64>, ReadHeightsError> {
         let Half { from, to, bow } = half;
         if !from.into_iter().chain(to).all(f64::is_finite) {
             left.push([begin, end]);
@@ -158,7 +158,11 @@ impl SampleSurface<'_> {
     }
 
     /// The heights at the corners of a cell of samples: first row, then second.
-    fn corners_m(&mut self, mosaic: usize, [column, row]: [i64; 2]) -> Result<[f64; 4], DemError> {
+    fn corners_m(
+        &mut self,
+        mosaic: usize,
+        [column, row]: [i64; 2],
+    ) -> Result<[f64; 4], ReadHeightsError> {
         let mut corners_m = [0.0; 4];
         for (corner_m, [across, along]) in
             corners_m.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]])
@@ -168,43 +172,32 @@ impl SampleSurface<'_> {
         Ok(corners_m)
     }
 
-    fn sample_m(&mut self, mosaic: usize, sample: [i64; 2]) -> Result<f64, DemError> {
+    fn sample_m(&mut self, mosaic: usize, sample: [i64; 2]) -> Result<f64, ReadHeightsError> {
         let key = (mosaic, sample.map(|index| index.div_euclid(BLOCK_SAMPLES)));
         let [column, row] = sample.map(|index| index.rem_euclid(BLOCK_SAMPLES) as usize);
         let at = row * BLOCK_SAMPLES as usize + column;
         if let Some((_, block)) = self.last.as_ref().filter(|(last, _)| *last == key) {
             return Ok(block[at]);
         }
-        let block = match self.kept.get(&key) {
-            Some(block) => Rc::clone(block),
-            None => self.read(key)?,
+        let Self { dem, files, kept, .. } = self;
+        let read = || {
+            let min = key.1.map(|number| number * BLOCK_SAMPLES);
+            let rect = SampleRect { min, max: min.map(|index| index + BLOCK_SAMPLES) };
+            let mut heights_m = Vec::new();
+            files.read(&dem.sources, &dem.mosaics[mosaic], &rect, &mut heights_m)?;
+            Ok::<_, ReadHeightsError>(heights_m)
         };
+        let block = kept.get(key, read, |block| size_of_val(&block[..]) as u64)?;
         let height_m = block[at];
         self.last = Some((key, block));
         Ok(height_m)
     }
-
-    fn read(&mut self, key: BlockKey) -> Result<Block, DemError> {
-        let (mosaic, number) = key;
-        let min = number.map(|number| number * BLOCK_SAMPLES);
-        let rect = SampleRect { min, max: min.map(|index| index + BLOCK_SAMPLES) };
-        let mut heights_m = Vec::new();
-        self.files.read(&self.dem.sources, &self.dem.mosaics[mosaic], &rect, &mut heights_m)?;
-        let block: Block = heights_m.into();
-        if self.order.len() >= MOST_BLOCKS
-            && let Some(oldest) = self.order.pop_front()
-        {
-            self.kept.remove(&oldest);
-        }
-        self.order.push_back(key);
-        self.kept.insert(key, Rc::clone(&block));
-        Ok(block)
-    }
 }
 
 impl Half {
-    /// The half that ends at a place of a line. Straight parts of a map bend a little among samples of another CRS: each half is off its chord by an
-    /// eighth of the second difference of the whole; twice that is allowed for.
+    /// The half that ends at a place of a line. Straight parts of a map bend a little among samples
+    /// of another CRS: each half is off its chord by an eighth of the second difference of the
+    /// whole; twice that is allowed for.
     fn of(at: &[[f64; 2]], index: usize) -> Self {
         let middle = index - (index + 1) % 2;
         let ends = [at[middle - 1], at[(middle + 1).min(at.len() - 1)]];
@@ -220,7 +213,8 @@ fn bilinear_m([nw, ne, sw, se]: [f64; 4], [across, along]: [f64; 2]) -> f64 {
     north + along * (south - north)
 }
 
-/// The largest size of a parabola between two places, from its values there and in the middle: along a straight line, heights over a bilinear cell are one.
+/// The largest size of a parabola between two places, from its values there and in the middle:
+/// along a straight line, heights over a bilinear cell are one.
 #[must_use]
 pub fn largest_of_parabola(from: f64, middle: f64, to: f64) -> f64 {
     let square = 2.0 * (from - 2.0 * middle + to);

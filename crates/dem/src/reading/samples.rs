@@ -1,16 +1,15 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
 use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
+use corniche_gis::{CrsError, CrsOperation};
 
-use crate::crs::operation::Operation;
-use crate::mosaics::mosaic::Mosaic;
-use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::plan::clip::needed_samples;
 use crate::plan::grid_plan::{Clip, Method};
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
 use crate::reading::window_parts::intersection;
-use crate::{Dem, DemError, GridPlan};
+use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Side of the blocks in which samples are handed out.
 const BLOCK_SAMPLES: i64 = 256;
@@ -33,7 +32,8 @@ pub struct SampleBlock {
 }
 
 impl SampleBlock {
-    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the lattice.
+    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the
+    /// lattice.
     fn keep_within(&mut self, frame: &GridFrame, nodes: [NodeIndex; 2]) {
         let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
         let bounds = LatticeBounds { min, max };
@@ -42,22 +42,27 @@ impl SampleBlock {
             .iter()
             .map(|&position_m| frame.snap(position_m).is_some_and(|point| bounds.contains(point)))
             .collect();
-        let mut inside = is_inside.iter();
-        self.positions_m.retain(|_| inside.next().copied().unwrap_or(false));
-        let mut inside = is_inside.iter();
-        self.heights_m.retain(|_| inside.next().copied().unwrap_or(false));
+        self.retain(&is_inside);
+    }
+
+    /// Leaves out the samples for which this is false.
+    fn retain(&mut self, is_kept: &[bool]) {
+        let mut kept = is_kept.iter();
+        self.positions_m.retain(|_| kept.next().copied().unwrap_or(false));
+        let mut kept = is_kept.iter();
+        self.heights_m.retain(|_| kept.next().copied().unwrap_or(false));
     }
 }
 
 impl Dem {
-    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256 samples at most, those of no file
-    /// left out.
+    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256
+    /// samples at most, those of no file left out.
     ///
     /// # Errors
     /// When PROJ fails.
-    pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, DemError> {
+    pub fn sample_ranges(&self, plan: &GridPlan) -> Result<Vec<SampleRange>, CrsError> {
         let mut ranges = Vec::new();
-        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles.0).enumerate() {
             let needed = needed_samples(plan, mosaic, role)?;
             ranges.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
         }
@@ -69,8 +74,8 @@ impl Dem {
 const AROUND_NODES: usize = 2;
 
 impl Dem {
-    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256 samples at most. No sample
-    /// is in two of them.
+    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256
+    /// samples at most. No sample is in two of them.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -78,10 +83,10 @@ impl Dem {
         &self,
         plan: &GridPlan,
         window: NodeWindow,
-    ) -> Result<Vec<SampleRange>, DemError> {
+    ) -> Result<Vec<SampleRange>, CrsError> {
         let wide = window.with_halo(AROUND_NODES);
         let mut ranges = Vec::new();
-        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles.0).enumerate() {
             let grow = |[low, high]: [NodeIndex; 2]| {
                 let by = AROUND_NODES as i64;
                 [
@@ -92,11 +97,8 @@ impl Dem {
             let Some(part) = intersection(&wide, grow(role.nodes)) else { continue };
             let rect = match &role.method {
                 Method::Aligned(alignment) => {
-                    let a = alignment.sample(part.node(0, 0));
-                    let b = alignment.sample(part.node(part.columns - 1, part.rows - 1));
-                    let low = [0, 1].map(|axis| a[axis].min(b[axis]));
-                    let high = [0, 1].map(|axis| a[axis].max(b[axis]) + 1);
-                    Some(SampleRect { min: low, max: high }.intersection(&mosaic.extent))
+                    let ends = [part.node(0, 0), part.node(part.columns - 1, part.rows - 1)];
+                    Some(alignment.samples(ends).intersection(&mosaic.extent))
                 }
                 Method::Resampled(positions, kernel) => {
                     let at = positions.of(&plan.frame, &part)?;
@@ -127,12 +129,12 @@ fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleRang
 }
 
 impl Reader<'_> {
-    /// The samples of a range that have a height: after nodata, units and shift; where files of one grid overlap, those of
-    /// the file named first. Those outside the plan's bounds are left out.
+    /// The samples of a range that have a height: after nodata, units and shift; where files of one
+    /// grid overlap, those of the file named first. Those outside the plan's bounds are left out.
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+    pub fn samples(&mut self, range: &SampleRange) -> Result<SampleBlock, ReadHeightsError> {
         let mosaic = &self.dem.mosaics[range.mosaic];
         self.files.read(&self.dem.sources, mosaic, &range.rect, &mut self.samples)?;
         let mut block = SampleBlock::default();
@@ -146,49 +148,42 @@ impl Reader<'_> {
             block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(at));
             block.heights_m.push(*height_m as f32);
         }
-        self.plan.roles[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
+        self.plan.roles.0[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
         if let Some(Clip { nodes, .. }) = self.plan.clip {
             block.keep_within(&self.plan.frame, nodes);
         }
         Ok(block)
     }
 
-    /// The samples of a range from which nodes are made: those that are not hidden by an earlier named grid with data
-    /// there.
+    /// The samples of a range from which nodes are made: those that are not hidden by an earlier
+    /// named grid with data there.
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, DemError> {
+    pub fn used_samples(&mut self, range: &SampleRange) -> Result<SampleBlock, ReadHeightsError> {
         let mut block = self.samples(range)?;
         for earlier in 0..range.mosaic {
-            let hidden = self.is_covered(earlier, &block.positions_m)?;
-            let mut is_hidden = hidden.iter();
-            block.positions_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
-            let mut is_hidden = hidden.iter();
-            block.heights_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
+            let is_open = self.is_open(earlier, &block.positions_m)?;
+            block.retain(&is_open);
         }
         Ok(block)
     }
 
-    /// Tells for each position, in working metres, whether a mosaic has all samples around it.
-    fn is_covered(
+    /// Tells for each position, in working metres, whether a mosaic lacks samples around it.
+    fn is_open(
         &mut self,
         mosaic: usize,
         positions_m: &[[f64; 2]],
-    ) -> Result<Vec<bool>, DemError> {
+    ) -> Result<Vec<bool>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mosaic = &dem.mosaics[mosaic];
         let mut at = positions_m.to_vec();
-        Operation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
+        CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
             .around(mosaic.seam())
-            .apply(&mut at)?;
-        for position in &mut at {
-            let sample = mosaic.crs_from_sample.pixel_from_crs(*position);
-            *position = sample.unwrap_or([f64::NAN; 2]);
-        }
-        let mut covered = vec![false; at.len()];
-        self.look(mosaic, &at, &mut covered)?;
-        Ok(covered)
+            .apply_to_pixels(&mosaic.crs_from_sample, &mut at)?;
+        let mut is_open = vec![true; at.len()];
+        self.look(mosaic, &at, &mut is_open)?;
+        Ok(is_open)
     }
 
     /// The same for positions among a mosaic's samples, in parts of bounded memory.
@@ -196,22 +191,22 @@ impl Reader<'_> {
         &mut self,
         mosaic: &Mosaic,
         at: &[[f64; 2]],
-        covered: &mut [bool],
-    ) -> Result<(), DemError> {
+        is_open: &mut [bool],
+    ) -> Result<(), ReadHeightsError> {
         let kernel = Kernel::new([0.0; 2]);
         let Some(rect) = around(at.iter().copied(), &kernel, &mosaic.reachable()) else {
             return Ok(());
         };
         if rect.columns() * rect.rows() > MOST_SAMPLES && at.len() > 1 {
             let half = at.len() / 2;
-            let (first, last) = covered.split_at_mut(half);
+            let (first, last) = is_open.split_at_mut(half);
             self.look(mosaic, &at[..half], first)?;
             return self.look(mosaic, &at[half..], last);
         }
         self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
         let samples = Samples { rect, heights_m: &self.samples };
-        for (position, covered) in at.iter().zip(covered).filter(|(at, _)| at[0].is_finite()) {
-            *covered = !kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
+        for (position, is_open) in at.iter().zip(is_open).filter(|(at, _)| at[0].is_finite()) {
+            *is_open = kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
         }
         Ok(())
     }

@@ -1,4 +1,5 @@
-//! Every elevation file of the real data: read as GDAL reads it, or refused as its description says.
+//! Every elevation file of the real data: read as GDAL reads it, or refused as its description
+//! says.
 
 use std::path::{Path, PathBuf};
 
@@ -113,8 +114,8 @@ fn every_elevation_file_is_read_as_gdal_reads_it() {
     println!("{samples} samples are GDAL's own");
 }
 
-/// The squares of the large block, and the zipped one whose northern half is void: each opens, and a window of it
-/// holds heights within the range that its description gives.
+/// The squares of the large block, and the zipped one whose northern half is void: each opens, and
+/// a window of it holds heights within the range that its description gives.
 #[test]
 fn every_srtm_square_opens() {
     let squares = ["N47E007", "N47E008", "N48E007", "N48E008", "N48E009", "N48E010"];

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use corniche_dem::{Dem, FileBlocks, OpenOptions};
+use corniche_dem::{Dem, OpenOptions};
 use corniche_geom::NodeIndex;
+use corniche_gis::FileBlocks;
 use corniche_testing::Raster;
 use gdal::{Dataset, DriverManager, raster::RasterCreationOptions};
 

@@ -1,6 +1,7 @@
-//! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to the last bit.
+//! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to
+//! the last bit.
 
-use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, GridError, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
 
 use crate::fixture::{Raster, all, check_words, folder, in_utm, open, options, sample_blocks};
@@ -25,7 +26,8 @@ fn with(bounds_deg: [f64; 4], options: PlanOptions) -> PlanOptions {
     PlanOptions { bounds_deg: Some(bounds_deg), ..options }
 }
 
-/// Checks that all that is not about bounds is the same, that nodes inside have the same heights and no others have one.
+/// Checks that all that is not about bounds is the same, that nodes inside have the same heights
+/// and no others have one.
 fn check(dem: &Dem, asked: &PlanOptions, bounds_deg: [f64; 4]) -> GridPlan {
     let whole = dem.plan(asked).unwrap();
     let part = dem.plan(&with(bounds_deg, asked.clone())).unwrap();
@@ -164,7 +166,8 @@ fn bounds_may_cross_180_degrees() {
     assert!((-179.95..-179.85).contains(&part.wgs84_bounds.min_x), "{:?}", part.wgs84_bounds);
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie and whatever their working CRS is.
+/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie
+/// and whatever their working CRS is.
 #[test]
 fn bounds_around_the_earth_leave_out_no_longitude() {
     let folder = folder();
@@ -195,7 +198,7 @@ fn bounds_around_the_earth_leave_out_no_longitude() {
                 assert!(part.wgs84_bounds.height() < 0.3, "{:?}", part.wgs84_bounds);
             }
             let beside = dem.plan(&with([-180.0, 10.0, 180.0, 20.0], asked)).unwrap_err();
-            assert!(matches!(beside, DemError::BoundsBesideData { .. }), "{beside}");
+            assert!(matches!(beside, GridError::BoundsBesideData { .. }), "{beside}");
         }
     }
 }
@@ -217,7 +220,7 @@ fn bounds_without_a_cell_or_at_both_ends_are_refused() {
             .unwrap();
     let own = PlanOptions { crs: Some("dem".to_owned()), ..options() };
     let error = globe.plan(&with([170.0, -20.0, -170.0, 20.0], own.clone())).unwrap_err();
-    assert!(matches!(error, DemError::BoundsAtBothEnds { .. }), "{error}");
+    assert!(matches!(error, GridError::BoundsAtBothEnds { .. }), "{error}");
     for bounds_deg in
         [[-180.0, -90.0, 180.0, 90.0], [-20.0, -10.0, 30.0, 40.0], [150.0, 0.0, 179.0, 9.0]]
     {

@@ -1,4 +1,5 @@
-//! Windows of rasters whose heights are known in closed form have these heights, however the raster lies.
+//! Windows of rasters whose heights are known in closed form have these heights, however the raster
+//! lies.
 
 use std::path::PathBuf;
 
@@ -48,7 +49,8 @@ fn south_up_is_turned_over() {
 #[test]
 fn pixel_is_point_lies_where_its_samples_lie() {
     let folder = folder();
-    // GDAL takes and gives corners in both cases; the file stores the centre of the first pixel for points.
+    // GDAL takes and gives corners in both cases; the file stores the centre of the first pixel for
+    // points.
     let point = Raster::new(32632, [60, 50], UTM)
         .tagged(|dataset| dataset.set_metadata_item("AREA_OR_POINT", "Point", "").unwrap());
     let dem = open(&[point.write(folder.path(), "point.tif", |at| plane(at) as f32)]);
@@ -188,7 +190,8 @@ fn wide_and_polar_extents_get_an_equal_area_projection() {
     }
 }
 
-/// Latitudes around the pole, where the lattice of positions cannot be interpolated, are right all the same.
+/// Latitudes around the pole, where the lattice of positions cannot be interpolated, are right all
+/// the same.
 #[test]
 fn nodes_around_the_pole_are_transformed_one_by_one() {
     let folder = folder();
@@ -289,8 +292,9 @@ fn options_override_and_are_checked() {
     assert!(dem.reader(&own).window(coarse).is_err());
 }
 
-/// A second file turned by a quarter, whose rows run east and whose columns run north: its samples are where nodes are,
-/// one to a node along either axis, though its own axes are 20 m and 10 m long.
+/// A second file turned by a quarter, whose rows run east and whose columns run north: its samples
+/// are where nodes are, one to a node along either axis, though its own axes are 20 m and 10 m
+/// long.
 #[test]
 fn a_file_turned_by_a_quarter_is_not_averaged_along_the_wrong_axis() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,9 +1,11 @@
-//! How positions come from one datum to another is told, and one datum is not taken for another in silence.
+//! How positions come from one datum to another is told, and one datum is not taken for another in
+//! silence.
 
 use std::path::PathBuf;
 
-use corniche_dem::{DatumOperation, PlanOptions, RecordedCrs};
+use corniche_dem::PlanOptions;
 use corniche_geom::{Bounds, Projection};
+use corniche_gis::{DatumOperation, RecordedCrs};
 
 use crate::fixture::{Raster, check_words, folder, open, options, plan};
 
@@ -26,7 +28,8 @@ fn the_datum_of_wgs84_needs_no_operation() {
     }
 }
 
-/// Accuracies are those of the EPSG registry: ETRS89 to WGS 84 (1), MGI to WGS 84 (3), CH1903+ to WGS 84 (1).
+/// Accuracies are those of the EPSG registry: ETRS89 to WGS 84 (1), MGI to WGS 84 (3), CH1903+ to
+/// WGS 84 (1).
 #[test]
 fn an_operation_is_told_with_the_accuracy_that_the_registry_has() {
     for (epsg, corner, name, accuracy_m) in [
@@ -62,7 +65,8 @@ fn each_system_of_files_has_its_operations_once() {
     assert_eq!(from, ["EPSG:25832", "EPSG:25833"], "{found:?}");
 }
 
-/// NAD27 in Utah: by the registry PROJ is accurate to 2.15 m with the grids of NADCON and HARN, without them to 7 m.
+/// NAD27 in Utah: by the registry PROJ is accurate to 2.15 m with the grids of NADCON and HARN,
+/// without them to 7 m.
 #[test]
 fn a_better_operation_whose_grid_is_missing_is_told() {
     let found = operations(26712, [420_000.0, 4_500_000.0], 30.0);
@@ -82,7 +86,8 @@ fn a_better_operation_whose_grid_is_missing_is_told() {
     }
 }
 
-/// A file in a Gauss-Krüger system of a datum that has only a name: on the ellipsoid of Bessel, or another one.
+/// A file in a Gauss-Krüger system of a datum that has only a name: on the ellipsoid of Bessel, or
+/// another one.
 fn custom(folder: &std::path::Path, datum: &str, [major_m, inverse]: [f64; 2]) -> PathBuf {
     let frame = [4_500_000.0, 30.0, 0.0, 5_400_000.0, 0.0, -30.0];
     let file = Raster::new(31468, [20, 20], frame).write(folder, "custom.tif", |_| 300.0_f32);
@@ -113,7 +118,8 @@ fn a_local_datum_is_not_taken_for_wgs84_unless_that_is_allowed() {
     }
 }
 
-/// A datum on the ellipsoid of WGS84 or GRS80 was made to be used with satellites: within metres it is WGS84.
+/// A datum on the ellipsoid of WGS84 or GRS80 was made to be used with satellites: within metres it
+/// is WGS84.
 #[test]
 fn a_datum_without_a_name_on_the_ellipsoid_of_grs80_is_told_and_not_refused() {
     let folder = folder();
@@ -129,9 +135,9 @@ fn a_datum_without_a_name_on_the_ellipsoid_of_grs80_is_told_and_not_refused() {
 const WEST_OF_IT: [f64; 2] = [2_451_194.441_5, 1_151_695.830_5];
 const INSIDE: [f64; 2] = [2_566_327.701_7, 1_149_948.852_1];
 
-/// West of 5.96° E the registry has no operation for CH1903+. A DEM that reaches there is carried by one operation nevertheless: else it
-/// would break apart at that meridian. The value is that of GDAL for the same projection with the shift written out
-/// (`+towgs84=674.374,15.056,405.346`).
+/// West of 5.96° E the registry has no operation for CH1903+. A DEM that reaches there is carried
+/// by one operation nevertheless: else it would break apart at that meridian. The value is that of
+/// GDAL for the same projection with the shift written out (`+towgs84=674.374,15.056,405.346`).
 #[test]
 fn a_dem_that_reaches_beyond_the_area_of_its_datum_stays_in_one_piece() {
     let data = Bounds { min_x: 2.45e6, min_y: 1.1e6, max_x: 2.6e6, max_y: 1.2e6 };

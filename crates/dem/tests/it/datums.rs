@@ -1,4 +1,5 @@
-//! When two vertical systems measure from the same: by the name of a datum, and of none only word for word.
+//! When two vertical systems measure from the same: by the name of a datum, and of none only word
+//! for word.
 
 use std::path::{Path, PathBuf};
 

@@ -27,8 +27,8 @@ impl Shape {
     fn covers(&self, column: usize, row: usize) -> bool {
         let (x, y) = (column as f64 - self.at[0], row as f64 - self.at[1]);
         match self.kind {
-            // Rectangle, ellipse, one side of a straight edge nearly along the axes or the diagonal, a lone node, and
-            // a checkerboard.
+            // Rectangle, ellipse, one side of a straight edge nearly along the axes or the
+            // diagonal, a lone node, and a checkerboard.
             0 => x.abs() <= self.size[0] && y.abs() <= self.size[1],
             1 => (x / self.size[0]).powi(2) + (y / self.size[1]).powi(2) <= 1.0,
             2 => y > x * self.slope + self.size[1],
@@ -75,7 +75,8 @@ impl Mask {
         (is_inside && self.has_data[r * SIZE[0] + c]).then(|| height_m(c, r))
     }
 
-    /// What the rule gives for a void: every void is looked at from each of its sides, step by step.
+    /// What the rule gives for a void: every void is looked at from each of its sides, step by
+    /// step.
     fn filled(&self, column: i64, row: i64, reach: i64, cell: Cell) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         for down in -1..=1_i64 {
@@ -110,8 +111,8 @@ fn read(reader: &mut Reader<'_>, window: NodeWindow) -> DemWindow {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// Filled are exactly the nodes of the rule, with its values, through every window that shows them, those at its
-    /// corners and beyond the data included, and with the same bits.
+    /// Filled are exactly the nodes of the rule, with its values, through every window that shows
+    /// them, those at its corners and beyond the data included, and with the same bits.
     #[test]
     fn exactly_the_nodes_of_the_rule_are_filled(
         is_ground in any::<bool>(),
@@ -163,7 +164,8 @@ proptest! {
     }
 }
 
-/// A square of degrees seen in metres has slanting edges: nothing is filled beyond them, whatever the reach.
+/// A square of degrees seen in metres has slanting edges: nothing is filled beyond them, whatever
+/// the reach.
 #[test]
 fn nothing_is_filled_beyond_the_edge_of_reprojected_squares() {
     let folder = tempfile::tempdir().unwrap();

@@ -23,7 +23,8 @@ pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// The raster in another format, written by GDAL; `None`, with a printed line, if this GDAL cannot write the format.
+/// The raster in another format, written by GDAL; `None`, with a printed line, if this GDAL cannot
+/// write the format.
 pub(crate) fn converted(
     path: &Path,
     driver: &str,
@@ -72,19 +73,21 @@ pub(crate) fn check_heights(
     })
 }
 
-/// Files are refused, by opening or by reading, with the file's name and all of `words`, and no raw error of a library.
+/// Files are refused, by opening or by reading, with the file's name and all of `words`, and no raw
+/// error of a library.
 pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&str]) {
-    let read = || {
+    let read = || -> Result<(), DemError> {
         let dem = Dem::open(files, options)?;
         let plan = dem.plan(&self::options())?;
-        dem.reader(&plan).window(all(&plan)).map(|_| ())
+        dem.reader(&plan).window(all(&plan))?;
+        Ok(())
     };
     let error = read().expect_err(&format!("{files:?} was read"));
     check_words(&error, words);
 }
 
 /// The message has all of `words`, and neither it nor its causes are in a library's own code words.
-pub(crate) fn check_words(error: &DemError, words: &[&str]) {
+pub(crate) fn check_words(error: &(impl std::error::Error + 'static), words: &[&str]) {
     let text = error.to_string();
     for word in words {
         assert!(text.contains(word), "{word:?} is not in: {text}");
@@ -117,8 +120,8 @@ pub(crate) fn in_utm() -> PlanOptions {
     PlanOptions { crs: Some("utm".to_owned()), ..options() }
 }
 
-/// Metres to a degree of longitude and of latitude on WGS84, by the usual series; an oracle that shares nothing with the
-/// closed formula under test.
+/// Metres to a degree of longitude and of latitude on WGS84, by the usual series; an oracle that
+/// shares nothing with the closed formula under test.
 ///
 /// Source: National Geospatial-Intelligence Agency, *Length of a Degree of Latitude and Longitude*.
 pub(crate) fn degree_m(latitude_deg: f64) -> [f64; 2] {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Dem, DemError, OpenOptions};
+use corniche_dem::{Dem, DemError, OpenDemError, OpenOptions};
 use gdal::{DriverManager, Metadata};
 
 use crate::fixture::{Raster, Space, UTM, check_heights, check_refused, converted, plane};
@@ -238,7 +238,8 @@ fn netcdf_4_gives_the_plane_and_bare_hdf5_has_no_place() {
     let options = ["FORMAT=NC4", "COMPRESS=DEFLATE"];
     let Some(path) = converted(&source, "netCDF", "four.nc", &options) else { return };
     check("netCDF 4", &path, F32_M);
-    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions nobody knows where it lies.
+    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions nobody knows
+    // where it lies.
     if DriverManager::get_driver_by_name("HDF5").is_ok() {
         let name = PathBuf::from(format!("HDF5:\"{}\"://Band1", path.display()));
         check_refused(&[name], &given, &["four.nc", "georeference"]);
@@ -267,7 +268,7 @@ fn broken_files_are_refused_with_a_reason() {
     }
     check_refused(&[folder.path().to_path_buf()], &given, &["not a file"]);
     check_refused(&[folder.path().join("gone.tif")], &given, &["gone.tif", "cannot open"]);
-    assert!(matches!(Dem::open(&[], &given), Err(DemError::NoFiles)));
+    assert!(matches!(Dem::open(&[], &given), Err(OpenDemError::NoFiles)));
 }
 
 /// Cut anywhere, a file is refused or gives the true heights; it never gives others.
@@ -280,13 +281,13 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     let (mut read, mut refused) = (0, 0);
     for length in 0..bytes.len() {
         fs::write(&path, &bytes[..length]).unwrap();
-        let found =
-            Dem::open(std::slice::from_ref(&path), &OpenOptions::default()).and_then(|dem| {
-                let plan = crate::fixture::plan(&dem);
-                dem.reader(&plan).window(crate::fixture::all(&plan))?;
-                Ok((dem, plan))
-            });
-        match found {
+        let open = || -> Result<_, DemError> {
+            let dem = Dem::open(std::slice::from_ref(&path), &OpenOptions::default())?;
+            let plan = crate::fixture::plan(&dem);
+            dem.reader(&plan).window(crate::fixture::all(&plan))?;
+            Ok((dem, plan))
+        };
+        match open() {
             Ok((dem, plan)) => {
                 crate::fixture::check(&mut dem.reader(&plan), &plan, 1e-4, plane);
                 read += 1;
@@ -301,7 +302,8 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     assert!(refused > bytes.len() / 2);
 }
 
-/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever records it can say so.
+/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever
+/// records it can say so.
 #[cfg(target_os = "linux")]
 #[test]
 fn parts_keep_the_bytes_of_their_names() {
@@ -314,6 +316,6 @@ fn parts_keep_the_bytes_of_their_names() {
     let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'@' { 0xff } else { byte }).collect();
     let path = folder.path().join("named.vrt");
     fs::write(&path, bytes).unwrap();
-    let files = corniche_dem::raster_files(&path).unwrap();
+    let files = corniche_gis::raster_files(&path).unwrap();
     assert!(files.contains(&part), "{files:?}");
 }

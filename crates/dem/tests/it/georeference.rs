@@ -1,4 +1,5 @@
-//! Where rasters lie: tie points, seams of the globe, poles, and rasters too small to enclose ground.
+//! Where rasters lie: tie points, seams of the globe, poles, and rasters too small to enclose
+//! ground.
 
 use std::path::{Path, PathBuf};
 
@@ -152,7 +153,8 @@ fn the_antimeridian_is_no_seam() {
 #[test]
 fn utm_crosses_the_antimeridian() {
     let folder = tempfile::tempdir().unwrap();
-    // Zone 60 ends some 320 km east of its meridian at this latitude; half of the raster lies beyond.
+    // Zone 60 ends some 320 km east of its meridian at this latitude; half of the raster lies
+    // beyond.
     let corner = [800_000.0, 500.0, 0.0, 8_200_000.0, 0.0, -500.0];
     let truth = |[x, y]: [f64; 2]| x / 1000.0 + y / 10_000.0;
     let path = Raster::new(32760, [80, 60], corner).write(folder.path(), "fiji.tif", truth);
@@ -164,8 +166,8 @@ fn utm_crosses_the_antimeridian() {
     assert_eq!(check_heights("UTM 60", &[path], &given, (Space::Working, 1e-3), truth), 4800);
 }
 
-/// All around the earth: no void but the caps beyond the last rows and, opposite to the projection's centre, one
-/// cell about the point that it cannot show.
+/// All around the earth: no void but the caps beyond the last rows and, opposite to the
+/// projection's centre, one cell about the point that it cannot show.
 #[test]
 fn a_global_grid_has_no_seam() {
     let folder = tempfile::tempdir().unwrap();
@@ -210,7 +212,8 @@ fn a_global_grid_has_no_seam() {
     }
 }
 
-/// Samples up to both poles and on them, in degrees, in polar stereographic and in universal polar coordinates.
+/// Samples up to both poles and on them, in degrees, in polar stereographic and in universal polar
+/// coordinates.
 #[test]
 fn the_poles_are_covered_as_far_as_samples_go() {
     let folder = tempfile::tempdir().unwrap();
@@ -252,7 +255,8 @@ fn the_poles_are_covered_as_far_as_samples_go() {
     }
 }
 
-/// Wider than half the earth: the rectangle in WGS84 is that of the file, whatever the CRS's coordinates are.
+/// Wider than half the earth: the rectangle in WGS84 is that of the file, whatever the CRS's
+/// coordinates are.
 #[test]
 fn bounds_of_wide_files_are_their_own() {
     let folder = tempfile::tempdir().unwrap();
@@ -303,8 +307,8 @@ fn own_crs() -> PlanOptions {
     PlanOptions { crs: Some("dem".to_owned()), ..options() }
 }
 
-/// A spacing written with few digits is meant as 1/120 of a degree: files on both sides of the antimeridian are
-/// neighbours, in either order.
+/// A spacing written with few digits is meant as 1/120 of a degree: files on both sides of the
+/// antimeridian are neighbours, in either order.
 #[test]
 fn few_digits_do_not_part_files_at_the_antimeridian() {
     let folder = tempfile::tempdir().unwrap();
@@ -331,8 +335,8 @@ fn few_digits_do_not_part_files_at_the_antimeridian() {
     }
 }
 
-/// So far from the first file that few digits make another grid of it, on the other side of the antimeridian: its samples
-/// are nodes beside those of the first.
+/// So far from the first file that few digits make another grid of it, on the other side of the
+/// antimeridian: its samples are nodes beside those of the first.
 #[test]
 fn aligned_files_far_across_the_antimeridian_are_near() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use corniche_dem::{expand_name, unpack_name};
+use corniche_gis::{expand_name, unpack_name};
 
 use crate::fixture::{Raster, check_words, folder, open, options};
 

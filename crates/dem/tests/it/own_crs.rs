@@ -1,4 +1,5 @@
-//! The DEM's own CRS as working CRS: its factors, against closed forms and against PROJ asked directly.
+//! The DEM's own CRS as working CRS: its factors, against closed forms and against PROJ asked
+//! directly.
 
 use corniche_dem::{PlanOptions, Resampling};
 use corniche_geom::Projection;
@@ -24,8 +25,8 @@ fn transformed(from: u32, to: u32, point: [f64; 2]) -> [f64; 2] {
     [xs[0], ys[0]]
 }
 
-/// Metres to a degree of longitude and of latitude on an ellipsoid, from chords between points that are close: by the
-/// parametric latitude, without any formula for radii of curvature.
+/// Metres to a degree of longitude and of latitude on an ellipsoid, from chords between points that
+/// are close: by the parametric latitude, without any formula for radii of curvature.
 fn degree_on([major_m, flattening]: [f64; 2], latitude_deg: f64) -> [f64; 2] {
     let minor_m = major_m * (1.0 - flattening);
     let point = |latitude_deg: f64| {
@@ -43,8 +44,8 @@ fn plane_about([x0, y0]: [f64; 2], slope: f64) -> impl Fn([f64; 2]) -> f64 {
     move |[x, y]| 800.0 + slope * (x - x0) - 2.0 * slope * (y - y0)
 }
 
-/// Web Mercator, World Mercator and World Equidistant Cylindrical: the unit over PROJ's scale along each axis, at the
-/// standard latitude; lengths in the middle are true, nodes are samples.
+/// Web Mercator, World Mercator and World Equidistant Cylindrical: the unit over PROJ's scale along
+/// each axis, at the standard latitude; lengths in the middle are true, nodes are samples.
 #[test]
 fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -53,7 +54,8 @@ fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
     let [degree_east_m, degree_north_m] = degree_m(latitude_deg);
     let cos = latitude_deg.to_radians().cos();
     let degree_rad = 1_f64.to_radians();
-    // On the sphere of Web Mercator both scales are 1 / cos; true lengths are the ellipsoid's. World Mercator is conformal.
+    // On the sphere of Web Mercator both scales are 1 / cos; true lengths are the ellipsoid's.
+    // World Mercator is conformal.
     let web = [degree_east_m, degree_north_m].map(|metres| metres * cos / (major_m * degree_rad));
     let web = [web[0] / cos, web[1]];
     let conformal = [degree_east_m / (major_m * degree_rad); 2];
@@ -96,7 +98,8 @@ fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
     }
 }
 
-/// Degrees and grads, Greenwich and Paris, WGS84 and other ellipsoids: the radii of curvature of the CRS's own.
+/// Degrees and grads, Greenwich and Paris, WGS84 and other ellipsoids: the radii of curvature of
+/// the CRS's own.
 #[test]
 fn a_unit_of_a_geographic_system_is_as_long_as_on_its_ellipsoid() {
     let folder = tempfile::tempdir().unwrap();
@@ -180,8 +183,8 @@ fn systems_that_count_westwards_and_southwards_are_turned() {
     assert_eq!(grounds[0], grounds[1]);
 }
 
-/// Polar stereographic systems are true to scale at 70 or 71 degrees, and keep their unit there; where they are not,
-/// their factor makes them so; where no factor does within 3 %, they give way.
+/// Polar stereographic systems are true to scale at 70 or 71 degrees, and keep their unit there;
+/// where they are not, their factor makes them so; where no factor does within 3 %, they give way.
 #[test]
 fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
     let folder = tempfile::tempdir().unwrap();
@@ -227,7 +230,8 @@ fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
     }
 }
 
-/// A tall extent in degrees: lengths would be off by more than 3 %, so UTM is used, unless `--crs dem` is given.
+/// A tall extent in degrees: lengths would be off by more than 3 %, so UTM is used, unless `--crs
+/// dem` is given.
 #[test]
 fn beyond_three_percent_utm_is_taken_and_dem_overrides() {
     let folder = tempfile::tempdir().unwrap();
@@ -256,7 +260,8 @@ fn beyond_three_percent_utm_is_taken_and_dem_overrides() {
             }),
             50 * 210
         );
-        // Scale over the rim: a degree at 44 over a degree at the southernmost and northernmost rows.
+        // Scale over the rim: a degree at 44 over a degree at the southernmost and northernmost
+        // rows.
         let at = |latitude_deg: f64| {
             let (standard, here) = (degree_m(44.0), degree_m(latitude_deg));
             [standard[0] / here[0], standard[1] / here[1]]
@@ -357,8 +362,8 @@ fn a_given_latitude_does_not_go_with_utm() {
     }
 }
 
-/// Web Mercator near the equator: one square is true to scale within 1 % all over, the one north of it is not. With one
-/// latitude for both, they have the same factors.
+/// Web Mercator near the equator: one square is true to scale within 1 % all over, the one north of
+/// it is not. With one latitude for both, they have the same factors.
 #[test]
 fn a_given_latitude_alone_decides_whether_a_projection_is_true_to_scale() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,8 +31,8 @@ fn borders(plan: &GridPlan) -> [Vec<u64>; 2] {
     ]
 }
 
-/// With one latitude for all of them, packages of adjoining squares have one grid: same cell, same origin, the same
-/// tile borders; so has the package of all of them.
+/// With one latitude for all of them, packages of adjoining squares have one grid: same cell, same
+/// origin, the same tile borders; so has the package of all of them.
 #[test]
 fn adjoining_squares_fit_when_their_latitude_is_pinned() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,7 +49,8 @@ fn adjoining_squares_fit_when_their_latitude_is_pinned() {
         let cell = frame.cell().to_array().map(f64::to_bits);
         (cell, frame.origin_m().map(f64::to_bits), plan.metres_per_unit.map(f64::to_bits))
     };
-    // Without, squares above each other have their own latitudes; those beside each other share theirs.
+    // Without, squares above each other have their own latitudes; those beside each other share
+    // theirs.
     assert_ne!(grid(&planned(&[&south], None)), grid(&planned(&[&north], None)));
     assert_eq!(grid(&planned(&[&south], None)), grid(&planned(&[&east], None)));
     let pinned = Some(47.5);
@@ -75,7 +76,8 @@ fn adjoining_squares_fit_when_their_latitude_is_pinned() {
     );
 }
 
-/// 1/1200 of a degree and a corner half of that outside, written with few digits: the same grid as with all digits.
+/// 1/1200 of a degree and a corner half of that outside, written with few digits: the same grid as
+/// with all digits.
 #[test]
 fn digits_left_out_of_a_geotransform_change_no_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -105,8 +107,8 @@ fn digits_left_out_of_a_geotransform_change_no_grid() {
     }
 }
 
-/// Of every K-th sample the nodes are those whose index, counted from the zero of the grid, is a multiple of K: whichever
-/// part of a product a file holds.
+/// Of every K-th sample the nodes are those whose index, counted from the zero of the grid, is a
+/// multiple of K: whichever part of a product a file holds.
 #[test]
 fn every_nth_sample_is_taken_with_its_bits() {
     let folder = tempfile::tempdir().unwrap();
@@ -246,8 +248,8 @@ fn a_cell_may_be_a_rectangle() {
     }
 }
 
-/// Copernicus changes its spacing eastwards at 50° and 60°: the first named file defines the grid, the other is resampled
-/// onto it, and told; samples of the first stay what they are.
+/// Copernicus changes its spacing eastwards at 50° and 60°: the first named file defines the grid,
+/// the other is resampled onto it, and told; samples of the first stay what they are.
 #[test]
 fn the_first_named_file_defines_the_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -283,7 +285,8 @@ fn the_first_named_file_defines_the_grid() {
     }
 }
 
-/// Files of one phase are one mosaic, however far apart; of many the words name some and count the others.
+/// Files of one phase are one mosaic, however far apart; of many the words name some and count the
+/// others.
 #[test]
 fn files_of_one_phase_are_one_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -310,7 +313,8 @@ fn files_of_one_phase_are_one_grid() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Wherever a file begins and however many of its samples are taken, nodes are samples, bit for bit.
+    /// Wherever a file begins and however many of its samples are taken, nodes are samples, bit for
+    /// bit.
     #[test]
     fn nodes_of_a_thinned_file_are_samples(
         left in -2000_i64..2000, top in -2000_i64..2000, size in (2_usize..40, 2_usize..40), every in 1_u32..5,

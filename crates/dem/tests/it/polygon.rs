@@ -1,9 +1,11 @@
-//! A plan with a polygon has the nodes of the cells that the polygon enters, with the heights of the whole to the last bit.
+//! A plan with a polygon has the nodes of the cells that the polygon enters, with the heights of
+//! the whole to the last bit.
 
 use std::{collections::HashSet, fs, path::Path};
 
-use corniche_dem::{Dem, GridPlan, PlanOptions, Polygon, PolygonError};
+use corniche_dem::{Dem, GridPlan, PlanOptions};
 use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_gis::{Polygon, PolygonError, VectorError};
 use gdal::{
     DriverManager,
     spatial_ref::SpatialRef,
@@ -12,7 +14,8 @@ use gdal::{
 
 use crate::fixture::{Raster, all, check_words, folder, in_utm, open, options};
 
-/// 200 × 160 samples of a thousandth of a degree, at 9.0005, 9.0015 … east and 47.1595 … north, with voids.
+/// 200 × 160 samples of a thousandth of a degree, at 9.0005, 9.0015 … east and 47.1595 … north,
+/// with voids.
 fn dem(folder: &Path) -> Dem {
     let raster =
         Raster::new(4326, [200, 160], [9.0, 0.001, 0.0, 47.16, 0.0, -0.001]).nodata(-9999.0);
@@ -41,7 +44,8 @@ fn within(polygon: &Polygon, options: PlanOptions) -> PlanOptions {
     PlanOptions { polygon: Some(polygon.clone()), ..options }
 }
 
-/// Nodes with a height, and checks that each has that of the whole, through this window and through small ones.
+/// Nodes with a height, and checks that each has that of the whole, through this window and through
+/// small ones.
 fn nodes_with_height(dem: &Dem, part: &GridPlan, whole: &GridPlan) -> HashSet<NodeIndex> {
     let window = all(part).with_halo(2);
     let found = dem.reader(part).window(window).unwrap();
@@ -106,7 +110,8 @@ fn a_triangle_has_the_cells_that_it_enters() {
     let dem = dem(folder.path());
     let asked = PlanOptions { fill_voids: 32, ..options() };
     let whole = dem.plan(&asked).unwrap();
-    // With corners on nodes and a long side through corners of cells: 20 columns of cells, 1 to 20 high, have nodes in rows of 2 to 21.
+    // With corners on nodes and a long side through corners of cells: 20 columns of cells, 1 to 20
+    // high, have nodes in rows of 2 to 21.
     let own = polygon(
         folder.path(),
         "[[[9.0105,47.0505],[9.0305,47.0505],[9.0305,47.0705],[9.0105,47.0505]]]",
@@ -177,7 +182,8 @@ fn edges_are_straight_in_the_files_own_coordinates() {
     let dem = dem(folder.path());
     let asked = PlanOptions { cell: Some(5.0.into()), ..in_utm() };
     let whole = dem.plan(&asked).unwrap();
-    // Over 0.18 degrees a parallel bends by 4 m in UTM. Without more corners some thousand cells would differ.
+    // Over 0.18 degrees a parallel bends by 4 m in UTM. Without more corners some thousand cells
+    // would differ.
     let few = polygon(
         folder.path(),
         "[[[9.01,47.05],[9.19,47.05],[9.19,47.052],[9.01,47.052],[9.01,47.05]]]",
@@ -224,7 +230,8 @@ fn polygons_across_180_degrees_lie_on_data_across_180_degrees() {
     }
 }
 
-/// The same polygon as a `GeoPackage` and as a Shapefile, in another coordinate system and in several features.
+/// The same polygon as a `GeoPackage` and as a Shapefile, in another coordinate system and in
+/// several features.
 #[test]
 fn every_vector_format_gives_the_same_polygon() {
     let folder = folder();
@@ -281,7 +288,7 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let folder = folder();
     let refuse = |path: &Path, words: &[&str]| {
         let error = Polygon::read(path).unwrap_err();
-        check_words(&error.into(), words);
+        check_words(&error, words);
     };
     let json =
         |kind: &str, coordinates: &str| geojson(folder.path(), "a.geojson", kind, coordinates);
@@ -343,7 +350,9 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     assert!(
         matches!(
             error,
-            PolygonError::Damaged { .. } | PolygonError::CutOff { .. } | PolygonError::Open { .. }
+            PolygonError::Vector(
+                VectorError::Damaged { .. } | VectorError::CutOff { .. } | VectorError::Open { .. }
+            )
         ),
         "{error}"
     );

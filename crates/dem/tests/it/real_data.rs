@@ -89,7 +89,8 @@ fn nodes_of_tirol_are_its_samples() {
     assert!((range[0] - 1328.6).abs() < 0.1 && (range[1] - 2896.1).abs() < 0.1, "{range:?}");
 }
 
-/// With several PROJ operations to choose from, a node's bits depend on the window no more than with one.
+/// With several PROJ operations to choose from, a node's bits depend on the window no more than
+/// with one.
 #[test]
 fn tirol_in_another_datum_is_the_same_through_every_window() {
     let Some((dem, _)) = open(&["tirol-5m/avaMal.tif"], None) else { return };
@@ -161,7 +162,8 @@ fn aletsch_is_aligned_in_spite_of_its_noisy_corner() {
         (plan.crs.as_str(), plan.resampling, plan.frame.cell().north_m),
         ("EPSG:2056", Resampling::Aligned, 200.0)
     );
-    // Corner 2601099.999999999534, half a cell of 200.000000000000966 in: 2601200, a whole number of cells.
+    // Corner 2601099.999999999534, half a cell of 200.000000000000966 in: 2601200, a whole number
+    // of cells.
     assert_eq!(plan.frame.origin_m(), [0.0, 0.0]);
     let (nodes, ..) = read_all(&dem, &plan);
     assert_eq!(nodes, 358 * 310);
@@ -194,7 +196,8 @@ fn one_grid_georeferenced_six_ways() {
     };
     for way in ways {
         let (Some(area), Some(point)) = (read(way, "area"), read(way, "point")) else { return };
-        // Pixel-is-area: samples half a cell inside the corner 4302000, 2811000. Pixel-is-point: on it.
+        // Pixel-is-area: samples half a cell inside the corner 4302000, 2811000. Pixel-is-point: on
+        // it.
         assert_eq!((area.1.min_x, area.1.max_y), (4_302_500.0, 2_810_500.0), "{way}");
         assert_eq!((point.1.min_x, point.1.max_y), (4_302_000.0, 2_811_000.0), "{way}");
         let (same, raw) = (area.2.raw(), point.2.raw());

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use corniche_dem::{Dem, DemError, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, OpenDemError, OpenOptions, PlanOptions};
 
 use crate::fixture::{Raster, all, check_refused, check_words, open, options};
 
@@ -41,7 +41,7 @@ fn errors_name_the_file_and_what_to_do() {
         let error = Dem::open(&[path(name)], &OpenOptions::default()).unwrap_err().to_string();
         assert!(error.contains(name) && error.contains(words), "{error}");
     }
-    assert!(matches!(Dem::open(&[], &OpenOptions::default()), Err(DemError::NoFiles)));
+    assert!(matches!(Dem::open(&[], &OpenOptions::default()), Err(OpenDemError::NoFiles)));
     let not_a_file =
         Dem::open(&[folder.path().to_path_buf()], &OpenOptions::default()).unwrap_err();
     assert!(not_a_file.to_string().contains("not a file"));

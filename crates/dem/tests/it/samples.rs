@@ -81,7 +81,8 @@ fn complex_samples_are_refused() {
     }
 }
 
-/// Huge values are no heights, with a tag or without; a tag hits its value alone, in the file's own precision.
+/// Huge values are no heights, with a tag or without; a tag hits its value alone, in the file's own
+/// precision.
 #[test]
 fn huge_values_and_sentinels_are_void() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,7 +186,8 @@ fn units_scale_and_offset_make_metres() {
     );
 }
 
-/// A mask inside or beside the file, or an alpha band, takes samples away whatever their values are.
+/// A mask inside or beside the file, or an alpha band, takes samples away whatever their values
+/// are.
 #[test]
 fn masks_take_samples_away() {
     let folder = tempfile::tempdir().unwrap();
@@ -215,7 +217,8 @@ fn masks_take_samples_away() {
     alpha(folder.path(), "f32.tif", [5.0_f32, 6.0, 7.0], [255.0, 1.0, 0.0]);
 }
 
-/// `gdal_translate -mo NODATA_VALUES=…` declares a sentinel for the dataset, with or without one of the band's own.
+/// `gdal_translate -mo NODATA_VALUES=…` declares a sentinel for the dataset, with or without one of
+/// the band's own.
 #[test]
 fn a_sentinel_of_the_whole_dataset_is_one_too() {
     let folder = tempfile::tempdir().unwrap();
@@ -265,7 +268,8 @@ fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
     }
     let missing = OpenOptions { band: Some(3), ..given.clone() };
     check_refused(&[two], &missing, &["two.tif", "2 bands", "--dem-band"]);
-    // Of files with one band, as others of a set can be, that one counts whichever is chosen; an alpha band has no heights.
+    // Of files with one band, as others of a set can be, that one counts whichever is chosen; an
+    // alpha band has no heights.
     let one = row(folder.path(), "one.tif", raster(), &[5_i16, 6]);
     let with_alpha = raster().bands(2).created(&["ALPHA=YES"]).tagged(|dataset| {
         let mut opaque = Buffer::new((2, 5), vec![255_u8; 10]);

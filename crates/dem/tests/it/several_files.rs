@@ -7,7 +7,8 @@ use corniche_geom::{Cell, GridFrame, HeightGrid, Projection};
 
 use crate::fixture::{HUNDREDTH_M, Raster, UTM, all, check, folder, open, options, plan, plane};
 
-/// Interpolation crosses the seam of two files, shared column or not, and the first named wins in the overlap.
+/// Interpolation crosses the seam of two files, shared column or not, and the first named wins in
+/// the overlap.
 #[test]
 fn files_of_one_grid_are_one_raster() {
     let folder = folder();

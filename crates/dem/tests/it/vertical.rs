@@ -1,9 +1,10 @@
-//! Heights carried between vertical systems: a geoid that is a plane, feet, depths, and what is missing.
+//! Heights carried between vertical systems: a geoid that is a plane, feet, depths, and what is
+//! missing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Dem, DemError, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, HeightDatumError, OpenDemError, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
 use gdal::DriverManager;
 use gdal::raster::Buffer;
@@ -16,8 +17,8 @@ use crate::fixture::{
 
 const MILLIMETRE: f64 = 1e-3;
 
-/// Height of the geoid over the ellipsoid, metres: linear, so that PROJ's bilinear interpolation is exact, up to the
-/// grid's 32-bit values.
+/// Height of the geoid over the ellipsoid, metres: linear, so that PROJ's bilinear interpolation is
+/// exact, up to the grid's 32-bit values.
 fn undulation_m([lon, lat]: [f64; 2]) -> f64 {
     40.0 + 20.0 * (lon - 9.0) - 30.0 * (lat - 47.0)
 }
@@ -101,7 +102,8 @@ fn a_plane_of_a_geoid_shifts_heights_to_the_millimetre() {
         let truth = |at: [f64; 2]| plane(at) + sign * undulation_at(at);
         let count = check_heights(to, &utm, &options, (Space::Working, MILLIMETRE), truth);
         assert_eq!(count, 3000, "{to}");
-        // Also where nodes lie between samples: position errors of 1/100 cell are 2 cm on this slope.
+        // Also where nodes lie between samples: position errors of 1/100 cell are 2 cm on this
+        // slope.
         let truth = |at: [f64; 2]| rise(at) + sign * undulation_m(at);
         let count = check_heights(to, &degrees, &options, (Space::Degrees, 0.025), truth);
         assert!(count > 70_000, "{count}");
@@ -118,7 +120,8 @@ fn a_plane_of_a_geoid_shifts_heights_to_the_millimetre() {
     assert!(vertical(&utm, &back).1.ends_with(", then +1.5 m"));
 }
 
-/// Bit for bit, whichever window a node is read through, at the rim of the grid too; and for original samples.
+/// Bit for bit, whichever window a node is read through, at the rim of the grid too; and for
+/// original samples.
 #[test]
 fn the_offset_of_a_node_does_not_depend_on_the_window() {
     let folder = tempfile::tempdir().unwrap();
@@ -334,13 +337,15 @@ fn files_must_agree_on_what_heights_are_measured_from() {
             }
         }
         Err(error) => {
-            assert!(matches!(error, DemError::VerticalOperation { .. }), "{error}");
+            let OpenDemError::Datum(cause) = &error else { panic!("{error}") };
+            assert!(matches!(**cause, HeightDatumError::VerticalOperation { .. }), "{error}");
             corniche_testing::skip(&format!("PROJ has no grid of EGM96 here: {error}"));
         }
     }
 }
 
-/// Two editions of a grid under one name: what was done reads differently, as PROJ does not say which it took.
+/// Two editions of a grid under one name: what was done reads differently, as PROJ does not say
+/// which it took.
 #[test]
 fn different_grids_are_told_apart_by_the_offset_on_record() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
@@ -366,7 +371,8 @@ fn different_grids_are_told_apart_by_the_offset_on_record() {
     let words = vertical(&[utm[0].clone(), beside], &given(&local, "EPSG:4979")).1;
     assert_eq!(words.matches("carried").count(), 1, "{words}");
     assert!(words.ends_with(" m at the centre"), "{words}");
-    // The centre lies beyond the grid: the first sample from which heights are carried stands for it.
+    // The centre lies beyond the grid: the first sample from which heights are carried stands for
+    // it.
     let frame = [9.9, 0.001, 0.0, 47.0, 0.0, -0.001];
     let east = |[lon, _]: [f64; 2]| if lon > 9.99 { f32::NAN } else { 100.0 };
     let half = [Raster::new(4326, [300, 50], frame).write(folders[0].path(), "half.tif", east)];

@@ -27,8 +27,8 @@ fn geographic(folder: &std::path::Path) -> Dem {
     open(&[path])
 }
 
-/// The rule, written down once more without any cleverness: eight directions, original data only, lengths in
-/// working metres.
+/// The rule, written down once more without any cleverness: eight directions, original data only,
+/// lengths in working metres.
 fn filled_by_rule(
     data: impl Fn(i64, i64) -> Option<f32>,
     i: i64,
@@ -98,7 +98,8 @@ fn bits(reader: &mut Reader<'_>, window: NodeWindow) -> Vec<u32> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// A node has the same bits whichever window it is read through: reprojected, averaged, with voids.
+    /// A node has the same bits whichever window it is read through: reprojected, averaged, with
+    /// voids.
     #[test]
     fn heights_do_not_depend_on_the_window(
         left in 0_i64..250, top in 0_i64..250, columns in 1_usize..90, rows in 1_usize..90, case in 0_usize..3,

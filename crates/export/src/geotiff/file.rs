@@ -131,8 +131,8 @@ impl<T: Pixel> RasterFile<T> {
         size: RasterSize,
         facts: &RasterFacts,
     ) -> Result<Self, ExportError> {
-        corniche_dem::quiet();
-        corniche_dem::forget();
+        corniche_gis::quiet();
+        corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let created =
             create::<T>(path, size, facts).map_err(|error| ExportError::write(path, error))?;
@@ -163,9 +163,9 @@ impl<T: Pixel> RasterFile<T> {
     pub(crate) fn finish(self) -> Result<bool, ExportError> {
         let Self { path, dataset, crs, size, written, .. } = self;
         // What fails while a file is closed comes back from no call before GDAL 3.7.
-        corniche_dem::forget();
+        corniche_gis::forget();
         dataset.close().map_err(|error| ExportError::write(&path, error))?;
-        if let Some(source) = corniche_dem::failure() {
+        if let Some(source) = corniche_gis::failure() {
             return Err(ExportError::write(&path, source));
         }
         let again = read_again::<T>(&path, size, &written, &crs);

@@ -1,7 +1,8 @@
 //! The pixels of a raster, in blocks, and the nodes that they are.
 
-use corniche_dem::RecordedCrs;
+use corniche_dem::nodes_within;
 use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_gis::RecordedCrs;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{bounds::DegreeBounds, error::ExportError};
@@ -56,7 +57,13 @@ impl RasterGrid {
             let Manifest { crs_wkt, metres_per_unit, frame, .. } = manifest;
             let whole = manifest.whole_data_bounds();
             let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(failed)?;
-            let asked = crs.nodes_within(bounds.degrees(), frame, manifest.area_deg());
+            let asked = nodes_within(
+                bounds.degrees(),
+                crs.working(),
+                manifest.area_deg(),
+                frame.origin_m(),
+                frame.cell(),
+            );
             let [from, to] = asked.map_err(failed)?;
             low = NodeIndex { i: low.i.max(from.i), j: low.j.max(from.j) };
             high = NodeIndex { i: high.i.min(to.i), j: high.j.min(to.j) };

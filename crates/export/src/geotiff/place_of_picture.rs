@@ -1,6 +1,6 @@
 //! Where the pixels of a picture from above are, in the package's CRS.
 
-use corniche_dem::RecordedCrs;
+use corniche_gis::RecordedCrs;
 use corniche_tileset::Manifest;
 use gdal::spatial_ref::SpatialRef;
 

@@ -68,8 +68,8 @@ impl VectorFile {
         format: VectorFormat,
         layer: Layer,
     ) -> Result<Self, ExportError> {
-        corniche_dem::quiet();
-        corniche_dem::forget();
+        corniche_gis::quiet();
+        corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let layer = layer.plain();
         let no_driver = |_| ExportError::NoDriver { driver: format.driver() };
@@ -141,9 +141,9 @@ impl VectorFile {
             styled.map_err(|error| ExportError::write(&path, error))?;
         }
         // What fails while a file is closed comes back from no call before GDAL 3.7.
-        corniche_dem::forget();
+        corniche_gis::forget();
         dataset.close().map_err(|error| ExportError::write(&path, error))?;
-        if let Some(source) = corniche_dem::failure() {
+        if let Some(source) = corniche_gis::failure() {
             return Err(ExportError::write(&path, source));
         }
         whole::check(&path, format, written)

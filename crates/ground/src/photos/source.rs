@@ -1,7 +1,8 @@
 //! The photos of a build are opened and placed on the grid, or taken from another package.
 
 use crate::terrain::ground::GroundSource;
-use corniche_dem::{FileBlocks, FileDatums, GridPlan};
+use corniche_dem::GridPlan;
+use corniche_gis::{FileBlocks, FileDatums};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_spec::{PhotoChoice, PhotoSettings};
 use corniche_tileset::PhotoRecord;

@@ -1,6 +1,7 @@
 //! Where a build has its ground from.
 
-use corniche_dem::{Dem, DemError, DemProjection, GridPlan};
+use corniche_dem::{Dem, GridPlan};
+use corniche_gis::{CrsError, DemProjection};
 
 use super::recorded::RecordedTerrain;
 
@@ -16,8 +17,8 @@ impl GroundSource {
     /// WGS84 ⇄ the grid's working CRS: the same positions, to the last bit, from either source.
     ///
     /// # Errors
-    /// See [`DemError`].
-    pub fn projection(&self, grid: &GridPlan) -> Result<DemProjection, DemError> {
+    /// See [`CrsError`].
+    pub fn projection(&self, grid: &GridPlan) -> Result<DemProjection, CrsError> {
         match self {
             Self::Dem(dem) => dem.projection(grid),
             Self::Package(package) => package.projection(),

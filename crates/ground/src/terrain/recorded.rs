@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{DemError, DemProjection, GridPlan, RecordedCrs};
+use corniche_dem::GridPlan;
 use corniche_geom::TileId;
+use corniche_gis::{CrsError, DemProjection, RecordedCrs};
 use corniche_spec::{TerrainSettings, inputs::InputKind, open_package, settings_record};
 use corniche_tileset::{
     FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
@@ -62,7 +63,7 @@ impl RecordedTerrain {
     pub fn open(path: &Path, generator: &str) -> Result<Self, TerrainError> {
         let package = open_package(path)?;
         let manifest = package.manifest();
-        let this = format!("{generator}, {}", corniche_dem::libraries());
+        let this = format!("{generator}, {}", corniche_gis::libraries());
         if manifest.generator != this {
             let differences = format!("it was made by {}, this is {this}", manifest.generator);
             return Err(TerrainError::Other { path: path.to_path_buf(), differences });
@@ -110,8 +111,8 @@ impl RecordedTerrain {
     /// WGS84 ⇄ working CRS.
     ///
     /// # Errors
-    /// See [`DemError`].
-    pub fn projection(&self) -> Result<DemProjection, DemError> {
+    /// See [`CrsError`].
+    pub fn projection(&self) -> Result<DemProjection, CrsError> {
         self.crs.projection(self.manifest().area_deg())
     }
 

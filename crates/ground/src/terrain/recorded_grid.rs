@@ -1,36 +1,49 @@
 //! The grid of a package, from its manifest.
 
-use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
+use corniche_dem::{Clip, GridPlan, MosaicRoles, PlanScale, Resampling, node_bounds_m};
 use corniche_geom::{GridFrame, TILE_CELLS};
+use corniche_gis::{CrsError, RecordedCrs, libraries};
 use corniche_spec::manifest_texts;
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
 /// The grid; no height can be read with it.
 #[must_use]
 pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
-    let [south_west, north_east] = manifest.data_nodes();
-    let scale = &manifest.scale;
-    crs.plan(RecordedGrid {
-        frame: manifest.frame,
+    let (frame, [south_west, north_east]) = (manifest.frame, manifest.data_nodes());
+    let (scale, working) = (&manifest.scale, crs.working().clone());
+    GridPlan {
+        frame,
         south_west,
         north_east,
         crs: manifest.crs.clone(),
         crs_wkt: manifest.crs_wkt.clone(),
+        metres_per_unit: working.metres_per_unit,
         point_scale: manifest.point_scale,
         scale: PlanScale { center: scale.center, least: scale.least, largest: scale.largest },
-        wgs84_bounds: manifest.wgs84_bounds,
         clip: manifest.clip.as_ref().map(|clip| Clip {
             nodes: clip.nodes,
             whole_data_bounds: clip.whole_data_bounds,
             whole_wgs84_bounds: clip.whole_wgs84_bounds,
         }),
-        nodes_are_samples: manifest.nodes_are_samples,
+        polygon: None,
+        data_bounds: node_bounds_m(&frame, [south_west, north_east]),
+        wgs84_bounds: manifest.wgs84_bounds,
+        // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
+        resampling: if manifest.nodes_are_samples {
+            Resampling::Aligned
+        } else {
+            Resampling::Resampled
+        },
         resampling_text: manifest.resampling.clone(),
+        resampled_onto_first: None,
         vertical_datum: Some(manifest.vertical.datum.clone()),
         vertical: manifest.vertical.treatment.clone(),
         datum_operations: manifest_texts::recorded_datum_operations(manifest),
+        libraries: libraries(),
         fill_voids: manifest.settings.fill_voids,
-    })
+        roles: MosaicRoles::default(),
+        working,
+    }
 }
 
 /// Fails with a reason unless the grid is one that a build makes. It decides how much work there is.
@@ -66,7 +79,7 @@ pub fn check(manifest: &Manifest) -> Result<(), &'static str> {
 ///
 /// # Errors
 /// When PROJ does not know its CRS.
-pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, DemError> {
+pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, CrsError> {
     let bounds = manifest.whole_data_bounds();
     let crs = RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, bounds)?;
     Ok(plan(&crs, manifest))

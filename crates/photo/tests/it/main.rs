@@ -1,3 +1,4 @@
-//! Integration tests of `corniche-photo`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-photo`, in one binary. The first line of each module says what
+//! holds.
 
 mod photos;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::TileId;
+use corniche_gis::RasterError;
 use corniche_photo::{LevelChoice, PhotoError, PhotoReader, Photos, Texels};
 use corniche_testing::{ColourImage, Raster};
 use gdal::{
@@ -78,8 +79,8 @@ fn pixels_that_are_texels_come_out_as_they_are() {
     }
 }
 
-/// Moves an edge of black and white across a texel, and finds it again from the texel's grey: to a tenth of a texel, also in another
-/// CRS than the DEM's.
+/// Moves an edge of black and white across a texel, and finds it again from the texel's grey: to a
+/// tenth of a texel, also in another CRS than the DEM's.
 #[test]
 fn edges_land_within_a_tenth_of_a_texel() {
     let folder = tempfile::tempdir().unwrap();
@@ -142,7 +143,8 @@ fn edges_land_within_a_tenth_of_a_texel() {
     }
 }
 
-/// A file that says `PixelIsPoint` has its geotransform half a pixel away in its tags; both must come out at the same place.
+/// A file that says `PixelIsPoint` has its geotransform half a pixel away in its tags; both must
+/// come out at the same place.
 #[test]
 fn points_and_areas_lie_at_the_same_place() {
     let folder = tempfile::tempdir().unwrap();
@@ -316,7 +318,7 @@ fn what_is_no_photo_is_refused_with_what_to_do() {
     let text = refused(&[flat]);
     assert!(text.contains("no georeference"), "{text}");
     let missing = Photos::open(&[at.join("none.tif")]).unwrap_err();
-    assert!(matches!(missing, PhotoError::Missing { .. }), "{missing}");
+    assert!(matches!(missing, PhotoError::Raster(RasterError::Missing { .. })), "{missing}");
     assert_eq!(missing.to_string(), format!("cannot open photo {:?}", at.join("none.tif")));
     assert!(matches!(Photos::open(&[]), Err(PhotoError::NoFiles)));
     std::fs::write(at.join("text.tif"), "no image").unwrap();

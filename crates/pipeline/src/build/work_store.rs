@@ -179,7 +179,7 @@ fn is_final(error: &BuildError) -> bool {
                 )
                 | BuildError::NoGround { .. }
                 | BuildError::Terrain(TerrainError::Damaged { .. } | TerrainError::Tile { .. })
-                | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
+                | BuildError::Dem(DemError::Audit(_))
                 | BuildError::Triangulate { .. }
                 | BuildError::Encode(_)
         )

@@ -14,8 +14,8 @@ use crate::support::{
     settings, table,
     terrain::rough_with_voids,
 };
-use corniche_dem::Polygon;
 use corniche_drape::DrapedVertex;
+use corniche_gis::Polygon;
 use corniche_pipeline::build;
 use corniche_plan::{BuildPlan, plan};
 use corniche_spec::BuildSettings;

@@ -11,8 +11,8 @@ use crate::support::{
     settings,
 };
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
-use corniche_dem::Polygon;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
+use corniche_gis::Polygon;
 use corniche_pipeline::build;
 use corniche_tileset::{
     AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,

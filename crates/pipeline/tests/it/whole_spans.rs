@@ -9,8 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::Polygon;
 use corniche_geom::{LatticePoint, TileId};
+use corniche_gis::Polygon;
 use corniche_pipeline::build;
 use corniche_spec::BuildSettings;
 use corniche_testing::{cases, real_data, sample};

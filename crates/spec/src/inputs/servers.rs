@@ -5,8 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{
-    DemError, expand_extract_name, expand_name, expand_photo_name, set_unless_set, unpack_name,
+use corniche_gis::{
+    NameError, expand_extract_name, expand_name, expand_photo_name, set_unless_set, unpack_name,
 };
 use corniche_objects::{ObjectAddress, StorageSettings};
 
@@ -39,7 +39,7 @@ pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
 /// The rasters that names stand for, which `expand` turns into plain names.
 fn raster_names(
     names: &[PathBuf],
-    expand: fn(&Path) -> Result<Vec<PathBuf>, DemError>,
+    expand: fn(&Path) -> Result<Vec<PathBuf>, NameError>,
 ) -> Result<Vec<PathBuf>, InputError> {
     let mut plain = Vec::new();
     for name in names {

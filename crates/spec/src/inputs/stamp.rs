@@ -8,7 +8,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use corniche_dem::VirtualFile;
+use corniche_gis::VirtualFile;
 
 /// Common file systems other than FAT note times at least this finely. Two writes within this time may carry the same time.
 const CLOCK: Duration = Duration::from_millis(20);

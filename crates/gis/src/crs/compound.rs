@@ -1,0 +1,67 @@
+//! Coordinate systems as files and options name them: a horizontal one, and perhaps a vertical one
+//! with it.
+
+use gdal::errors::GdalError;
+use gdal::spatial_ref::SpatialRef;
+
+use crate::crs::horizontal::Crs;
+use crate::crs::vertical::VerticalCrs;
+use crate::crs::wkt::{child, children, keyword, wkt2};
+use crate::{CrsError, library_error};
+
+/// A horizontal system, and the vertical one that is named together with it.
+pub(crate) type CrsParts = (Crs, Option<VerticalCrs>);
+
+/// The systems of "EPSG:n" or WKT, as `option` gave it.
+///
+/// # Errors
+/// When PROJ does not know it, or it is neither projected nor geographic.
+pub fn crs_from_text(
+    option: &'static str,
+    text: &str,
+) -> Result<(Crs, Option<VerticalCrs>), CrsError> {
+    library_error::forget();
+    let reference = SpatialRef::from_definition(text).map_err(|source| CrsError::Text {
+        option,
+        text: text.to_owned(),
+        source: source.into(),
+    })?;
+    let kind = || CrsError::Kind { option, text: text.to_owned() };
+    parts_of(&reference)?.ok_or_else(kind)
+}
+
+/// The horizontal part of a system and the vertical one, if any; `None` when it is neither
+/// projected nor geographic.
+pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, CrsError> {
+    let mut reference = reference.clone();
+    let name = reference.name().unwrap_or_default();
+    let as_wkt = |source: GdalError| CrsError::Wkt { name: name.clone(), source: source.into() };
+    let wkt = wkt2(&reference).map_err(as_wkt)?;
+    let vertical = VerticalCrs::of_wkt(&wkt)?;
+    if reference.is_compound() {
+        // The vertical system must not be part of it: PROJ would need geoid grids for it.
+        let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {
+            return Ok(None);
+        };
+        reference = SpatialRef::from_wkt(&text).map_err(as_wkt)?;
+    }
+    if !(reference.is_projected() || reference.is_geographic()) || reference.is_local() {
+        return Ok(None);
+    }
+    Ok(Some((Crs::from_spatial_ref(&reference)?, vertical)))
+}
+
+/// Whether a part of a compound system is the horizontal one.
+fn is_horizontal(wkt: &str) -> bool {
+    if keyword(wkt) == "BOUNDCRS" {
+        let bound = child(wkt, &["SOURCECRS"]).map(|source| children(&source));
+        return bound
+            .and_then(|inner| inner.into_iter().next())
+            .is_some_and(|wkt| is_horizontal(&wkt));
+    }
+    ["PROJ", "GEOG", "GEOD"].iter().any(|word| keyword(wkt).starts_with(word))
+}
+
+#[cfg(test)]
+#[path = "compound_tests.rs"]
+mod tests;

@@ -1,0 +1,72 @@
+//! PROJ's operation from one vertical CRS to another, over the horizontal system of one file.
+
+use corniche_geom::Bounds;
+
+use crate::CrsError;
+use crate::crs::horizontal::Crs;
+use crate::crs::operation::CrsOperation;
+use crate::crs::vertical::VerticalCrs;
+
+/// Carries heights of one file to the vertical CRS asked for, sample by sample.
+#[derive(Debug, Clone)]
+pub struct HeightOperation {
+    /// The operation from the horizontal system of the file to that of the ellipsoidal heights,
+    /// where these differ.
+    place: Option<CrsOperation>,
+    operation: CrsOperation,
+    /// Value in the source system for a metre upwards.
+    values_per_m: f64,
+    /// Metres upwards for a value in the target system.
+    m_per_value: f64,
+    target: String,
+}
+
+impl HeightOperation {
+    /// Between two systems over the horizontal system of a file.
+    #[must_use]
+    pub fn new(file: &Crs, [from, to]: [&VerticalCrs; 2], area_deg: Bounds) -> Self {
+        let place = (from.is_ellipsoidal && from.wkt != file.wkt)
+            .then(|| CrsOperation::new(file, &from.with(file), Some(area_deg)));
+        Self {
+            place,
+            operation: CrsOperation::exact(&from.with(file), &to.with(file), area_deg),
+            values_per_m: 1.0 / from.m_per_value(),
+            m_per_value: to.m_per_value(),
+            target: to.name.clone(),
+        }
+    }
+
+    /// Values of the source system, at positions in the file's horizontal one, to those of the
+    /// target.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn carry(&self, mut points: Vec<[f64; 2]>, values: &mut [f64]) -> Result<(), CrsError> {
+        if let Some(place) = &self.place {
+            place.apply(&mut points)?;
+        }
+        self.operation.apply_heights(&points, values)
+    }
+
+    /// Carries heights in metres at positions in the file's horizontal system, in place; NaN where
+    /// there is none.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn carry_m(&self, points: Vec<[f64; 2]>, heights_m: &mut [f64]) -> Result<(), CrsError> {
+        for height in heights_m.iter_mut() {
+            *height *= self.values_per_m;
+        }
+        self.carry(points, heights_m)?;
+        for height in heights_m {
+            *height *= self.m_per_value;
+        }
+        Ok(())
+    }
+
+    /// The name of the vertical CRS asked for.
+    #[must_use]
+    pub fn target(&self) -> &str {
+        &self.target
+    }
+}

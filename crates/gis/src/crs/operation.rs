@@ -1,0 +1,259 @@
+//! Coordinate operations between two systems, made for one area of interest and kept for each
+//! thread.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use corniche_geom::{Bounds, GeoTransform, MAX_COORDINATE_M, Seam};
+use gdal::errors::GdalError;
+use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
+
+use crate::crs::horizontal::{Crs, GridCrs};
+use crate::{CrsError, library_error};
+
+/// A coordinate operation between two systems, pinned to one area of interest.
+///
+/// PROJ picks among the operations it knows by the area and by the position transformed, and by
+/// nothing else: what comes out for a position depends neither on its neighbours nor on what was
+/// asked before. The description may go to any thread; PROJ's own object is made once per thread.
+///
+/// Over an area, an operation that takes one datum for another ("ballpark") is used only where PROJ
+/// knows no other at all: else it would carry positions beyond the area of the true one, 100 m
+/// beside their neighbours.
+#[derive(Debug, Clone)]
+pub struct CrsOperation {
+    pub(crate) from: Crs,
+    pub(crate) to: Crs,
+    /// West, south, east and north; the west is larger across ±180°.
+    pub(crate) area_deg: Option<[f64; 4]>,
+    /// Ballpark operations are not allowed, not even where PROJ knows no other.
+    is_exact: bool,
+    /// Working metres are divided by these factors before the operation.
+    divide: [f64; 2],
+    /// Coordinates are multiplied by these factors after it, to make working metres.
+    multiply: [f64; 2],
+    /// Around what the resulting first coordinate is to be.
+    seam: Option<Seam>,
+    key: String,
+}
+
+thread_local! {
+    static TRANSFORMS: RefCell<HashMap<String, Rc<CoordTransform>>> = RefCell::new(HashMap::new());
+}
+
+/// How many operations a thread keeps: more than a run needs. The limit keeps the memory of a
+/// program with many runs bounded.
+const KEPT: usize = 64;
+
+/// Turns around the earth that an angle may count. PROJ takes off one after the other, so that 10¹⁷
+/// degrees keep it busy for ever. Data go on for one turn beyond ±180 degrees, and packages name no
+/// longitude beyond 720.
+const MOST_TURNS: f64 = 4.0;
+/// Metres that a projected coordinate may count: as many as working metres.
+const MOST_METRES: f64 = MAX_COORDINATE_M;
+
+impl CrsOperation {
+    /// The operation from one system to another for data inside `area_deg` (WGS84; past the
+    /// antimeridian beyond ±180).
+    #[must_use]
+    pub fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
+        let wrap = |lon: f64| Seam::of_degrees().image_from_west(lon);
+        let area_deg = area_deg.filter(|area| !area.is_empty()).map(|area| {
+            let (south, north) = (area.min_y.max(-90.0), area.max_y.min(90.0));
+            if area.width() >= 360.0 {
+                [-180.0, south, 180.0, north]
+            } else {
+                [wrap(area.min_x), south, wrap(area.max_x), north]
+            }
+        });
+        let key = format!("{}→{}@{area_deg:?}", from.wkt, to.wkt);
+        Self {
+            from: from.clone(),
+            to: to.clone(),
+            area_deg,
+            is_exact: false,
+            divide: [1.0; 2],
+            multiply: [1.0; 2],
+            seam: None,
+            key,
+        }
+    }
+
+    /// The operation from a system to working metres. Where x comes back after a turn around the
+    /// earth, the images nearest to the data's middle come out.
+    #[must_use]
+    pub fn into_working(from: &Crs, working: &GridCrs, area_deg: Option<Bounds>) -> Self {
+        let multiply = working.metres_per_unit;
+        Self { multiply, seam: working.seam(), ..Self::new(from, &working.crs, area_deg) }
+    }
+
+    /// The operation from working metres to a system.
+    #[must_use]
+    pub fn out_of_working(working: &GridCrs, to: &Crs, area_deg: Option<Bounds>) -> Self {
+        Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
+    }
+
+    /// The same operation; its first coordinate is then moved by whole turns onto the map that ends
+    /// at a seam.
+    #[must_use]
+    pub fn around(self, seam: Option<Seam>) -> Self {
+        Self { seam, ..self }
+    }
+
+    /// An operation for heights: PROJ may not replace a missing grid by an approximation.
+    pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
+        Self::new(from, to, Some(area_deg)).exactly()
+    }
+
+    /// The same, which fails where PROJ knows nothing better than to take one datum for another.
+    pub(crate) fn exactly(self) -> Self {
+        Self { is_exact: true, key: format!("{} exact", self.key), ..self }
+    }
+
+    /// Replaces each height at its position by its image, in the unit and direction of the systems'
+    /// third axes; NaN where there is none.
+    pub(crate) fn apply_heights(
+        &self,
+        points: &[[f64; 2]],
+        heights: &mut [f64],
+    ) -> Result<(), CrsError> {
+        let transform = self.transform().map_err(|source| self.failed(source))?;
+        let limit = PlaceLimit::of_crs(&self.from);
+        let points: Vec<[f64; 2]> = points.iter().map(|&point| limit.limited(point)).collect();
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        let _some_failed = transform.transform_coords(&mut xs, &mut ys, heights);
+        for (height, (x, y)) in heights.iter_mut().zip(xs.iter().zip(&ys)) {
+            if !(height.is_finite() && x.is_finite() && y.is_finite()) {
+                *height = f64::NAN;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether positions only get another unit: straight lines stay straight.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.from.wkt == self.to.wkt
+    }
+
+    fn failed(&self, source: GdalError) -> CrsError {
+        CrsError::Transform {
+            from: self.from.label.clone(),
+            to: self.to.label.clone(),
+            source: source.into(),
+        }
+    }
+
+    /// Replaces each position by its image; NaN where there is none.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0] / self.divide[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1] / self.divide[1]).collect();
+        // Between equal systems PROJ is not called: it would only wrap or round the coordinates.
+        if !self.is_identity() {
+            let transform = self.transform().map_err(|source| self.failed(source))?;
+            let limit = PlaceLimit::of_crs(&self.from);
+            for (x, y) in xs.iter_mut().zip(&mut ys) {
+                [*x, *y] = limit.limited([*x, *y]);
+            }
+            // An error here means that some positions have no image; those come out as infinite.
+            let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
+        }
+        for ((point, mut x), y) in points.iter_mut().zip(xs).zip(ys) {
+            let image_exists =
+                x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
+            if let Some(seam) = self.seam {
+                x = seam.image(x);
+            }
+            *point = if image_exists {
+                [x * self.multiply[0], y * self.multiply[1]]
+            } else {
+                [f64::NAN; 2]
+            };
+        }
+        Ok(())
+    }
+
+    /// Replaces each position by the place of its image among the pixels of a raster; NaN where
+    /// there is none.
+    ///
+    /// # Errors
+    /// As [`CrsOperation::apply`].
+    pub fn apply_to_pixels(
+        &self,
+        crs_from_pixel: &GeoTransform,
+        points: &mut [[f64; 2]],
+    ) -> Result<(), CrsError> {
+        self.apply(points)?;
+        for point in points {
+            *point = crs_from_pixel.pixel_from_crs(*point).unwrap_or([f64::NAN; 2]);
+        }
+        Ok(())
+    }
+
+    /// PROJ's object, made anew.
+    fn made(&self) -> Result<CoordTransform, GdalError> {
+        let made = |is_ballpark_allowed: bool| -> Result<CoordTransform, GdalError> {
+            let mut options = CoordTransformOptions::new()?;
+            if let Some([west, south, east, north]) = self.area_deg {
+                options.set_area_of_interest(west, south, east, north)?;
+            }
+            if !is_ballpark_allowed {
+                options.set_ballpark_allowed(false)?;
+            }
+            CoordTransform::new_with_options(
+                &self.from.spatial_ref()?,
+                &self.to.spatial_ref()?,
+                &options,
+            )
+        };
+        if self.area_deg.is_none() {
+            return made(!self.is_exact);
+        }
+        match made(false) {
+            Err(_) if !self.is_exact => {
+                library_error::forget();
+                made(true)
+            }
+            made => made,
+        }
+    }
+
+    fn transform(&self) -> Result<Rc<CoordTransform>, GdalError> {
+        TRANSFORMS.with_borrow_mut(|transforms| {
+            if let Some(transform) = transforms.get(&self.key) {
+                return Ok(Rc::clone(transform));
+            }
+            let transform = self.made()?;
+            if transforms.len() >= KEPT {
+                transforms.clear();
+            }
+            let transform = Rc::new(transform);
+            transforms.insert(self.key.clone(), Rc::clone(&transform));
+            Ok(transform)
+        })
+    }
+}
+
+/// The largest coordinates of a system that go to PROJ.
+#[derive(Debug, Clone, Copy)]
+struct PlaceLimit {
+    most: f64,
+}
+
+impl PlaceLimit {
+    /// The limit of a system.
+    fn of_crs(crs: &Crs) -> Self {
+        let most = crs.turn_angle().map_or(MOST_METRES / crs.unit_m, |turn| MOST_TURNS * turn);
+        Self { most }
+    }
+
+    /// A position as PROJ may get it: infinite where it is no place, so that it has no image.
+    fn limited(self, position: [f64; 2]) -> [f64; 2] {
+        let is_place = position.iter().all(|value| value.abs() <= self.most);
+        if is_place { position } else { [f64::INFINITY; 2] }
+    }
+}

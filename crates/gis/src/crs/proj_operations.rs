@@ -1,0 +1,287 @@
+//! What PROJ says of the operations between two systems: accuracy, area and grids, which GDAL does
+//! not hand out.
+
+#![expect(unsafe_code, reason = "PROJ's list of operations has no wrapper in the gdal crate")]
+
+use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
+use std::ptr::{NonNull, null, null_mut};
+
+/// Which operations are listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Listed {
+    /// Operations whose grids are there, as GDAL lists them.
+    Usable,
+    /// All operations that PROJ knows.
+    Known,
+}
+
+/// One of PROJ's operations.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ProjOperation {
+    /// The names of its steps that change the datum; empty where none does.
+    pub(crate) name: String,
+    /// `None` where PROJ does not know it.
+    pub(crate) accuracy_m: Option<f64>,
+    /// Whether it takes one datum for another.
+    pub(crate) is_ballpark: bool,
+    /// West, south, east and north in degrees; the west is larger across ±180°.
+    pub(crate) area_deg: Option<[f64; 4]>,
+    /// Files of the grids that it needs and that are not there.
+    pub(crate) missing_grids: Vec<String>,
+    /// Whether it needs grids.
+    pub(crate) has_grids: bool,
+}
+
+/// PROJ's operations from one system to another in its order, over an area (west, south, east,
+/// north in degrees); none where it cannot read a system.
+pub(crate) fn operations(
+    [from, to]: [&str; 2],
+    area_deg: Option<[f64; 4]>,
+    listed: Listed,
+) -> Vec<ProjOperation> {
+    let (Ok(from), Ok(to)) = (CString::new(from), CString::new(to)) else { return Vec::new() };
+    // SAFETY: every object is made in one context that nothing else uses, is checked for null, and
+    // is freed once, after what was made of it; texts are C strings that outlive the calls.
+    unsafe {
+        let Some(context) = Owned::new(proj_context_create(), free_context) else {
+            return Vec::new();
+        };
+        let context = context.pointer();
+        let _ = proj_log_level(context, SILENT);
+        let systems =
+            [&from, &to].map(|text| Owned::new(proj_create(context, text.as_ptr()), free));
+        let [Some(from), Some(to)] = &systems else { return Vec::new() };
+        let factory = proj_create_operation_factory_context(context, null());
+        let Some(factory) = Owned::new(factory, proj_operation_factory_context_destroy) else {
+            return Vec::new();
+        };
+        let asked = factory.pointer();
+        proj_operation_factory_context_set_spatial_criterion(context, asked, PARTLY_INSIDE);
+        let grids = match listed {
+            Listed::Known => WITH_ANY_GRID,
+            Listed::Usable if proj_context_is_network_enabled(context) != 0 => WITH_KNOWN_GRID,
+            Listed::Usable => WITH_GRIDS_THERE,
+        };
+        proj_operation_factory_context_set_grid_availability_use(context, asked, grids);
+        if let Some([west, south, east, north]) = area_deg {
+            proj_operation_factory_context_set_area_of_interest(
+                context, asked, west, south, east, north,
+            );
+        }
+        let list = proj_create_operations(context, from.pointer(), to.pointer(), asked);
+        let Some(list) = Owned::new(list, proj_list_destroy) else { return Vec::new() };
+        let one = |index| Owned::new(proj_list_get(context, list.pointer(), index), free);
+        (0..proj_list_get_count(list.pointer()))
+            .filter_map(one)
+            .map(|operation| described(context, operation.pointer()))
+            .collect()
+    }
+}
+
+/// What PROJ says of an operation.
+///
+/// # Safety
+/// Both must be live objects, and the operation one of the context.
+unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperation {
+    let mut area = [0.0; 4];
+    let [west, south, east, north] = &mut area;
+    let mut missing_grids = Vec::new();
+    // SAFETY: the caller hands in live objects; results go to places that outlive the calls, and
+    // texts are copied at once.
+    unsafe {
+        let has_area =
+            proj_get_area_of_use(context, operation, west, south, east, north, null_mut()) != 0;
+        let grids = proj_coordoperation_get_grid_used_count(context, operation);
+        for index in 0..grids {
+            let (mut name, mut is_there) = (null(), 0);
+            let (none, no_flag) = (null_mut(), null_mut());
+            let found = proj_coordoperation_get_grid_used(
+                context,
+                operation,
+                index,
+                &raw mut name,
+                none,
+                none,
+                none,
+                no_flag,
+                no_flag,
+                &raw mut is_there,
+            );
+            if found != 0 && is_there == 0 {
+                missing_grids.push(text(name));
+            }
+        }
+        let accuracy_m = proj_coordoperation_get_accuracy(context, operation);
+        ProjOperation {
+            name: changes_of_datum(context, operation).join(" + "),
+            accuracy_m: (accuracy_m >= 0.0).then_some(accuracy_m),
+            is_ballpark: proj_coordoperation_has_ballpark_transformation(context, operation) != 0,
+            // West is −1000 where the area is not known.
+            area_deg: (has_area && area[0] >= -180.0).then_some(area),
+            missing_grids,
+            has_grids: grids > 0,
+        }
+    }
+}
+
+/// The names of the steps that are no mere conversions.
+///
+/// # Safety
+/// As [`described`].
+unsafe fn changes_of_datum(context: *mut Context, operation: *mut Object) -> Vec<String> {
+    // SAFETY: as in `described`; each step is a new object, freed after use.
+    unsafe {
+        match proj_get_type(operation) {
+            CONVERSION => Vec::new(),
+            CONCATENATED => (0..proj_concatoperation_get_step_count(context, operation))
+                .filter_map(|at| {
+                    Owned::new(proj_concatoperation_get_step(context, operation, at), free)
+                })
+                .flat_map(|step| changes_of_datum(context, step.pointer()))
+                .collect(),
+            _ => vec![text(proj_get_name(operation))],
+        }
+    }
+}
+
+/// A copy of a text of PROJ's; empty where there is none.
+///
+/// # Safety
+/// The text must be null, or a C string that lives.
+unsafe fn text(of_proj: *const c_char) -> String {
+    if of_proj.is_null() {
+        return String::new();
+    }
+    // SAFETY: checked for null; the caller says that it lives.
+    unsafe { CStr::from_ptr(of_proj) }.to_string_lossy().into_owned()
+}
+
+/// An object of PROJ's that is freed in the end.
+struct Owned<T> {
+    object: NonNull<T>,
+    free: unsafe extern "C" fn(*mut T),
+}
+
+impl<T> Owned<T> {
+    fn new(object: *mut T, free: unsafe extern "C" fn(*mut T)) -> Option<Self> {
+        NonNull::new(object).map(|object| Self { object, free })
+    }
+
+    fn pointer(&self) -> *mut T {
+        self.object.as_ptr()
+    }
+}
+
+impl<T> Drop for Owned<T> {
+    fn drop(&mut self) {
+        // SAFETY: the object is live, and this is its only owner.
+        unsafe { (self.free)(self.pointer()) }
+    }
+}
+
+unsafe extern "C" fn free(object: *mut Object) {
+    // SAFETY: called by the owner, once. What comes back is null.
+    unsafe { proj_destroy(object) };
+}
+
+unsafe extern "C" fn free_context(context: *mut Context) {
+    // SAFETY: as in `free`.
+    unsafe { proj_context_destroy(context) };
+}
+
+type Context = c_void;
+type Object = c_void;
+type Factory = c_void;
+type List = c_void;
+
+/// `PJ_LOG_NONE`.
+const SILENT: c_int = 0;
+/// `PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION`, as GDAL asks.
+const PARTLY_INSIDE: c_int = 1;
+/// `PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID`, as GDAL asks.
+const WITH_GRIDS_THERE: c_int = 1;
+/// `PROJ_GRID_AVAILABILITY_IGNORED`.
+const WITH_ANY_GRID: c_int = 2;
+/// `PROJ_GRID_AVAILABILITY_KNOWN_AVAILABLE`, as GDAL asks where PROJ may use the network.
+const WITH_KNOWN_GRID: c_int = 3;
+/// `PJ_TYPE_CONVERSION`.
+const CONVERSION: c_int = 21;
+/// `PJ_TYPE_CONCATENATED_OPERATION`.
+const CONCATENATED: c_int = 23;
+
+// The library that GDAL itself works with; all of this is there since PROJ 7.
+unsafe extern "C" {
+    fn proj_context_create() -> *mut Context;
+    fn proj_context_destroy(context: *mut Context) -> *mut Context;
+    fn proj_context_is_network_enabled(context: *mut Context) -> c_int;
+    fn proj_log_level(context: *mut Context, level: c_int) -> c_int;
+    fn proj_create(context: *mut Context, definition: *const c_char) -> *mut Object;
+    fn proj_destroy(object: *mut Object) -> *mut Object;
+    fn proj_get_type(object: *const Object) -> c_int;
+    fn proj_get_name(object: *const Object) -> *const c_char;
+    fn proj_get_area_of_use(
+        context: *mut Context,
+        object: *const Object,
+        west: *mut c_double,
+        south: *mut c_double,
+        east: *mut c_double,
+        north: *mut c_double,
+        name: *mut *const c_char,
+    ) -> c_int;
+    fn proj_create_operation_factory_context(
+        context: *mut Context,
+        authority: *const c_char,
+    ) -> *mut Factory;
+    fn proj_operation_factory_context_destroy(factory: *mut Factory);
+    fn proj_operation_factory_context_set_spatial_criterion(
+        context: *mut Context,
+        factory: *mut Factory,
+        criterion: c_int,
+    );
+    fn proj_operation_factory_context_set_grid_availability_use(
+        context: *mut Context,
+        factory: *mut Factory,
+        grids: c_int,
+    );
+    fn proj_operation_factory_context_set_area_of_interest(
+        context: *mut Context,
+        factory: *mut Factory,
+        west: c_double,
+        south: c_double,
+        east: c_double,
+        north: c_double,
+    );
+    fn proj_create_operations(
+        context: *mut Context,
+        from: *const Object,
+        to: *const Object,
+        factory: *const Factory,
+    ) -> *mut List;
+    fn proj_list_get_count(list: *const List) -> c_int;
+    fn proj_list_get(context: *mut Context, list: *const List, index: c_int) -> *mut Object;
+    fn proj_list_destroy(list: *mut List);
+    fn proj_concatoperation_get_step_count(context: *mut Context, of: *const Object) -> c_int;
+    fn proj_concatoperation_get_step(
+        context: *mut Context,
+        of: *const Object,
+        index: c_int,
+    ) -> *mut Object;
+    fn proj_coordoperation_get_accuracy(context: *mut Context, of: *const Object) -> c_double;
+    fn proj_coordoperation_has_ballpark_transformation(
+        context: *mut Context,
+        of: *const Object,
+    ) -> c_int;
+    fn proj_coordoperation_get_grid_used_count(context: *mut Context, of: *const Object) -> c_int;
+    fn proj_coordoperation_get_grid_used(
+        context: *mut Context,
+        of: *const Object,
+        index: c_int,
+        short_name: *mut *const c_char,
+        full_name: *mut *const c_char,
+        package: *mut *const c_char,
+        url: *mut *const c_char,
+        can_be_fetched: *mut c_int,
+        is_open: *mut c_int,
+        is_there: *mut c_int,
+    ) -> c_int;
+}

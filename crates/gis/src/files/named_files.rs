@@ -1,0 +1,201 @@
+//! Which files a name on the command line means: those of a folder, a pattern, a list or an
+//! archive.
+
+use std::path::{Path, PathBuf};
+use std::{fmt, fs, io};
+
+use gdal::Dataset;
+
+use crate::files::open::utf8_name;
+use crate::{FileUse, NameError, library_error};
+
+/// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT
+/// is not: it names files that may lie in the same folder.
+const ENDINGS: [&str; 13] =
+    ["tif", "tiff", "hgt", "asc", "img", "dem", "dt0", "dt1", "dt2", "bil", "flt", "grd", "jp2"];
+/// Endings of packed files, of which GDAL reads the content.
+const PACKED: [&str; 2] = ["gz", "zip"];
+
+/// Files of a folder with this ending are taken for extracts.
+const EXTRACT_ENDINGS: [&str; 1] = ["pbf"];
+
+/// Files of a folder with one of these endings are taken for photos.
+const PHOTO_ENDINGS: [&str; 10] =
+    ["tif", "tiff", "jp2", "jpg", "jpeg", "png", "webp", "img", "ecw", "sid"];
+
+/// Files of which a folder is searched.
+#[derive(Clone, Copy)]
+enum Sought {
+    Elevation,
+    Extracts,
+    Photos,
+}
+
+impl Sought {
+    /// Whether a file of a folder is one of them.
+    fn has(self, path: &Path) -> bool {
+        match self {
+            Self::Elevation => has_ending(path, &ENDINGS) || has_ending(path, &PACKED),
+            Self::Extracts => has_ending(path, &EXTRACT_ENDINGS),
+            Self::Photos => has_ending(path, &PHOTO_ENDINGS) || has_ending(path, &PACKED),
+        }
+    }
+}
+
+impl fmt::Display for Sought {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (noun, endings) = match self {
+            Self::Elevation => ("elevation file", &ENDINGS[..]),
+            Self::Extracts => return write!(f, "extract (names ending in .pbf)"),
+            Self::Photos => ("photo", &PHOTO_ENDINGS[..]),
+        };
+        let endings = endings.join(", ");
+        write!(f, "{noun} (names ending in {endings}, or these in .gz or .zip)")
+    }
+}
+
+/// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder
+/// those that end in pbf.
+///
+/// # Errors
+/// As [`expand_name`].
+pub fn expand_extract_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
+    expand(name, Sought::Extracts)
+}
+
+/// The photos that a name stands for, as [`expand_name`] does it for elevation files; of a folder
+/// those that end as images do.
+///
+/// # Errors
+/// As [`expand_name`].
+pub fn expand_photo_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
+    expand(name, Sought::Photos)
+}
+
+/// The files that a name stands for, in the order in which they have precedence. A name of one file
+/// stands for itself, whether it is there or not.
+///
+/// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that
+///   are empty or begin with # do not count. Its names may be folders and patterns, but not lists.
+/// - A folder: its files with the endings of elevation files, sorted by name; not those of folders
+///   in it. A folder that is itself a raster stays one.
+/// - A pattern with `*`, `?` or `[…]`: the files that it fits, sorted by name.
+///
+/// # Errors
+/// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no
+/// file.
+pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
+    expand(name, Sought::Elevation)
+}
+
+fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+    let text = utf8_name(name, FileUse::Dem)?;
+    match text.strip_prefix('@').filter(|_| !name.exists()) {
+        Some(list) => expand_list(Path::new(list), sought),
+        None => expand_plain(name, text, sought),
+    }
+}
+
+fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+    let unreadable = |source| NameError::List { path: list.to_path_buf(), source };
+    // A pipe that nobody writes to would be waited for, and a device has no end.
+    if !fs::metadata(list).map_err(unreadable)?.is_file() {
+        return Err(unreadable(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is a folder, a pipe or a device; save it to a file first",
+        )));
+    }
+    let text = fs::read_to_string(list).map_err(unreadable)?;
+    // Editors of Windows begin text with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let folder = list.parent().unwrap_or(Path::new(""));
+    let lines =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let mut files = Vec::new();
+    for line in lines {
+        let is_elsewhere = line.contains("://") || line.starts_with("/vsi");
+        let name = if is_elsewhere { PathBuf::from(line) } else { folder.join(line) };
+        let text = utf8_name(&name, FileUse::Dem)?;
+        files.extend(expand_plain(&name, text, sought)?);
+    }
+    if files.is_empty() {
+        return Err(NameError::EmptyList { path: list.to_path_buf() });
+    }
+    Ok(files)
+}
+
+fn expand_plain(name: &Path, text: &str, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+    let is_remote = text.contains("://") || text.starts_with("/vsi");
+    if !is_remote && name.is_dir() {
+        return expand_folder(name, sought);
+    }
+    if is_remote || name.exists() || !text.contains(['*', '?', '[']) {
+        return Ok(vec![name.to_path_buf()]);
+    }
+    let refused = |reason: String| NameError::Pattern { pattern: text.to_owned(), reason };
+    let found = glob::glob(text).map_err(|error| refused(error.to_string()))?;
+    let mut files: Vec<PathBuf> =
+        found.collect::<Result<_, _>>().map_err(|error| refused(error.to_string()))?;
+    files.retain(|file| file.is_file());
+    files.sort();
+    if files.is_empty() {
+        return Err(refused("no file fits it".to_owned()));
+    }
+    Ok(files)
+}
+
+fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+    library_error::quiet();
+    if !matches!(sought, Sought::Extracts) && Dataset::open(folder).is_ok() {
+        return Ok(vec![folder.to_path_buf()]);
+    }
+    let unreadable = |source| NameError::List { path: folder.to_path_buf(), source };
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.is_file() && sought.has(&path) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        let path = folder.to_path_buf();
+        return Err(NameError::EmptyFolder { path, sought: sought.to_string() });
+    }
+    Ok(files)
+}
+
+/// GDAL's names for the content of a packed file: of `FILE.gz` what it holds, of `FILE.zip` the
+/// elevation files in it, sorted by name. Other names stay as they are.
+///
+/// # Errors
+/// When an archive cannot be read or holds no elevation file.
+pub fn unpack_name(name: PathBuf) -> Result<Vec<PathBuf>, NameError> {
+    let text = utf8_name(&name, FileUse::Dem)?;
+    let is_inside = ["/vsigzip/", "/vsizip/", "/vsitar/"].iter().any(|at| text.starts_with(at));
+    if is_inside {
+        return Ok(vec![name]);
+    }
+    if has_ending(&name, &["gz"]) {
+        return Ok(vec![PathBuf::from(format!("/vsigzip/{text}"))]);
+    }
+    if !has_ending(&name, &["zip"]) {
+        return Ok(vec![name]);
+    }
+    library_error::quiet();
+    let archive = format!("/vsizip/{text}");
+    let refused = || NameError::Archive { path: name.clone(), endings: ENDINGS.join(", ") };
+    let entries = gdal::vsi::read_dir(&archive, true).map_err(|_| refused())?;
+    let mut files: Vec<PathBuf> = entries
+        .into_iter()
+        .filter(|entry| has_ending(entry, &ENDINGS))
+        .map(|entry| Path::new(&archive).join(entry))
+        .collect();
+    files.sort();
+    if files.is_empty() { Err(refused()) } else { Ok(files) }
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|own| endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
+}
