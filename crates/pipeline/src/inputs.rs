@@ -19,6 +19,7 @@ use std::{
 };
 
 use corniche_dem::{DemError, VirtualFile, raster_files};
+pub(crate) use corniche_tileset::InputKind;
 use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
@@ -28,53 +29,6 @@ pub use self::{
 };
 use self::{servers::reach_servers, stamp::Stamp};
 use crate::{BuildError, Observer, Stage, hex::hex};
-
-/// What an input is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum InputKind {
-    /// A raster that was named.
-    Dem,
-    /// A file that such a raster refers to, or that lies beside it and belongs to it.
-    DemPart,
-    /// A photo that was named.
-    Photo,
-    /// A file that such a photo refers to, or that lies beside it and belongs to it.
-    PhotoPart,
-    /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
-    Terrain,
-    /// The polygon that says which part is wanted.
-    Polygon,
-    /// The extract.
-    Osm,
-}
-
-impl InputKind {
-    /// The kinds that a manifest has.
-    pub(crate) const RECORDED: [Self; 6] =
-        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
-    /// The kinds that the terrain is made from.
-    pub(crate) const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
-    /// The kinds that photos are made from.
-    pub(crate) const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
-
-    /// The word for it in the manifest.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Dem => "dem",
-            Self::DemPart => "dem-part",
-            Self::Photo => "photo",
-            Self::PhotoPart => "photo-part",
-            Self::Terrain => "terrain",
-            Self::Polygon => "polygon",
-            Self::Osm => "osm",
-        }
-    }
-
-    /// Whether a record of the manifest is about an input of this kind.
-    pub(crate) fn is_of(self, record: &InputRecord) -> bool {
-        record.kind == self.name()
-    }
-}
 
 /// All files of a run, as they were before anything of them was read.
 #[derive(Debug)]

@@ -64,7 +64,6 @@ pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,
 };
 pub use plan_error::{PLAN_VERSION, PlanError};
-pub use roads::totals::reasons_left_out;
 pub use settings::{
     BuildSettings, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings,
     TerrainSettings,
