@@ -1,6 +1,6 @@
 //! The text of a style: TOML, checked entry by entry, and then turned into the values that are drawn with.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
@@ -9,11 +9,12 @@ use serde::Deserialize;
 use crate::{
     AreaStyle, LineStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
     area_sheet::{AreaSheet, areas},
-    base,
+    base::{self, USUAL},
     ground_sheet::{LightSheet, TintSheet, tint},
     line_sheet::{LineSheet, boundaries},
     road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
+    style_preset,
 };
 
 /// Longest text that is read. The longest preset has some 3 kB.
@@ -75,23 +76,11 @@ pub(crate) struct BackgroundSheet {
     /// Where there is no ground, below the horizon.
     pub(crate) void: Rgb8,
     /// Level ground at or below 0 m.
-    #[serde(default = "BackgroundSheet::water")]
     pub(crate) water: Rgb8,
     /// The wall along the edge of the data.
-    #[serde(default = "BackgroundSheet::wall")]
     pub(crate) wall: Rgb8,
     /// Ground at this many times the distance of what is looked at has lost two thirds of its colour; 0.1 to 1000.
     pub(crate) haze_reach: f64,
-}
-
-impl BackgroundSheet {
-    fn water() -> Rgb8 {
-        Rgb8([0xA9, 0xC9, 0xDD])
-    }
-
-    fn wall() -> Rgb8 {
-        Rgb8([0x8E, 0x84, 0x78])
-    }
 }
 
 /// A style as it stands in the text, not yet checked: lists and tables of any length.
@@ -122,6 +111,20 @@ struct StyleFile {
 /// Photos hide the height tint, where a style does not say how strongly they are seen.
 fn photos_alone() -> f64 {
     1.0
+}
+
+/// The preset `road-atlas`.
+static ROAD_ATLAS: LazyLock<Style> = LazyLock::new(|| {
+    parse_style(style_preset(USUAL).unwrap_or_default())
+        .unwrap_or_else(|error| unreachable!("the style that comes along is right: {error}"))
+});
+
+impl Style {
+    /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is the preset `road-atlas`.
+    #[must_use]
+    pub fn road_atlas() -> Self {
+        ROAD_ATLAS.clone()
+    }
 }
 
 /// Reads a style's text. With `base`, the name of a style that comes along, it has the entries of that style where it says nothing.
@@ -160,7 +163,6 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     if lane_width_m.is_some() && !own_width {
         return Err(StyleError::LaneWidth);
     }
-    let usual = Style::road_atlas();
     let sheet = StyleSheet {
         outline_px,
         shortest_part_px,
@@ -172,10 +174,10 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         background,
         tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
-        areas: areas(&area_sheets, usual.areas)?,
-        boundaries: boundaries(&line_sheets, &usual.boundaries)?,
-        overlays: usual.overlays,
-        drawn: usual.drawn,
+        areas: areas(&area_sheets)?,
+        boundaries: boundaries(&line_sheets)?,
+        overlays: LineStyle::OVERLAYS,
+        drawn: LineStyle::DRAWN,
     };
     sheet.check()?;
     Ok(sheet)
@@ -190,11 +192,14 @@ fn all_classes(
     if let Some(text) = roads.keys().find(|text| !names.contains(text)) {
         return Err(StyleError::Class { text: text.clone() });
     }
-    // Each of them is replaced.
-    let mut styles = Style::road_atlas().roads;
-    for (number, (class, style)) in names.into_iter().zip(&mut styles).enumerate() {
-        let Some(road) = roads.get(&class) else { return Err(StyleError::MissingClass { class }) };
-        *style = road.checked(number)?;
+    let road = |number: usize| {
+        let class = &names[number];
+        let missing = || StyleError::MissingClass { class: class.clone() };
+        roads.get(class).ok_or_else(missing)?.checked(number)
+    };
+    let mut styles = [road(0)?; FunctionalRoadClass::COUNT];
+    for (number, style) in styles.iter_mut().enumerate().skip(1) {
+        *style = road(number)?;
     }
     Ok(styles)
 }
