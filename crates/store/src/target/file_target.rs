@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{claim::longest_name, folder_of};
+use super::{claim::longest_name, own_files::folder_of};
 
 /// Why nothing can be written at a place.
 #[derive(Debug, thiserror::Error)]
