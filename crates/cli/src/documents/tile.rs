@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 
 use super::{
     areas::TileAreaDocument,
-    boundaries::TileBoundaryDocument,
+    lines::TileBoundaryDocument,
     spans::{TileSpanDocument, structure_name},
 };
 

@@ -4,6 +4,9 @@ use corniche_pipeline::VerifyReport;
 use corniche_tileset::{Distribution, SampleErrorRecord};
 use serde::Serialize;
 
+#[cfg(test)]
+use crate::documents::record_schemas::{DistributionDocument, SamplesDocument};
+
 /// Whether a package keeps its promises.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -21,7 +24,8 @@ pub(crate) struct VerifyDocument {
     /// With `--dem`: geometric errors, per level.
     pub(crate) errors: Vec<ErrorDocument>,
     /// With `--dem`: how far the finest level is from the DEM's own samples.
-    pub(crate) samples: Option<SamplesDocument>,
+    #[cfg_attr(test, schemars(with = "Option<SamplesDocument>"))]
+    pub(crate) samples: Option<SampleErrorRecord>,
 }
 
 /// A check.
@@ -67,54 +71,10 @@ pub(crate) struct ErrorDocument {
     /// Largest distance of a TIN from a node, metres.
     pub(crate) largest_true_m: f64,
     /// Stored error over true error, for the tiles where that can be measured.
-    pub(crate) tightness: Option<DistributionDocument>,
+    #[cfg_attr(test, schemars(with = "Option<DistributionDocument>"))]
+    pub(crate) tightness: Option<Distribution>,
     /// Nodes with data that the TINs do not cover.
     pub(crate) uncovered_nodes: u64,
-}
-
-/// The distribution of values, as nearest-rank quantiles.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct DistributionDocument {
-    /// How many values.
-    pub(crate) count: u64,
-    /// Smallest.
-    pub(crate) min: f64,
-    /// Median.
-    pub(crate) median: f64,
-    /// 95th percentile.
-    pub(crate) p95: f64,
-    /// Largest.
-    pub(crate) max: f64,
-}
-
-impl From<Distribution> for DistributionDocument {
-    fn from(Distribution { count, min, median, p95, max }: Distribution) -> Self {
-        Self { count, min, median, p95, max }
-    }
-}
-
-/// How far TINs are from the DEM's own samples.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct SamplesDocument {
-    /// Samples at which there is a TIN.
-    pub(crate) on_tin: u64,
-    /// Samples at which there is none.
-    pub(crate) off_tin: u64,
-    /// Largest vertical distance, metres.
-    pub(crate) max_m: f64,
-    /// Root mean square, metres.
-    pub(crate) rms_m: f64,
-    /// Distance that 99 % do not exceed, metres.
-    pub(crate) p99_m: f64,
-}
-
-impl From<SampleErrorRecord> for SamplesDocument {
-    fn from(record: SampleErrorRecord) -> Self {
-        let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = record;
-        Self { on_tin, off_tin, max_m, rms_m, p99_m }
-    }
 }
 
 impl From<&VerifyReport> for VerifyDocument {
@@ -137,7 +97,7 @@ impl From<&VerifyReport> for VerifyDocument {
             tiles: figures.tiles,
             nodes: figures.nodes,
             largest_true_m: figures.largest_true_m,
-            tightness: figures.tightness.map(Into::into),
+            tightness: figures.tightness,
             uncovered_nodes: figures.uncovered_nodes,
         };
         Self {
@@ -147,7 +107,7 @@ impl From<&VerifyReport> for VerifyDocument {
             checks: report.checks.iter().map(check).collect(),
             gaps: report.gaps.iter().map(gap).collect(),
             errors: report.errors.iter().map(error).collect(),
-            samples: report.samples.map(Into::into),
+            samples: report.samples,
         }
     }
 }
