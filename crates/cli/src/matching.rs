@@ -11,8 +11,14 @@ use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
 
 use crate::{
-    args::MatchArgs, exit::ExitCode, failure::Failure, messages, output::existing_of, packages,
-    progress::Progress, report_files::ReportFiles, table::Digits,
+    args::MatchArgs,
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    output::{existing_of, report_files::ReportFiles},
+    packages,
+    progress::Progress,
+    table::Digits,
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {

@@ -5,8 +5,8 @@ mod drawing;
 use std::{collections::BTreeSet, fmt::Write as _, path::Path};
 
 use corniche_export::{
-    Course, ExportError, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
-    Route, RouteRequest, profile, profile_of_course, route,
+    Course, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery, Route,
+    RouteError, RouteRequest, profile, profile_of_course, route,
 };
 use corniche_overlay::Placed;
 use corniche_pipeline::RecordedElevation;
@@ -19,11 +19,10 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Complete, Output, existing_of},
+    output::{Complete, Output, existing_of, report_files::ReportFiles},
     overlays, packages,
     progress::Progress,
     recorded,
-    report_files::ReportFiles,
     table::up_to,
 };
 
@@ -65,7 +64,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
             classes: args.filter.classes.classes(),
         };
         let found = route(&package, &request, network.as_ref(), &progress);
-        if let Err(ExportError::SeveralRoads { roads, .. }) = &found {
+        if let Err(RouteError::SeveralRoads { roads, .. }) = &found {
             progress.finish();
             for road in roads {
                 messages::warning(road);

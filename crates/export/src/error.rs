@@ -1,4 +1,12 @@
-//! Errors of all exports.
+//! Why exports fail: an enum for each activity, so that a signature tells what can happen.
+//!
+//! ```text
+//!   export_…   FeaturesError  RasterError  MeshError  Tiles3dError  QuantizedMeshError  ProfileError  RouteError
+//!                  │                                                                        what each is made of:
+//!                  └──► SelectionError  CoordinatesError  TileError  SurfaceError  ElevationError  RoadQueryError  GdalFileError
+//! ```
+
+#![expect(missing_docs, reason = "each message documents its variant")]
 
 use std::{
     io,
@@ -8,21 +16,118 @@ use std::{
 use corniche_areas::AreaObject;
 use corniche_dem::{DemError, LibraryError};
 use corniche_drape::BadLine;
-use corniche_geom::{ProjectError, TileId};
+use corniche_geom::{ProjectError, TileId, TooMuchWork};
 use corniche_store::LackOfRoom;
-use corniche_tileset::{OpenError, ReadError};
+use corniche_tileset::{DecodeError, FilePackage, OpenError, ReadError};
 use corniche_work::Interrupted;
+
+/// What an error asks of whoever meets it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The package or the request cannot be used.
+    Unusable,
+    /// Something failed.
+    Failed,
+    /// The work was asked to stop.
+    Interrupted,
+}
+
+/// Tiles are read in these activities.
+macro_rules! reads_tiles {
+    ($($error:ident)*) => {$(
+        impl From<OpenError> for $error {
+            fn from(error: OpenError) -> Self {
+                Self::Tile(error.into())
+            }
+        }
+
+        impl From<ReadError> for $error {
+            fn from(error: ReadError) -> Self {
+                Self::Tile(error.into())
+            }
+        }
+    )*};
+}
+
+/// These activities can be interrupted, fail in some variants, or in another activity; anything else is unusable.
+macro_rules! kinds {
+    ($($error:ident: failed [$($failed:ident)*] of [$($inner:ident)*];)*) => {$(
+        impl $error {
+            /// What it asks of whoever meets it.
+            #[must_use]
+            pub fn kind(&self) -> ErrorKind {
+                match self {
+                    Self::Interrupted => ErrorKind::Interrupted,
+                    $(Self::$failed { .. } => ErrorKind::Failed,)*
+                    $(Self::$inner(error) => error.kind(),)*
+                    _ => ErrorKind::Unusable,
+                }
+            }
+        }
+
+        impl From<Interrupted> for $error {
+            fn from(_: Interrupted) -> Self {
+                Self::Interrupted
+            }
+        }
+    )*};
+}
+
+reads_tiles! {
+    SurfaceError RoadQueryError FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
+}
+
+kinds! {
+    ElevationError: failed [] of [];
+    RoadQueryError: failed [] of [];
+    FeaturesError: failed [File Sort] of [Elevation Road];
+    RouteError: failed [] of [Road];
+    ProfileError: failed [] of [Elevation];
+    MeshError: failed [Write] of [Surface];
+    Tiles3dError: failed [Write] of [Surface];
+    QuantizedMeshError: failed [Write Triangulate] of [];
+    RasterError: failed [File] of [Elevation];
+}
 
 /// The outlines of a tile's roads make no triangulation with its ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the outlines of its roads cannot be triangulated")]
 pub struct CutError;
 
-/// Why something could not be exported.
+/// Why the package has not what is asked for.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
-pub enum ExportError {
+pub enum SelectionError {
+    #[error("{package:?} has no level {level}; its finest is {finest}")]
+    NoLevel { package: PathBuf, level: u8, finest: u8 },
+    #[error("{package:?} has no {layer}: it was built without --{layer}")]
+    NoLayer { package: PathBuf, layer: &'static str },
+    #[error("{package:?} has no roads: it was built without --osm")]
+    NoRoads { package: PathBuf },
+    #[error("{package:?} has no ground there; corniche info tells its extent")]
+    NoGround { package: PathBuf },
+}
+
+impl SelectionError {
+    /// The package has no ground there.
+    pub(crate) fn no_ground(package: &FilePackage) -> Self {
+        Self::NoGround { package: package.path().to_path_buf() }
+    }
+
+    /// Fails where a package was built without an extract.
+    pub(crate) fn check_roads(package: &FilePackage) -> Result<(), Self> {
+        if package.manifest().has_extract() {
+            Ok(())
+        } else {
+            Err(Self::NoRoads { package: package.path().to_path_buf() })
+        }
+    }
+}
+
+/// Why a tile of a package cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TileError {
     #[error(transparent)]
     Package(#[from] OpenError),
     #[error(transparent)]
@@ -31,26 +136,190 @@ pub enum ExportError {
     Line { tile: TileId, source: BadLine },
     #[error("tile {tile} knows nothing of way {way_id}, which it holds; corniche verify says more")]
     NoAttributes { tile: TileId, way_id: i64 },
-    #[error("{object} is not the same in all tiles; corniche verify says more")]
-    Differs { object: AreaObject },
     #[error("the {layer} of a tile are damaged; corniche verify says more")]
-    Damaged { layer: &'static str, source: Box<corniche_tileset::DecodeError> },
-    #[error("{object} cannot be cut at --bounds; leave them out")]
-    BoundsAcross { object: AreaObject },
+    Damaged { layer: &'static str, source: Box<DecodeError> },
+}
+
+/// Why heights are not known to be measured from a datum that is told.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DatumError {
+    #[error(
+        "what the package's heights are measured from is known, {datum:?}; leave --dem-vertical-crs out"
+    )]
+    KnownDatum { datum: String },
+    #[error("--dem-vertical-crs cannot be used")]
+    VerticalCrs(#[source] Box<DemError>),
+    #[error(
+        "--dem-vertical-crs {text} is not in metres upwards, and the package has taken its heights for metres; build it again with \
+         --dem-vertical-crs {text}"
+    )]
+    NotInMetres { text: String },
+}
+
+/// Why places cannot be carried to the coordinates that are asked for.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CoordinatesError {
+    #[error(
+        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; say it with \
+         --dem-vertical-crs EPSG:N, here or when the package is built, or keep the heights as they are with --heights as-is"
+    )]
+    UnknownDatum { datum: String },
+    #[error(
+        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
+         (Debian: package proj-bin), or keep the heights as they are with --heights as-is"
+    )]
+    Heights { datum: String, source: Box<DemError> },
+    #[error(
+        "a height of {datum:?} near {lon:.5}, {lat:.5} has no height above the ellipsoid of WGS84: the geoid grid ends before; keep \
+         the heights as they are with --heights as-is"
+    )]
+    NoHeightHere { datum: String, lon: f64, lat: f64 },
+    #[error("the package's CRS cannot be used")]
+    Crs(#[source] Box<DemError>),
+    #[error("positions cannot be carried to WGS84")]
+    Project(#[from] ProjectError),
+    #[error("a position of the ground has no longitude and latitude in WGS84")]
+    NoGroundPosition,
+    #[error("the coordinates cannot be made")]
+    OtherCrs(#[source] Box<DemError>),
+    #[error(
+        "a position of {object} has no place in the CRS that is asked for; choose another with --crs, or cut with --bounds"
+    )]
+    NoPosition { object: AreaObject },
     #[error(
         "{object} lies across 180 degrees of longitude and cannot be cut there; export it in the package's CRS"
     )]
     AcrossAntimeridian { object: AreaObject },
-    #[error("{package:?} has no {layer}: it was built without --{layer}")]
-    NoLayer { package: PathBuf, layer: &'static str },
-    #[error("{package:?} has no roads: it was built without --osm")]
-    NoRoads { package: PathBuf },
+}
+
+/// Why heights of the elevation files are not known.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ElevationError {
+    #[error("the elevation files cannot be read")]
+    Read(#[source] Box<DemError>),
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why a tile has no surfaces of roads, or no picture for its ground.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SurfaceError {
+    #[error(transparent)]
+    Tile(#[from] TileError),
     #[error(
-        "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
+        "the bridges of tile {tile} lie over more ground than any writer makes; corniche verify says more"
     )]
-    NoWay { package: PathBuf, way_id: i64, level: u8 },
+    TooManyBridges { tile: TileId, source: TooMuchWork },
+    #[error(
+        "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
+    )]
+    Cut { tile: TileId, source: CutError },
+    #[error(
+        "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
+    )]
+    Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
+    #[error("the relief of tile {tile} cannot be written as a picture; --relief none does without")]
+    Relief { tile: TileId, source: Box<image::ImageError> },
+}
+
+impl SurfaceError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Tile(_) | Self::TooManyBridges { .. } => ErrorKind::Unusable,
+            Self::Cut { .. } | Self::Picture { .. } | Self::Relief { .. } => ErrorKind::Failed,
+        }
+    }
+}
+
+/// Why a file that GDAL writes is not there, or not whole.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GdalFileError {
+    #[error(
+        "this GDAL has no driver {driver} for writing; install a GDAL with it, or choose another format"
+    )]
+    NoDriver { driver: &'static str },
+    #[error("cannot write {path:?}{}", LackOfRoom::advice(*.room))]
+    Write { path: PathBuf, room: Option<LackOfRoom>, source: Box<LibraryError> },
+    #[error(
+        "{path:?} is not whole: {written} features were written, {found} can be read{}",
+        LackOfRoom::advice(*.room)
+    )]
+    NotWhole { path: PathBuf, room: Option<LackOfRoom>, written: u64, found: u64 },
+    #[error(
+        "{path:?} is not whole: what was written is not what can be read{}",
+        LackOfRoom::advice(*.room)
+    )]
+    RasterNotWhole { path: PathBuf, room: Option<LackOfRoom> },
+    #[error("cannot read {path:?} again")]
+    ReadAgain { path: PathBuf, source: io::Error },
+}
+
+impl GdalFileError {
+    /// A library could not write a file that is still there.
+    pub(crate) fn write(path: &Path, source: impl Into<Box<LibraryError>>) -> Self {
+        Self::Write { path: path.to_path_buf(), room: LackOfRoom::at(path), source: source.into() }
+    }
+}
+
+/// Why the ways of a number or a name are not found.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RoadQueryError {
+    #[error(transparent)]
+    Tile(#[from] TileError),
     #[error("{package:?} has no road with {query}{near}; spaces, hyphens and case do not matter")]
     NoSuchRoad { package: PathBuf, query: String, near: String },
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why roads, edges, areas or lines cannot be written as features, or not be measured by way.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FeaturesError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Road(#[from] RoadQueryError),
+    #[error(transparent)]
+    Elevation(#[from] ElevationError),
+    #[error(transparent)]
+    File(#[from] GdalFileError),
+    #[error("{object} is not the same in all tiles; corniche verify says more")]
+    Differs { object: AreaObject },
+    #[error("{object} cannot be cut at --bounds; leave them out")]
+    BoundsAcross { object: AreaObject },
+    #[error(
+        "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); leave --crs out, name a registered system (--crs EPSG:N), or choose another format"
+    )]
+    GeoJsonCrs,
+    #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+    Sort { folder: PathBuf, source: io::Error },
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why there is no way through the network, or not one alone.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RouteError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Road(#[from] RoadQueryError),
     #[error(
         "{} roads that are not connected have {query}; name the ways of one, or two places on it with --from LON,LAT --to LON,LAT",
         roads.len()
@@ -76,14 +345,84 @@ pub enum ExportError {
         "--from and --to are nearest to one place of a road; give places that are farther apart"
     )]
     OnePlace,
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why ways or lines have no profile.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProfileError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Elevation(#[from] ElevationError),
     #[error(
-        "the bridges of tile {tile} lie over more ground than any writer makes; corniche verify says more"
+        "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
     )]
-    TooManyBridges { tile: TileId, source: corniche_geom::TooMuchWork },
+    NoWay { package: PathBuf, way_id: i64, level: u8 },
     #[error("no line lies on ground of {package:?}{begins}; the package covers {covered}")]
     NoLineOnGround { package: PathBuf, begins: String, covered: String },
-    #[error("{package:?} has no ground there; corniche info tells its extent")]
-    NoGround { package: PathBuf },
+    #[error(
+        "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
+    )]
+    TooManyCrossings(#[from] TooMuchWork),
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why there is no model of a level.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
+    GlbAxis,
+    #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+    Write { path: PathBuf, source: io::Error },
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why there are no 3D Tiles.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Tiles3dError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.0)))]
+    Write(#[source] io::Error),
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why there is no quantized-mesh terrain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuantizedMeshError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
     #[error(
         "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
     )]
@@ -100,133 +439,33 @@ pub enum ExportError {
         "{package:?}: its table of coordinates and its rectangle in degrees do not agree; corniche verify tells more"
     )]
     OtherCoordinates { package: PathBuf },
+    #[error("terrain tile {tile} cannot be triangulated")]
+    Triangulate { tile: String, source: corniche_tin::TriangulateError },
+    #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.0)))]
+    Write(#[source] io::Error),
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Why there is no raster of heights.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RasterError {
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Coordinates(#[from] CoordinatesError),
+    #[error(transparent)]
+    Tile(#[from] TileError),
+    #[error(transparent)]
+    Elevation(#[from] ElevationError),
+    #[error(transparent)]
+    File(#[from] GdalFileError),
     #[error(
         "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
          with ground with --bounds"
     )]
     MostlyNothing { columns: usize, rows: usize, level: u8, within: u64 },
-    #[error(
-        "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
-    )]
-    TooManyCrossings(#[from] corniche_geom::TooMuchWork),
-    #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
-    GlbAxis,
-    #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-    WriteModel { path: PathBuf, source: io::Error },
-    #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.0)))]
-    WriteTiles(#[source] io::Error),
-    #[error(
-        "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
-    )]
-    Cut { tile: TileId, source: CutError },
-    #[error(
-        "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
-    )]
-    Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
-    #[error("the relief of tile {tile} cannot be written as a picture; --relief none does without")]
-    Relief { tile: TileId, source: Box<image::ImageError> },
-    #[error("terrain tile {tile} cannot be triangulated")]
-    Triangulate { tile: String, source: corniche_tin::TriangulateError },
-    #[error("{package:?} has no level {level}; its finest is {finest}")]
-    NoLevel { package: PathBuf, level: u8, finest: u8 },
-    #[error(
-        "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); leave --crs out, name a registered system (--crs EPSG:N), or choose another format"
-    )]
-    GeoJsonCrs,
-    #[error(
-        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; say it with \
-         --dem-vertical-crs EPSG:N, here or when the package is built, or keep the heights as they are with --heights as-is"
-    )]
-    UnknownDatum { datum: String },
-    #[error(
-        "what the package's heights are measured from is known, {datum:?}; leave --dem-vertical-crs out"
-    )]
-    KnownDatum { datum: String },
-    #[error("--dem-vertical-crs cannot be used")]
-    VerticalCrs(#[source] Box<DemError>),
-    #[error(
-        "--dem-vertical-crs {text} is not in metres upwards, and the package has taken its heights for metres; build it again with \
-         --dem-vertical-crs {text}"
-    )]
-    NotInMetres { text: String },
-    #[error(
-        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
-         (Debian: package proj-bin), or keep the heights as they are with --heights as-is"
-    )]
-    Heights { datum: String, source: Box<DemError> },
-    #[error(
-        "a height of {datum:?} near {lon:.5}, {lat:.5} has no height above the ellipsoid of WGS84: the geoid grid ends before; keep \
-         the heights as they are with --heights as-is"
-    )]
-    NoHeightHere { datum: String, lon: f64, lat: f64 },
-    #[error("the package's CRS cannot be used")]
-    Crs(#[source] Box<DemError>),
-    #[error("positions cannot be carried to WGS84")]
-    Project(#[from] ProjectError),
-    #[error("a position of the ground has no longitude and latitude in WGS84")]
-    NoGroundPosition,
-    #[error("the coordinates cannot be made")]
-    OtherCrs(#[source] Box<DemError>),
-    #[error(
-        "a position of {object} has no place in the CRS that is asked for; choose another with --crs, or cut with --bounds"
-    )]
-    NoPosition { object: AreaObject },
-    #[error(
-        "this GDAL has no driver {driver} for writing; install a GDAL with it, or choose another format"
-    )]
-    NoDriver { driver: &'static str },
-    #[error("cannot write {path:?}{}", LackOfRoom::advice(*.room))]
-    Write { path: PathBuf, room: Option<LackOfRoom>, source: Box<LibraryError> },
-    #[error(
-        "{path:?} is not whole: {written} features were written, {found} can be read{}",
-        LackOfRoom::advice(*.room)
-    )]
-    NotWhole { path: PathBuf, room: Option<LackOfRoom>, written: u64, found: u64 },
-    #[error(
-        "{path:?} is not whole: what was written is not what can be read{}",
-        LackOfRoom::advice(*.room)
-    )]
-    RasterNotWhole { path: PathBuf, room: Option<LackOfRoom> },
-    #[error("the elevation files cannot be read")]
-    Elevation(#[source] Box<DemError>),
-    #[error("cannot read {path:?} again")]
-    ReadAgain { path: PathBuf, source: io::Error },
-    #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-    Sort { folder: PathBuf, source: io::Error },
     #[error("interrupted")]
     Interrupted,
-}
-
-impl From<Interrupted> for ExportError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
-
-impl ExportError {
-    /// A library could not write a file that is still there.
-    pub(crate) fn write(path: &Path, source: impl Into<Box<LibraryError>>) -> Self {
-        Self::Write { path: path.to_path_buf(), room: LackOfRoom::at(path), source: source.into() }
-    }
-
-    /// Whether the package or the request cannot be used, rather than that something failed.
-    #[must_use]
-    pub fn is_unusable_input(&self) -> bool {
-        !matches!(
-            self,
-            Self::NoDriver { .. }
-                | Self::Write { .. }
-                | Self::WriteModel { .. }
-                | Self::WriteTiles(_)
-                | Self::Cut { .. }
-                | Self::Picture { .. }
-                | Self::Relief { .. }
-                | Self::Triangulate { .. }
-                | Self::NotWhole { .. }
-                | Self::RasterNotWhole { .. }
-                | Self::ReadAgain { .. }
-                | Self::Sort { .. }
-                | Self::Interrupted
-        )
-    }
 }

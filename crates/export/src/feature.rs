@@ -147,18 +147,13 @@ fields! { MEASURED_FIELDS, measured_values, road: &Road<'_>:
 
 /// The fields of features that are pieces, beside the others.
 const PIECE_FIELDS: &[Field] = &[
-    Field {
-        name: "tile",
-        kind: FieldKind::Text,
-        unit: "",
-        meaning: "with `--pieces`: the tile, as `z/x/y`",
-    },
-    Field {
-        name: "part",
-        kind: FieldKind::Integer64,
-        unit: "",
-        meaning: "with `--pieces`: number of the piece along the way within the tile",
-    },
+    Field::new("tile", FieldKind::Text, "", "with `--pieces`: the tile, as `z/x/y`"),
+    Field::new(
+        "part",
+        FieldKind::Integer64,
+        "",
+        "with `--pieces`: number of the piece along the way within the tile",
+    ),
 ];
 
 /// The fields of features, in their order: of ways, or of pieces; with heights of the ground or of the elevation files.

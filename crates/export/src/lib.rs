@@ -83,7 +83,11 @@ pub use bounds::DegreeBounds;
 pub use datum::with_vertical_crs;
 pub use edges::{EdgesSummary, edge_fields, export_edges};
 pub use elevation::Elevation;
-pub use error::{CutError, ExportError};
+pub use error::{
+    CoordinatesError, CutError, DatumError, ElevationError, ErrorKind, FeaturesError,
+    GdalFileError, MeshError, ProfileError, QuantizedMeshError, RasterError, RoadQueryError,
+    RouteError, SelectionError, SurfaceError, TileError, Tiles3dError,
+};
 pub use feature::{HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use features::check_lines_request;
