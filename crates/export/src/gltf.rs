@@ -45,11 +45,22 @@ pub(crate) const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 pub(crate) const U8: u32 = 5121;
 pub(crate) const U16: u32 = 5123;
 pub(crate) const U32: u32 = 5125;
-pub(crate) const F32: u32 = 5126;
+const F32: u32 = 5126;
 /// Modes of primitives.
 pub(crate) const LINES: u32 = 1;
 pub(crate) const LINE_STRIP: u32 = 3;
 pub(crate) const TRIANGLES: u32 = 4;
+
+/// What an accessor of floats says, but for its view and its length.
+pub(crate) fn floats(kind: &str) -> Value {
+    json!({ "componentType": F32, "type": kind })
+}
+
+/// What an accessor of positions says, with their range.
+pub(crate) fn positions(at: &[[f32; 3]]) -> Value {
+    let [least, largest] = range_of(at);
+    json!({ "componentType": F32, "type": "VEC3", "min": least, "max": largest })
+}
 
 /// Filters and wrapping of samplers.
 const LINEAR: u32 = 9729;
@@ -70,7 +81,7 @@ pub(crate) fn linear(channel: f32) -> f32 {
 }
 
 /// The smallest and the largest of each axis, as accessors of positions say them.
-pub(crate) fn range_of(vectors: &[[f32; 3]]) -> [[f32; 3]; 2] {
+fn range_of(vectors: &[[f32; 3]]) -> [[f32; 3]; 2] {
     [f32::min, f32::max].map(|pick: fn(f32, f32) -> f32| {
         [0, 1, 2].map(|axis: usize| {
             vectors.iter().map(|vector| vector[axis]).reduce(pick).unwrap_or(0.0)

@@ -3,7 +3,7 @@
 #![expect(dead_code, reason = "only their schemas are wanted")]
 
 use corniche_geom::NodeIndex;
-use corniche_pipeline::{Estimate, Job, MemoryEstimate, Rates};
+use corniche_pipeline::{ErrorFigures, Estimate, GapFigures, Job, MemoryEstimate, Rates};
 use corniche_tileset::{
     AreaLevelRecord, Distribution, LeftOutRecord, LineLevelRecord, RoadLoss, SampleCounts,
     SampleErrorRecord,
@@ -70,6 +70,34 @@ pub(crate) struct SamplesDocument {
     rms_m: f64,
     /// Distance that 99 % do not exceed, metres.
     p99_m: f64,
+}
+
+/// Gaps of a level.
+#[derive(JsonSchema)]
+pub(crate) struct GapDocument {
+    /// Level.
+    level: u8,
+    /// Edges looked at.
+    edges: u64,
+    /// Largest gap, metres.
+    largest_m: f64,
+}
+
+/// Errors of a level.
+#[derive(JsonSchema)]
+pub(crate) struct ErrorDocument {
+    /// Level.
+    level: u8,
+    /// Tiles measured.
+    tiles: u64,
+    /// Nodes with data that were compared.
+    nodes: u64,
+    /// Largest distance of a TIN from a node, metres.
+    largest_true_m: f64,
+    /// Stored error over true error, for the tiles where that can be measured.
+    tightness: Option<DistributionDocument>,
+    /// Nodes with data that the TINs do not cover.
+    uncovered_nodes: u64,
 }
 
 /// A node of the grid.
@@ -252,6 +280,15 @@ fn records_have_the_fields_of_their_schemas() {
     });
     check::<DistributionDocument>(&Distribution::of(vec![1.0]).unwrap());
     check::<SamplesDocument>(&SampleErrorRecord::default());
+    check::<GapDocument>(&GapFigures::default());
+    check::<ErrorDocument>(&ErrorFigures {
+        level: 0,
+        tiles: 1,
+        nodes: 1,
+        largest_true_m: 1.0,
+        tightness: None,
+        uncovered_nodes: 1,
+    });
     check::<NodeDocument>(&NodeIndex { i: 1, j: 2 });
     check::<NodeCountsDocument>(&SampleCounts::default());
     check::<LossDocument>(&RoadLoss { reason: String::new(), roads: 1, length_um: 1 });

@@ -1,11 +1,11 @@
 //! The JSON document of `corniche verify`.
 
-use corniche_pipeline::VerifyReport;
-use corniche_tileset::{Distribution, SampleErrorRecord};
+use corniche_pipeline::{ErrorFigures, GapFigures, VerifyReport};
+use corniche_tileset::SampleErrorRecord;
 use serde::Serialize;
 
 #[cfg(test)]
-use crate::documents::record_schemas::{DistributionDocument, SamplesDocument};
+use crate::documents::record_schemas::{ErrorDocument, GapDocument, SamplesDocument};
 
 /// Whether a package keeps its promises.
 #[derive(Debug, Serialize)]
@@ -20,9 +20,11 @@ pub(crate) struct VerifyDocument {
     /// The checks.
     pub(crate) checks: Vec<CheckDocument>,
     /// Gaps between GEO roads and TINs, per level.
-    pub(crate) gaps: Vec<GapDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<GapDocument>"))]
+    pub(crate) gaps: Vec<GapFigures>,
     /// With `--dem`: geometric errors, per level.
-    pub(crate) errors: Vec<ErrorDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<ErrorDocument>"))]
+    pub(crate) errors: Vec<ErrorFigures>,
     /// With `--dem`: how far the finest level is from the DEM's own samples.
     #[cfg_attr(test, schemars(with = "Option<SamplesDocument>"))]
     pub(crate) samples: Option<SampleErrorRecord>,
@@ -46,37 +48,6 @@ pub(crate) struct CheckDocument {
     pub(crate) examples: Vec<String>,
 }
 
-/// Gaps of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct GapDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Edges looked at.
-    pub(crate) edges: u64,
-    /// Largest gap, metres.
-    pub(crate) largest_m: f64,
-}
-
-/// Errors of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct ErrorDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Tiles measured.
-    pub(crate) tiles: u64,
-    /// Nodes with data that were compared.
-    pub(crate) nodes: u64,
-    /// Largest distance of a TIN from a node, metres.
-    pub(crate) largest_true_m: f64,
-    /// Stored error over true error, for the tiles where that can be measured.
-    #[cfg_attr(test, schemars(with = "Option<DistributionDocument>"))]
-    pub(crate) tightness: Option<Distribution>,
-    /// Nodes with data that the TINs do not cover.
-    pub(crate) uncovered_nodes: u64,
-}
-
 impl From<&VerifyReport> for VerifyDocument {
     fn from(report: &VerifyReport) -> Self {
         let check = |check: &corniche_pipeline::Check| CheckDocument {
@@ -87,26 +58,13 @@ impl From<&VerifyReport> for VerifyDocument {
             broken: check.broken,
             examples: check.examples.clone(),
         };
-        let gap = |gap: &corniche_pipeline::GapFigures| GapDocument {
-            level: gap.level,
-            edges: gap.edges,
-            largest_m: gap.largest_m,
-        };
-        let error = |figures: &corniche_pipeline::ErrorFigures| ErrorDocument {
-            level: figures.level,
-            tiles: figures.tiles,
-            nodes: figures.nodes,
-            largest_true_m: figures.largest_true_m,
-            tightness: figures.tightness,
-            uncovered_nodes: figures.uncovered_nodes,
-        };
         Self {
             holds: report.holds(),
             tiles: report.tiles,
             borders: report.borders,
             checks: report.checks.iter().map(check).collect(),
-            gaps: report.gaps.iter().map(gap).collect(),
-            errors: report.errors.iter().map(error).collect(),
+            gaps: report.gaps.clone(),
+            errors: report.errors.clone(),
             samples: report.samples,
         }
     }
