@@ -32,7 +32,44 @@ pub enum ErrorKind {
     Interrupted,
 }
 
-/// Tiles are read in these activities.
+/// Declares the error of an activity: the errors of what it is made of, and its own. Own ones in `failed` say that something failed, others that the
+/// package or the request is of no use.
+macro_rules! activity {
+    ($(#[$doc:meta])* $error:ident: [$($part:ident($inner:ident))*] failed [$($failed:ident)*] { $($own:tt)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, thiserror::Error)]
+        #[non_exhaustive]
+        pub enum $error {
+            $(#[error(transparent)]
+            $part(#[from] $inner),)*
+            $($own)*
+            #[error("interrupted")]
+            Interrupted,
+        }
+
+        impl $error {
+            /// What it asks of whoever meets it.
+            #[must_use]
+            #[allow(unreachable_patterns, reason = "of some activities all own errors are failures")]
+            pub fn kind(&self) -> ErrorKind {
+                match self {
+                    Self::Interrupted => ErrorKind::Interrupted,
+                    $(Self::$failed { .. } => ErrorKind::Failed,)*
+                    $(Self::$part(error) => error.kind(),)*
+                    _ => ErrorKind::Unusable,
+                }
+            }
+        }
+
+        impl From<Interrupted> for $error {
+            fn from(_: Interrupted) -> Self {
+                Self::Interrupted
+            }
+        }
+    };
+}
+
+/// What reads tiles can meet their errors.
 macro_rules! reads_tiles {
     ($($error:ident)*) => {$(
         impl From<OpenError> for $error {
@@ -49,26 +86,20 @@ macro_rules! reads_tiles {
     )*};
 }
 
-/// These activities can be interrupted, fail in some variants, or in another activity; anything else is unusable.
-macro_rules! kinds {
-    ($($error:ident: failed [$($failed:ident)*] of [$($inner:ident)*];)*) => {$(
-        impl $error {
-            /// What it asks of whoever meets it.
-            #[must_use]
-            pub fn kind(&self) -> ErrorKind {
-                match self {
-                    Self::Interrupted => ErrorKind::Interrupted,
-                    $(Self::$failed { .. } => ErrorKind::Failed,)*
-                    $(Self::$inner(error) => error.kind(),)*
-                    _ => ErrorKind::Unusable,
-                }
-            }
-        }
+/// All errors of one enum are of one kind.
+trait OfOneKind {
+    /// What they ask of whoever meets them.
+    const KIND: ErrorKind;
 
-        impl From<Interrupted> for $error {
-            fn from(_: Interrupted) -> Self {
-                Self::Interrupted
-            }
+    fn kind(&self) -> ErrorKind {
+        Self::KIND
+    }
+}
+
+macro_rules! of_one_kind {
+    ($($error:ident: $kind:ident;)*) => {$(
+        impl OfOneKind for $error {
+            const KIND: ErrorKind = ErrorKind::$kind;
         }
     )*};
 }
@@ -77,16 +108,11 @@ reads_tiles! {
     SurfaceError RoadQueryError FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
 }
 
-kinds! {
-    ElevationError: failed [] of [];
-    RoadQueryError: failed [] of [];
-    FeaturesError: failed [File Sort] of [Elevation Road];
-    RouteError: failed [] of [Road];
-    ProfileError: failed [] of [Elevation];
-    MeshError: failed [Write] of [Surface];
-    Tiles3dError: failed [Write] of [Surface];
-    QuantizedMeshError: failed [Write Triangulate] of [];
-    RasterError: failed [File] of [Elevation];
+of_one_kind! {
+    SelectionError: Unusable;
+    TileError: Unusable;
+    CoordinatesError: Unusable;
+    GdalFileError: Failed;
 }
 
 /// The outlines of a tile's roads make no triangulation with its ground.
@@ -194,14 +220,12 @@ pub enum CoordinatesError {
     AcrossAntimeridian { object: AreaObject },
 }
 
-/// Why heights of the elevation files are not known.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ElevationError {
-    #[error("the elevation files cannot be read")]
-    Read(#[source] Box<DemError>),
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why heights of the elevation files are not known.
+    ElevationError: [] failed [] {
+        #[error("the elevation files cannot be read")]
+        Read(#[source] Box<DemError>),
+    }
 }
 
 /// Why a tile has no surfaces of roads, or no picture for its ground.
@@ -266,206 +290,128 @@ impl GdalFileError {
     }
 }
 
-/// Why the ways of a number or a name are not found.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RoadQueryError {
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error("{package:?} has no road with {query}{near}; spaces, hyphens and case do not matter")]
-    NoSuchRoad { package: PathBuf, query: String, near: String },
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why the ways of a number or a name are not found.
+    RoadQueryError: [Tile(TileError)] failed [] {
+        #[error("{package:?} has no road with {query}{near}; spaces, hyphens and case do not matter")]
+        NoSuchRoad { package: PathBuf, query: String, near: String },
+    }
 }
 
-/// Why roads, edges, areas or lines cannot be written as features, or not be measured by way.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FeaturesError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Road(#[from] RoadQueryError),
-    #[error(transparent)]
-    Elevation(#[from] ElevationError),
-    #[error(transparent)]
-    File(#[from] GdalFileError),
-    #[error("{object} is not the same in all tiles; corniche verify says more")]
-    Differs { object: AreaObject },
-    #[error("{object} cannot be cut at --bounds; leave them out")]
-    BoundsAcross { object: AreaObject },
-    #[error(
-        "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); leave --crs out, name a registered system (--crs EPSG:N), or choose another format"
-    )]
-    GeoJsonCrs,
-    #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-    Sort { folder: PathBuf, source: io::Error },
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why roads, edges, areas or lines cannot be written as features, or not be measured by way.
+    FeaturesError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError) Elevation(ElevationError) File(GdalFileError)] failed [Sort] {
+        #[error("{object} is not the same in all tiles; corniche verify says more")]
+        Differs { object: AreaObject },
+        #[error("{object} cannot be cut at --bounds; leave them out")]
+        BoundsAcross { object: AreaObject },
+        #[error(
+            "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); leave --crs out, name a registered system (--crs EPSG:N), or choose another format"
+        )]
+        GeoJsonCrs,
+        #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        Sort { folder: PathBuf, source: io::Error },
+    }
 }
 
-/// Why there is no way through the network, or not one alone.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RouteError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Road(#[from] RoadQueryError),
-    #[error(
-        "{} roads that are not connected have {query}; name the ways of one, or two places on it with --from LON,LAT --to LON,LAT",
-        roads.len()
-    )]
-    SeveralRoads { query: String, roads: Vec<String> },
-    #[error(
-        "the ways with {query} are interrupted near {lon:.5},{lat:.5}, by more than 300 m of other roads; leave it out, or name places on one part with --from and --to"
-    )]
-    RoadInterrupted { query: String, lon: f64, lat: f64 },
-    #[error(
-        "there are no {of} within 500 m of {lon},{lat}: the nearest are {off_m:.0} m away; the package covers {covered}"
-    )]
-    FarFromRoads { of: String, lon: f64, lat: f64, off_m: f64, covered: String },
-    #[error("there are no {of} near {lon},{lat}; the package covers {covered}")]
-    NoRoadNear { of: String, lon: f64, lat: f64, covered: String },
-    #[error("no {of} of the package lead from {},{} to {},{}; a bound or a void may cut them", ends[0][0], ends[0][1], ends[1][0], ends[1][1])]
-    NotConnected { of: String, ends: [[f64; 2]; 2] },
-    #[error(
-        "{of} of the package cannot be followed: they are not among its roads of these classes"
-    )]
-    NothingToFollow { of: String },
-    #[error(
-        "--from and --to are nearest to one place of a road; give places that are farther apart"
-    )]
-    OnePlace,
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why there is no way through the network, or not one alone.
+    RouteError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)] failed [] {
+        #[error(
+            "{} roads that are not connected have {query}; name the ways of one, or two places on it with --from LON,LAT --to LON,LAT",
+            roads.len()
+        )]
+        SeveralRoads { query: String, roads: Vec<String> },
+        #[error(
+            "the ways with {query} are interrupted near {lon:.5},{lat:.5}, by more than 300 m of other roads; leave it out, or name places on one part with --from and --to"
+        )]
+        RoadInterrupted { query: String, lon: f64, lat: f64 },
+        #[error(
+            "there are no {of} within 500 m of {lon},{lat}: the nearest are {off_m:.0} m away; the package covers {covered}"
+        )]
+        FarFromRoads { of: String, lon: f64, lat: f64, off_m: f64, covered: String },
+        #[error("there are no {of} near {lon},{lat}; the package covers {covered}")]
+        NoRoadNear { of: String, lon: f64, lat: f64, covered: String },
+        #[error("no {of} of the package lead from {},{} to {},{}; a bound or a void may cut them", ends[0][0], ends[0][1], ends[1][0], ends[1][1])]
+        NotConnected { of: String, ends: [[f64; 2]; 2] },
+        #[error(
+            "{of} of the package cannot be followed: they are not among its roads of these classes"
+        )]
+        NothingToFollow { of: String },
+        #[error(
+            "--from and --to are nearest to one place of a road; give places that are farther apart"
+        )]
+        OnePlace,
+    }
 }
 
-/// Why ways or lines have no profile.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ProfileError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Elevation(#[from] ElevationError),
-    #[error(
-        "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
-    )]
-    NoWay { package: PathBuf, way_id: i64, level: u8 },
-    #[error("no line lies on ground of {package:?}{begins}; the package covers {covered}")]
-    NoLineOnGround { package: PathBuf, begins: String, covered: String },
-    #[error(
-        "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
-    )]
-    TooManyCrossings(#[from] TooMuchWork),
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why ways or lines have no profile.
+    ProfileError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Elevation(ElevationError)] failed [] {
+        #[error(
+            "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
+        )]
+        NoWay { package: PathBuf, way_id: i64, level: u8 },
+        #[error("no line lies on ground of {package:?}{begins}; the package covers {covered}")]
+        NoLineOnGround { package: PathBuf, begins: String, covered: String },
+        #[error(
+            "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
+        )]
+        TooManyCrossings(#[from] TooMuchWork),
+    }
 }
 
-/// Why there is no model of a level.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MeshError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Surface(#[from] SurfaceError),
-    #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
-    GlbAxis,
-    #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-    Write { path: PathBuf, source: io::Error },
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why there is no model of a level.
+    MeshError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Surface(SurfaceError)] failed [Write] {
+        #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
+        GlbAxis,
+        #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        Write { path: PathBuf, source: io::Error },
+    }
 }
 
-/// Why there are no 3D Tiles.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum Tiles3dError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Surface(#[from] SurfaceError),
-    #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.0)))]
-    Write(#[source] io::Error),
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why there are no 3D Tiles.
+    Tiles3dError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Surface(SurfaceError)] failed [Write] {
+        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        Write { source: io::Error },
+    }
 }
 
-/// Why there is no quantized-mesh terrain.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum QuantizedMeshError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(
-        "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
-    )]
-    BeyondGrid { lat: f64, north: f64 },
-    #[error(
-        "level {finest} would have more than {most} tiles, which no export makes; end with --max-level {level}"
-    )]
-    TooManyTiles { finest: u8, most: u64, level: u8 },
-    #[error(
-        "levels 0 to {finest} would be up to {files} files, more than {most}; write them all with --max-files {files}, or end with --max-level {level}"
-    )]
-    TooManyFiles { finest: u8, files: u64, most: u64, level: u8 },
-    #[error(
-        "{package:?}: its table of coordinates and its rectangle in degrees do not agree; corniche verify tells more"
-    )]
-    OtherCoordinates { package: PathBuf },
-    #[error("terrain tile {tile} cannot be triangulated")]
-    Triangulate { tile: String, source: corniche_tin::TriangulateError },
-    #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.0)))]
-    Write(#[source] io::Error),
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why there is no quantized-mesh terrain.
+    QuantizedMeshError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)] failed [Write Triangulate] {
+        #[error(
+            "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
+        )]
+        BeyondGrid { lat: f64, north: f64 },
+        #[error(
+            "level {finest} would have more than {most} tiles, which no export makes; end with --max-level {level}"
+        )]
+        TooManyTiles { finest: u8, most: u64, level: u8 },
+        #[error(
+            "levels 0 to {finest} would be up to {files} files, more than {most}; write them all with --max-files {files}, or end with --max-level {level}"
+        )]
+        TooManyFiles { finest: u8, files: u64, most: u64, level: u8 },
+        #[error(
+            "{package:?}: its table of coordinates and its rectangle in degrees do not agree; corniche verify tells more"
+        )]
+        OtherCoordinates { package: PathBuf },
+        #[error("terrain tile {tile} cannot be triangulated")]
+        Triangulate { tile: String, source: corniche_tin::TriangulateError },
+        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        Write { source: io::Error },
+    }
 }
 
-/// Why there is no raster of heights.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RasterError {
-    #[error(transparent)]
-    Selection(#[from] SelectionError),
-    #[error(transparent)]
-    Coordinates(#[from] CoordinatesError),
-    #[error(transparent)]
-    Tile(#[from] TileError),
-    #[error(transparent)]
-    Elevation(#[from] ElevationError),
-    #[error(transparent)]
-    File(#[from] GdalFileError),
-    #[error(
-        "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
-         with ground with --bounds"
-    )]
-    MostlyNothing { columns: usize, rows: usize, level: u8, within: u64 },
-    #[error("interrupted")]
-    Interrupted,
+activity! {
+    /// Why there is no raster of heights.
+    RasterError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Elevation(ElevationError) File(GdalFileError)] failed [] {
+        #[error(
+            "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
+             with ground with --bounds"
+        )]
+        MostlyNothing { columns: usize, rows: usize, level: u8, within: u64 },
+    }
 }

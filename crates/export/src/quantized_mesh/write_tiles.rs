@@ -99,8 +99,8 @@ pub fn export_quantized_mesh(
     }
     let summary = QuantizedMeshSummary { levels, heights };
     let text = serde_json::to_vec_pretty(&layer(manifest, request, &available, &summary))
-        .map_err(|error| QuantizedMeshError::Write(error.into()))?;
-    fs::write(folder.join(LAYER), text).map_err(QuantizedMeshError::Write)?;
+        .map_err(|error| QuantizedMeshError::Write { source: error.into() })?;
+    fs::write(folder.join(LAYER), text).map_err(not_written)?;
     Ok(summary)
 }
 
@@ -211,7 +211,7 @@ impl Writer<'_> {
     ) -> Result<Option<Made>, QuantizedMeshError> {
         let encoded = self.job.tile(tile, ground, emptiness, available)?;
         let Some(Encoded { triangles, deviation, bytes }) = encoded else { return Ok(None) };
-        let bytes = self.write(tile, &bytes).map_err(QuantizedMeshError::Write)?;
+        let bytes = self.write(tile, &bytes).map_err(not_written)?;
         Ok(Some(Made { triangles, bytes, deviation }))
     }
 
@@ -235,6 +235,10 @@ fn packed<'a>(request: &QuantizedMeshRequest, bytes: &'a [u8]) -> io::Result<Cow
     Ok(packed.finish()?.into())
 }
 
+fn not_written(source: io::Error) -> QuantizedMeshError {
+    QuantizedMeshError::Write { source }
+}
+
 /// The mean size of the files of some tiles of the finest level with ground, which are made for it; `None` where none of them has any.
 pub(crate) fn mean_bytes(
     package: &FilePackage,
@@ -248,8 +252,7 @@ pub(crate) fn mean_bytes(
     for tile in tiles {
         if let Some(encoded) = job.tile(*tile, &ground, Emptiness::IsLeftOut, &[])? {
             files += 1;
-            bytes +=
-                packed(request, &encoded.bytes).map_err(QuantizedMeshError::Write)?.len() as f64;
+            bytes += packed(request, &encoded.bytes).map_err(not_written)?.len() as f64;
         }
     }
     Ok((files > 0).then(|| bytes / f64::from(files)))

@@ -91,7 +91,7 @@ pub fn export_tiles3d(
     let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
-    let failed = Tiles3dError::Write;
+    let failed = |source| Tiles3dError::Write { source };
     let root =
         RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
     // Of all tiles, so that a part has the same bytes as the whole.
@@ -286,12 +286,12 @@ impl Job<'_> {
         let Some(made) = made else { return Ok(None) };
         let write = |folder: &Path, content: &TileContent| {
             write_content(&folder.join(content_name(id)), content, self.request.compress)
-                .map_err(Tiles3dError::Write)
+                .map_err(|source| Tiles3dError::Write { source })
         };
         let mut bytes = write(self.folder, &made.content)?;
         if let Some(vector) = &made.vector {
             let folder = self.folder.join(VECTOR_FOLDER);
-            make_folders(&folder, &[id]).map_err(Tiles3dError::Write)?;
+            make_folders(&folder, &[id]).map_err(|source| Tiles3dError::Write { source })?;
             bytes += write(&folder, vector)?;
         }
         Ok(Some(Written {
