@@ -15,12 +15,11 @@ use corniche_work::{Observer, Stage, workers::one_by_one};
 use crate::{
     deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
-    elevation::Elevation,
     error::{ElevationError, ProfileError, SelectionError},
     feature::HeightSource,
     feature_request::Coordinates,
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
-    height_bound::sample_bound_m,
+    heights::{Elevation, sample_bound_m},
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},

@@ -8,7 +8,7 @@ use std::{
 use corniche_dem::{Reader, SampleSurface};
 use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
 
-use crate::{elevation::Elevation, error::ElevationError, piece::Vertex};
+use crate::{error::ElevationError, heights::Elevation, piece::Vertex};
 
 /// Cells along each side of a block.
 const BLOCK_CELLS: i64 = 64;

@@ -12,7 +12,10 @@ use gdal::{
 };
 
 use super::grid::{BLOCK, RasterSize};
-use crate::{error::GdalFileError, gdal_settings::GdalSettings, plain_text::plain_text};
+use crate::{
+    error::GdalFileError,
+    gdal_writing::{GdalSettings, plain_text},
+};
 
 const DRIVER: &str = "GTiff";
 /// GDAL's settings while a file is written and read again: all that it says is in the file itself, and pixels that are points are taken for points.

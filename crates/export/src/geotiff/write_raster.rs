@@ -13,9 +13,9 @@ use super::{
 };
 use crate::{
     bounds::DegreeBounds,
-    elevation::Elevation,
     error::{RasterError, SelectionError},
     feature_request::Coordinates,
+    heights::Elevation,
     places::Places,
     read,
 };

@@ -20,7 +20,7 @@ use super::{
     span_decks::SpanDecks,
 };
 use crate::{
-    dem_ground::DemNodes, elevation::Elevation, error::ElevationError, measures::between,
+    dem_ground::DemNodes, error::ElevationError, heights::Elevation, measures::between,
     places::Places, span_facts::SpanFacts,
 };
 

@@ -14,8 +14,7 @@ use serde_json::{Map, Value, json};
 use super::{
     mesh_request::{ModelColors, UpAxis, ground_and_roads},
     model::TileMesh,
-    spill::Spill,
-    writer::{About, MeshWriter},
+    writer::{About, MeshWriter, Spill},
 };
 use crate::{
     gltf::{

@@ -14,8 +14,7 @@ use gdal::{
 
 use crate::{
     error::GdalFileError,
-    gdal_settings::GdalSettings,
-    plain_text::{plain_text, without_nul},
+    gdal_writing::{GdalSettings, plain_text, without_nul},
     vector::{
         cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
