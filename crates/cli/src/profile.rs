@@ -5,8 +5,8 @@ mod drawing;
 use std::{collections::BTreeSet, fmt::Write as _, path::Path};
 
 use corniche_export::{
-    Course, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery, Route,
-    RouteError, RouteRequest, profile, profile_of_course, route,
+    Course, HeightKind, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
+    Route, RouteError, RouteRequest, profile, profile_of_course, route,
 };
 use corniche_overlay::Placed;
 use corniche_pipeline::RecordedElevation;
@@ -237,7 +237,9 @@ fn to_text(found: &Profile, has_network: bool) -> String {
     // Writing to a String cannot fail.
     let _ = if found.smooth.is_some() {
         let within_m = up_to(found.height_tolerance_m, 3);
-        let is_deck = |point: &ProfilePoint| matches!(point.height_source, "deck" | "tunnel");
+        let is_deck = |point: &ProfilePoint| {
+            matches!(point.height_source, HeightKind::Deck | HeightKind::Tunnel)
+        };
         let decks =
             if points(found).any(is_deck) { "; bridges and tunnels are estimates" } else { "" };
         writeln!(text, "         those of the DEM, within {within_m} m between vertices{decks}")
@@ -302,7 +304,7 @@ fn to_csv(found: &Profile) -> String {
                 point.distance_m,
                 point.height_m,
                 100.0 * point.grade,
-                point.height_source,
+                point.height_source.name(),
             );
             let _ = match point.smooth {
                 Some([height_m, grade]) => write!(text, ",{height_m:.3},{:.2}", 100.0 * grade),

@@ -83,7 +83,7 @@ pub use error::{
     GdalFileError, MeshError, ProfileError, QuantizedMeshError, RasterError, RoadQueryError,
     RouteError, SelectionError, SurfaceError, TileError, Tiles3dError,
 };
-pub use feature::{HeightSource, road_fields};
+pub use feature::{HeightKind, HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use features::check_lines_request;
 pub use geotiff::{

@@ -16,7 +16,7 @@ use crate::{
     deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
     error::{ElevationError, ProfileError, SelectionError},
-    feature::HeightSource,
+    feature::{HeightKind, HeightSource},
     feature_request::Coordinates,
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
     heights::{Elevation, sample_bound_m},
@@ -94,7 +94,7 @@ pub struct ProfilePoint {
     /// Longitude and latitude, degrees.
     pub position_deg: [f64; 2],
     /// Where the height is from, as in exported roads.
-    pub height_source: &'static str,
+    pub height_source: HeightKind,
     /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels whose decks are not
     /// known, and without elevation files.
     pub smooth: Option<[f64; 2]>,
@@ -441,7 +441,7 @@ impl Telling<'_> {
                 height_m,
                 grade,
                 position_deg: self.places.wgs84(vertex.at),
-                height_source: from.text(self.structure(leg), self.on_deck.contains(&leg)),
+                height_source: from.kind(self.structure(leg), self.on_deck.contains(&leg)),
                 smooth: smooth_at(index, along_m),
             }
         };

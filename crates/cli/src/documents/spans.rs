@@ -1,6 +1,5 @@
 //! Bridges and tunnels in the JSON documents of several commands.
 
-use corniche_roads::Structure;
 use corniche_tileset::{LineLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
 use serde::Serialize;
 
@@ -78,18 +77,9 @@ impl TileSpanDocument {
         Self {
             way_id: run.way_id,
             frc: run.class.number(),
-            structure: structure_name(run.structure),
+            structure: run.structure.name(),
             line,
             on_ground: [run.points.first(), run.points.last()].map(is_on_ground),
         }
-    }
-}
-
-/// What carries a road, in one word.
-pub(crate) fn structure_name(structure: Structure) -> &'static str {
-    match structure {
-        Structure::Ground => "ground",
-        Structure::Bridge => "bridge",
-        Structure::Tunnel => "tunnel",
     }
 }

@@ -341,8 +341,7 @@ fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile
 fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {
     let structure = match attributes.structure {
         Structure::Ground => "",
-        Structure::Bridge => "bridge",
-        Structure::Tunnel => "tunnel",
+        other => other.name(),
     };
     RoadRow {
         way_id,
