@@ -126,7 +126,8 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()
 }
 
-/// How to have what was left out for a reason, as packages name it; `None` where it is no road, or was not asked for.
+/// How to have what was left out for a reason, as packages name it; `None` where it is no road, or
+/// was not asked for.
 fn remedy(reason: &str) -> Option<&'static str> {
     match LossReason::from_text(reason)? {
         LossReason::ClassOff => Some("--classes 0-8 has them"),

@@ -1,9 +1,10 @@
 //! Why exports fail: an enum for each activity, so that a signature tells what can happen.
 //!
 //! ```text
-//!   export_…   FeaturesError  RasterError  MeshError  Tiles3dError  QuantizedMeshError  ProfileError  RouteError
-//!                  │                                                                        what each is made of:
-//!                  └──► SelectionError  CoordinatesError  TileError  SurfaceError  ElevationError  RoadQueryError  GdalFileError
+//!   FeaturesError  RasterError  MeshError  Tiles3dError  QuantizedMeshError  ProfileError  RouteError
+//!        │
+//!        └──► what each is made of: SelectionError  CoordinatesError  TileError  SurfaceError
+//!                                   ElevationError  RoadQueryError  GdalFileError
 //! ```
 
 #![expect(missing_docs, reason = "each message documents its variant")]
@@ -32,10 +33,13 @@ pub enum ErrorKind {
     Interrupted,
 }
 
-/// Declares the error of an activity: the errors of what it is made of, and its own. Own ones in `failed` say that something failed, others that the
-/// package or the request is of no use.
+/// Declares the error of an activity: the errors of what it is made of, and its own. Own ones in
+/// `failed` say that something failed, others that the package or the request is of no use.
 macro_rules! activity {
-    ($(#[$doc:meta])* $error:ident: [$($part:ident($inner:ident))*] failed [$($failed:ident)*] { $($own:tt)* }) => {
+    (
+        $(#[$doc:meta])*
+        $error:ident: [$($part:ident($inner:ident))*] failed [$($failed:ident)*] { $($own:tt)* }
+    ) => {
         $(#[$doc])*
         #[derive(Debug, thiserror::Error)]
         #[non_exhaustive]
@@ -50,7 +54,7 @@ macro_rules! activity {
         impl $error {
             /// What it asks of whoever meets it.
             #[must_use]
-            #[allow(unreachable_patterns, reason = "of some activities all own errors are failures")]
+            #[allow(unreachable_patterns, reason = "all own errors may be failures")]
             pub fn kind(&self) -> ErrorKind {
                 match self {
                     Self::Interrupted => ErrorKind::Interrupted,
@@ -105,7 +109,8 @@ macro_rules! of_one_kind {
 }
 
 reads_tiles! {
-    SurfaceError RoadQueryError FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
+    SurfaceError RoadQueryError FeaturesError RouteError ProfileError MeshError Tiles3dError
+    QuantizedMeshError RasterError
 }
 
 of_one_kind! {
@@ -300,7 +305,10 @@ activity! {
 
 activity! {
     /// Why roads, edges, areas or lines cannot be written as features, or not be measured by way.
-    FeaturesError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError) Elevation(ElevationError) File(GdalFileError)] failed [Sort] {
+    FeaturesError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)
+        Elevation(ElevationError) File(GdalFileError)
+    ] failed [Sort] {
         #[error("{object} is not the same in all tiles; corniche verify says more")]
         Differs { object: AreaObject },
         #[error("{object} cannot be cut at --bounds; leave them out")]
@@ -316,7 +324,9 @@ activity! {
 
 activity! {
     /// Why there is no way through the network, or not one alone.
-    RouteError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)] failed [] {
+    RouteError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)
+    ] failed [] {
         #[error(
             "{} roads that are not connected have {query}; name the ways of one, or two places on it with --from LON,LAT --to LON,LAT",
             roads.len()
@@ -347,7 +357,10 @@ activity! {
 
 activity! {
     /// Why ways or lines have no profile.
-    ProfileError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Elevation(ElevationError)] failed [] {
+    ProfileError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
+        Elevation(ElevationError)
+    ] failed [] {
         #[error(
             "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
         )]
@@ -363,7 +376,10 @@ activity! {
 
 activity! {
     /// Why there is no model of a level.
-    MeshError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Surface(SurfaceError)] failed [Write] {
+    MeshError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
+        Surface(SurfaceError)
+    ] failed [Write] {
         #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
         GlbAxis,
         #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
@@ -373,7 +389,10 @@ activity! {
 
 activity! {
     /// Why there are no 3D Tiles.
-    Tiles3dError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Surface(SurfaceError)] failed [Write] {
+    Tiles3dError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
+        Surface(SurfaceError)
+    ] failed [Write] {
         #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
         Write { source: io::Error },
     }
@@ -381,7 +400,9 @@ activity! {
 
 activity! {
     /// Why there is no quantized-mesh terrain.
-    QuantizedMeshError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)] failed [Write Triangulate] {
+    QuantizedMeshError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
+    ] failed [Write Triangulate] {
         #[error(
             "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
         )]
@@ -407,7 +428,10 @@ activity! {
 
 activity! {
     /// Why there is no raster of heights.
-    RasterError: [Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Elevation(ElevationError) File(GdalFileError)] failed [] {
+    RasterError: [
+        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
+        Elevation(ElevationError) File(GdalFileError)
+    ] failed [] {
         #[error(
             "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
              with ground with --bounds"

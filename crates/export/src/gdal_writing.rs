@@ -1,4 +1,5 @@
-//! What GDAL's writers are given: settings that hold for one thread until they are dropped, and plain texts.
+//! What GDAL's writers are given: settings that hold for one thread until they are dropped, and
+//! plain texts.
 
 use std::borrow::Cow;
 

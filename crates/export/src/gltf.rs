@@ -1,5 +1,5 @@
-//! What all glTF files have in common: the binary container (a header, a document and one chunk of bytes), numbers that glTF takes from OpenGL, and how
-//! slabs of bridges look.
+//! What all glTF files have in common: the binary container (a header, a document and one chunk of
+//! bytes), numbers that glTF takes from OpenGL, and how slabs of bridges look.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6 and 4.4.
 

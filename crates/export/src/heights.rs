@@ -1,4 +1,5 @@
-//! What heights of a package are: the elevation files that it was made from, what they are measured from, and how far heights may be from them, in words.
+//! What heights of a package are: the elevation files that it was made from, what they are measured
+//! from, and how far heights may be from them, in words.
 
 use corniche_dem::{Dem, GridPlan, RecordedHeights};
 use corniche_tileset::{FilePackage, Manifest, VerticalRecord};

@@ -1,4 +1,5 @@
-//! Why roads, and ways with a `highway` tag, are not in a package: codes, and the words under which packages count them.
+//! Why roads, and ways with a `highway` tag, are not in a package: codes, and the words under which
+//! packages count them.
 
 /// Why a road, a part of one, or a way with a `highway` tag is not in a package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,17 +1,18 @@
-//! What places an output file safely: at a target lies what was there before, or the whole new file.
+//! What places an output file safely: at a target lies what was there before, or the whole new
+//! file.
 //!
 //! ```text
-//!   file_target    where it goes: the file, or what a link there leads to; a folder, a device or a dead link is refused
-//!        │
-//!   Claim          the right to write there, so that of two programs one is refused, and what a killed run left is known for ours
-//!        │
+//!   file_target      where it goes: the file, or what a link there leads to; a folder, a device or a
+//!        │           dead link is refused
+//!   Claim            the right to write there: of two programs one is refused, and what a killed run
+//!        │           left is known for ours
 //!   UnfinishedFile, UnfinishedFolder    what is made beside it; gone when it is dropped
 //!        │
-//!   place          durably in its place, over what was there only with Existing::Replace
+//!   place            durably in its place, over what was there only with Existing::Replace
 //! ```
 //!
-//! All files of ours are opened by [`open_own`]: no link is followed, and nothing of another user is written. What a full disk says of itself is
-//! [`LackOfRoom`].
+//! All files of ours are opened by [`open_own`]: no link is followed, and nothing of another user
+//! is written. What a full disk says of itself is [`LackOfRoom`].
 
 mod claim;
 mod file_target;

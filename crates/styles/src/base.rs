@@ -55,8 +55,8 @@ fn usual() -> Result<DeTable<'static>, StyleError> {
     Ok(DeTable::parse(style_preset(USUAL).unwrap_or_default())?.into_inner())
 }
 
-/// Puts what every style may leave out into `own`, as the usual style has it: classes of areas and boundaries as a whole, and some of what is said
-/// of light and background where these are there.
+/// Puts what every style may leave out into `own`, as the usual style has it: classes of areas and
+/// boundaries as a whole, and some of what is said of light and background where these are there.
 fn complete<'t>(own: &mut DeTable<'t>, usual: DeTable<'t>) {
     for (part, entries) in usual {
         let names: Option<&[&str]> = match part.get_ref().as_ref() {

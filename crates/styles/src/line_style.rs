@@ -26,8 +26,8 @@ impl LineStyle {
     /// How many styles the lines of one layer can have.
     pub const MOST: usize = FunctionalRoadClass::COUNT;
 
-    /// Lines of files, in the order of the files: colours that can be told from each other and from roads, with a pale edge so that they are seen
-    /// on any ground.
+    /// Lines of files, in the order of the files: colours that can be told from each other and from
+    /// roads, with a pale edge so that they are seen on any ground.
     pub(crate) const OVERLAYS: [Self; Self::MOST] = [
         Self::with_edge([0xC2, 0x1E, 0x8A], [0xFF; 3]),
         Self::with_edge([0x1F, 0x5F, 0xD0], [0xFF; 3]),

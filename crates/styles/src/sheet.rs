@@ -49,8 +49,8 @@ struct BackgroundSheet {
     haze_reach: f64,
 }
 
-/// A style in the units and types of its text, not yet checked: lists and tables of any length. `config/styles/road-atlas.toml` tells what each entry
-/// means.
+/// A style in the units and types of its text, not yet checked: lists and tables of any length.
+/// `config/styles/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StyleFile {
@@ -91,7 +91,8 @@ static ROAD_ATLAS: LazyLock<Style> = LazyLock::new(|| {
 });
 
 impl Style {
-    /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is the preset `road-atlas`.
+    /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is the
+    /// preset `road-atlas`.
     #[must_use]
     pub fn road_atlas() -> Self {
         ROAD_ATLAS.clone()

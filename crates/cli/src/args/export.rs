@@ -205,7 +205,13 @@ pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
     pub(crate) within: BoundsArg,
     /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are slabs of surfaces if the package has spans
-    #[arg(long, value_parser = model_roads(), default_value = "lines", value_name = "HOW", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_parser = model_roads(),
+        default_value = "lines",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
     pub(crate) roads: ModelRoads,
     /// Colours and widths of roads: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
@@ -216,7 +222,11 @@ pub(crate) struct ExportMeshArgs {
     #[arg(long, value_parser = on_or_none(), value_name = "on|none", hide_possible_values = true)]
     pub(crate) relief: Option<bool>,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
-    #[arg(long, value_parser = one_of([("y", "", UpAxis::Y), ("z", "", UpAxis::Z)]), value_name = "AXIS")]
+    #[arg(
+        long,
+        value_parser = one_of([("y", "", UpAxis::Y), ("z", "", UpAxis::Z)]),
+        value_name = "AXIS"
+    )]
     pub(crate) up: Option<UpAxis>,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
@@ -257,7 +267,13 @@ pub(crate) struct ExportTiles3dArgs {
     /// How roads are there: cut (surfaces of true width), line (centre-lines just above the ground), vector (these as vector content
     /// for CesiumJS) or none. Surfaces are in the ground's own triangles, and bridges are slabs if the package has spans;
     /// vector content is in a second tileset, roads/tileset.json, a draft, and not valid glTF 2.0 for others
-    #[arg(long, value_parser = tile_roads(), default_value = "cut", value_name = "HOW", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_parser = tile_roads(),
+        default_value = "cut",
+        value_name = "HOW",
+        hide_possible_values = true
+    )]
     pub(crate) roads: TileRoads,
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
@@ -270,10 +286,24 @@ pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
     pub(crate) within: BoundsArg,
     /// Normal maps of the ground from the package's relief
-    #[arg(long, action = ArgAction::Set, value_parser = on_or_none(), default_value = "on", value_name = "on|none", hide_possible_values = true)]
+    #[arg(
+        long,
+        action = ArgAction::Set,
+        value_parser = on_or_none(),
+        default_value = "on",
+        value_name = "on|none",
+        hide_possible_values = true
+    )]
     pub(crate) relief: bool,
     /// Walls below the borders of tiles, which hide gaps between levels
-    #[arg(long, action = ArgAction::Set, value_parser = on_or_none(), default_value = "on", value_name = "on|none", hide_possible_values = true)]
+    #[arg(
+        long,
+        action = ArgAction::Set,
+        value_parser = on_or_none(),
+        default_value = "on",
+        value_name = "on|none",
+        hide_possible_values = true
+    )]
     pub(crate) skirts: bool,
     /// Compression of vertices without loss: meshopt, or none
     #[arg(

@@ -1,4 +1,5 @@
-//! The report of offsets: which of them an image shows, the table by region for people, and a line for each way (CSV).
+//! The report of offsets: which of them an image shows, the table by region for people, and a line
+//! for each way (CSV).
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! What the writers of all model formats have in common: facts, numbers of corners that tiles share, and bytes that wait in a file without a name.
+//! What the writers of all model formats have in common: facts, numbers of corners that tiles
+//! share, and bytes that wait in a file without a name.
 
 use std::{
     collections::HashMap,

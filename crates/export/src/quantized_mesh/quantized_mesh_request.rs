@@ -1,4 +1,5 @@
-//! What a user asks for when a package becomes quantized-mesh terrain tiles, what will be written, and what was.
+//! What a user asks for when a package becomes quantized-mesh terrain tiles, what will be written,
+//! and what was.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! What both methods do with the lines of a tile: what is on decks is taken away, and lines end flat where they go on.
+//! What both methods do with the lines of a tile: what is on decks is taken away, and lines end
+//! flat where they go on.
 
 use std::borrow::Cow;
 
@@ -25,7 +26,8 @@ pub(crate) trait RoadLine: Clone {
 }
 
 impl<'a, L: RoadLine> InNet<'a, L> {
-    /// What of the lines of a tile, and of a margin around it, is on no deck. Parts of the network are those of whole lines: bridges join them.
+    /// What of the lines of a tile, and of a margin around it, is on no deck. Parts of the network
+    /// are those of whole lines: bridges join them.
     pub(crate) fn all_of(
         lines: &'a [L],
         decks: &OffGround<'_>,
@@ -44,7 +46,8 @@ impl<'a, L: RoadLine> InNet<'a, L> {
         (on_ground, GroundNet { ends, parts_m })
     }
 
-    /// Each line, how long its part of the network is, and whether it is flat at its beginning and at its end, also where roads have caps.
+    /// Each line, how long its part of the network is, and whether it is flat at its beginning and
+    /// at its end, also where roads have caps.
     pub(crate) fn with_flat_ends<'l>(
         lines: &'l [Self],
         decks: &OffGround<'_>,
