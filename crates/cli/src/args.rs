@@ -17,7 +17,6 @@ mod reading;
 mod serve;
 mod shared;
 mod shell;
-mod terrain_values;
 mod values;
 mod view;
 mod voice;
@@ -33,9 +32,9 @@ pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use camera::PrintScale;
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{
-    Compress, Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs,
-    ExportEdgesArgs, ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs,
-    ExportTiles3dArgs, Format, InPlanArgs, OnOrNone, VectorArgs,
+    Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, ExportEdgesArgs,
+    ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs,
+    InPlanArgs, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, Roads};
@@ -49,7 +48,6 @@ pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFile
 pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs, ThreadsArg};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
-pub(crate) use terrain_values::TerrainCompress;
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
 

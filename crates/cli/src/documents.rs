@@ -4,7 +4,6 @@
 //! that belongs together is an object.
 
 pub(crate) mod areas;
-pub(crate) mod boundaries;
 pub(crate) mod growth;
 pub(crate) mod info;
 pub(crate) mod lines;
@@ -38,6 +37,9 @@ pub(crate) fn write_line_to(out: impl Write, document: &impl Serialize) -> io::R
     document.serialize(&mut serializer).map_err(io::Error::from)
 }
 
+#[cfg(test)]
+#[path = "documents/record_schemas_tests.rs"]
+mod record_schemas;
 #[cfg(test)]
 #[path = "documents/schema_tests.rs"]
 mod schema_tests;

@@ -7,13 +7,12 @@ mod mesh;
 mod quantized_mesh;
 mod roads;
 mod tiles3d;
-mod unknown_ending;
 mod vector_files;
 
 use std::path::Path;
 
 use corniche_areas::{AreaClass, ClassedLayer};
-use corniche_export::{ExportError, FeatureRequest, export_areas, export_lines};
+use corniche_export::{FeatureRequest, export_areas, export_lines};
 use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
@@ -26,8 +25,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    named_output::NamedOutput,
-    output::existing_of,
+    output::{existing_of, named::NamedOutput},
     packages,
     progress::Progress,
     recorded,
@@ -117,11 +115,11 @@ fn plan_request<C: Copy>(
 }
 
 /// Writes a file in a folder beside its target, under its own name there, and puts it into its place. Gives its size, too.
-fn write<T>(
+fn write<T, E: Into<Failure>>(
     file: &FileArgs,
     name: String,
     package: &Path,
-    export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
 ) -> Result<(T, u64), Failure> {
     let output = NamedOutput::create(&file.output, existing_of(file.overwrite), name, &[package])?;
     fill(file, output, None, export)

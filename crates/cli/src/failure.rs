@@ -2,7 +2,10 @@
 
 use std::{fmt, io};
 
-use corniche_export::ExportError;
+use corniche_export::{
+    CoordinatesError, DatumError, ErrorKind, FeaturesError, GdalFileError, MeshError, ProfileError,
+    QuantizedMeshError, RasterError, RouteError, Tiles3dError,
+};
 use corniche_ground::TerrainError;
 use corniche_matching::MatchError;
 use corniche_pipeline::BuildError;
@@ -34,6 +37,11 @@ impl Failure {
     /// The same, with the file that it is about in front.
     pub(crate) fn about(self, path: &std::path::Path) -> Self {
         Self { error: self.error.context(path.display().to_string()), ..self }
+    }
+
+    /// What could not be written is known to people by the name of the target, not of the file that becomes it.
+    pub(crate) fn about_target(self, target: &std::path::Path) -> Self {
+        if self.code == ExitCode::Failed { self.about(target) } else { self }
     }
 
     /// The target exists, with a text for the user.
@@ -142,21 +150,43 @@ impl From<MatchError> for Failure {
     }
 }
 
-impl From<ExportError> for Failure {
-    fn from(error: ExportError) -> Self {
-        let code = match &error {
-            ExportError::Interrupted => ExitCode::Interrupted,
-            other if other.is_unusable_input() => ExitCode::Unusable,
-            _ => ExitCode::Failed,
-        };
-        Self::new(code, error)
-    }
+/// What exports end with, by the kind of their errors.
+macro_rules! exports {
+    ($($error:ident)*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let code = match error.kind() {
+                    ErrorKind::Unusable => ExitCode::Unusable,
+                    ErrorKind::Failed => ExitCode::Failed,
+                    ErrorKind::Interrupted => ExitCode::Interrupted,
+                };
+                Self::new(code, error)
+            }
+        }
+    )*};
 }
 
-impl From<OpenError> for Failure {
-    fn from(error: OpenError) -> Self {
-        Self::new(ExitCode::Unusable, error)
-    }
+exports! {
+    FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
+}
+
+/// Errors that always end with one code.
+macro_rules! always {
+    ($($code:ident: $error:ty;)*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::new(ExitCode::$code, error)
+            }
+        }
+    )*};
+}
+
+always! {
+    Unusable: OpenError;
+    Unusable: CoordinatesError;
+    Unusable: DatumError;
+    Failed: GdalFileError;
+    Failed: io::Error;
 }
 
 impl From<GpuError> for Failure {
@@ -172,11 +202,5 @@ impl From<GpuError> for Failure {
             }
             _ => Self::new(ExitCode::Failed, error),
         }
-    }
-}
-
-impl From<io::Error> for Failure {
-    fn from(error: io::Error) -> Self {
-        Self::new(ExitCode::Failed, error)
     }
 }

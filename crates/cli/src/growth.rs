@@ -20,9 +20,8 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Output, existing_of},
+    output::{Output, existing_of, report_files::ReportFiles},
     packages,
-    report_files::ReportFiles,
     table::Digits,
 };
 

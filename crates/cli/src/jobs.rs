@@ -3,8 +3,7 @@
 use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
-    args::JobsArgs, documents::plan::JobDocument, exit::ExitCode, failure::Failure, messages,
-    part::read_plan, settings,
+    args::JobsArgs, exit::ExitCode, failure::Failure, messages, part::read_plan, settings,
 };
 
 pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
@@ -27,7 +26,7 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
 /// Prints one JSON object per line.
 pub(crate) fn print(jobs: &[Job]) -> Result<ExitCode, Failure> {
     for job in jobs {
-        messages::answer_document(&JobDocument::from(job))?;
+        messages::answer_document(job)?;
     }
     Ok(ExitCode::Done)
 }

@@ -1,9 +1,7 @@
 //! `corniche match`: how far roads lie beside what a photo or the slope of the ground shows of them.
 
-mod csv;
 mod map;
-mod sure;
-mod text;
+mod report;
 
 use std::path::Path;
 
@@ -11,8 +9,14 @@ use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
 
 use crate::{
-    args::MatchArgs, exit::ExitCode, failure::Failure, messages, output::existing_of, packages,
-    progress::Progress, report_files::ReportFiles, table::Digits,
+    args::MatchArgs,
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    output::{existing_of, report_files::ReportFiles},
+    packages,
+    progress::Progress,
+    table::Digits,
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
@@ -45,10 +49,10 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     progress.finish();
     let report = report?;
     files.write(
-        |output| output.fill(csv::to_csv(&report).as_bytes()),
+        |output| output.fill(report::to_csv(&report).as_bytes()),
         || Ok(map::to_svg(&report, manifest)),
     )?;
-    let text = text::to_text(&report, manifest, Digits::of_answers());
+    let text = report::to_text(&report, manifest, Digits::of_answers());
     messages::answer(&text)?;
     Ok(ExitCode::Done)
 }

@@ -41,6 +41,14 @@ pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
     )))
 }
 
+/// A file whose name says no format of those with these endings, and none was named.
+pub(crate) fn unknown_ending(output: &Path, endings: &str) -> Failure {
+    Failure::unusable(format!(
+        "the ending of {} says no format; use one of {endings}, or name it with --format",
+        output.display()
+    ))
+}
+
 /// Whether a name ends as those of packages do.
 pub(crate) fn is_package_name(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pmtiles"))

@@ -1,4 +1,15 @@
 //! Files beside the package that commands write: a file that is cut off never stands at its target.
+//!
+//! ```text
+//!   claim ──► Output                a file that the command writes itself
+//!         ──► named::NamedOutput    a file that a library writes by its name
+//!         ──► folder::FolderOutput  a folder
+//! ```
+
+pub(crate) mod folder;
+mod leftovers;
+pub(crate) mod named;
+pub(crate) mod report_files;
 
 use std::{
     fmt::Display,

@@ -19,7 +19,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         plan: read_plan(&plan)?,
         stores,
         tmp: planned.tmp.clone(),
-        step: args.step.into(),
+        step: args.step,
         subtree: args.subtree,
         share: args.share,
         resources: settings::resources(planned.cpu.threads, planned.memory.as_deref())?,

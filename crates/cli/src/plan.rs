@@ -53,7 +53,7 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     let digits = Digits::of_answers();
     if args.json {
         estimate.memory.block_file = shown(&estimate.memory.block_file).into_owned();
-        messages::answer_document(&PlanDocument::new(&plan, estimate))?;
+        messages::answer_document(&PlanDocument { plan_sha256: plan.hash(), estimate })?;
     } else {
         messages::answer(&to_text(&plan, &estimate, work.resources, digits))?;
     }

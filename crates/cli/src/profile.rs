@@ -5,8 +5,8 @@ mod drawing;
 use std::{collections::BTreeSet, fmt::Write as _, path::Path};
 
 use corniche_export::{
-    Course, ExportError, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
-    Route, RouteRequest, profile, profile_of_course, route,
+    Course, HeightKind, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
+    Route, RouteError, RouteRequest, profile, profile_of_course, route,
 };
 use corniche_overlay::Placed;
 use corniche_tileset::FilePackage;
@@ -19,11 +19,10 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Complete, Output, existing_of},
+    output::{Complete, Output, existing_of, report_files::ReportFiles},
     overlays, packages,
     progress::Progress,
     recorded,
-    report_files::ReportFiles,
     table::up_to,
 };
 
@@ -65,7 +64,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
             classes: args.filter.classes.classes(),
         };
         let found = route(&package, &request, network.as_ref(), &progress);
-        if let Err(ExportError::SeveralRoads { roads, .. }) = &found {
+        if let Err(RouteError::SeveralRoads { roads, .. }) = &found {
             progress.finish();
             for road in roads {
                 messages::warning(road);
@@ -238,7 +237,9 @@ fn to_text(found: &Profile, has_network: bool) -> String {
     // Writing to a String cannot fail.
     let _ = if found.smooth.is_some() {
         let within_m = up_to(found.height_tolerance_m, 3);
-        let is_deck = |point: &ProfilePoint| matches!(point.height_source, "deck" | "tunnel");
+        let is_deck = |point: &ProfilePoint| {
+            matches!(point.height_source, HeightKind::Deck | HeightKind::Tunnel)
+        };
         let decks =
             if points(found).any(is_deck) { "; bridges and tunnels are estimates" } else { "" };
         writeln!(text, "         those of the DEM, within {within_m} m between vertices{decks}")
@@ -303,7 +304,7 @@ fn to_csv(found: &Profile) -> String {
                 point.distance_m,
                 point.height_m,
                 100.0 * point.grade,
-                point.height_source,
+                point.height_source.name(),
             );
             let _ = match point.smooth {
                 Some([height_m, grade]) => write!(text, ",{height_m:.3},{:.2}", 100.0 * grade),

@@ -12,7 +12,7 @@ use crate::{
     args::{Coordinates, TileArgs},
     documents::{
         areas::TileAreaDocument,
-        boundaries::TileBoundaryDocument,
+        lines::TileBoundaryDocument,
         spans::TileSpanDocument,
         tile::{
             GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, Written,

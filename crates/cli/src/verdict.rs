@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use corniche_roads::LossReason;
 use corniche_tileset::{AreasRecord, Counts, LinesRecord, Manifest, VerticalRecord};
 
 use crate::{
@@ -40,8 +41,7 @@ pub(crate) fn to_text(
 fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
     if counts.roads_in == 0 {
-        let has_extract = manifest.inputs.iter().any(|input| input.kind == "osm");
-        let why = match (has_extract, counts.highways_in) {
+        let why = match (manifest.has_extract(), counts.highways_in) {
             (false, _) => "built without an extract",
             (true, 0) => "the extract has none",
             (true, _) => "the extract has none of the classes that are on",
@@ -126,22 +126,20 @@ fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()
 }
 
-/// Why something is left out, as packages name it, and how to have it; `None` where it is no road, or was not asked for. All reasons are here.
-const REMEDIES: [(&str, Option<&str>); 9] = [
-    ("listed as no road", None),
-    ("class is off", Some("--classes 0-8 has them")),
-    ("value in no class", Some("--frc-table FILE, with these values, has them")),
-    ("an area", None),
-    ("id occurs twice", None),
-    ("no line is left", None),
-    ("outside the elevation data", Some("give --dem files that cover them")),
-    ("where the data have no ground (void or edge)", Some("--fill-voids N fills gaps of N cells")),
-    ("outside the bounds that were asked for", None),
-];
-
-/// How to have what was left out for a reason.
+/// How to have what was left out for a reason, as packages name it; `None` where it is no road, or
+/// was not asked for.
 fn remedy(reason: &str) -> Option<&'static str> {
-    REMEDIES.into_iter().find(|(known, _)| *known == reason)?.1
+    match LossReason::from_text(reason)? {
+        LossReason::ClassOff => Some("--classes 0-8 has them"),
+        LossReason::Unknown => Some("--frc-table FILE, with these values, has them"),
+        LossReason::OutsideData => Some("give --dem files that cover them"),
+        LossReason::NoGround => Some("--fill-voids N fills gaps of N cells"),
+        LossReason::Listed
+        | LossReason::Area
+        | LossReason::Duplicate
+        | LossReason::WithoutLine
+        | LossReason::OutsideBounds => None,
+    }
 }
 
 /// Areas and boundaries, where they were asked for.

@@ -117,11 +117,3 @@ fn a_whole_build_has_four_lines() {
         text.starts_with("roads        none: the extract has none of the classes that are on\n")
     );
 }
-
-/// A new reason needs a remedy, or to be named as one that has none.
-#[test]
-fn every_reason_for_leaving_out_has_its_place_in_the_list_of_remedies() {
-    let known: Vec<&str> = REMEDIES.into_iter().map(|(reason, _)| reason).collect();
-    let all: Vec<&str> = corniche_pieces::roads::totals::reasons_left_out().collect();
-    assert_eq!(known, all);
-}

@@ -67,7 +67,7 @@ fn extract(
     }
     let paths = corniche_spec::inputs::extract_names(osm)?;
     let manifest = package.manifest();
-    if !names_extract(manifest) {
+    if !manifest.has_extract() {
         return Err(VerifyError::NoExtract.into());
     }
     let table = frc_table(args.frc_table.as_deref(), package)?;
@@ -93,11 +93,6 @@ fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, 
     }
 }
 
-/// Whether a package was made with an extract.
-fn names_extract(manifest: &Manifest) -> bool {
-    manifest.inputs.iter().any(|input| input.kind == "osm")
-}
-
 /// What a package can be checked against beside elevation files.
 #[derive(Debug, Clone, Copy, Default)]
 struct Holds {
@@ -107,7 +102,7 @@ struct Holds {
 
 impl Holds {
     fn of(manifest: &Manifest) -> Self {
-        Self { photos: manifest.settings.photo.is_some(), extract: names_extract(manifest) }
+        Self { photos: manifest.settings.photo.is_some(), extract: manifest.has_extract() }
     }
 }
 

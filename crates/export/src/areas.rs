@@ -10,12 +10,13 @@ use corniche_work::Observer;
 use crate::{
     cut::polygons_of,
     cut_polygon::{Rings, cut_polygon_at_bounds, rings_of},
-    error::ExportError,
+    error::{FeaturesError, SelectionError, TileError},
+    feature::text,
     feature_request::FeatureRequest,
     features::{About, FeatureSource, Features, write_features},
     places::Places,
     plan_piece::{PlanPiece, class_of, lines_of},
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value},
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields},
 };
 
 /// What was exported.
@@ -35,35 +36,26 @@ pub struct AreasSummary {
     pub unjoined: u64,
 }
 
-const FIELDS: &[Field] = &[
-    Field {
-        name: "object",
-        kind: FieldKind::Text,
-        unit: "",
-        meaning: "`way` or `relation` of OpenStreetMap",
-    },
-    Field { name: "id", kind: FieldKind::Integer64, unit: "", meaning: "its id" },
-    Field {
-        name: "class",
-        kind: FieldKind::Text,
-        unit: "",
-        meaning: "class of the area, such as `water`",
-    },
-    Field { name: "name", kind: FieldKind::Text, unit: "", meaning: "OSM's `name`; null without" },
-    Field {
-        name: "area_m2",
-        kind: FieldKind::Real,
-        unit: "m²",
-        meaning: "true area on the ellipsoid of WGS84, of what the package has of it",
-    },
-    Field { name: "polygons", kind: FieldKind::Integer, unit: "", meaning: "number of polygons" },
-    Field {
-        name: "points",
-        kind: FieldKind::Integer,
-        unit: "",
-        meaning: "points of all rings, the closing ones not counted",
-    },
-];
+/// What is told of an area.
+struct AreaFeature<'a> {
+    object: AreaObject,
+    class: AreaClass,
+    name: &'a str,
+    area_m2: f64,
+    polygons: usize,
+    points: usize,
+}
+
+fields! { FIELDS, values, area: &AreaFeature<'_>:
+    "object", Text, "", "`way` or `relation` of OpenStreetMap", Value::Text(area.object.parts().0.to_owned());
+    "id", Integer64, "", "its id", Value::Integer(area.object.parts().1);
+    "class", Text, "", "class of the area, such as `water`", Value::Text(area.class.name().to_owned());
+    "name", Text, "", "OSM's `name`; null without", text(area.name);
+    "area_m2", Real, "m²", "true area on the ellipsoid of WGS84, of what the package has of it",
+        Value::Real((area.area_m2 * 1e3).round() / 1e3);
+    "polygons", Integer, "", "number of polygons", Value::Integer(area.polygons as i64);
+    "points", Integer, "", "points of all rings, the closing ones not counted", Value::Integer(area.points as i64);
+}
 
 /// Writes the areas of a package to a new file at `path`: a feature for each object, joined again over borders of tiles. Beside
 /// the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
@@ -76,10 +68,10 @@ pub fn export_areas(
     request: &FeatureRequest<AreaClass>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<AreasSummary, ExportError> {
+) -> Result<AreasSummary, FeaturesError> {
     if package.manifest().areas.is_none() {
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoLayer { package, layer: NAME });
+        return Err(SelectionError::NoLayer { package, layer: NAME }.into());
     }
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
@@ -127,10 +119,10 @@ impl Features for Areas {
         &mut self,
         FeatureSource { package, request, .. }: &FeatureSource<'_, AreaClass>,
         tile: TileId,
-    ) -> Result<Vec<PlanPiece>, ExportError> {
+    ) -> Result<Vec<PlanPiece>, FeaturesError> {
         let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
         let areas = decode_areas(&bytes, tile, &package.manifest().frame)
-            .map_err(|source| ExportError::Damaged { layer: NAME, source: Box::new(source) })?;
+            .map_err(|source| TileError::Damaged { layer: NAME, source: Box::new(source) })?;
         let wanted = areas.into_iter().filter(|area| request.classes.contains(&area.class));
         Ok(wanted
             .map(|area| PlanPiece {
@@ -151,7 +143,7 @@ impl Features for Areas {
         &mut self,
         FeatureSource { places, request, .. }: &FeatureSource<'_, AreaClass>,
         pieces: &[PlanPiece],
-    ) -> Result<Vec<Record>, ExportError> {
+    ) -> Result<Vec<Record>, FeaturesError> {
         let class = class_of(pieces, AreaClass::from_number)?;
         let object = pieces[0].object;
         let (joined, is_joined) = joined(pieces);
@@ -161,7 +153,7 @@ impl Features for Areas {
                 None => polygons.push(rings_of(polygon, places)),
                 Some(bounds) => polygons.extend(
                     cut_polygon_at_bounds(polygon, bounds, places)
-                        .ok_or(ExportError::BoundsAcross { object })?,
+                        .ok_or(FeaturesError::BoundsAcross { object })?,
                 ),
             }
         }
@@ -184,18 +176,9 @@ impl Features for Areas {
         self.summary.points += points as u64;
         self.summary.area_m2 += area_m2;
         self.summary.unjoined += u64::from(!is_joined);
-        let (kind, id) = object.parts();
-        let name = pieces[0].name.clone();
-        let values = vec![
-            Value::Text(kind.to_owned()),
-            Value::Integer(id),
-            Value::Text(class.name().to_owned()),
-            if name.is_empty() { Value::Null } else { Value::Text(name) },
-            Value::Real((area_m2 * 1e3).round() / 1e3),
-            Value::Integer(count as i64),
-            Value::Integer(points as i64),
-        ];
-        Ok(vec![Record { values, shape: Shape::Polygons(shape) }])
+        let feature =
+            AreaFeature { object, class, name: &pieces[0].name, area_m2, polygons: count, points };
+        Ok(vec![Record { values: values(&feature), shape: Shape::Polygons(shape) }])
     }
 }
 

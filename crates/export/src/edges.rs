@@ -16,13 +16,12 @@ use corniche_work::{Observer, Stage};
 use crate::{
     deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
-    elevation::Elevation,
-    error::ExportError,
+    error::{ElevationError, FeaturesError},
     feature::{oneway, real, text},
     feature_request::FeatureRequest,
     features::{About, FeatureSource},
     grades::{GRADE_LENGTH_M, MeasuredChains, Smoothing},
-    height_bound::dem_heights,
+    heights::{Elevation, dem_heights},
     join::Line,
     measures::{Profiled, steepest},
     piece::Vertex,
@@ -119,7 +118,7 @@ pub fn export_edges(
     (elevation, network): (Elevation<'_>, &Network),
     path: &Path,
     observer: &dyn Observer,
-) -> Result<EdgesSummary, ExportError> {
+) -> Result<EdgesSummary, FeaturesError> {
     let source = FeatureSource::new(package, request)?;
     let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
     let named = named.transpose()?;
@@ -206,7 +205,7 @@ fn laid(
     measured: &MeasuredChains<'_>,
     nodes: &mut DemNodes<'_>,
     chain: &Chain<'_>,
-) -> Result<LaidEdge, ExportError> {
+) -> Result<LaidEdge, ElevationError> {
     let network = measured.network();
     let distance_m = |from: [f64; 2], to: [f64; 2]| measured.places().distance_m(from, to);
     let mut lines: Vec<DemLine> = Vec::new();

@@ -1,7 +1,7 @@
 //! Roads as features: which fields they have.
 
 use corniche_geom::TileId;
-use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 
 use crate::{
     grades::SmoothGrades,
@@ -52,15 +52,47 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// What it is called in features of roads that a structure carries, whose deck is known or not.
-    pub(crate) fn text(self, structure: Structure, on_deck: bool) -> &'static str {
+    /// What heights of a road are that a structure carries, whose deck is known or not.
+    pub(crate) fn kind(self, structure: Structure, on_deck: bool) -> HeightKind {
         match (structure, self) {
-            (Structure::Bridge, _) if on_deck => "deck",
-            (Structure::Tunnel, _) if on_deck => "tunnel",
-            (Structure::Bridge, _) => "ground_under_bridge",
-            (Structure::Tunnel, _) => "ground_over_tunnel",
-            (Structure::Ground, Self::Ground) => "ground",
-            (Structure::Ground, Self::Dem) => "dem",
+            (Structure::Bridge, _) if on_deck => HeightKind::Deck,
+            (Structure::Tunnel, _) if on_deck => HeightKind::Tunnel,
+            (Structure::Bridge, _) => HeightKind::GroundUnderBridge,
+            (Structure::Tunnel, _) => HeightKind::GroundOverTunnel,
+            (Structure::Ground, Self::Ground) => HeightKind::Ground,
+            (Structure::Ground, Self::Dem) => HeightKind::Dem,
+        }
+    }
+}
+
+/// What the heights of a road are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeightKind {
+    /// The deck of a bridge.
+    Deck,
+    /// The road in a tunnel.
+    Tunnel,
+    /// The ground beneath a bridge whose deck is not known.
+    GroundUnderBridge,
+    /// The ground above a tunnel whose road is not known.
+    GroundOverTunnel,
+    /// The ground of the package.
+    Ground,
+    /// The ground of the elevation files.
+    Dem,
+}
+
+impl HeightKind {
+    /// Its name in features and profiles.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Deck => "deck",
+            Self::Tunnel => "tunnel",
+            Self::GroundUnderBridge => "ground_under_bridge",
+            Self::GroundOverTunnel => "ground_over_tunnel",
+            Self::Ground => "ground",
+            Self::Dem => "dem",
         }
     }
 }
@@ -71,7 +103,7 @@ fields! { FIELDS, values, road: &Road<'_>:
         Value::Integer(road.class.number().into());
     "highway", Text, "", "OSM's `highway`", text(&road.attributes.highway);
     "form", Text, "", "`ordinary`, `dual_carriageway`, `link` or `roundabout`",
-        Value::Text(form(road.attributes.form).to_owned());
+        Value::Text(road.attributes.form.name().to_owned());
     "name", Text, "", "OSM's `name`; null without", text(&road.attributes.name);
     "ref", Text, "", "OSM's `ref`; null without", text(&road.attributes.reference);
     "bridge", Integer, "", "1 for a bridge, else 0", is(road, Structure::Bridge);
@@ -130,7 +162,7 @@ fields! { LAST_FIELDS, last_values, road: &Road<'_>:
         Value::Integer(road.measures.vertices_out as i64);
     "parts", Integer, "", "lines without a gap between them", Value::Integer(road.parts as i64);
     "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `deck`, `tunnel`: an estimate between the heights of both ends; `ground_under_bridge`, `ground_over_tunnel`: heights of what the road does not lie on",
-        Value::Text(road.height_source().text(road.attributes.structure, road.heights.on_deck).to_owned());
+        Value::Text(road.height_kind().name().to_owned());
 }
 
 fields! { BOUND_FIELDS, bound_values, road: &Road<'_>:
@@ -147,18 +179,13 @@ fields! { MEASURED_FIELDS, measured_values, road: &Road<'_>:
 
 /// The fields of features that are pieces, beside the others.
 const PIECE_FIELDS: &[Field] = &[
-    Field {
-        name: "tile",
-        kind: FieldKind::Text,
-        unit: "",
-        meaning: "with `--pieces`: the tile, as `z/x/y`",
-    },
-    Field {
-        name: "part",
-        kind: FieldKind::Integer64,
-        unit: "",
-        meaning: "with `--pieces`: number of the piece along the way within the tile",
-    },
+    Field::new("tile", FieldKind::Text, "", "with `--pieces`: the tile, as `z/x/y`"),
+    Field::new(
+        "part",
+        FieldKind::Integer64,
+        "",
+        "with `--pieces`: number of the piece along the way within the tile",
+    ),
 ];
 
 /// The fields of features, in their order: of ways, or of pieces; with heights of the ground or of the elevation files.
@@ -194,6 +221,10 @@ pub(crate) fn road_values(road: &Road<'_>) -> Vec<Value> {
 }
 
 impl Road<'_> {
+    fn height_kind(&self) -> HeightKind {
+        self.height_source().kind(self.attributes.structure, self.heights.on_deck)
+    }
+
     fn height_source(&self) -> HeightSource {
         if self.smooth.is_some() { HeightSource::Dem } else { HeightSource::Ground }
     }
@@ -264,15 +295,6 @@ pub(crate) fn text(text: &str) -> Value {
 
 fn is(road: &Road<'_>, structure: Structure) -> Value {
     Value::Integer((road.attributes.structure == structure).into())
-}
-
-fn form(form: Form) -> &'static str {
-    match form {
-        Form::Ordinary => "ordinary",
-        Form::DualCarriageway => "dual_carriageway",
-        Form::Link => "link",
-        Form::Roundabout => "roundabout",
-    }
 }
 
 pub(crate) fn oneway(oneway: Oneway) -> &'static str {

@@ -9,7 +9,7 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
-    error::ExportError,
+    error::FeaturesError,
     feature_request::{Coordinates, FeatureRequest},
     places::Places,
     read,
@@ -26,7 +26,7 @@ pub fn check_lines_request(
     package: &FilePackage,
     level: Option<u8>,
     (format, coordinates): (VectorFormat, Coordinates),
-) -> Result<(), ExportError> {
+) -> Result<(), FeaturesError> {
     let classes: Vec<()> = Vec::new();
     let request =
         FeatureRequest { format, level, classes, bounds: None, coordinates, memory_bytes: 0 };
@@ -58,7 +58,7 @@ pub(crate) trait Features {
         &mut self,
         source: &FeatureSource<'_, Self::Class>,
         tile: TileId,
-    ) -> Result<Vec<Self::Piece>, ExportError>;
+    ) -> Result<Vec<Self::Piece>, FeaturesError>;
 
     /// The object of a piece.
     fn object(piece: &Self::Piece) -> AreaObject;
@@ -68,7 +68,7 @@ pub(crate) trait Features {
         &mut self,
         source: &FeatureSource<'_, Self::Class>,
         pieces: &[Self::Piece],
-    ) -> Result<Vec<Record>, ExportError>;
+    ) -> Result<Vec<Record>, FeaturesError>;
 }
 
 /// What a file says of a layer, beside what it says of the package.
@@ -92,10 +92,10 @@ impl<'a, C> FeatureSource<'a, C> {
     pub(crate) fn new(
         package: &'a FilePackage,
         request: &'a FeatureRequest<C>,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, FeaturesError> {
         let level = read::level(package, request.level)?;
         if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
-            return Err(ExportError::GeoJsonCrs);
+            return Err(FeaturesError::GeoJsonCrs);
         }
         let places = Places::new(package.manifest(), request.coordinates)?;
         Ok(Self { package, request, level, places })
@@ -143,11 +143,11 @@ pub(crate) fn write_features<F: Features>(
     source: &FeatureSource<'_, F::Class>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<(), ExportError> {
+) -> Result<(), FeaturesError> {
     let FeatureSource { package, request, level, .. } = source;
     let folder = corniche_store::folder_of(path);
     let scratch = FileScratch::create(folder)
-        .map_err(|source| ExportError::Sort { folder: folder.to_path_buf(), source })?;
+        .map_err(|source| FeaturesError::Sort { folder: folder.to_path_buf(), source })?;
     let tiles = read::tiles(package, *level, request.bounds.as_ref())?;
     let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
     let pieces =
@@ -155,7 +155,10 @@ pub(crate) fn write_features<F: Features>(
     let layer = source.layer(features.name(), F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
     pieces.for_each(observer, F::object, |pieces| {
-        features.records(source, &pieces)?.into_iter().try_for_each(|record| file.push(record))
+        for record in features.records(source, &pieces)? {
+            file.push(record)?;
+        }
+        Ok::<(), FeaturesError>(())
     })?;
     if let Some(sentence) = features.heights_told(source) {
         file.tell_heights(sentence);

@@ -15,15 +15,13 @@
 
 mod block;
 mod file;
-mod geotiff_request;
 mod grid;
 mod place_of_picture;
 mod write_picture;
 mod write_raster;
 
 pub use self::{
-    geotiff_request::GeoTiffRequest,
     place_of_picture::PlaceOfPicture,
     write_picture::{PictureFacts, export_picture},
-    write_raster::{GeoTiffSummary, export_geotiff},
+    write_raster::{GeoTiffRequest, GeoTiffSummary, export_geotiff},
 };

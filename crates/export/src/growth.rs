@@ -10,7 +10,7 @@ use corniche_tileset::{FilePackage, Manifest, tile_of_order};
 use corniche_work::{Observer, Stage};
 
 use crate::{
-    error::ExportError,
+    error::{FeaturesError, SelectionError},
     feature_request::Coordinates,
     join::lines,
     measures::{Measures, Profiled},
@@ -42,7 +42,7 @@ pub struct WayGrowth {
 ///
 /// # Errors
 /// When the package has no roads or is damaged, when `folder` cannot be written, or what `each` returns.
-pub fn growth_by_way<E: From<ExportError>>(
+pub fn growth_by_way<E: From<FeaturesError>>(
     package: &FilePackage,
     folder: &Path,
     memory_bytes: u64,
@@ -50,17 +50,16 @@ pub fn growth_by_way<E: From<ExportError>>(
     mut each: impl FnMut(&WayGrowth) -> Result<(), E>,
 ) -> Result<(), E> {
     let manifest = package.manifest();
-    if manifest.inputs.iter().all(|input| input.kind != "osm") {
-        return Err(ExportError::NoRoads { package: package.path().to_path_buf() }.into());
-    }
-    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+    SelectionError::check_roads(package).map_err(FeaturesError::from)?;
+    let sort = |source| FeaturesError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
-    let tiles = package.tile_ids().map_err(ExportError::from)?;
+    let tiles = package.tile_ids().map_err(FeaturesError::from)?;
     let sorter = (Sorter::new(&scratch, memory_bytes), folder);
-    let pieces =
-        SortedPieces::read(&tiles, sorter, observer, |id| read::pieces(package, id, &classes))?;
-    let places = Places::new(manifest, Coordinates::Package)?;
+    let pieces = SortedPieces::read(&tiles, sorter, observer, |id| {
+        Ok(read::pieces(package, id, &classes)?)
+    })?;
+    let places = Places::new(manifest, Coordinates::Package).map_err(FeaturesError::from)?;
     let way = |piece: &Piece| piece.key.way_id;
     pieces.for_each(observer, way, |pieces| {
         growth_of(pieces, manifest, &places)?.map_or(Ok(()), |way| each(&way))
@@ -74,7 +73,7 @@ fn growth_of(
     pieces: Vec<Piece>,
     manifest: &Manifest,
     places: &Places<'_>,
-) -> Result<Option<WayGrowth>, ExportError> {
+) -> Result<Option<WayGrowth>, FeaturesError> {
     let Some((way_id, class)) = pieces.first().map(|first| (first.key.way_id, first.class)) else {
         return Ok(None);
     };
@@ -83,7 +82,7 @@ fn growth_of(
     let mut of_finest = Vec::new();
     for piece in pieces {
         if piece.class != class {
-            return Err(ExportError::Differs { object: AreaObject::Way(way_id) });
+            return Err(FeaturesError::Differs { object: AreaObject::Way(way_id) });
         }
         // Keys were made of tiles that the package has.
         let Some(tile) = tile_of_order(piece.key.tile) else { continue };

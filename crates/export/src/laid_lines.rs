@@ -6,7 +6,11 @@ use corniche_tileset::{FilePackage, Sections};
 use corniche_tin::{Placement, Surface};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
-use crate::{error::ExportError, piece::Vertex, read};
+use crate::{
+    error::{ProfileError, TileError},
+    piece::Vertex,
+    read,
+};
 
 /// Steps that laying lines may take, of which a vertex counts for 32: eight million vertices.
 const MOST_STEPS: u64 = 1 << 28;
@@ -25,7 +29,7 @@ pub(crate) fn laid_lines(
     lines: &[&[LatticePoint]],
     level: u8,
     observer: &dyn Observer,
-) -> Result<Vec<Vec<Vec<Vertex>>>, ExportError> {
+) -> Result<Vec<Vec<Vec<Vertex>>>, ProfileError> {
     let paths: Vec<Option<Polyline>> = lines.iter().map(|line| path_of(line)).collect();
     let tiles = read::tiles(package, level, None)?;
     let mut laid = Vec::new();
@@ -64,7 +68,7 @@ fn lay_on(
     paths: &[Option<Polyline>],
     work: &Work,
     laid: &mut Vec<Laid>,
-) -> Result<(), ExportError> {
+) -> Result<(), ProfileError> {
     let manifest = package.manifest();
     let tile = manifest.frame.tile_lattice_bounds(id);
     let is_near = |path: &Polyline| {
@@ -82,7 +86,7 @@ fn lay_on(
         let starts = starts_of(path);
         for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
             for draped in corniche_drape::drape_within(&part.line, &surface, work)?.lines {
-                let failed = |source| ExportError::Line { tile: id, source };
+                let failed = |source| TileError::Line { tile: id, source };
                 let vertices = read::vertices(&draped, &surface).map_err(failed)?;
                 let sources = corniche_drape::source_segments(&draped);
                 let (Some(first), Some(source)) = (vertices.first(), sources.first()) else {

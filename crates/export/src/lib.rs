@@ -37,22 +37,20 @@ mod between_samples;
 mod bounds;
 mod cut;
 mod cut_polygon;
-mod datum;
 mod deck_lines;
 mod dem_ground;
 mod edges;
-mod elevation;
 mod error;
 mod feature;
 mod feature_request;
 mod features;
-mod gdal_settings;
+mod gdal_writing;
 mod geotiff;
 mod globe;
 mod gltf;
 mod grades;
 mod growth;
-mod height_bound;
+mod heights;
 mod join;
 mod laid_lines;
 mod lines;
@@ -60,7 +58,6 @@ mod measures;
 mod mesh;
 mod piece;
 mod places;
-mod plain_text;
 mod plan_piece;
 mod profile;
 mod quantized_mesh;
@@ -80,17 +77,20 @@ mod whole_lines;
 
 pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
-pub use datum::with_vertical_crs;
 pub use edges::{EdgesSummary, edge_fields, export_edges};
-pub use elevation::Elevation;
-pub use error::{CutError, ExportError};
-pub use feature::{HeightSource, road_fields};
+pub use error::{
+    CoordinatesError, CutError, DatumError, ElevationError, ErrorKind, FeaturesError,
+    GdalFileError, MeshError, ProfileError, QuantizedMeshError, RasterError, RoadQueryError,
+    RouteError, SelectionError, SurfaceError, TileError, Tiles3dError,
+};
+pub use feature::{HeightKind, HeightSource, road_fields};
 pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
 pub use features::check_lines_request;
 pub use geotiff::{
     GeoTiffRequest, GeoTiffSummary, PictureFacts, PlaceOfPicture, export_geotiff, export_picture,
 };
 pub use growth::{WayGrowth, growth_by_way};
+pub use heights::{Elevation, with_vertical_crs};
 pub use lines::{LinesSummary, export_lines};
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 pub use profile::{

@@ -9,7 +9,7 @@ use corniche_work::Observer;
 
 use crate::{
     cut::cut_line_at_bounds,
-    error::ExportError,
+    error::{FeaturesError, SelectionError, TileError},
     feature_request::FeatureRequest,
     features::{About, FeatureSource, Features, write_features},
     piece::Vertex,
@@ -33,12 +33,8 @@ pub struct LinesSummary {
     pub length_m: f64,
 }
 
-const WAY_ID: Field = Field {
-    name: "way_id",
-    kind: FieldKind::Integer64,
-    unit: "",
-    meaning: "id of the way in OpenStreetMap",
-};
+const WAY_ID: Field =
+    Field::new("way_id", FieldKind::Integer64, "", "id of the way in OpenStreetMap");
 
 /// The fields of a layer that say its class.
 fn class_fields(layer: ClassedLayer) -> &'static [Field] {
@@ -60,26 +56,26 @@ fn class_values(layer: ClassedLayer, class: LineClass) -> Vec<Value> {
 }
 
 const BOUNDARY_FIELDS: &[Field] = &[
-    Field {
-        name: "class",
-        kind: FieldKind::Text,
-        unit: "",
-        meaning: "the most important of what it bounds: `admin-2` to `admin-8` or `protected`",
-    },
-    Field {
-        name: "admin_level",
-        kind: FieldKind::Integer,
-        unit: "",
-        meaning: "OSM's `admin_level` of that; null for protected areas",
-    },
+    Field::new(
+        "class",
+        FieldKind::Text,
+        "",
+        "the most important of what it bounds: `admin-2` to `admin-8` or `protected`",
+    ),
+    Field::new(
+        "admin_level",
+        FieldKind::Integer,
+        "",
+        "OSM's `admin_level` of that; null for protected areas",
+    ),
 ];
 
-const NAMES: Field = Field {
-    name: "names",
-    kind: FieldKind::Text,
-    unit: "",
-    meaning: "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
-};
+const NAMES: Field = Field::new(
+    "names",
+    FieldKind::Text,
+    "",
+    "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
+);
 
 /// What this field says of a way.
 fn names_value(names: &LineNames, way_id: i64) -> Value {
@@ -92,24 +88,14 @@ fn names_value(names: &LineNames, way_id: i64) -> Value {
 }
 
 const MEASURES: &[Field] = &[
-    Field {
-        name: "length_m",
-        kind: FieldKind::Real,
-        unit: "m",
-        meaning: "true length in plan, on the ellipsoid of WGS84, of what the package has of it",
-    },
-    Field {
-        name: "parts",
-        kind: FieldKind::Integer,
-        unit: "",
-        meaning: "lines without a gap between them",
-    },
-    Field {
-        name: "points",
-        kind: FieldKind::Integer64,
-        unit: "",
-        meaning: "points of these lines",
-    },
+    Field::new(
+        "length_m",
+        FieldKind::Real,
+        "m",
+        "true length in plan, on the ellipsoid of WGS84, of what the package has of it",
+    ),
+    Field::new("parts", FieldKind::Integer, "", "lines without a gap between them"),
+    Field::new("points", FieldKind::Integer64, "", "points of these lines"),
 ];
 
 /// Writes a layer of lines of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
@@ -125,10 +111,10 @@ pub fn export_lines(
     request: &FeatureRequest<LineClass>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<LinesSummary, ExportError> {
+) -> Result<LinesSummary, FeaturesError> {
     if package.manifest().lines(layer).is_none() {
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoLayer { package, layer: layer.name() });
+        return Err(SelectionError::NoLayer { package, layer: layer.name() }.into());
     }
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
@@ -171,10 +157,10 @@ impl Features for Lines<'_> {
         &mut self,
         FeatureSource { package, request, .. }: &FeatureSource<'_, LineClass>,
         tile: TileId,
-    ) -> Result<Vec<PlanPiece>, ExportError> {
+    ) -> Result<Vec<PlanPiece>, FeaturesError> {
         let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
         let lines = decode_lines(&bytes, tile, self.layer).map_err(|source| {
-            ExportError::Damaged { layer: self.name(), source: Box::new(source) }
+            TileError::Damaged { layer: self.name(), source: Box::new(source) }
         })?;
         let wanted = lines.into_iter().filter(|one| request.classes.contains(&one.class));
         Ok(wanted
@@ -196,7 +182,7 @@ impl Features for Lines<'_> {
         &mut self,
         FeatureSource { places, request, .. }: &FeatureSource<'_, LineClass>,
         pieces: &[PlanPiece],
-    ) -> Result<Vec<Record>, ExportError> {
+    ) -> Result<Vec<Record>, FeaturesError> {
         let class = class_of(pieces, |number| self.layer.class(number))?;
         let object = pieces[0].object;
         let vertex = |point: &LatticePoint| Vertex {

@@ -12,8 +12,6 @@ mod mesh_request;
 mod model;
 mod obj;
 mod ply;
-mod spill;
-mod weld;
 mod write_model;
 mod writer;
 

@@ -7,7 +7,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     cut::{cut_at_antimeridian, cut_polygon_at_antimeridian},
-    error::ExportError,
+    error::CoordinatesError,
     feature_request::Coordinates,
     piece::Vertex,
 };
@@ -33,15 +33,15 @@ enum Target {
     Projected(Box<ProjectedCrs>),
 }
 
-fn crs_failed(source: CrsError) -> ExportError {
-    ExportError::Crs(Box::new(source))
+fn crs_failed(source: CrsError) -> CoordinatesError {
+    CoordinatesError::Crs(Box::new(source))
 }
 
 impl<'a> Places<'a> {
     pub(crate) fn new(
         manifest: &'a Manifest,
         coordinates: Coordinates,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, CoordinatesError> {
         let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
         let whole = manifest.whole_data_bounds();
         let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(crs_failed)?;
@@ -63,11 +63,11 @@ impl<'a> Places<'a> {
             }
             Coordinates::Wgs84 => {
                 let heights =
-                    known.ok_or_else(|| ExportError::UnknownDatum { datum: datum.clone() })?;
+                    known.ok_or_else(|| CoordinatesError::UnknownDatum { datum: datum.clone() })?;
                 // A missing grid is told before anything is read.
                 let mut height_m = [f64::midpoint(vertical.range_m[0], vertical.range_m[1])];
                 heights.to_wgs84_m(&[data_bounds.center()], &mut height_m).map_err(|source| {
-                    ExportError::Heights { datum: datum.clone(), source: Box::new(source) }
+                    CoordinatesError::Heights { datum: datum.clone(), source: Box::new(source) }
                 })?;
                 let target =
                     Target::Wgs84 { projection: projection()?, heights: Some(Box::new(heights)) };
@@ -80,7 +80,7 @@ impl<'a> Places<'a> {
             Coordinates::Epsg(code) => {
                 let to = crs
                     .projected(&format!("EPSG:{code}"), area)
-                    .map_err(|source| ExportError::OtherCrs(Box::new(source)))?;
+                    .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
                 let both = known.as_ref().and_then(|known| known.wkt_with(&to));
                 let wkt = both.unwrap_or_else(|| to.wkt().to_owned());
                 (Target::Projected(Box::new(to)), wkt, of_package)
@@ -151,7 +151,7 @@ impl<'a> Places<'a> {
         &self,
         plan: &mut [[f64; 2]],
         heights_m: &mut [f64],
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), CoordinatesError> {
         self.to_wanted_heights(plan, heights_m)?;
         self.to_wgs84_plan(plan)?;
         self.all_have_heights(plan, heights_m)
@@ -162,11 +162,11 @@ impl<'a> Places<'a> {
         &self,
         positions_m: &[[f64; 2]],
         heights_m: &mut [f64],
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), CoordinatesError> {
         let Target::Wgs84 { heights: Some(heights), .. } = &self.target else { return Ok(()) };
         heights.to_wgs84_m(positions_m, heights_m).map_err(|source| {
             let datum = self.manifest.vertical.datum.clone();
-            ExportError::Heights { datum, source: Box::new(source) }
+            CoordinatesError::Heights { datum, source: Box::new(source) }
         })
     }
 
@@ -175,18 +175,21 @@ impl<'a> Places<'a> {
         &self,
         places_deg: &[[f64; 2]],
         heights_m: &[f64],
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), CoordinatesError> {
         match places_deg.iter().zip(heights_m).find(|(_, height_m)| !height_m.is_finite()) {
             None => Ok(()),
             Some((&[lon, lat], _)) => {
                 let datum = self.manifest.vertical.datum.clone();
-                Err(ExportError::NoHeightHere { datum, lon, lat })
+                Err(CoordinatesError::NoHeightHere { datum, lon, lat })
             }
         }
     }
 
     /// Replaces longitudes and latitudes by positions in working metres; NaN where there is none.
-    pub(crate) fn working_from_wgs84(&self, places: &mut [[f64; 2]]) -> Result<(), ExportError> {
+    pub(crate) fn working_from_wgs84(
+        &self,
+        places: &mut [[f64; 2]],
+    ) -> Result<(), CoordinatesError> {
         match &self.target {
             Target::Wgs84 { projection, .. } => projection.working_from_wgs84(places)?,
             Target::Package | Target::Projected(_) => {
@@ -200,7 +203,7 @@ impl<'a> Places<'a> {
     }
 
     /// Replaces positions in working metres by longitude and latitude.
-    pub(crate) fn to_wgs84_plan(&self, plan: &mut [[f64; 2]]) -> Result<(), ExportError> {
+    pub(crate) fn to_wgs84_plan(&self, plan: &mut [[f64; 2]]) -> Result<(), CoordinatesError> {
         match &self.target {
             Target::Wgs84 { projection, .. } => projection.wgs84_from_working(plan)?,
             Target::Package | Target::Projected(_) => {
@@ -212,7 +215,7 @@ impl<'a> Places<'a> {
         if plan.iter().flatten().all(|degrees| degrees.is_finite()) {
             Ok(())
         } else {
-            Err(ExportError::NoGroundPosition)
+            Err(CoordinatesError::NoGroundPosition)
         }
     }
 
@@ -221,7 +224,7 @@ impl<'a> Places<'a> {
         &self,
         object: AreaObject,
         mut plan: Vec<[f64; 2]>,
-    ) -> Result<Vec<[f64; 2]>, ExportError> {
+    ) -> Result<Vec<[f64; 2]>, CoordinatesError> {
         match &self.target {
             Target::Package => {
                 let [unit_x, unit_y] = self.manifest.metres_per_unit;
@@ -234,13 +237,13 @@ impl<'a> Places<'a> {
             }
             Target::Projected(to) => {
                 to.from_working(&mut plan)
-                    .map_err(|source| ExportError::OtherCrs(Box::new(source)))?;
+                    .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
             }
         }
         if plan.iter().flatten().all(|coordinate| coordinate.is_finite()) {
             Ok(plan)
         } else {
-            Err(ExportError::NoPosition { object })
+            Err(CoordinatesError::NoPosition { object })
         }
     }
 
@@ -251,14 +254,14 @@ impl<'a> Places<'a> {
         object: AreaObject,
         rings: Vec<Vec<[f64; 2]>>,
         rounding_m: f64,
-    ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, ExportError> {
+    ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, CoordinatesError> {
         match &self.target {
             Target::Package | Target::Projected(_) => Ok(vec![rings]),
             Target::Wgs84 { .. } => {
                 // The smallest number of metres to a degree of longitude or latitude at the equator.
                 let rounding_deg = rounding_m / 110_000.0;
                 cut_polygon_at_antimeridian(rings, rounding_deg)
-                    .ok_or(ExportError::AcrossAntimeridian { object })
+                    .ok_or(CoordinatesError::AcrossAntimeridian { object })
             }
         }
     }
@@ -268,7 +271,7 @@ impl<'a> Places<'a> {
         &self,
         object: AreaObject,
         vertices: &[Vertex],
-    ) -> Result<Vec<Vec<[f64; 3]>>, ExportError> {
+    ) -> Result<Vec<Vec<[f64; 3]>>, CoordinatesError> {
         let frame = &self.manifest.frame;
         let plan: Vec<[f64; 2]> =
             vertices.iter().map(|vertex| frame.position_of_fraction_m(vertex.at)).collect();

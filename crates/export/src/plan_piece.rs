@@ -5,7 +5,7 @@ use corniche_geom::LatticePoint;
 use corniche_store::SortRecord;
 
 use crate::{
-    error::ExportError,
+    error::FeaturesError,
     piece::{array, text},
 };
 
@@ -31,11 +31,11 @@ pub(crate) fn lines_of(pieces: &[PlanPiece]) -> impl Iterator<Item = &[LatticePo
 pub(crate) fn class_of<C>(
     pieces: &[PlanPiece],
     class: impl Fn(u8) -> Option<C>,
-) -> Result<C, ExportError> {
+) -> Result<C, FeaturesError> {
     let first = &pieces[0];
     let is_same = |piece: &PlanPiece| (piece.class, &piece.name) == (first.class, &first.name);
     let class = class(first.class).filter(|_| pieces.iter().all(is_same));
-    class.ok_or(ExportError::Differs { object: first.object })
+    class.ok_or(FeaturesError::Differs { object: first.object })
 }
 
 impl SortRecord for PlanPiece {

@@ -15,12 +15,11 @@ use corniche_work::{Observer, Stage, workers::one_by_one};
 use crate::{
     deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay},
-    elevation::Elevation,
-    error::ExportError,
-    feature::HeightSource,
+    error::{ElevationError, ProfileError, SelectionError},
+    feature::{HeightKind, HeightSource},
     feature_request::Coordinates,
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
-    height_bound::sample_bound_m,
+    heights::{Elevation, sample_bound_m},
     join::{Line, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
@@ -95,7 +94,7 @@ pub struct ProfilePoint {
     /// Longitude and latitude, degrees.
     pub position_deg: [f64; 2],
     /// Where the height is from, as in exported roads.
-    pub height_source: &'static str,
+    pub height_source: HeightKind,
     /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels whose decks are not
     /// known, and without elevation files.
     pub smooth: Option<[f64; 2]>,
@@ -112,11 +111,9 @@ pub fn profile(
     level: Option<u8>,
     heights: RoadHeights<'_>,
     observer: &dyn Observer,
-) -> Result<Profile, ExportError> {
+) -> Result<Profile, ProfileError> {
     let manifest = package.manifest();
-    if manifest.inputs.iter().all(|input| input.kind != "osm") {
-        return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
-    }
+    SelectionError::check_roads(package)?;
     let level = read::level(package, level)?;
     let places = Places::new(manifest, Coordinates::Package)?;
     let mut of_ways: Vec<Vec<Line>> = Vec::with_capacity(way_ids.len());
@@ -128,7 +125,7 @@ pub fn profile(
             pieces.iter().filter(|piece| piece.key.way_id == way_id).cloned().collect();
         let Some(first) = own.first() else {
             let package = package.path().to_path_buf();
-            return Err(ExportError::NoWay { package, way_id, level });
+            return Err(ProfileError::NoWay { package, way_id, level });
         };
         ways.insert(way_id, first.attributes.clone());
         of_ways.push(lines(&own));
@@ -151,7 +148,7 @@ pub fn profile_of_course(
     level: Option<u8>,
     heights: RoadHeights<'_>,
     observer: &dyn Observer,
-) -> Result<Profile, ExportError> {
+) -> Result<Profile, ProfileError> {
     let level = read::level(package, level)?;
     let manifest = package.manifest();
     let places = Places::new(manifest, Coordinates::Package)?;
@@ -180,7 +177,7 @@ pub fn profile_of_course(
             course.begins_deg.map(|[lon, lat]| format!("; the first begins at {lon},{lat}"));
         let begins = begins.unwrap_or_default();
         let covered = manifest.covered_text(course.begins_deg.unwrap_or([f64::NAN; 2]));
-        return Err(ExportError::NoLineOnGround { package, begins, covered });
+        return Err(ProfileError::NoLineOnGround { package, begins, covered });
     }
     Ok(telling.tell(&parts, heights.elevation.is_some()))
 }
@@ -191,7 +188,7 @@ fn smooth_ways(
     places: &Places<'_>,
     heights: RoadHeights<'_>,
     observer: &dyn Observer,
-) -> Result<BTreeMap<i64, Vec<SmoothLine>>, ExportError> {
+) -> Result<BTreeMap<i64, Vec<SmoothLine>>, ElevationError> {
     let way_ids: BTreeSet<i64> = way_ids.collect();
     let (Some(elevation), Some(network), false) =
         (heights.elevation, heights.network, way_ids.is_empty())
@@ -225,7 +222,7 @@ impl Telling<'_> {
         &mut self,
         parts: Vec<ProfileLine>,
         elevation: Option<Elevation<'_>>,
-    ) -> Result<Vec<ProfileLine>, ExportError> {
+    ) -> Result<Vec<ProfileLine>, ElevationError> {
         let Some(elevation) = elevation else { return Ok(parts) };
         let frame = &self.places.manifest().frame;
         self.on_dem(&parts, &mut DemNodes::new(elevation, frame))
@@ -326,7 +323,7 @@ impl Telling<'_> {
         &mut self,
         parts: &[ProfileLine],
         nodes: &mut DemNodes<'_>,
-    ) -> Result<Vec<ProfileLine>, ExportError> {
+    ) -> Result<Vec<ProfileLine>, ElevationError> {
         self.tolerance_m = 0.0;
         let mut laid_parts: Vec<ProfileLine> = Vec::new();
         for part in parts {
@@ -444,7 +441,7 @@ impl Telling<'_> {
                 height_m,
                 grade,
                 position_deg: self.places.wgs84(vertex.at),
-                height_source: from.text(self.structure(leg), self.on_deck.contains(&leg)),
+                height_source: from.kind(self.structure(leg), self.on_deck.contains(&leg)),
                 smooth: smooth_at(index, along_m),
             }
         };
@@ -464,14 +461,14 @@ fn pieces(
     way_ids: &[i64],
     level: u8,
     observer: &dyn Observer,
-) -> Result<Vec<Piece>, ExportError> {
+) -> Result<Vec<Piece>, ProfileError> {
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = read::tiles(package, level, None)?;
     let mut pieces = Vec::new();
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
         let own = read::pieces(package, id, &classes)?;
         pieces.extend(own.into_iter().filter(|piece| way_ids.contains(&piece.key.way_id)));
-        Ok::<(), ExportError>(())
+        Ok::<(), ProfileError>(())
     })?;
     Ok(pieces)
 }

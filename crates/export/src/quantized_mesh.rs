@@ -22,16 +22,15 @@ mod mesh;
 mod mesh_vertex;
 mod node_heights;
 mod plan;
-mod planned_levels;
 mod quantized_mesh_request;
 mod raster;
-mod summary;
 mod surfaces;
 mod tiling;
 mod write_tiles;
 
-pub use planned_levels::{PlannedLevel, QuantizedMeshPlan};
-pub use quantized_mesh_request::{Availability, QuantizedMeshRequest};
-pub use summary::{QuantizedMeshLevel, QuantizedMeshSummary};
+pub use quantized_mesh_request::{
+    Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    QuantizedMeshSummary,
+};
 pub use tiling::Tiling;
 pub use write_tiles::export_quantized_mesh;

@@ -13,7 +13,7 @@ use corniche_tin::{Placement, Surface};
 use crate::{
     between_samples::SampleCells,
     bounds::DegreeBounds,
-    error::ExportError,
+    error::{SelectionError, TileError},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
 };
 
@@ -26,12 +26,12 @@ pub(crate) fn road_sections() -> Sections {
 const SIDE: usize = 9;
 
 /// The level that is asked for, if the package has it; else the finest.
-pub(crate) fn level(package: &FilePackage, wanted: Option<u8>) -> Result<u8, ExportError> {
+pub(crate) fn level(package: &FilePackage, wanted: Option<u8>) -> Result<u8, SelectionError> {
     let finest = package.manifest().frame.max_level();
     let level = wanted.unwrap_or(finest);
     if level > finest {
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoLevel { package, level, finest });
+        return Err(SelectionError::NoLevel { package, level, finest });
     }
     Ok(level)
 }
@@ -41,7 +41,7 @@ pub(crate) fn tiles(
     package: &FilePackage,
     level: u8,
     bounds: Option<&DegreeBounds>,
-) -> Result<Vec<TileId>, ExportError> {
+) -> Result<Vec<TileId>, TileError> {
     let manifest = package.manifest();
     let mut ids = package.tile_ids()?;
     ids.retain(|&id| {
@@ -105,7 +105,7 @@ pub(crate) fn pieces(
     package: &FilePackage,
     id: TileId,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, ExportError> {
+) -> Result<Vec<Piece>, TileError> {
     let payload = package.payload(id, road_sections())?;
     payload.map_or(Ok(Vec::new()), |payload| pieces_of(&payload, package.manifest(), classes))
 }
@@ -115,7 +115,7 @@ pub(crate) fn bounded_pieces(
     package: &FilePackage,
     id: TileId,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, ExportError> {
+) -> Result<Vec<Piece>, TileError> {
     let Some(payload) = package.payload(id, road_sections())? else { return Ok(Vec::new()) };
     let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
         return Ok(Vec::new());
@@ -135,7 +135,7 @@ pub(crate) fn bounded_pieces(
 pub(crate) fn span_runs(
     package: &FilePackage,
     id: TileId,
-) -> Result<HashMap<i64, Vec<SpanRun>>, ExportError> {
+) -> Result<HashMap<i64, Vec<SpanRun>>, TileError> {
     let mut runs: HashMap<i64, Vec<SpanRun>> = HashMap::new();
     let manifest = package.manifest();
     if manifest.spans.is_none() {
@@ -144,7 +144,7 @@ pub(crate) fn span_runs(
     let Some(bytes) = package.tile(id)? else { return Ok(runs) };
     let found = decode_spans(&bytes, id, &manifest.frame, manifest.vertical.quantum_m);
     let damaged =
-        |source| ExportError::Damaged { layer: "bridges and tunnels", source: Box::new(source) };
+        |source| TileError::Damaged { layer: "bridges and tunnels", source: Box::new(source) };
     for run in found.map_err(damaged)? {
         runs.entry(run.way_id).or_default().push(run);
     }
@@ -156,7 +156,7 @@ pub(crate) fn pieces_of(
     payload: &TilePayload,
     manifest: &Manifest,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, ExportError> {
+) -> Result<Vec<Piece>, TileError> {
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
     let Manifest { frame, vertical, .. } = manifest;
     let placement = Placement::of_tile(frame, payload.id, vertical.quantum_m);
@@ -168,7 +168,7 @@ fn pieces_on(
     payload: &TilePayload,
     Manifest { frame, .. }: &Manifest,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, ExportError> {
+) -> Result<Vec<Piece>, TileError> {
     let id = payload.id;
     let mut pieces = Vec::new();
     for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {
@@ -176,9 +176,9 @@ fn pieces_on(
         let attributes = known
             .ok()
             .and_then(|at| payload.attributes.get(at))
-            .ok_or(ExportError::NoAttributes { tile: id, way_id: road.way_id })?;
-        let vertices = vertices(&road.line, surface)
-            .map_err(|source| ExportError::Line { tile: id, source })?;
+            .ok_or(TileError::NoAttributes { tile: id, way_id: road.way_id })?;
+        let vertices =
+            vertices(&road.line, surface).map_err(|source| TileError::Line { tile: id, source })?;
         pieces.push(Piece {
             key: PieceKey { way_id: road.way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
             class: road.class,

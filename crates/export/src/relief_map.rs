@@ -10,7 +10,7 @@ use corniche_tileset::{FilePackage, Relief};
 use image::{ExtendedColorType, ImageEncoder, codecs::png};
 
 use crate::{
-    error::ExportError,
+    error::SurfaceError,
     globe::cross,
     surfaces::{GroundMesh, unit},
 };
@@ -38,7 +38,7 @@ impl ReliefMap {
         id: TileId,
         relief: Option<&Relief>,
         mesh: &GroundMesh,
-    ) -> Result<Option<Self>, ExportError> {
+    ) -> Result<Option<Self>, SurfaceError> {
         let Some(relief) = relief else { return Ok(None) };
         let manifest = package.manifest();
         let cell = manifest.levels[usize::from(id.z())].cell_m;
@@ -60,7 +60,7 @@ impl ReliefMap {
         );
         encoder
             .write_image(&texels, SIDE as u32, SIDE as u32, ExtendedColorType::Rgb8)
-            .map_err(|source| ExportError::Relief { tile: id, source: Box::new(source) })?;
+            .map_err(|source| SurfaceError::Relief { tile: id, source: Box::new(source) })?;
         Ok(Some(Self { png }))
     }
 

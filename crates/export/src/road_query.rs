@@ -7,7 +7,7 @@ use corniche_tileset::{FilePackage, Sections};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 use icu_normalizer::ComposingNormalizerBorrowed;
 
-use crate::{error::ExportError, read};
+use crate::{error::RoadQueryError, read};
 
 /// So many numbers or names that are like the one that was asked for are told.
 const MOST_NEAR: usize = 5;
@@ -126,7 +126,7 @@ pub(crate) fn named_ways(
     level: u8,
     query: Option<&RoadQuery>,
     observer: &dyn Observer,
-) -> Result<NamedWays, ExportError> {
+) -> Result<NamedWays, RoadQueryError> {
     let mut known = BTreeMap::new();
     let tiles = read::tiles(package, level, None)?;
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
@@ -134,7 +134,7 @@ pub(crate) fn named_ways(
         for record in payload.into_iter().flat_map(|payload| payload.attributes) {
             known.entry(record.way_id).or_insert(record.attributes);
         }
-        Ok::<(), ExportError>(())
+        Ok::<(), RoadQueryError>(())
     })?;
     let Some(query) = query else { return Ok(NamedWays { known, meant: BTreeSet::new() }) };
     let meant = known.iter().filter(|(_, way)| query.is_met_by(way));
@@ -148,7 +148,7 @@ pub(crate) fn named_ways(
             format!("; similar ones are {}", quoted.join(", "))
         };
         let package = package.path().to_path_buf();
-        return Err(ExportError::NoSuchRoad { package, query: query.text(), near });
+        return Err(RoadQueryError::NoSuchRoad { package, query: query.text(), near });
     }
     Ok(NamedWays { known, meant })
 }

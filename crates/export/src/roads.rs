@@ -16,13 +16,12 @@ use crate::{
     cut::cut_at_bounds,
     deck_lines::{RaisedLine, on_deck},
     dem_ground::{DemLine, DemNodes, lay, off_dem_m},
-    elevation::Elevation,
-    error::ExportError,
+    error::{CoordinatesError, ElevationError, FeaturesError, SelectionError},
     feature::{HeightSource, Road, Smooth, road_fields, road_values},
     feature_request::{FeatureRequest, RoadFeatures},
     features::{About, FeatureSource, Features, write_features},
     grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
-    height_bound::{dem_heights, height_bound, sample_bound_m},
+    heights::{Elevation, dem_heights, height_bound, sample_bound_m},
     join::{Line, lines},
     measures::{Measures, Profiled},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
@@ -84,11 +83,9 @@ pub fn export_roads(
     heights: RoadHeights<'_>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<ExportSummary, ExportError> {
+) -> Result<ExportSummary, FeaturesError> {
     let manifest = package.manifest();
-    if manifest.inputs.iter().all(|input| input.kind != "osm") {
-        return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
-    }
+    SelectionError::check_roads(package)?;
     let source = FeatureSource::new(package, request)?;
     let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
     let meant = named.transpose()?.map(|named| named.meant);
@@ -194,7 +191,7 @@ impl Features for Roads<'_> {
         &mut self,
         FeatureSource { package, request, places, .. }: &FeatureSource<'_, FunctionalRoadClass>,
         tile: TileId,
-    ) -> Result<Vec<Piece>, ExportError> {
+    ) -> Result<Vec<Piece>, FeaturesError> {
         let mut found = Vec::new();
         let is_meant = |piece: &Piece| {
             self.meant.as_ref().is_none_or(|meant| meant.contains(&piece.key.way_id))
@@ -224,12 +221,12 @@ impl Features for Roads<'_> {
         &mut self,
         source: &FeatureSource<'_, FunctionalRoadClass>,
         pieces: &[Piece],
-    ) -> Result<Vec<Record>, ExportError> {
+    ) -> Result<Vec<Record>, FeaturesError> {
         let Some(first) = pieces.first() else { return Ok(Vec::new()) };
         let is_same =
             |piece: &Piece| piece.class == first.class && piece.attributes == first.attributes;
         if !pieces.iter().all(is_same) {
-            return Err(ExportError::Differs { object: Self::object(first) });
+            return Err(FeaturesError::Differs { object: Self::object(first) });
         }
         self.summary.ways += 1;
         let chains = self.dem.as_ref().and_then(|dem| dem.chains.as_ref());
@@ -241,7 +238,7 @@ impl Features for Roads<'_> {
         }
         let of_piece = |piece: &Piece| {
             let line = Line { vertices: piece.vertices.clone(), joins: Vec::new() };
-            self.record(&source.places, piece, &[line], &way)
+            Ok(self.record(&source.places, piece, &[line], &way)?)
         };
         pieces.iter().map(of_piece).collect()
     }
@@ -249,7 +246,7 @@ impl Features for Roads<'_> {
 
 impl OnDem<'_> {
     /// What is left of a piece, on the ground of the elevation files.
-    fn laid(&mut self, cut: Vec<Piece>) -> Result<Vec<Piece>, ExportError> {
+    fn laid(&mut self, cut: Vec<Piece>) -> Result<Vec<Piece>, ElevationError> {
         let mut laid = Vec::new();
         for piece in cut {
             let ground_m = off_dem_m(&mut self.nodes, &piece.vertices)?;
@@ -353,7 +350,7 @@ impl Roads<'_> {
         of: &Piece,
         lines: &[Line],
         way: &[SmoothLine],
-    ) -> Result<Record, ExportError> {
+    ) -> Result<Record, CoordinatesError> {
         let Piece { key, class, attributes, heights, .. } = of;
         let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
         let profiled: Vec<Profiled<'_>> =

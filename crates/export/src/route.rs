@@ -18,7 +18,11 @@ use corniche_work::Observer;
 pub use self::find_route::{Route, RouteRequest};
 use self::{find_route::Finder, graph::RoadGraph, package_network::package_network};
 use crate::{
-    error::ExportError, feature_request::Coordinates, places::Places, read, road_query::named_ways,
+    error::{RouteError, SelectionError},
+    feature_request::Coordinates,
+    places::Places,
+    read,
+    road_query::named_ways,
 };
 
 /// The shortest way from place to place, or along a whole road. Roads join as they do in the network, or else where lines of the package have a point
@@ -31,11 +35,9 @@ pub fn route(
     request: &RouteRequest,
     network: Option<&Network>,
     observer: &dyn Observer,
-) -> Result<Route, ExportError> {
+) -> Result<Route, RouteError> {
     let manifest = package.manifest();
-    if manifest.inputs.iter().all(|input| input.kind != "osm") {
-        return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
-    }
+    SelectionError::check_roads(package)?;
     let level = read::level(package, request.level)?;
     let places = Places::new(manifest, Coordinates::Package)?;
     let roads = named_ways(package, level, request.road.as_ref(), observer)?;

@@ -5,7 +5,7 @@ use corniche_styles::{Rgb, Style};
 use corniche_tileset::{FilePackage, PHOTO_BORDER, Photo, ReadError, decode_photo};
 use jpeg_encoder::{ColorType, Encoder};
 
-use crate::error::ExportError;
+use crate::error::SurfaceError;
 
 /// A picture that covers a tile and a little beyond.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ impl Texture {
         id: TileId,
         style: &Style,
         ground: Rgb,
-    ) -> Result<Option<Self>, ExportError> {
+    ) -> Result<Option<Self>, SurfaceError> {
         let strength = style.photo;
         let Some(record) = package.manifest().settings.photo.filter(|_| strength > 0.0) else {
             return Ok(None);
@@ -38,7 +38,7 @@ impl Texture {
         let sides = [side as u16; 2];
         Encoder::new(&mut jpeg, record.quality)
             .encode(&rgb, sides[0], sides[1], ColorType::Rgb)
-            .map_err(|source| ExportError::Picture { tile: id, source: Box::new(source) })?;
+            .map_err(|source| SurfaceError::Picture { tile: id, source: Box::new(source) })?;
         Ok(Some(Self { jpeg, border: PHOTO_BORDER as f32 / side as f32 }))
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, LossReason};
 
 /// What to show with anything made from an extract (`OpenStreetMap` Foundation, *Attribution Guidelines*, 2021).
 pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
@@ -98,11 +98,12 @@ impl LeftOutReason {
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
-            Self::ClassOff => "class is off",
-            Self::Listed => "listed as no road",
-            Self::Unknown => "value in no class",
-            Self::Area => "an area",
+            Self::ClassOff => LossReason::ClassOff,
+            Self::Listed => LossReason::Listed,
+            Self::Unknown => LossReason::Unknown,
+            Self::Area => LossReason::Area,
         }
+        .text()
     }
 }
 

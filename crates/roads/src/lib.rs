@@ -14,6 +14,7 @@ mod class_filter;
 mod class_labels;
 mod frc_table;
 mod grade_limit;
+mod loss_reason;
 mod quantities;
 mod road;
 mod simplify;
@@ -24,6 +25,7 @@ pub use attributes::{attributes, structure_and_layer, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area};
 pub use grade_limit::grade_limit;
+pub use loss_reason::LossReason;
 pub use road::{
     Form, FunctionalRoadClass, MetNodes, Oneway, OwnWidth, Road, RoadAttributes, Structure,
 };

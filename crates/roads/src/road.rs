@@ -95,6 +95,19 @@ listed! {
     }
 }
 
+impl Form {
+    /// How a road is built, in one word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::DualCarriageway => "dual_carriageway",
+            Self::Link => "link",
+            Self::Roundabout => "roundabout",
+        }
+    }
+}
+
 listed! {
     /// What carries a road where the ground does not.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
@@ -106,6 +119,18 @@ listed! {
         Bridge,
         /// A tunnel.
         Tunnel,
+    }
+}
+
+impl Structure {
+    /// What carries a road, in one word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ground => "ground",
+            Self::Bridge => "bridge",
+            Self::Tunnel => "tunnel",
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
 
+use corniche_roads::LossReason;
 use corniche_spans::SpanReason;
 use corniche_work::Silent;
 use serde::{Deserialize, Serialize};
@@ -50,10 +51,11 @@ impl Loss {
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {
-            Self::OutsideData => "outside the elevation data",
-            Self::NoGround => "where the data have no ground (void or edge)",
-            Self::OutsideBounds => "outside the bounds that were asked for",
+            Self::OutsideData => LossReason::OutsideData,
+            Self::NoGround => LossReason::NoGround,
+            Self::OutsideBounds => LossReason::OutsideBounds,
         }
+        .text()
     }
 }
 

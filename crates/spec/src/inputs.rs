@@ -20,7 +20,7 @@ use std::{
 
 use corniche_dem::DemError;
 use corniche_gis::{VirtualFile, raster_files};
-use corniche_tileset::InputRecord;
+use corniche_tileset::{InputKind, InputRecord};
 use corniche_work::Stage;
 use sha2::{Digest, Sha256};
 
@@ -30,55 +30,6 @@ pub use self::{
 };
 use self::{servers::reach_servers, stamp::Stamp};
 use crate::{Observer, hex::hex};
-
-/// What an input is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InputKind {
-    /// A raster that was named.
-    Dem,
-    /// A file that such a raster refers to, or that lies beside it and belongs to it.
-    DemPart,
-    /// A photo that was named.
-    Photo,
-    /// A file that such a photo refers to, or that lies beside it and belongs to it.
-    PhotoPart,
-    /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
-    Terrain,
-    /// The polygon that says which part is wanted.
-    Polygon,
-    /// The extract.
-    Osm,
-}
-
-impl InputKind {
-    /// The kinds that a manifest has.
-    pub const RECORDED: [Self; 6] =
-        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
-    /// The kinds that the terrain is made from.
-    pub const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
-    /// The kinds that photos are made from.
-    pub const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
-
-    /// The word for it in the manifest.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dem => "dem",
-            Self::DemPart => "dem-part",
-            Self::Photo => "photo",
-            Self::PhotoPart => "photo-part",
-            Self::Terrain => "terrain",
-            Self::Polygon => "polygon",
-            Self::Osm => "osm",
-        }
-    }
-
-    /// Whether a record of the manifest is about an input of this kind.
-    #[must_use]
-    pub fn is_of(self, record: &InputRecord) -> bool {
-        record.kind == self.name()
-    }
-}
 
 /// All files of a run, as they were before anything of them was read.
 #[derive(Debug)]

@@ -30,16 +30,13 @@
 //! removes no file that it did not make.
 
 mod artifacts;
-mod claim;
 mod disk;
 mod error;
 mod files;
 mod groups;
 mod ids;
-mod lack_of_room;
 mod local;
 mod memory;
-mod own_files;
 mod parts_place;
 mod scratch;
 mod sorter;
@@ -48,22 +45,22 @@ mod system_disk;
 mod target;
 
 pub use artifacts::{Artifacts, Key};
-pub use claim::{Claim, Existing, UnfinishedFile, UnfinishedFolder};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
 pub use groups::Groups;
 pub use ids::random_digits;
-pub use lack_of_room::LackOfRoom;
 pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 pub use memory::{MemoryScratch, MemoryStore};
-pub use own_files::{folder_of, make_own_folder, open_own, sync_folder, sync_tree};
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;
-pub use target::{TargetError, file_target, is_same_file};
+pub use target::{
+    Claim, Existing, LackOfRoom, TargetError, UnfinishedFile, UnfinishedFolder, file_target,
+    folder_of, is_same_file, make_own_folder, open_own, sync_folder, sync_tree,
+};

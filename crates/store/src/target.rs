@@ -1,113 +1,25 @@
-//! Where a file may be written, and whether two names mean one place.
+//! What places an output file safely: at a target lies what was there before, or the whole new
+//! file.
+//!
+//! ```text
+//!   file_target      where it goes: the file, or what a link there leads to; a folder, a device or a
+//!        │           dead link is refused
+//!   Claim            the right to write there: of two programs one is refused, and what a killed run
+//!        │           left is known for ours
+//!   UnfinishedFile, UnfinishedFolder    what is made beside it; gone when it is dropped
+//!        │
+//!   place            durably in its place, over what was there only with Existing::Replace
+//! ```
+//!
+//! All files of ours are opened by [`open_own`]: no link is followed, and nothing of another user
+//! is written. What a full disk says of itself is [`LackOfRoom`].
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+mod claim;
+mod file_target;
+mod lack_of_room;
+pub(crate) mod own_files;
 
-use crate::{claim::longest_name, folder_of};
-
-/// Why nothing can be written at a place.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum TargetError {
-    #[error("{path:?} names a folder; give the name of a file")]
-    Folder { path: PathBuf },
-    #[error("{path:?} is {found}, which no file may replace; choose another name")]
-    NoFile { path: PathBuf, found: &'static str },
-    #[error(
-        "{path:?} is a link that leads nowhere; delete it, or name the file that it should lead to"
-    )]
-    DeadLink { path: PathBuf },
-    #[error(
-        "the name of {path:?} is too long for this file system, with what is added to it while the file is written; choose a shorter one"
-    )]
-    LongName { path: PathBuf },
-    #[error("{path:?} cannot be looked at")]
-    Unknown { path: PathBuf, source: io::Error },
-}
-
-/// Where a file goes that is to be written at `path`: `path` itself, or the file that a link there leads to, so that the
-/// link stays a link.
-///
-/// What stands there is a regular file or nothing; whether it may be replaced is for the caller to know.
-///
-/// # Errors
-/// When `path` names a folder (also by ending in a slash), a link that leads nowhere, or what is neither a file nor a
-/// folder: a device, a pipe, a socket. When the name is too long for a file that is written beside it.
-pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
-    let own = || path.to_path_buf();
-    let ends_in_slash = path
-        .as_os_str()
-        .as_encoded_bytes()
-        .last()
-        .is_some_and(|&byte| std::path::is_separator(byte.into()));
-    if ends_in_slash || path.file_name().is_none() {
-        return Err(TargetError::Folder { path: own() });
-    }
-    let is_long = |name: &Path| {
-        name.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::InvalidFilename)
-    };
-    if is_long(path) || is_long(&longest_name(path)) {
-        return Err(TargetError::LongName { path: own() });
-    }
-    let unknown = |source| TargetError::Unknown { path: own(), source };
-    let there = match path.symlink_metadata() {
-        Ok(there) => there,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(own()),
-        // A file where a folder should be.
-        Err(error) => return Err(unknown(error)),
-    };
-    let is_link = there.file_type().is_symlink();
-    let kind = if is_link {
-        match fs::metadata(path) {
-            Ok(found) => found.file_type(),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Err(TargetError::DeadLink { path: own() });
-            }
-            Err(error) => return Err(unknown(error)),
-        }
-    } else {
-        there.file_type()
-    };
-    match kind {
-        kind if kind.is_dir() => Err(TargetError::Folder { path: own() }),
-        kind if !kind.is_file() => Err(TargetError::NoFile { path: own(), found: name_of(kind) }),
-        _ if is_link => fs::canonicalize(path).map_err(unknown),
-        _ => Ok(own()),
-    }
-}
-
-/// Whether two paths lead to one file, which need not exist yet.
-#[must_use]
-pub fn is_same_file(one: &Path, other: &Path) -> bool {
-    place_of(one) == place_of(other)
-}
-
-/// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
-fn place_of(path: &Path) -> PathBuf {
-    if let Ok(place) = path.canonicalize() {
-        return place;
-    }
-    match (folder_of(path).canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => path.to_path_buf(),
-    }
-}
-
-#[cfg(unix)]
-fn name_of(kind: fs::FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt as _;
-    match kind {
-        kind if kind.is_fifo() => "a pipe",
-        kind if kind.is_socket() => "a socket",
-        kind if kind.is_block_device() || kind.is_char_device() => "a device",
-        _ => "no regular file",
-    }
-}
-
-#[cfg(not(unix))]
-fn name_of(_: fs::FileType) -> &'static str {
-    "no regular file"
-}
+pub use claim::{Claim, Existing, UnfinishedFile, UnfinishedFolder};
+pub use file_target::{TargetError, file_target, is_same_file};
+pub use lack_of_room::LackOfRoom;
+pub use own_files::{folder_of, make_own_folder, open_own, sync_folder, sync_tree};

@@ -22,12 +22,12 @@ pub(crate) struct AreaSheet {
     steepest_deg: Option<f64>,
 }
 
-/// The areas by class: those that are named, and `others` for the rest.
+/// The areas by class, of which a whole style names each.
 pub(crate) fn areas(
     sheets: &BTreeMap<String, AreaSheet>,
-    others: [AreaStyle; AreaClass::COUNT],
 ) -> Result<[AreaStyle; AreaClass::COUNT], StyleError> {
-    let mut styles = others;
+    let nothing = AreaStyle { color: [0.0; 3], opacity: 0.0, steepest_deg: None };
+    let mut styles = [nothing; AreaClass::COUNT];
     for (name, sheet) in sheets {
         let Some(class) = AreaClass::from_name(name) else {
             return Err(StyleError::AreaClass { text: name.clone() });

@@ -24,43 +24,18 @@ pub(crate) struct LightSheet {
     /// How strongly slopes are shaded, 0 to 1.
     pub(crate) hillshade: f64,
     /// How much darker steep slopes are than level ground, 0 to 1.
-    #[serde(default = "LightSheet::sky")]
     pub(crate) sky: f64,
     /// How many times steeper the gentlest slopes are shaded than they are, 1 to 10.
-    #[serde(default = "LightSheet::gentle")]
     pub(crate) gentle: f64,
     /// How much of the haze's colour far valleys take, 0 to 1.
-    #[serde(default = "LightSheet::valley_haze")]
     pub(crate) valley_haze: f64,
     /// The ground's colour is multiplied by this one in shadow.
-    #[serde(default = "LightSheet::shadow")]
     pub(crate) shadow: Rgb8,
     /// Slopes that face the light take this colour in part.
-    #[serde(default = "LightSheet::sunlit")]
     pub(crate) sunlit: Rgb8,
 }
 
 impl LightSheet {
-    fn sky() -> f64 {
-        0.4
-    }
-
-    fn gentle() -> f64 {
-        2.5
-    }
-
-    fn valley_haze() -> f64 {
-        0.2
-    }
-
-    fn shadow() -> Rgb8 {
-        Rgb8([0x5A, 0x62, 0x86])
-    }
-
-    fn sunlit() -> Rgb8 {
-        Rgb8([0xFF, 0xF8, 0xDC])
-    }
-
     /// Checks every number against its range.
     pub(crate) fn check(&self) -> Result<(), StyleError> {
         within("light.azimuth_deg", self.azimuth_deg, 0.0..=360.0)?;

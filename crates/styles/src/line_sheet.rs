@@ -51,12 +51,11 @@ impl LineSheet {
     }
 }
 
-/// The boundaries by class: those that are named, and `others` for the rest.
+/// The boundaries by class, of which a whole style names each.
 pub(crate) fn boundaries(
     sheets: &BTreeMap<String, LineSheet>,
-    others: &[LineStyle; LineStyle::MOST],
 ) -> Result<[LineStyle; LineStyle::MOST], StyleError> {
-    let mut styles = *others;
+    let mut styles = [LineStyle::NOTHING; LineStyle::MOST];
     for (name, sheet) in sheets {
         let Some(class) = BoundaryClass::from_name(name) else {
             return Err(StyleError::BoundaryClass { text: name.clone() });

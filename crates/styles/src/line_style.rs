@@ -26,6 +26,30 @@ impl LineStyle {
     /// How many styles the lines of one layer can have.
     pub const MOST: usize = FunctionalRoadClass::COUNT;
 
+    /// Lines of files, in the order of the files: colours that can be told from each other and from
+    /// roads, with a pale edge so that they are seen on any ground.
+    pub(crate) const OVERLAYS: [Self; Self::MOST] = [
+        Self::with_edge([0xC2, 0x1E, 0x8A], [0xFF; 3]),
+        Self::with_edge([0x1F, 0x5F, 0xD0], [0xFF; 3]),
+        Self::with_edge([0x0B, 0x8A, 0x7A], [0xFF; 3]),
+        Self::with_edge([0x7A, 0x34, 0xB8], [0xFF; 3]),
+        Self::with_edge([0xD0, 0x1F, 0x2E], [0xFF; 3]),
+        Self::with_edge([0x2C, 0x7A, 0x1E], [0xFF; 3]),
+        Self::with_edge([0x00, 0x8F, 0xC4], [0xFF; 3]),
+        Self::with_edge([0x8A, 0x4B, 0x12], [0xFF; 3]),
+        Self::with_edge([0x2B; 3], [0xFF; 3]),
+    ];
+
+    /// Lines that a person draws.
+    pub(crate) const DRAWN: Self = Self::with_edge([0xFF, 0xE6, 0x00], [0x2B; 3]);
+
+    /// What is not drawn.
+    pub(crate) const NOTHING: Self = Self { opacity: 0.0, ..Self::solid([0.0; 3], 1.0) };
+
+    const fn with_edge(color: [u8; 3], edge: [u8; 3]) -> Self {
+        Self { casing: Some(shares(edge)), ..Self::solid(shares(color), 3.0) }
+    }
+
     /// A solid line of this colour and width, drawn everywhere.
     #[must_use]
     pub const fn solid(color: Rgb, width_px: f32) -> Self {
@@ -38,4 +62,9 @@ impl LineStyle {
     pub fn is_drawn(&self) -> bool {
         self.opacity > 0.0
     }
+}
+
+/// A colour in bytes as shares.
+const fn shares([red, green, blue]: [u8; 3]) -> Rgb {
+    [red as f32 / 255.0, green as f32 / 255.0, blue as f32 / 255.0]
 }

@@ -68,23 +68,16 @@ impl RoadSheet {
             within(&entry("carriageway_width_m"), carriageway_m, 0.1..=self.width_m)?;
         }
         within(&entry("min_width_px"), self.min_width_px, 0.1..=50.0)?;
-        if let Some(max_pixel_m) = self.max_pixel_m {
-            within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
-        }
-        if let Some(max_width_px) = self.max_width_px {
-            within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
-        }
-        if let Some(exponent) = self.exponent {
-            within(&entry("exponent"), exponent, 0.0..=1.0)?;
-        }
-        if let Some(edge_max_pixel_m) = self.edge_max_pixel_m {
-            within(&entry("edge_max_pixel_m"), edge_max_pixel_m, 0.01..=1e6)?;
-        }
-        if let Some(opacity) = self.opacity {
-            within(&entry("opacity"), opacity, 0.01..=1.0)?;
-        }
-        if let Some(center) = self.center {
-            within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
+        let optional = [
+            ("max_pixel_m", self.max_pixel_m, 0.01..=1e6),
+            ("max_width_px", self.max_width_px, 0.1..=500.0),
+            ("exponent", self.exponent, 0.0..=1.0),
+            ("edge_max_pixel_m", self.edge_max_pixel_m, 0.01..=1e6),
+            ("opacity", self.opacity, 0.01..=1.0),
+            ("center.width_share", self.center.map(|center| center.width_share), 0.01..=0.99),
+        ];
+        for (name, value, range) in optional {
+            value.map_or(Ok(()), |value| within(&entry(name), value, range))?;
         }
         Ok(RoadStyle {
             width_m: self.width_m as f32,

@@ -1,109 +1,69 @@
 //! The text of a style: TOML, checked entry by entry, and then turned into the values that are drawn with.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
-use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
 use crate::{
-    AreaStyle, LineStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    LineStyle, OwnWidths, RoadStyle, Style, StyleError, WidthScaling,
     area_sheet::{AreaSheet, areas},
-    base,
+    base::{self, USUAL},
     ground_sheet::{LightSheet, TintSheet, tint},
     line_sheet::{LineSheet, boundaries},
     road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
+    style_preset,
 };
 
 /// Longest text that is read. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
 
-/// A style in the units and types of its text, checked. `config/styles/road-atlas.toml` tells what each entry means.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct StyleSheet {
-    /// Width of the edge of roads, 0 to 4 pixels.
-    pub(crate) outline_px: u32,
-    /// Roads that stand alone are drawn where they are at least so long, 0 to 1000 pixels.
-    pub(crate) shortest_part_px: f64,
-    /// Whether roads are drawn by their own `width` where it is tagged.
-    pub(crate) own_width: bool,
-    /// Width of a lane, 1 to 10 m, for roads with `lanes` and without `width`.
-    pub(crate) lane_width_m: Option<f64>,
-    /// How strongly photos are seen, 0 to 1.
-    pub(crate) photo: f64,
-    /// How roads widen with distance.
-    pub(crate) width_scaling: WidthScalingSheet,
-    /// Light and shade.
-    pub(crate) light: LightSheet,
-    /// Sky, haze, void, water, and the wall along the edge of the data.
-    pub(crate) background: BackgroundSheet,
-    /// Height tint.
-    pub(crate) tint: Tint,
-    /// The roads of each class, 0 first.
-    pub(crate) roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// The areas of each class, in order of their numbers.
-    pub(crate) areas: [AreaStyle; AreaClass::COUNT],
-    /// The boundaries of each class, in order of their numbers.
-    pub(crate) boundaries: [LineStyle; LineStyle::MOST],
-    /// The lines of files, in the order of the files.
-    pub(crate) overlays: [LineStyle; LineStyle::MOST],
-    /// Lines that a person draws.
-    pub(crate) drawn: LineStyle,
-}
-
 /// How roads widen with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct WidthScalingSheet {
+struct WidthScalingSheet {
     /// Distance from the eye up to which widths are true, 1 to 1e7 m.
-    pub(crate) threshold_m: f64,
+    threshold_m: f64,
     /// 0 to 1.
-    pub(crate) exponent: f64,
+    exponent: f64,
     /// Factor on all widths where they are multiplied by a constant, 0.1 to 100.
-    pub(crate) constant: f64,
+    constant: f64,
 }
 
 /// Colours where there is no near ground.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BackgroundSheet {
+struct BackgroundSheet {
     /// Far ground and the sky at the horizon.
-    pub(crate) haze: Rgb8,
+    haze: Rgb8,
     /// The sky far above the horizon.
-    pub(crate) sky: Rgb8,
+    sky: Rgb8,
     /// Where there is no ground, below the horizon.
-    pub(crate) void: Rgb8,
+    void: Rgb8,
     /// Level ground at or below 0 m.
-    #[serde(default = "BackgroundSheet::water")]
-    pub(crate) water: Rgb8,
+    water: Rgb8,
     /// The wall along the edge of the data.
-    #[serde(default = "BackgroundSheet::wall")]
-    pub(crate) wall: Rgb8,
+    wall: Rgb8,
     /// Ground at this many times the distance of what is looked at has lost two thirds of its colour; 0.1 to 1000.
-    pub(crate) haze_reach: f64,
+    haze_reach: f64,
 }
 
-impl BackgroundSheet {
-    fn water() -> Rgb8 {
-        Rgb8([0xA9, 0xC9, 0xDD])
-    }
-
-    fn wall() -> Rgb8 {
-        Rgb8([0x8E, 0x84, 0x78])
-    }
-}
-
-/// A style as it stands in the text, not yet checked: lists and tables of any length.
+/// A style in the units and types of its text, not yet checked: lists and tables of any length.
+/// `config/styles/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StyleFile {
+    /// 0 to 4 pixels.
     outline_px: u32,
+    /// 0 to 1000 pixels.
     #[serde(default)]
     shortest_part_px: f64,
     #[serde(default)]
     own_width: bool,
+    /// 1 to 10 m.
     lane_width_m: Option<f64>,
+    /// 0 to 1.
     #[serde(default = "photos_alone")]
     photo: f64,
     width_scaling: WidthScalingSheet,
@@ -124,16 +84,27 @@ fn photos_alone() -> f64 {
     1.0
 }
 
+/// The preset `road-atlas`.
+static ROAD_ATLAS: LazyLock<Style> = LazyLock::new(|| {
+    parse_style(style_preset(USUAL).unwrap_or_default())
+        .unwrap_or_else(|error| unreachable!("the style that comes along is right: {error}"))
+});
+
+impl Style {
+    /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is the
+    /// preset `road-atlas`.
+    #[must_use]
+    pub fn road_atlas() -> Self {
+        ROAD_ATLAS.clone()
+    }
+}
+
 /// Reads a style's text. With `base`, the name of a style that comes along, it has the entries of that style where it says nothing.
 ///
 /// # Errors
 /// When it is no TOML, leaves something out or says something unknown (the message names the line); when a number is
 /// out of its range, a class or the base is missing, or the tint does not ascend from 0 to 1 (the message names the entry).
 pub fn parse_style(text: &str) -> Result<Style, StyleError> {
-    parse_sheet(text).map(|sheet| Style::from(&sheet))
-}
-
-fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(StyleError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });
     }
@@ -142,43 +113,41 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         error.set_input(Some(text));
         error
     })?;
-    let StyleFile {
-        outline_px,
-        shortest_part_px,
-        own_width,
-        lane_width_m,
-        photo,
-        width_scaling,
-        light,
-        background,
-        tint_by_climate,
-        tint: stops,
-        areas: area_sheets,
-        boundaries: line_sheets,
-        roads,
-    } = file;
-    if lane_width_m.is_some() && !own_width {
+    if file.lane_width_m.is_some() && !file.own_width {
         return Err(StyleError::LaneWidth);
     }
-    let usual = Style::road_atlas();
-    let sheet = StyleSheet {
-        outline_px,
-        shortest_part_px,
-        own_width,
-        lane_width_m,
-        photo,
-        width_scaling,
-        light,
-        background,
-        tint: tint(&stops, tint_by_climate)?,
-        roads: all_classes(&roads)?,
-        areas: areas(&area_sheets, usual.areas)?,
-        boundaries: boundaries(&line_sheets, &usual.boundaries)?,
-        overlays: usual.overlays,
-        drawn: usual.drawn,
-    };
-    sheet.check()?;
-    Ok(sheet)
+    let tint = tint(&file.tint, file.tint_by_climate)?;
+    let roads = all_classes(&file.roads)?;
+    let areas = areas(&file.areas)?;
+    let boundaries = boundaries(&file.boundaries)?;
+    file.check()?;
+    let StyleFile { width_scaling, background, .. } = file;
+    Ok(Style {
+        roads,
+        areas,
+        boundaries,
+        overlays: LineStyle::OVERLAYS,
+        drawn: LineStyle::DRAWN,
+        own_widths: file
+            .own_width
+            .then_some(OwnWidths { lane_m: file.lane_width_m.map(|lane_m| lane_m as f32) }),
+        width_scaling: WidthScaling {
+            threshold_m: width_scaling.threshold_m as f32,
+            exponent: width_scaling.exponent as f32,
+            constant: width_scaling.constant as f32,
+        },
+        outline_px: file.outline_px,
+        shortest_part_px: file.shortest_part_px as f32,
+        tint,
+        light: file.light.into(),
+        photo: file.photo as f32,
+        haze: background.haze.into(),
+        sky: background.sky.into(),
+        void: background.void.into(),
+        water: background.water.into(),
+        wall: background.wall.into(),
+        haze_reach: background.haze_reach as f32,
+    })
 }
 
 /// The roads by class, if there are all of them and no others, and each is right.
@@ -190,16 +159,19 @@ fn all_classes(
     if let Some(text) = roads.keys().find(|text| !names.contains(text)) {
         return Err(StyleError::Class { text: text.clone() });
     }
-    // Each of them is replaced.
-    let mut styles = Style::road_atlas().roads;
-    for (number, (class, style)) in names.into_iter().zip(&mut styles).enumerate() {
-        let Some(road) = roads.get(&class) else { return Err(StyleError::MissingClass { class }) };
-        *style = road.checked(number)?;
+    let road = |number: usize| {
+        let class = &names[number];
+        let missing = || StyleError::MissingClass { class: class.clone() };
+        roads.get(class).ok_or_else(missing)?.checked(number)
+    };
+    let mut styles = [road(0)?; FunctionalRoadClass::COUNT];
+    for (number, style) in styles.iter_mut().enumerate().skip(1) {
+        *style = road(number)?;
     }
     Ok(styles)
 }
 
-impl StyleSheet {
+impl StyleFile {
     /// Checks every number against its range.
     fn check(&self) -> Result<(), StyleError> {
         let Self { outline_px, lane_width_m, width_scaling: scaling, .. } = self;
@@ -217,38 +189,6 @@ impl StyleSheet {
         light.check()?;
         within("background.haze_reach", background.haze_reach, 0.1..=1000.0)?;
         Ok(())
-    }
-}
-
-impl From<&StyleSheet> for Style {
-    fn from(sheet: &StyleSheet) -> Self {
-        let StyleSheet { outline_px, own_width, lane_width_m, width_scaling, .. } = sheet;
-        let StyleSheet { light, background, tint, roads, .. } = sheet;
-        let lane_m = lane_width_m.map(|lane_m| lane_m as f32);
-        Self {
-            roads: *roads,
-            areas: sheet.areas,
-            boundaries: sheet.boundaries,
-            overlays: sheet.overlays,
-            drawn: sheet.drawn,
-            own_widths: own_width.then_some(OwnWidths { lane_m }),
-            width_scaling: WidthScaling {
-                threshold_m: width_scaling.threshold_m as f32,
-                exponent: width_scaling.exponent as f32,
-                constant: width_scaling.constant as f32,
-            },
-            outline_px: *outline_px,
-            shortest_part_px: sheet.shortest_part_px as f32,
-            tint: tint.clone(),
-            light: (*light).into(),
-            photo: sheet.photo as f32,
-            haze: background.haze.into(),
-            sky: background.sky.into(),
-            void: background.void.into(),
-            water: background.water.into(),
-            wall: background.wall.into(),
-            haze_reach: background.haze_reach as f32,
-        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The styles that come with the program keep their rules, and mistakes in a style are named.
 
+use corniche_areas::AreaClass;
+
 use super::*;
 use crate::{Rgb, TintHeights, style_preset, style_preset_names};
 
@@ -21,7 +23,7 @@ fn refuses(from: &str, to: &str, words: &[&str]) {
 fn the_styles_that_come_along_are_styles_of_ordered_roads() {
     assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark", "relief", "photo"]);
     for name in style_preset_names() {
-        let style = parse_sheet(style_preset(name).unwrap()).unwrap();
+        let style = parse_style(style_preset(name).unwrap()).unwrap();
         assert!(
             style
                 .roads

@@ -1,6 +1,7 @@
 //! Widths and colours of a style follow its numbers.
 
 use super::*;
+use crate::TintHeights;
 
 #[test]
 fn the_atlas_gives_more_important_roads_more_width() {
@@ -21,7 +22,7 @@ fn widths_are_true_up_to_the_threshold_and_grow_beyond() {
 
 #[test]
 fn hex_is_red_green_blue() {
-    assert_eq!(rgb(0xFF_00_33), [1.0, 0.0, 0.2]);
+    assert_eq!(crate::parse_color("#FF0033").unwrap(), [1.0, 0.0, 0.2]);
 }
 
 /// A road's width: by its tag, by its lanes, by its class; at most 60 m from tags, and whatever the style says from classes.

@@ -36,11 +36,11 @@ mod tile_order;
 
 pub use manifest::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
-    CreditError, DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord,
-    LevelRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, OuterGround,
-    PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts,
-    SampleErrorRecord, SampleSums, ScaleRecord, SettingsRecord, SpanCounts, SpansRecord, SvTail,
-    SvTails, VerticalRecord, check_credit, to_credit,
+    CreditError, DatumOperationRecord, Distribution, GrowthRow, InputKind, InputRecord,
+    LeftOutRecord, LevelRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
+    Manifest, OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss,
+    SampleCounts, SampleErrorRecord, SampleSums, ScaleRecord, SettingsRecord, SpanCounts,
+    SpansRecord, SvTail, SvTails, VerticalRecord, check_credit, to_credit,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};

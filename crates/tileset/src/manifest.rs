@@ -3,6 +3,7 @@
 mod contents;
 mod counts;
 mod credits;
+mod inputs;
 mod levels;
 mod relief_levels;
 mod sample_sums;
@@ -12,12 +13,13 @@ pub(crate) mod check;
 
 pub use contents::{
     AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    DatumOperationRecord, InputRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
-    Manifest, OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
-    SettingsRecord, SpanCounts, SpansRecord, VerticalRecord,
+    DatumOperationRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest,
+    OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord,
+    SpanCounts, SpansRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use credits::{CreditError, check_credit, to_credit};
+pub use inputs::{InputKind, InputRecord};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
 pub use relief_levels::ReliefLevels;
 pub use sample_sums::SampleSums;

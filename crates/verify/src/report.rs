@@ -1,11 +1,12 @@
 //! The report of `corniche verify`: what each check found.
 
 use corniche_tileset::{Distribution, SampleErrorRecord};
+use serde::Serialize;
 
 use super::checks::Check;
 
 /// How far GEO roads are from their TIN on one level.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct GapFigures {
     /// Level.
     pub level: u8,
@@ -16,7 +17,7 @@ pub struct GapFigures {
 }
 
 /// Geometric errors and deviations of one level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ErrorFigures {
     /// Level.
     pub level: u8,

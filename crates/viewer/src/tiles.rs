@@ -54,7 +54,7 @@ pub(crate) use self::{
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
     roads::{
-        BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGround, PlanLine, RoadEnd,
+        BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGround, RoadEnd,
         dash_of_segment_m,
     },
 };

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand, ValueEnum, ValueHint};
+use clap::{ArgAction, Args, Subcommand, ValueEnum, ValueHint, builder::TypedValueParser};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
-use corniche_export::{MeshFormat, ModelRoads, TileRoads, UpAxis, VectorFormat};
+use corniche_export::{
+    Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
+};
 use corniche_remote::PackagePlace;
 
 use super::{
@@ -13,8 +15,7 @@ use super::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    terrain_values::{AvailabilityArg, TerrainCompress, TilingArg},
-    values::{package_among, package_place},
+    values::{one_of, package_among, package_place},
 };
 use crate::failure::Failure;
 
@@ -103,8 +104,8 @@ pub(crate) struct VectorArgs {
     #[command(flatten)]
     pub(crate) road: RoadArg,
     /// The format of a file with another ending
-    #[arg(short, long, value_enum, value_name = "FORMAT")]
-    pub(crate) format: Option<Format>,
+    #[arg(short, long, value_parser = vector_format(), value_name = "FORMAT")]
+    pub(crate) format: Option<VectorFormat>,
     /// The coordinates: "package", "EPSG:4979" (with heights above the ellipsoid of WGS84), "EPSG:4326", or a projected CRS such as "EPSG:2056" [default:
     /// package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_crs)]
@@ -122,8 +123,8 @@ pub(crate) struct InPlanArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
     /// The format of a file with another ending
-    #[arg(short, long, value_enum, value_name = "FORMAT")]
-    pub(crate) format: Option<Format>,
+    #[arg(short, long, value_parser = vector_format(), value_name = "FORMAT")]
+    pub(crate) format: Option<VectorFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     #[command(flatten)]
@@ -197,8 +198,8 @@ pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
     /// The format of a file with another ending
-    #[arg(short, long, value_enum, value_name = "FORMAT")]
-    pub(crate) format: Option<ModelFormat>,
+    #[arg(short, long, value_parser = model_format(), value_name = "FORMAT")]
+    pub(crate) format: Option<MeshFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     #[command(flatten)]
@@ -206,23 +207,27 @@ pub(crate) struct ExportMeshArgs {
     /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are slabs of surfaces if the package has spans
     #[arg(
         long,
-        value_enum,
+        value_parser = model_roads(),
         default_value = "lines",
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) roads: ModelRoadsArg,
+    pub(crate) roads: ModelRoads,
     /// Colours and widths of roads: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
     pub(crate) style: String,
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
     /// With .glb: normal maps of the ground from the package's relief [default: on for .glb]
-    #[arg(long, value_enum, value_name = "on|none", hide_possible_values = true)]
-    pub(crate) relief: Option<OnOrNone>,
+    #[arg(long, value_parser = on_or_none(), value_name = "on|none", hide_possible_values = true)]
+    pub(crate) relief: Option<bool>,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
-    #[arg(long, value_enum, value_name = "AXIS")]
-    pub(crate) up: Option<Up>,
+    #[arg(
+        long,
+        value_parser = one_of([("y", "", UpAxis::Y), ("z", "", UpAxis::Z)]),
+        value_name = "AXIS"
+    )]
+    pub(crate) up: Option<UpAxis>,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
 }
@@ -264,12 +269,12 @@ pub(crate) struct ExportTiles3dArgs {
     /// vector content is in a second tileset, roads/tileset.json, a draft, and not valid glTF 2.0 for others
     #[arg(
         long,
-        value_enum,
+        value_parser = tile_roads(),
         default_value = "cut",
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) roads: TileRoadsArg,
+    pub(crate) roads: TileRoads,
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
@@ -283,30 +288,33 @@ pub(crate) struct ExportTiles3dArgs {
     /// Normal maps of the ground from the package's relief
     #[arg(
         long,
-        value_enum,
+        action = ArgAction::Set,
+        value_parser = on_or_none(),
         default_value = "on",
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) relief: OnOrNone,
+    pub(crate) relief: bool,
     /// Walls below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
-        value_enum,
+        action = ArgAction::Set,
+        value_parser = on_or_none(),
         default_value = "on",
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) skirts: OnOrNone,
+    pub(crate) skirts: bool,
     /// Compression of vertices without loss: meshopt, or none
     #[arg(
         long,
-        value_enum,
+        action = ArgAction::Set,
+        value_parser = one_of([("meshopt", "", true), ("none", "", false)]),
         default_value = "meshopt",
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) compress: Compress,
+    pub(crate) compress: bool,
     /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
@@ -331,12 +339,15 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// The grid of tiles: geographic (EPSG:4326) or web-mercator (EPSG:3857)
     #[arg(
         long,
-        value_enum,
+        value_parser = one_of([
+            ("geographic", "", Tiling::Geographic),
+            ("web-mercator", "", Tiling::WebMercator),
+        ]),
         default_value = "geographic",
         value_name = "GRID",
         hide_possible_values = true
     )]
-    pub(crate) tiling: TilingArg,
+    pub(crate) tiling: Tiling,
     /// The finest level [default: the one with the package's cells, or a coarser one whose error is the package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
     pub(crate) max_level: Option<u8>,
@@ -348,21 +359,25 @@ pub(crate) struct ExportQuantizedMeshArgs {
     /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with many tiles)
     #[arg(
         long,
-        value_enum,
+        value_parser = one_of([
+            ("layer", "", Availability::Layer),
+            ("tiles", "", Availability::Tiles),
+        ]),
         default_value = "layer",
         value_name = "WHERE",
         hide_possible_values = true
     )]
-    pub(crate) availability: AvailabilityArg,
+    pub(crate) availability: Availability,
     /// Compression of files: none, or gzip for servers that then send "Content-Encoding: gzip"
     #[arg(
         long,
-        value_enum,
+        action = ArgAction::Set,
+        value_parser = one_of([("none", "", false), ("gzip", "", true)]),
         default_value = "none",
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) compress: TerrainCompress,
+    pub(crate) compress: bool,
     /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
     #[arg(long, value_enum, value_name = "as-is")]
     pub(crate) heights: Option<Heights>,
@@ -391,123 +406,46 @@ impl Export {
 }
 
 /// What 3D Tiles have of roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TileRoadsArg {
-    /// Surfaces in the ground's triangles
-    Cut,
-    /// Centre-lines above the ground
-    Line,
-    /// Centre-lines as vector content
-    Vector,
-    /// Nothing
-    None,
-}
-
-impl From<ModelRoadsArg> for ModelRoads {
-    fn from(roads: ModelRoadsArg) -> Self {
-        match roads {
-            ModelRoadsArg::Lines => Self::Lines,
-            ModelRoadsArg::Surfaces => Self::Surfaces,
-            ModelRoadsArg::None => Self::None,
-        }
-    }
-}
-
-impl From<TileRoadsArg> for TileRoads {
-    fn from(roads: TileRoadsArg) -> Self {
-        match roads {
-            TileRoadsArg::Cut => Self::Cut,
-            TileRoadsArg::Line => Self::Line,
-            TileRoadsArg::Vector => Self::Vector,
-            TileRoadsArg::None => Self::None,
-        }
-    }
-}
-
-/// Whether an export has something: normal maps of the ground, walls below the borders of tiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OnOrNone {
-    On,
-    None,
-}
-
-/// How files are compressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Compress {
-    Meshopt,
-    None,
-}
-
-/// Formats of models by the endings of their files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModelFormat {
-    /// Binary glTF 2.0
-    Glb,
-    /// PLY, binary, positions in double precision
-    Ply,
-    /// Wavefront OBJ
-    Obj,
-}
-
-impl From<ModelFormat> for MeshFormat {
-    fn from(format: ModelFormat) -> Self {
-        match format {
-            ModelFormat::Glb => Self::Glb,
-            ModelFormat::Ply => Self::Ply,
-            ModelFormat::Obj => Self::Obj,
-        }
-    }
+fn tile_roads() -> impl TypedValueParser<Value = TileRoads> {
+    one_of([
+        ("cut", "Surfaces in the ground's triangles", TileRoads::Cut),
+        ("line", "Centre-lines above the ground", TileRoads::Line),
+        ("vector", "Centre-lines as vector content", TileRoads::Vector),
+        ("none", "Nothing", TileRoads::None),
+    ])
 }
 
 /// What a model has of roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModelRoadsArg {
-    /// Their centre-lines on the ground
-    Lines,
-    /// Surfaces in the ground's own triangles
-    Surfaces,
-    /// Nothing
-    None,
+fn model_roads() -> impl TypedValueParser<Value = ModelRoads> {
+    one_of([
+        ("lines", "Their centre-lines on the ground", ModelRoads::Lines),
+        ("surfaces", "Surfaces in the ground's own triangles", ModelRoads::Surfaces),
+        ("none", "Nothing", ModelRoads::None),
+    ])
 }
 
-/// The axis of a model that points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Up {
-    Y,
-    Z,
+/// Whether an export has something: normal maps of the ground, walls below the borders of tiles.
+fn on_or_none() -> impl TypedValueParser<Value = bool> {
+    one_of([("on", "", true), ("none", "", false)])
 }
 
-impl From<Up> for UpAxis {
-    fn from(up: Up) -> Self {
-        match up {
-            Up::Y => Self::Y,
-            Up::Z => Self::Z,
-        }
-    }
+/// Formats of models by the endings of their files.
+fn model_format() -> impl TypedValueParser<Value = MeshFormat> {
+    one_of([
+        ("glb", "Binary glTF 2.0", MeshFormat::Glb),
+        ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
+        ("obj", "Wavefront OBJ", MeshFormat::Obj),
+    ])
 }
 
-/// Formats by the endings of their files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// GeoPackage
-    Gpkg,
-    /// FlatGeobuf
-    Fgb,
-    /// GeoJSON (RFC 7946)
-    Geojson,
-    /// Comma-separated values, geometries as WKT
-    Csv,
-}
-
-impl From<Format> for VectorFormat {
-    fn from(format: Format) -> Self {
-        match format {
-            Format::Gpkg => Self::GeoPackage,
-            Format::Fgb => Self::FlatGeobuf,
-            Format::Geojson => Self::GeoJson,
-            Format::Csv => Self::Csv,
-        }
-    }
+/// Formats of features by the endings of their files.
+fn vector_format() -> impl TypedValueParser<Value = VectorFormat> {
+    one_of([
+        ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
+        ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
+        ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
+        ("csv", "Comma-separated values, geometries as WKT", VectorFormat::Csv),
+    ])
 }
 
 /// What `--crs` names.

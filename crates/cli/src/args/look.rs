@@ -5,9 +5,14 @@ use clap::{
     builder::{PossibleValuesParser, TypedValueParser},
 };
 use corniche_styles::Style;
-use corniche_viewer::{RoadMethod, RoadOptions};
+use corniche_viewer::{
+    CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+};
 
-use super::overlay::{self, OverlayArg};
+use super::{
+    overlay::{self, OverlayArg},
+    values::one_of,
+};
 use crate::failure::Failure;
 
 /// The heading in the help under which options stand that are there for comparisons with published methods.
@@ -73,41 +78,6 @@ impl Roads {
     }
 }
 
-/// How roads begin, bend and end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Caps {
-    /// With a half disc around every point
-    Round,
-    /// Cut off straight at every point
-    None,
-}
-
-/// How widths depend on the distance from the eye.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum WidthGrowth {
-    /// True widths
-    None,
-    /// True widths times the style's constant
-    Constant,
-    /// True widths near the eye, growing beyond the style's threshold
-    Distance,
-}
-
-/// The edge of roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Outline {
-    /// As wide as the style says
-    Style,
-    /// None
-    None,
-    /// One pixel, by a kernel of 3 × 3
-    #[value(name = "3")]
-    Kernel3,
-    /// Two pixels, by a kernel of 5 × 5
-    #[value(name = "5")]
-    Kernel5,
-}
-
 /// Whether areas, or boundaries, are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum OnOff {
@@ -127,22 +97,59 @@ impl OnOff {
     }
 }
 
+/// How roads begin, bend and end.
+fn caps() -> impl TypedValueParser<Value = Caps> {
+    one_of([
+        ("round", "With a half disc around every point", Caps::Round),
+        ("none", "Cut off straight at every point", Caps::None),
+    ])
+}
+
+/// How widths depend on the distance from the eye.
+fn width_growth() -> impl TypedValueParser<Value = WidthGrowth> {
+    one_of([
+        ("none", "True widths", WidthGrowth::None),
+        ("constant", "True widths times the style's constant", WidthGrowth::Constant),
+        (
+            "distance",
+            "True widths near the eye, growing beyond the style's threshold",
+            WidthGrowth::ByDistance,
+        ),
+    ])
+}
+
+/// The edge of roads.
+fn outline() -> impl TypedValueParser<Value = Outline> {
+    one_of([
+        ("style", "As wide as the style says", Outline::OfStyle),
+        ("none", "None", Outline::None),
+        ("3", "One pixel, by a kernel of 3 × 3", Outline::Kernel3),
+        ("5", "Two pixels, by a kernel of 5 × 5", Outline::Kernel5),
+    ])
+}
+
 /// How a fragment of a shadow volume finds out whether the ground it sees is road.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum CapTest {
-    /// By the distance in plan: exact far from the eye too
-    Distance,
-    /// By the paper's formula, for comparison: loses precision far from the eye
-    Paper,
+fn cap_test() -> impl TypedValueParser<Value = CapTest> {
+    one_of([
+        ("distance", "By the distance in plan: exact far from the eye too", CapTest::Distance),
+        (
+            "paper",
+            "By the paper's formula, for comparison: loses precision far from the eye",
+            CapTest::PaperQuadratic,
+        ),
+    ])
 }
 
 /// What the quad of a piece of road covers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Quads {
-    /// All ground beside the piece, within the road's width
-    Beds,
-    /// What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow
-    Level,
+fn quads() -> impl TypedValueParser<Value = Quads> {
+    one_of([
+        ("beds", "All ground beside the piece, within the road's width", Quads::Beds),
+        (
+            "level",
+            "What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow",
+            Quads::Level,
+        ),
+    ])
 }
 
 #[derive(Debug, Args)]
@@ -169,19 +176,19 @@ pub(crate) struct LookArgs {
     #[arg(long, requires = "overlay")]
     pub(crate) allow_ballpark: bool,
     /// How roads begin, bend and end
-    #[arg(long, value_enum, default_value_t = Caps::Round, help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = caps(), default_value = "round", help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,
     /// How widths depend on the distance from the eye
-    #[arg(long, value_enum, default_value_t = WidthGrowth::Distance, help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = width_growth(), default_value = "distance", help_heading = COMPARING, hide_short_help = true)]
     width_growth: WidthGrowth,
     /// Outline of roads: the style's, none, or one from a kernel of 3 or 5 pixels
-    #[arg(long, value_enum, default_value_t = Outline::Style, help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = outline(), default_value = "style", help_heading = COMPARING, hide_short_help = true)]
     outline: Outline,
     /// How shadow volumes find their round ends [default: distance]
-    #[arg(long, value_enum, help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = cap_test(), help_heading = COMPARING, hide_short_help = true)]
     cap_test: Option<CapTest>,
     /// What the quads of roads as geometry cover [default: beds]
-    #[arg(long, value_enum, help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = quads(), help_heading = COMPARING, hide_short_help = true)]
     geo_quads: Option<Quads>,
 }
 
@@ -238,30 +245,15 @@ impl LookArgs {
     pub(crate) fn road_options(&self, roads: Roads) -> RoadOptions {
         RoadOptions {
             method: roads.method(),
-            classes: corniche_viewer::ClassSet::ALL,
+            classes: ClassSet::ALL,
             caps: match roads {
-                Roads::GeoNoCaps | Roads::SvNoCaps => corniche_viewer::Caps::None,
-                _ => corniche_viewer::Caps::Round,
+                Roads::GeoNoCaps | Roads::SvNoCaps => Caps::None,
+                _ => Caps::Round,
             },
-            cap_test: match self.cap_test {
-                Some(CapTest::Paper) => corniche_viewer::CapTest::PaperQuadratic,
-                Some(CapTest::Distance) | None => corniche_viewer::CapTest::Distance,
-            },
-            quads: match self.geo_quads {
-                Some(Quads::Level) => corniche_viewer::Quads::Level,
-                Some(Quads::Beds) | None => corniche_viewer::Quads::Beds,
-            },
-            width_growth: match self.width_growth {
-                WidthGrowth::None => corniche_viewer::WidthGrowth::None,
-                WidthGrowth::Constant => corniche_viewer::WidthGrowth::Constant,
-                WidthGrowth::Distance => corniche_viewer::WidthGrowth::ByDistance,
-            },
-            outline: match self.outline {
-                Outline::Style => corniche_viewer::Outline::OfStyle,
-                Outline::None => corniche_viewer::Outline::None,
-                Outline::Kernel3 => corniche_viewer::Outline::Kernel3,
-                Outline::Kernel5 => corniche_viewer::Outline::Kernel5,
-            },
+            cap_test: self.cap_test.unwrap_or(CapTest::Distance),
+            quads: self.geo_quads.unwrap_or(Quads::Beds),
+            width_growth: self.width_growth,
+            outline: self.outline,
         }
     }
 }

@@ -2,45 +2,32 @@
 
 use std::{num::NonZeroU32, path::PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{Args, builder::TypedValueParser};
 use corniche_geom::TileId;
 use corniche_osm::Share;
 use corniche_pipeline::Step;
 
-use super::{ReportArgs, shared::ThreadsArg};
+use super::{ReportArgs, shared::ThreadsArg, values::one_of};
 use crate::failure::Failure;
 
 /// A step of a build that a process can do alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum StepName {
-    /// Hash the inputs
-    Hashes,
-    /// Find the road ways in a share of the extract; may be left out
-    Ways,
-    /// Find the nodes of road ways in a share of the extract; needs the ways of all shares
-    Nodes,
-    /// Cut the extract's roads by tile: from all shares of ways and nodes, else from the extract itself
-    Roads,
-    /// Read the heights of a subtree
-    Heights,
-    /// Check all heights and make what lies above the subtrees; needs the heights of all
-    Top,
-    /// Make the tiles of a subtree; needs the heights of all, top and roads
-    Tiles,
-}
-
-impl From<StepName> for Step {
-    fn from(name: StepName) -> Self {
-        match name {
-            StepName::Hashes => Self::Hashes,
-            StepName::Ways => Self::Ways,
-            StepName::Nodes => Self::Nodes,
-            StepName::Roads => Self::Roads,
-            StepName::Heights => Self::Heights,
-            StepName::Top => Self::Top,
-            StepName::Tiles => Self::Tiles,
+fn step() -> impl TypedValueParser<Value = Step> {
+    let help = |step| match step {
+        Step::Hashes => "Hash the inputs",
+        Step::Ways => "Find the road ways in a share of the extract; may be left out",
+        Step::Nodes => {
+            "Find the nodes of road ways in a share of the extract; needs the ways of all shares"
         }
-    }
+        Step::Roads => {
+            "Cut the extract's roads by tile: from all shares of ways and nodes, else from the extract itself"
+        }
+        Step::Heights => "Read the heights of a subtree",
+        Step::Top => {
+            "Check all heights and make what lies above the subtrees; needs the heights of all"
+        }
+        Step::Tiles => "Make the tiles of a subtree; needs the heights of all, top and roads",
+    };
+    one_of(Step::ALL.map(|step| (step.name(), help(step), step)))
 }
 
 // Which plan, which stores, and what the run may use: the same for `part` and `merge`.
@@ -102,8 +89,8 @@ fn plan_and_stores(
 #[command(override_usage = "corniche part [OPTIONS] --step <STEP> --store <FOLDER>... <PLAN.json>")]
 pub(crate) struct PartArgs {
     /// The step to do
-    #[arg(long, value_enum, value_name = "STEP")]
-    pub(crate) step: StepName,
+    #[arg(long, value_parser = step(), value_name = "STEP")]
+    pub(crate) step: Step,
     /// Only the tiles beneath and at this one, for the steps heights and tiles [default: 0/0/0, all]
     #[arg(long, value_name = "Z/X/Y")]
     pub(crate) subtree: Option<TileId>,

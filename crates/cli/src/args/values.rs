@@ -6,10 +6,27 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::{builder::TypedValueParser, error::ErrorKind};
+use clap::{
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+    error::ErrorKind,
+};
 use corniche_remote::PackagePlace;
 
 use crate::{failure::Failure, names::is_package_name};
+
+/// One of some values by its word; behind it stands what its help says, if it says anything.
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    values: [(&'static str, &'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    let words = values.map(|(word, help, _)| {
+        let value = PossibleValue::new(word);
+        if help.is_empty() { value } else { value.help(help) }
+    });
+    PossibleValuesParser::new(words).try_map(move |given| {
+        let found = values.iter().find(|(word, ..)| *word == given);
+        found.map(|(_, _, value)| *value).ok_or("it is no value of this option")
+    })
+}
 
 /// The package that a command reads: a file, or an address on a web server.
 pub(crate) fn package_place() -> impl TypedValueParser<Value = PackagePlace> {

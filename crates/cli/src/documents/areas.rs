@@ -5,6 +5,9 @@ use corniche_geom::GridFrame;
 use corniche_tileset::{AreaLevelRecord, AreaRecord, AreaTableRecord, AreasRecord};
 use serde::Serialize;
 
+#[cfg(test)]
+use crate::documents::record_schemas::AreaLevelDocument;
+
 /// The table of classes of areas.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -26,7 +29,8 @@ pub(crate) struct AreasDocument {
     /// Those that became none, by reason.
     lost: Vec<AreaLossDocument>,
     /// For each level that has some, root first.
-    levels: Vec<AreaLevelDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<AreaLevelDocument>"))]
+    levels: Vec<AreaLevelRecord>,
 }
 
 /// Areas of one class.
@@ -49,22 +53,6 @@ struct AreaLossDocument {
     reason: String,
     /// How many.
     objects: u64,
-}
-
-/// The areas of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct AreaLevelDocument {
-    /// Level, 0 = root.
-    level: u8,
-    /// Tiles with areas.
-    tiles: u64,
-    /// Areas of these tiles; one that lies in several tiles counts in each.
-    areas: u64,
-    /// Points of all rings.
-    points: u64,
-    /// Stored bytes of their sections.
-    bytes: u64,
 }
 
 /// The part of an area that lies in a tile.
@@ -120,10 +108,6 @@ impl From<AreasRecord> for AreasDocument {
             areas: kept.areas,
             area_km2: kept.area_km2,
         };
-        let level = |level: AreaLevelRecord| {
-            let AreaLevelRecord { level, tiles, areas, points, bytes } = level;
-            AreaLevelDocument { level, tiles, areas, points, bytes }
-        };
         Self {
             objects: counts.objects,
             kept: counts.kept.into_iter().map(class).collect(),
@@ -132,7 +116,7 @@ impl From<AreasRecord> for AreasDocument {
                 .into_iter()
                 .map(|(reason, objects)| AreaLossDocument { reason, objects })
                 .collect(),
-            levels: levels.into_iter().map(level).collect(),
+            levels,
         }
     }
 }

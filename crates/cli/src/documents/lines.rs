@@ -1,8 +1,12 @@
 //! Layers of lines in the JSON documents of several commands.
 
-use corniche_areas::{ClassedLayer, LineClass};
-use corniche_tileset::{LineLevelRecord, LinesRecord};
+use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
+use corniche_geom::GridFrame;
+use corniche_tileset::{LineLevelRecord, LineRecord, LinesRecord};
 use serde::Serialize;
+
+#[cfg(test)]
+use crate::documents::record_schemas::LineLevelDocument;
 
 /// A layer of lines of a package.
 #[derive(Debug, Serialize)]
@@ -15,7 +19,8 @@ pub(crate) struct LinesDocument {
     /// Those that were left out, by reason.
     lost: Vec<LineLossDocument>,
     /// For each level that has some, root first.
-    levels: Vec<LineLevelDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<LineLevelDocument>"))]
+    levels: Vec<LineLevelRecord>,
 }
 
 /// Lines of one class.
@@ -40,22 +45,6 @@ struct LineLossDocument {
     ways: u64,
 }
 
-/// The lines of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct LineLevelDocument {
-    /// Level, 0 = root.
-    level: u8,
-    /// Tiles with some.
-    tiles: u64,
-    /// Parts of lines near these tiles; one that comes near several tiles counts in each.
-    parts: u64,
-    /// Their points.
-    points: u64,
-    /// Stored bytes of their sections.
-    bytes: u64,
-}
-
 impl LinesDocument {
     pub(crate) fn of(layer: ClassedLayer, LinesRecord { counts, levels }: LinesRecord) -> Self {
         let kept = counts.kept.into_iter().map(|kept| LineClassDocument {
@@ -69,13 +58,35 @@ impl LinesDocument {
             ways: counts.ways,
             kept: kept.collect(),
             lost: lost.map(|(reason, ways)| LineLossDocument { reason, ways }).collect(),
-            levels: levels.into_iter().map(Into::into).collect(),
+            levels,
         }
     }
 }
 
-impl From<LineLevelRecord> for LineLevelDocument {
-    fn from(LineLevelRecord { level, tiles, parts, points, bytes }: LineLevelRecord) -> Self {
-        Self { level, tiles, parts, points, bytes }
+/// A part of a boundary near a tile.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct TileBoundaryDocument {
+    /// OSM's id of the way.
+    way_id: i64,
+    /// The most important of what it bounds: "admin-2" to "admin-8" or "protected".
+    class: &'static str,
+    /// OSM's `admin_level` of that; null for protected areas.
+    admin_level: Option<u8>,
+    /// x and y of each point. Segments are whole: each comes into the tile or its level's width margin, and its ends may lie outside.
+    line: Vec<[f64; 2]>,
+}
+
+impl TileBoundaryDocument {
+    /// `place` makes coordinates from working metres.
+    pub(crate) fn of(
+        LineRecord { way_id, class, points }: LineRecord,
+        frame: &GridFrame,
+        place: &impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Self {
+        let line = points.into_iter().map(|point| place(frame.position_m(point))).collect();
+        let admin_level =
+            BoundaryClass::from_number(class.number()).and_then(BoundaryClass::admin_level);
+        Self { way_id, class: class.name(), admin_level, line }
     }
 }

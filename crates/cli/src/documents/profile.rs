@@ -1,7 +1,6 @@
 //! The JSON document of `corniche profile`.
 
 use corniche_export::{Profile, ProfileGrades, ProfilePoint};
-use corniche_roads::Structure;
 use serde::Serialize;
 
 /// Heights and grades along ways or lines.
@@ -121,7 +120,7 @@ impl PointDocument {
             height_m: rounded(point.height_m),
             grade_pct: rounded(100.0 * point.grade),
             position_deg: point.position_deg.map(|degrees| (degrees * 1e9).round() / 1e9),
-            height_source: point.height_source,
+            height_source: point.height_source.name(),
             smooth_m: point.smooth.map(|[height_m, _]| rounded(height_m)),
             smooth_grade_pct: point.smooth.map(|[_, grade]| rounded(100.0 * grade)),
         }
@@ -138,11 +137,7 @@ impl<'a> ProfileDocument<'a> {
             name: text(&leg.name),
             r#ref: text(&leg.reference),
             highway: text(&leg.highway),
-            structure: match leg.structure {
-                Structure::Ground => "ground",
-                Structure::Bridge => "bridge",
-                Structure::Tunnel => "tunnel",
-            },
+            structure: leg.structure.name(),
         });
         let parts = found.parts.iter().map(|part| PartDocument {
             points: part.points.iter().map(PointDocument::of).collect(),

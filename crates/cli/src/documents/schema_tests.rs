@@ -10,9 +10,10 @@ use serde_json::{Value, json};
 use super::{
     growth::{ComparisonDocument, GrowthDocument},
     info::InfoDocument,
-    plan::{JobDocument, PlanDocument},
+    plan::PlanDocument,
     profile::ProfileDocument,
     progress::ProgressRecord,
+    record_schemas::JobDocument,
     tile::TileDocument,
     verify::VerifyDocument,
 };

@@ -1,10 +1,10 @@
 //! Bridges and tunnels in the JSON documents of several commands.
 
-use corniche_roads::Structure;
-use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, SpansRecord};
+use corniche_tileset::{LineLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
 use serde::Serialize;
 
-use super::lines::LineLevelDocument;
+#[cfg(test)]
+use crate::documents::record_schemas::LineLevelDocument;
 
 /// The bridges and tunnels of a package. Each is all ways of its kind that are connected; heights are estimates.
 #[derive(Debug, Serialize)]
@@ -23,7 +23,8 @@ pub(crate) struct SpansDocument {
     /// How often there is a reason to look at one, by its name.
     reasons: Vec<ReasonDocument>,
     /// What is off the ground on each level that has some, root first: runs are its parts.
-    levels: Vec<LineLevelDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<LineLevelDocument>"))]
+    levels: Vec<LineLevelRecord>,
 }
 
 /// A reason to look at bridges or tunnels.
@@ -46,7 +47,7 @@ impl From<SpansRecord> for SpansDocument {
             tunnels_km: counts.tunnels_um as f64 / 1e9,
             crossings: counts.crossings,
             reasons: reasons.map(|(reason, count)| ReasonDocument { reason, count }).collect(),
-            levels: levels.into_iter().map(Into::into).collect(),
+            levels,
         }
     }
 }
@@ -76,18 +77,9 @@ impl TileSpanDocument {
         Self {
             way_id: run.way_id,
             frc: run.class.number(),
-            structure: structure_name(run.structure),
+            structure: run.structure.name(),
             line,
             on_ground: [run.points.first(), run.points.last()].map(is_on_ground),
         }
-    }
-}
-
-/// What carries a road, in one word.
-pub(crate) fn structure_name(structure: Structure) -> &'static str {
-    match structure {
-        Structure::Ground => "ground",
-        Structure::Bridge => "bridge",
-        Structure::Tunnel => "tunnel",
     }
 }

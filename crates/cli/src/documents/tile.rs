@@ -3,11 +3,7 @@
 use corniche_tileset::RoadRecord;
 use serde::{Serialize, Serializer};
 
-use super::{
-    areas::TileAreaDocument,
-    boundaries::TileBoundaryDocument,
-    spans::{TileSpanDocument, structure_name},
-};
+use super::{areas::TileAreaDocument, lines::TileBoundaryDocument, spans::TileSpanDocument};
 
 /// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
 pub(crate) struct Written<'a, Item>(Box<dyn Fn() -> Items<'a, Item> + 'a>);
@@ -151,18 +147,13 @@ pub(crate) struct WayDocument {
 
 impl From<&RoadRecord> for WayDocument {
     fn from(record: &RoadRecord) -> Self {
-        use corniche_roads::{Form, Oneway};
+        use corniche_roads::Oneway;
         let attributes = &record.attributes;
         let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());
         Self {
             way_id: record.way_id,
-            form: match attributes.form {
-                Form::Ordinary => "ordinary",
-                Form::DualCarriageway => "dual_carriageway",
-                Form::Link => "link",
-                Form::Roundabout => "roundabout",
-            },
-            structure: structure_name(attributes.structure),
+            form: attributes.form.name(),
+            structure: attributes.structure.name(),
             layer: attributes.layer,
             oneway: match attributes.oneway {
                 Oneway::No => "no",

@@ -1,8 +1,11 @@
 //! The JSON document of `corniche verify`.
 
-use corniche_tileset::{Distribution, SampleErrorRecord};
-use corniche_verify::VerifyReport;
+use corniche_tileset::SampleErrorRecord;
+use corniche_verify::{ErrorFigures, GapFigures, VerifyReport};
 use serde::Serialize;
+
+#[cfg(test)]
+use crate::documents::record_schemas::{ErrorDocument, GapDocument, SamplesDocument};
 
 /// Whether a package keeps its promises.
 #[derive(Debug, Serialize)]
@@ -17,11 +20,14 @@ pub(crate) struct VerifyDocument {
     /// The checks.
     pub(crate) checks: Vec<CheckDocument>,
     /// Gaps between GEO roads and TINs, per level.
-    pub(crate) gaps: Vec<GapDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<GapDocument>"))]
+    pub(crate) gaps: Vec<GapFigures>,
     /// With `--dem`: geometric errors, per level.
-    pub(crate) errors: Vec<ErrorDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<ErrorDocument>"))]
+    pub(crate) errors: Vec<ErrorFigures>,
     /// With `--dem`: how far the finest level is from the DEM's own samples.
-    pub(crate) samples: Option<SamplesDocument>,
+    #[cfg_attr(test, schemars(with = "Option<SamplesDocument>"))]
+    pub(crate) samples: Option<SampleErrorRecord>,
 }
 
 /// A check.
@@ -42,81 +48,6 @@ pub(crate) struct CheckDocument {
     pub(crate) examples: Vec<String>,
 }
 
-/// Gaps of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct GapDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Edges looked at.
-    pub(crate) edges: u64,
-    /// Largest gap, metres.
-    pub(crate) largest_m: f64,
-}
-
-/// Errors of a level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct ErrorDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Tiles measured.
-    pub(crate) tiles: u64,
-    /// Nodes with data that were compared.
-    pub(crate) nodes: u64,
-    /// Largest distance of a TIN from a node, metres.
-    pub(crate) largest_true_m: f64,
-    /// Stored error over true error, for the tiles where that can be measured.
-    pub(crate) tightness: Option<DistributionDocument>,
-    /// Nodes with data that the TINs do not cover.
-    pub(crate) uncovered_nodes: u64,
-}
-
-/// The distribution of values, as nearest-rank quantiles.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct DistributionDocument {
-    /// How many values.
-    pub(crate) count: u64,
-    /// Smallest.
-    pub(crate) min: f64,
-    /// Median.
-    pub(crate) median: f64,
-    /// 95th percentile.
-    pub(crate) p95: f64,
-    /// Largest.
-    pub(crate) max: f64,
-}
-
-impl From<Distribution> for DistributionDocument {
-    fn from(Distribution { count, min, median, p95, max }: Distribution) -> Self {
-        Self { count, min, median, p95, max }
-    }
-}
-
-/// How far TINs are from the DEM's own samples.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct SamplesDocument {
-    /// Samples at which there is a TIN.
-    pub(crate) on_tin: u64,
-    /// Samples at which there is none.
-    pub(crate) off_tin: u64,
-    /// Largest vertical distance, metres.
-    pub(crate) max_m: f64,
-    /// Root mean square, metres.
-    pub(crate) rms_m: f64,
-    /// Distance that 99 % do not exceed, metres.
-    pub(crate) p99_m: f64,
-}
-
-impl From<SampleErrorRecord> for SamplesDocument {
-    fn from(record: SampleErrorRecord) -> Self {
-        let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = record;
-        Self { on_tin, off_tin, max_m, rms_m, p99_m }
-    }
-}
-
 impl From<&VerifyReport> for VerifyDocument {
     fn from(report: &VerifyReport) -> Self {
         let check = |check: &corniche_verify::Check| CheckDocument {
@@ -127,27 +58,14 @@ impl From<&VerifyReport> for VerifyDocument {
             broken: check.broken,
             examples: check.examples.clone(),
         };
-        let gap = |gap: &corniche_verify::GapFigures| GapDocument {
-            level: gap.level,
-            edges: gap.edges,
-            largest_m: gap.largest_m,
-        };
-        let error = |figures: &corniche_verify::ErrorFigures| ErrorDocument {
-            level: figures.level,
-            tiles: figures.tiles,
-            nodes: figures.nodes,
-            largest_true_m: figures.largest_true_m,
-            tightness: figures.tightness.map(Into::into),
-            uncovered_nodes: figures.uncovered_nodes,
-        };
         Self {
             holds: report.holds(),
             tiles: report.tiles,
             borders: report.borders,
             checks: report.checks.iter().map(check).collect(),
-            gaps: report.gaps.iter().map(gap).collect(),
-            errors: report.errors.iter().map(error).collect(),
-            samples: report.samples.map(Into::into),
+            gaps: report.gaps.clone(),
+            errors: report.errors.clone(),
+            samples: report.samples,
         }
     }
 }

@@ -11,8 +11,7 @@ use super::vector_files::{coordinates, format};
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg, VectorArgs},
     failure::Failure,
-    named_output::NamedOutput,
-    output::existing_of,
+    output::{existing_of, named::NamedOutput},
     packages, recorded,
 };
 

@@ -5,19 +5,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
+use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh};
 use corniche_tileset::Manifest;
 
-use super::unknown_ending::unknown_ending;
 use crate::{
-    args::{ExportMeshArgs, OnOrNone},
+    args::ExportMeshArgs,
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    named_output::{NamedOutput, named},
-    output::{Existing, Output, existing_of},
+    messages, names,
+    output::{Existing, Output, existing_of, named::NamedOutput},
     packages,
     progress::Progress,
     styles,
@@ -25,13 +23,12 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
-    let format =
-        args.format.map(MeshFormat::from).or_else(|| MeshFormat::of_path(&args.file.output));
+    let format = args.format.or_else(|| MeshFormat::of_path(&args.file.output));
     let format = format.ok_or_else(|| {
         let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        unknown_ending(&args.file.output, &endings)
+        names::unknown_ending(&args.file.output, &endings)
     })?;
-    if args.relief == Some(OnOrNone::On) && format != MeshFormat::Glb {
+    if args.relief == Some(true) && format != MeshFormat::Glb {
         return Err(Failure::unusable(format!(
             "--relief on: a model in .{} has no normal maps; write a .glb, or leave the option out",
             format.ending()
@@ -39,17 +36,16 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     }
     let style = styles::style(&args.style)?;
     let package = packages::open(&args.from.package)?;
-    let roads = ModelRoads::from(args.roads);
-    let has_materials = format == MeshFormat::Obj && roads == ModelRoads::Surfaces;
+    let has_materials = format == MeshFormat::Obj && args.roads == ModelRoads::Surfaces;
     let materials = has_materials.then(|| args.file.output.with_extension("mtl"));
     let request = MeshRequest {
         format,
-        up: args.up.map_or(format.usual_up(), UpAxis::from),
+        up: args.up.unwrap_or(format.usual_up()),
         level: args.at.level,
         bounds: args.within.bounds,
-        roads,
+        roads: args.roads,
         classes: args.filter.classes.classes(),
-        relief: args.relief != Some(OnOrNone::None),
+        relief: args.relief != Some(false),
         style,
         material_file: materials.as_deref().map(file_name),
     };
@@ -61,7 +57,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let progress = Progress::new();
     let exported = export_mesh(&package, &request, &output.path(), &progress);
     progress.finish();
-    let summary = exported.map_err(|error| named(error, &args.file.output))?;
+    let summary = exported.map_err(|error| Failure::from(error).about_target(&args.file.output))?;
     let placed = materials
         .map(|materials| materials.place(&request.materials(package.manifest())))
         .transpose()?;
@@ -112,7 +108,7 @@ fn file_name(path: &Path) -> String {
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {
     let count = |number| Digits::of_notes().count(number);
     let [x, y] = summary.origin;
-    let roads = match ModelRoads::from(args.roads) {
+    let roads = match args.roads {
         ModelRoads::Surfaces => format!("{} of them of roads", count(summary.road_triangles)),
         ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", count(summary.lines)),
     };

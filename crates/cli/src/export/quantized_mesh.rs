@@ -3,21 +3,19 @@
 use std::path::Path;
 
 use corniche_export::{
-    Availability, Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
-    QuantizedMeshSummary, Tiling, export_quantized_mesh,
+    Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
+    export_quantized_mesh,
 };
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{ExportQuantizedMeshArgs, TerrainCompress},
+    args::ExportQuantizedMeshArgs,
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    folder_output::FolderOutput,
     messages,
-    named_output::named,
-    output::existing_of,
+    output::{existing_of, folder::FolderOutput},
     packages,
     progress::Progress,
     settings,
@@ -30,7 +28,7 @@ const HALF_BLOCK_BYTES: u64 = 2048;
 pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = QuantizedMeshRequest {
-        tiling: Tiling::from(args.tiling),
+        tiling: args.tiling,
         max_level: args.max_level,
         max_files: args.max_files,
         bounds: args.within.bounds,
@@ -38,14 +36,14 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
             None => Coordinates::Wgs84,
             Some(_) => Coordinates::Wgs84WithPackageHeights,
         },
-        availability: Availability::from(args.availability),
-        gzip: args.compress == TerrainCompress::Gzip,
+        availability: args.availability,
+        gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
     };
     let existing = existing_of(args.folder.overwrite);
     let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
     let plan = QuantizedMeshPlan::new(&package, &request)
-        .map_err(|error| named(error, &args.folder.output))?;
+        .map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     messages::note(&plan_text(&plan));
     refuse_full_disk(&plan, output.path())?;
     let progress = Progress::new();
@@ -53,7 +51,8 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     progress.expect_efforts(effort);
     let exported = export_quantized_mesh(&package, (&request, plan), output.path(), &progress);
     progress.finish();
-    let summary = exported.map_err(|error| named(error, &args.folder.output))?;
+    let summary =
+        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     let size = output.place("quantized-mesh")?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)

@@ -1,20 +1,16 @@
 //! `corniche export 3dtiles`: a package as 3D Tiles.
 
-use corniche_export::{
-    Coordinates, TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
-};
+use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{Compress, ExportTiles3dArgs, OnOrNone},
+    args::ExportTiles3dArgs,
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    folder_output::FolderOutput,
     messages,
-    named_output::named,
-    output::existing_of,
+    output::{existing_of, folder::FolderOutput},
     packages,
     progress::Progress,
     settings, styles,
@@ -27,12 +23,12 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let request = Tiles3dRequest {
         finest_level: args.finest_level,
         bounds: args.within.bounds,
-        roads: TileRoads::from(args.roads),
+        roads: args.roads,
         classes: args.filter.classes.classes(),
         style,
-        relief: args.relief == OnOrNone::On,
-        skirts: args.skirts == OnOrNone::On,
-        compress: args.compress == Compress::Meshopt,
+        relief: args.relief,
+        skirts: args.skirts,
+        compress: args.compress,
         coordinates: match args.heights {
             None => Coordinates::Wgs84,
             Some(_) => Coordinates::Wgs84WithPackageHeights,
@@ -44,7 +40,8 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let progress = Progress::new();
     let exported = export_tiles3d(&package, &request, output.path(), &progress);
     progress.finish();
-    let summary = exported.map_err(|error| named(error, &args.folder.output))?;
+    let summary =
+        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     let size = output.place("3D Tiles")?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use corniche_export::{Coordinates, ExportError, SpanFacts, VectorFormat};
+use corniche_export::{Coordinates, SpanFacts, VectorFormat};
 use corniche_tileset::Manifest;
 use corniche_verify::RecordedElevation;
 
-use super::unknown_ending::unknown_ending;
 use crate::{
-    args::{ExportCrs, FileArgs, Format},
+    args::{ExportCrs, FileArgs},
     credits::credits_line,
     escaped::in_line,
     failure::Failure,
-    named_output::{NamedOutput, named},
+    names,
+    output::named::NamedOutput,
     progress::Progress,
     table::Digits,
 };
@@ -21,27 +21,26 @@ use crate::{
 pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
 /// Writes a file that was begun, and puts it into its place unless elevation files have changed meanwhile. Gives its size, too.
-pub(crate) fn fill<T>(
+pub(crate) fn fill<T, E: Into<Failure>>(
     file: &FileArgs,
     output: NamedOutput,
     elevation: Option<&RecordedElevation>,
-    export: impl FnOnce(&Path, &Progress) -> Result<T, ExportError>,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
 ) -> Result<(T, u64), Failure> {
     let progress = Progress::new();
     let exported = export(&output.path(), &progress);
     progress.finish();
     // A file that changed may be the cause of any other error.
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
-    let summary = exported.map_err(|error| named(error, &file.output))?;
+    let summary = exported.map_err(|error| error.into().about_target(&file.output))?;
     Ok((summary, output.place()?))
 }
 
 /// The format that is named, or that of the ending.
-pub(crate) fn format(format: Option<Format>, output: &Path) -> Result<VectorFormat, Failure> {
-    let named = format.map(VectorFormat::from);
+pub(crate) fn format(named: Option<VectorFormat>, output: &Path) -> Result<VectorFormat, Failure> {
     named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        unknown_ending(output, &endings)
+        names::unknown_ending(output, &endings)
     })
 }
 

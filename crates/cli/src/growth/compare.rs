@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use corniche_tileset::{
-    DatumOperationRecord, FilePackage, InputRecord, Manifest, PolygonRecord, SettingsRecord,
+    DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, PolygonRecord,
+    SettingsRecord,
 };
 
 use super::{
@@ -117,8 +118,8 @@ fn properties(manifest: &Manifest) -> [Property; 19] {
         spans: _,
     } = &manifest.settings;
     [
-        ("extract", inputs(manifest, &["osm"])),
-        ("elevation data", inputs(manifest, &["dem", "dem-part"])),
+        ("extract", inputs(manifest, &[InputKind::Osm])),
+        ("elevation data", inputs(manifest, &InputKind::OF_TERRAIN)),
         (
             "band of the elevation data",
             dem_band.map_or_else(|| "the only one".to_owned(), |n| n.to_string()),
@@ -188,8 +189,8 @@ fn polygon_text(polygon: &PolygonRecord) -> String {
 }
 
 /// The inputs of some kinds by name and hash.
-fn inputs(manifest: &Manifest, kinds: &[&str]) -> String {
-    let of_kind = |input: &&InputRecord| kinds.contains(&input.kind.as_str());
+fn inputs(manifest: &Manifest, kinds: &[InputKind]) -> String {
+    let of_kind = |input: &&InputRecord| kinds.iter().any(|kind| kind.is_of(input));
     let name = |input: &InputRecord| {
         let hash = input.sha256.get(..12).map_or("not used".to_owned(), |hash| format!("{hash}…"));
         format!("{} ({})", in_line(&input.name), in_line(&hash))

@@ -6,7 +6,7 @@ use corniche_geom::Bounds;
 use corniche_matching::{MatchReport, MatchedRoad};
 use corniche_tileset::Manifest;
 
-use super::sure::{is_sure, sure_across};
+use super::report::{is_sure, sure_across};
 use crate::chart::in_xml;
 
 /// Longer side of the map, pixels; beside it is the legend.

@@ -9,9 +9,8 @@ use image::RgbaImage;
 use crate::{
     args::{PrintScale, RenderArgs},
     failure::Failure,
-    named_output::{NamedOutput, named},
     names::Format,
-    output::{Complete, Output, existing_of, png},
+    output::{Complete, Output, existing_of, named::NamedOutput, png},
 };
 
 /// Where the header of a PNG ends: eight bytes of signature, then length, name, thirteen bytes and checksum.
@@ -72,7 +71,7 @@ impl PictureFiles {
                 let dots_per_inch = scale.map(|scale| scale.dots_per_inch);
                 let facts = PictureFacts { dots_per_inch, ..facts };
                 let is_same_crs = export_picture(picture, place, &facts, &file.path())
-                    .map_err(|error| named(error, &target))?;
+                    .map_err(|error| Failure::from(error).about_target(&target))?;
                 file.place()?;
                 Ok(is_same_crs)
             }

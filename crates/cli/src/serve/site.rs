@@ -13,9 +13,8 @@ use super::{
 use crate::{
     exit::ExitCode,
     failure::Failure,
-    folder_output::FolderOutput,
     interrupt, names,
-    output::{Existing, failed},
+    output::{Existing, failed, folder::FolderOutput},
 };
 
 /// Bytes that are copied between two looks at whether to stop.

@@ -8,7 +8,7 @@ use std::{
 use corniche_dem::{Reader, SampleSurface};
 use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
 
-use crate::{elevation::Elevation, error::ExportError, piece::Vertex};
+use crate::{error::ElevationError, heights::Elevation, piece::Vertex};
 
 /// Cells along each side of a block.
 const BLOCK_CELLS: i64 = 64;
@@ -63,12 +63,12 @@ impl<'a> DemNodes<'a> {
 
     /// The height at a place on the lattice; `None` where a node that it needs has none. The same place has the same height to the last bit, from
     /// whatever cell a line comes.
-    pub(crate) fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ExportError> {
+    pub(crate) fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ElevationError> {
         let in_cells = [at[0] / self.steps[0], at[1] / self.steps[1]];
         let cell = in_cells.map(f64::floor);
         let [east, north] = [in_cells[0] - cell[0], in_cells[1] - cell[1]];
         let [i, j] = cell.map(|index| index as i64);
-        let mut row = |j: i64| -> Result<f64, ExportError> {
+        let mut row = |j: i64| -> Result<f64, ElevationError> {
             let west = if east < 1.0 { self.node_m([i, j])? } else { 0.0 };
             let beyond = if east > 0.0 { self.node_m([i + 1, j])? } else { 0.0 };
             Ok(mix(west, beyond, east))
@@ -81,18 +81,18 @@ impl<'a> DemNodes<'a> {
 
     /// How far a line is from the surface of the files' own samples, at most, over the whole line, metres; `None` where no part of it lies on that.
     /// Of its vertices each second one is the middle of a straight part.
-    pub(crate) fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ExportError> {
+    pub(crate) fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ElevationError> {
         let place = |vertex: &Vertex| {
             let [x, y] = self.frame.position_of_fraction_m(vertex.at);
             [x, y, vertex.z_m]
         };
         let line: Vec<[f64; 3]> = line.iter().map(place).collect();
         let found = self.samples.largest_distance_m(&line);
-        found.map_err(|source| ExportError::Elevation(Box::new(source)))
+        found.map_err(|source| ElevationError::Read(Box::new(source)))
     }
 
     /// The height of a node; NaN where there is none.
-    fn node_m(&mut self, [i, j]: [i64; 2]) -> Result<f64, ExportError> {
+    fn node_m(&mut self, [i, j]: [i64; 2]) -> Result<f64, ElevationError> {
         let number = [i, j].map(|index| index.div_euclid(BLOCK_CELLS));
         let block = match self.kept.get(&number) {
             Some(block) => Rc::clone(block),
@@ -103,13 +103,13 @@ impl<'a> DemNodes<'a> {
         Ok(f64::from(block[(from_north * BLOCK_CELLS + column) as usize]))
     }
 
-    fn read(&mut self, number: [i64; 2]) -> Result<Block, ExportError> {
+    fn read(&mut self, number: [i64; 2]) -> Result<Block, ElevationError> {
         let side = BLOCK_CELLS as usize;
         let [i, j] = number.map(|number| number * BLOCK_CELLS);
         let corner = NodeIndex { i, j: j + BLOCK_CELLS - 1 };
         let window = NodeWindow { corner, stride: 1, columns: side, rows: side };
         let read = self.reader.window(window);
-        let read = read.map_err(|source| ExportError::Elevation(Box::new(source)))?;
+        let read = read.map_err(|source| ElevationError::Read(Box::new(source)))?;
         let block: Block = read.heights.raw().into();
         if self.order.len() >= MOST_BLOCKS
             && let Some(oldest) = self.order.pop_front()

@@ -9,7 +9,7 @@
 //! Along a straight line the bilinear surface of a cell is a parabola, which a vertex in its middle follows nearly. How far the line is from the
 //! surface of the files' own samples is measured, since nodes need not be samples.
 
-use crate::{dem_ground::DemNodes, error::ExportError, piece::Vertex};
+use crate::{dem_ground::DemNodes, error::ElevationError, piece::Vertex};
 
 /// Crossings that are nearer to each other than this, lattice steps, are one: a node of the grid.
 const SAME_PLACE_STEPS: f64 = 1e-3;
@@ -26,7 +26,10 @@ pub(crate) struct DemLine {
 }
 
 /// Lays a line on the ground: of its vertices, those that are source points, and its ends, tell where it runs. Where there is no ground it has a gap.
-pub(crate) fn lay(nodes: &mut DemNodes<'_>, line: &[Vertex]) -> Result<Vec<DemLine>, ExportError> {
+pub(crate) fn lay(
+    nodes: &mut DemNodes<'_>,
+    line: &[Vertex],
+) -> Result<Vec<DemLine>, ElevationError> {
     let last = line.len().saturating_sub(1);
     let is_kept =
         |(index, vertex): &(usize, &Vertex)| vertex.is_source || *index == 0 || *index == last;
@@ -79,7 +82,7 @@ impl Laid {
         nodes: &mut DemNodes<'_>,
         from: Vertex,
         is_first: bool,
-    ) -> Result<Option<f64>, ExportError> {
+    ) -> Result<Option<f64>, ElevationError> {
         let height_m = nodes.height_m(from.at)?;
         if let Some(z_m) = height_m.filter(|_| !self.is_open) {
             self.lines.push(DemLine {
@@ -112,7 +115,7 @@ impl Laid {
 pub(crate) fn off_dem_m(
     nodes: &mut DemNodes<'_>,
     line: &[Vertex],
-) -> Result<Option<f64>, ExportError> {
+) -> Result<Option<f64>, ElevationError> {
     let mut divided: Vec<Vertex> = line.first().copied().into_iter().collect();
     for [from, to] in line.array_windows::<2>() {
         let run = [to.at[0] - from.at[0], to.at[1] - from.at[1]];

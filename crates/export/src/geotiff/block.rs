@@ -11,7 +11,7 @@ use corniche_tileset::{FilePackage, SampleSums, Sections, Terrain};
 use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
 
 use super::{file::Number, grid::BLOCK};
-use crate::error::ExportError;
+use crate::error::{ElevationError, RasterError, TileError};
 
 /// A block as it is written: 256 × 256 nodes, those beyond the raster included.
 pub(crate) struct Block<T> {
@@ -49,7 +49,7 @@ impl<'a> Tins<'a> {
     }
 
     /// The triangles of a tile; none where the package has no ground there.
-    fn of_tile(&self, id: TileId) -> Result<Arc<Option<TriangleBuckets>>, ExportError> {
+    fn of_tile(&self, id: TileId) -> Result<Arc<Option<TriangleBuckets>>, TileError> {
         let slot = {
             let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
             Arc::clone(kept.entry(id).or_default())
@@ -68,7 +68,7 @@ impl<'a> Tins<'a> {
     }
 
     /// The ground at the nodes of a window of stride 1.
-    fn heights(&self, window: &NodeWindow) -> Result<Heights, ExportError> {
+    fn heights(&self, window: &NodeWindow) -> Result<Heights, TileError> {
         let frame = &self.package.manifest().frame;
         let (root, stride) = (frame.root_corner(), frame.stride(self.level));
         let (side, last) = (TILE_CELLS * stride, (1_i64 << self.level) - 1);
@@ -117,14 +117,14 @@ pub(crate) fn make<T: Number>(
     tins: &Tins<'_>,
     window: &NodeWindow,
     reader: Option<&mut Reader<'_>>,
-) -> Result<Block<T>, ExportError> {
+) -> Result<Block<T>, RasterError> {
     let Heights { heights_m, is_own } = tins.heights(window)?;
     let quantum_m = tins.package.manifest().vertical.quantum_m;
     let covered = heights_m.iter().filter(|height_m| !height_m.is_nan()).count() as u64;
     let mut sums = SampleSums::new(quantum_m);
     let mut errors_m = Vec::new();
     if let Some(reader) = reader {
-        let failed = |source| ExportError::Elevation(Box::new(source));
+        let failed = |source| ElevationError::Read(Box::new(source));
         let read = reader.window(*window).map_err(failed)?;
         let samples = read.heights.raw().iter().enumerate();
         let own = samples.zip(&heights_m).map(|((place, &sample_m), &height_m)| {

@@ -12,7 +12,10 @@ use gdal::{
 };
 
 use super::grid::{BLOCK, RasterSize};
-use crate::{error::ExportError, gdal_settings::GdalSettings, plain_text::plain_text};
+use crate::{
+    error::GdalFileError,
+    gdal_writing::{GdalSettings, plain_text},
+};
 
 const DRIVER: &str = "GTiff";
 /// GDAL's settings while a file is written and read again: all that it says is in the file itself, and pixels that are points are taken for points.
@@ -130,13 +133,13 @@ impl<T: Pixel> RasterFile<T> {
         path: &Path,
         size: RasterSize,
         facts: &RasterFacts,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, GdalFileError> {
         corniche_gis::quiet();
         corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let created =
-            create::<T>(path, size, facts).map_err(|error| ExportError::write(path, error))?;
-        let (dataset, crs) = created.ok_or(ExportError::NoDriver { driver: DRIVER })?;
+            create::<T>(path, size, facts).map_err(|error| GdalFileError::write(path, error))?;
+        let (dataset, crs) = created.ok_or(GdalFileError::NoDriver { driver: DRIVER })?;
         Ok(Self {
             path: path.to_path_buf(),
             dataset,
@@ -149,24 +152,24 @@ impl<T: Pixel> RasterFile<T> {
     }
 
     /// Writes the next block of a band, counted from 0.
-    pub(crate) fn push(&mut self, band: usize, block: Vec<T>) -> Result<(), ExportError> {
+    pub(crate) fn push(&mut self, band: usize, block: Vec<T>) -> Result<(), GdalFileError> {
         let place = self.size.place(self.written[band].len());
         self.written[band].push(checksum(&block, self.size, place));
         let write = || {
             let mut raster = self.dataset.rasterband(band + 1)?;
             raster.write_block(place.into(), &mut Buffer::new((BLOCK, BLOCK), block))
         };
-        write().map_err(|error| ExportError::write(&self.path, error))
+        write().map_err(|error| GdalFileError::write(&self.path, error))
     }
 
     /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
-    pub(crate) fn finish(self) -> Result<bool, ExportError> {
+    pub(crate) fn finish(self) -> Result<bool, GdalFileError> {
         let Self { path, dataset, crs, size, written, .. } = self;
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_gis::forget();
-        dataset.close().map_err(|error| ExportError::write(&path, error))?;
+        dataset.close().map_err(|error| GdalFileError::write(&path, error))?;
         if let Some(source) = corniche_gis::failure() {
-            return Err(ExportError::write(&path, source));
+            return Err(GdalFileError::write(&path, source));
         }
         let again = read_again::<T>(&path, size, &written, &crs);
         // A file that is cut off may not even be opened.
@@ -174,7 +177,7 @@ impl<T: Pixel> RasterFile<T> {
             Ok(is_same_crs)
         } else {
             let room = LackOfRoom::at(&path);
-            Err(ExportError::RasterNotWhole { path, room })
+            Err(GdalFileError::RasterNotWhole { path, room })
         }
     }
 }

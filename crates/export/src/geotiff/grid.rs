@@ -5,7 +5,10 @@ use corniche_geom::{NodeIndex, NodeWindow};
 use corniche_gis::RecordedCrs;
 use corniche_tileset::{FilePackage, Manifest};
 
-use crate::{bounds::DegreeBounds, error::ExportError};
+use crate::{
+    bounds::DegreeBounds,
+    error::{CoordinatesError, RasterError, SelectionError},
+};
 
 /// Pixels along each side of a block.
 pub(crate) const BLOCK: usize = 256;
@@ -49,11 +52,11 @@ impl RasterGrid {
     pub(crate) fn of(
         package: &FilePackage,
         bounds: Option<&DegreeBounds>,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, RasterError> {
         let manifest = package.manifest();
         let [mut low, mut high] = manifest.data_nodes();
         if let Some(bounds) = bounds {
-            let failed = |source| ExportError::Crs(Box::new(source));
+            let failed = |source| CoordinatesError::Crs(Box::new(source));
             let Manifest { crs_wkt, metres_per_unit, frame, .. } = manifest;
             let whole = manifest.whole_data_bounds();
             let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(failed)?;
@@ -73,7 +76,7 @@ impl RasterGrid {
             (Some(columns), Some(rows)) => {
                 Ok(Self { corner: NodeIndex { i: low.i, j: high.j }, columns, rows })
             }
-            _ => Err(ExportError::NoGround { package: package.path().to_path_buf() }),
+            _ => Err(SelectionError::no_ground(package).into()),
         }
     }
 

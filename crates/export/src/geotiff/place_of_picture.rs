@@ -4,7 +4,7 @@ use corniche_gis::RecordedCrs;
 use corniche_tileset::Manifest;
 use gdal::spatial_ref::SpatialRef;
 
-use crate::error::ExportError;
+use crate::error::CoordinatesError;
 
 /// Where the pixels of a picture from above are.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,10 +20,13 @@ impl PlaceOfPicture {
     ///
     /// # Errors
     /// When the package's CRS cannot be read.
-    pub fn new(manifest: &Manifest, working_from_pixel: [f64; 6]) -> Result<Self, ExportError> {
+    pub fn new(
+        manifest: &Manifest,
+        working_from_pixel: [f64; 6],
+    ) -> Result<Self, CoordinatesError> {
         let Manifest { crs_wkt, metres_per_unit, .. } = manifest;
         let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, manifest.whole_data_bounds())
-            .map_err(|source| ExportError::Crs(Box::new(source)))?;
+            .map_err(|source| CoordinatesError::Crs(Box::new(source)))?;
         let crs_from_pixel = in_units(working_from_pixel, *metres_per_unit);
         Ok(Self { crs_wkt: crs.wkt().to_owned(), crs_from_pixel })
     }

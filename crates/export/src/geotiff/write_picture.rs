@@ -9,7 +9,7 @@ use super::{
     grid::{BLOCK, RasterSize},
     place_of_picture::PlaceOfPicture,
 };
-use crate::error::ExportError;
+use crate::error::GdalFileError;
 
 /// The bands of a picture.
 const BANDS: [&str; 3] = ["red", "green", "blue"];
@@ -37,7 +37,7 @@ pub fn export_picture(
     place: &PlaceOfPicture,
     facts: &PictureFacts,
     path: &Path,
-) -> Result<bool, ExportError> {
+) -> Result<bool, GdalFileError> {
     let [columns, rows] = [picture.width(), picture.height()].map(|side| side as usize);
     let size = RasterSize { columns, rows };
     let mut file = RasterFile::<u8>::create(path, size, &raster_facts(place, facts))?;

@@ -3,17 +3,21 @@
 use std::path::Path;
 
 use corniche_geom::TILE_CELLS;
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, SampleSums};
+use corniche_tileset::{FilePackage, InputKind, Manifest, SampleErrorRecord, SampleSums};
 use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
     block::{self, Block, Tins},
     file::{HEIGHTS, Number, RasterFacts, RasterFile},
-    geotiff_request::GeoTiffRequest,
     grid::RasterGrid,
 };
 use crate::{
-    elevation::Elevation, error::ExportError, feature_request::Coordinates, places::Places, read,
+    bounds::DegreeBounds,
+    error::{RasterError, SelectionError},
+    feature_request::Coordinates,
+    heights::Elevation,
+    places::Places,
+    read,
 };
 
 /// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
@@ -25,6 +29,18 @@ const FREE_NODES: u64 = 1 << 26;
 const MOST_NOTHING: u64 = 256;
 /// The share of a height quantum that a pixel may lose by its type.
 const LOST_QUANTA: f64 = 0.1;
+
+/// What of a package becomes a raster, and with what it is compared.
+pub struct GeoTiffRequest<'a> {
+    /// The level whose TINs are taken; `None` is the finest.
+    pub level: Option<u8>,
+    /// The nodes around this rectangle are taken, rounded outwards.
+    pub bounds: Option<DegreeBounds>,
+    /// The files of a second band, which has the heights of the TINs minus those of these files.
+    pub elevation: Option<Elevation<'a>>,
+    /// How many blocks are made at the same time.
+    pub threads: usize,
+}
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +75,7 @@ pub fn export_geotiff(
     request: &GeoTiffRequest<'_>,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<GeoTiffSummary, ExportError> {
+) -> Result<GeoTiffSummary, RasterError> {
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
     let grid = RasterGrid::of(package, request.bounds.as_ref())?;
@@ -91,7 +107,7 @@ fn check_size(
     package: &FilePackage,
     request: &GeoTiffRequest<'_>,
     grid: &RasterGrid,
-) -> Result<(), ExportError> {
+) -> Result<(), RasterError> {
     let RasterGrid { columns, rows, .. } = *grid;
     let nodes = (columns as u64).saturating_mul(rows as u64);
     if nodes <= FREE_NODES {
@@ -102,7 +118,7 @@ fn check_size(
     let tiles = read::tiles(package, level, request.bounds.as_ref())?.len() as u64;
     let within = tiles.saturating_mul(side.saturating_mul(side));
     if nodes / MOST_NOTHING > within {
-        return Err(ExportError::MostlyNothing { columns, rows, level, within });
+        return Err(RasterError::MostlyNothing { columns, rows, level, within });
     }
     Ok(())
 }
@@ -149,9 +165,8 @@ fn facts(
     ];
     if request.elevation.is_some() {
         descriptions.push("height of the TIN minus DEM, metres".to_owned());
-        let of_dem = |input: &&corniche_tileset::InputRecord| input.kind == "dem";
         let names: Vec<&str> =
-            manifest.inputs.iter().filter(of_dem).map(|input| input.name.as_str()).collect();
+            manifest.inputs_of(InputKind::Dem).map(|input| input.name.as_str()).collect();
         metadata.push(("DEM", names.join("; ")));
     }
     RasterFacts {
@@ -178,7 +193,7 @@ struct Written {
 }
 
 impl Writing<'_> {
-    fn write<T: Number>(&self, path: &Path, facts: &RasterFacts) -> Result<Written, ExportError> {
+    fn write<T: Number>(&self, path: &Path, facts: &RasterFacts) -> Result<Written, RasterError> {
         let Self { package, level, request, grid, observer } = self;
         let mut file = RasterFile::<T>::create(path, grid.size(), facts)?;
         let tins = Tins::new(package, *level);
@@ -209,7 +224,7 @@ impl Writing<'_> {
             }
         }
         if covered == 0 {
-            return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+            return Err(SelectionError::no_ground(package).into());
         }
         let has_same_crs = file.finish()?;
         observer.end(Stage::ExportBlocks);

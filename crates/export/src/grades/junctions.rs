@@ -11,7 +11,7 @@ use corniche_geom::IndexLists;
 use corniche_work::Observer;
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
-use crate::error::ExportError;
+use crate::error::ElevationError;
 
 /// Two legs go on in each other where the road turns by less than this, as a cosine: 45°.
 const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -64,7 +64,7 @@ const NONE: u32 = u32::MAX;
 pub(crate) fn node_heights(
     legs: &dyn Legs,
     observer: &dyn Observer,
-) -> Result<Vec<f64>, ExportError> {
+) -> Result<Vec<f64>, ElevationError> {
     let by_node = legs.by_node();
     let nodes = by_node.parts()[0].len() - 1;
     let goes_on_in = goes_on_in(legs, &by_node);

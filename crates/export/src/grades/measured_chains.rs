@@ -20,7 +20,7 @@ use super::{
     span_decks::SpanDecks,
 };
 use crate::{
-    dem_ground::DemNodes, elevation::Elevation, error::ExportError, measures::between,
+    dem_ground::DemNodes, error::ElevationError, heights::Elevation, measures::between,
     places::Places, span_facts::SpanFacts,
 };
 
@@ -92,7 +92,7 @@ impl<'a> MeasuredChains<'a> {
         nodes: &mut DemNodes<'_>,
         smoothing: Smoothing,
         observer: &dyn Observer,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, ElevationError> {
         // What lies beyond the bounds has a part in what lies within.
         let Elevation { dem, plan } = nodes.elevation();
         if plan.clip.is_none() {
@@ -110,7 +110,7 @@ impl<'a> MeasuredChains<'a> {
         nodes: &mut DemNodes<'_>,
         smoothing: Smoothing,
         observer: &dyn Observer,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, ElevationError> {
         let chains = Chains::of(network, Breaks::JunctionsAndStructures);
         let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
         let lengths = chains.lengths(network, &distance_m);
@@ -224,7 +224,7 @@ impl<'a> MeasuredChains<'a> {
         &mut self,
         number: ChainNumber,
         nodes: &mut DemNodes<'_>,
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), ElevationError> {
         let along = self.along(number);
         let own = self.stations_of(number);
         let (mut after, last) = (0, own.len() - 1);

@@ -12,7 +12,7 @@ use corniche_work::Observer;
 
 use crate::{
     dem_ground::DemNodes,
-    error::ExportError,
+    error::ElevationError,
     places::Places,
     span_facts::{SpanFacts, ToldSpans},
 };
@@ -59,7 +59,7 @@ impl SpanDecks {
         (places, data): (&Places<'_>, &LatticeBounds),
         nodes: &mut DemNodes<'_>,
         observer: &dyn Observer,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, ElevationError> {
         let network = own.0;
         let of_spans = network.of_spans();
         let of_spans_chains = Chains::of(of_spans, Breaks::JunctionsAndStructures);

@@ -14,13 +14,12 @@ use serde_json::{Map, Value, json};
 use super::{
     mesh_request::{ModelColors, UpAxis, ground_and_roads},
     model::TileMesh,
-    spill::Spill,
-    writer::{About, MeshWriter},
+    writer::{About, MeshWriter, Spill},
 };
 use crate::{
     gltf::{
-        ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINES, SLAB_NAME, TRIANGLES, U32,
-        linear, range_of, sampler, write_container,
+        ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, LINES, SLAB_NAME, TRIANGLES, U32,
+        floats, linear, positions, sampler, write_container,
     },
     surfaces::SurfaceKind,
 };
@@ -69,52 +68,36 @@ impl GlbWriter {
         }
     }
 
-    /// Adds numbers to the buffer; returns the number of its accessor.
-    fn add(&mut self, content: &Content<'_>) -> io::Result<usize> {
-        let offset = self.bytes.length();
-        let (target, accessor) = match content {
-            Content::Vectors { vectors, has_range } => {
-                let mut accessor =
-                    self.put_floats(vectors.as_flattened(), "VEC3", vectors.len())?;
-                if *has_range {
-                    let [least, largest] = range_of(vectors);
-                    accessor["min"] = json!(least);
-                    accessor["max"] = json!(largest);
-                }
-                (ARRAY_BUFFER, accessor)
-            }
-            Content::Places(places) => {
-                (ARRAY_BUFFER, self.put_floats(places.as_flattened(), "VEC2", places.len())?)
-            }
-            Content::Tangents(tangents) => {
-                (ARRAY_BUFFER, self.put_floats(tangents.as_flattened(), "VEC4", tangents.len())?)
-            }
-            Content::Indices(indices) => {
-                self.bytes
-                    .push(bytes_of(indices.iter().map(|index| index.to_le_bytes())).as_slice())?;
-                let accessor =
-                    json!({ "componentType": U32, "type": "SCALAR", "count": indices.len() });
-                (ELEMENT_ARRAY_BUFFER, accessor)
-            }
-        };
-        let length = self.bytes.length() - offset;
-        self.views.push(
-            json!({ "buffer": 0, "byteOffset": offset, "byteLength": length, "target": target }),
-        );
-        let mut accessor = accessor;
+    /// Adds numbers to the buffer; `accessor` says what they are. Returns its number.
+    fn add<T: bytemuck::Pod>(
+        &mut self,
+        items: &[T],
+        mut accessor: Value,
+        target: u32,
+    ) -> io::Result<usize> {
+        let bytes: &[u8] = bytemuck::cast_slice(items);
+        self.views.push(json!({
+            "buffer": 0, "byteOffset": self.bytes.length(), "byteLength": bytes.len(), "target": target,
+        }));
+        self.bytes.push(bytes)?;
         accessor["bufferView"] = json!(self.views.len() - 1);
+        accessor["count"] = json!(items.len());
         self.accessors.push(accessor);
         Ok(self.accessors.len() - 1)
     }
 
-    /// Puts numbers into the buffer; gives the accessor of items of a type, without its view.
-    fn put_floats(&mut self, flat: &[f32], kind: &str, items: usize) -> io::Result<Value> {
-        self.bytes.push(bytes_of(flat.iter().map(|v| v.to_le_bytes())).as_slice())?;
-        Ok(json!({ "componentType": F32, "type": kind, "count": items }))
+    fn add_vertices<T: bytemuck::Pod>(&mut self, kind: &str, items: &[T]) -> io::Result<usize> {
+        self.add(items, floats(kind), ARRAY_BUFFER)
     }
-}
 
-impl GlbWriter {
+    fn add_positions(&mut self, at: &[[f32; 3]]) -> io::Result<usize> {
+        self.add(at, positions(at), ARRAY_BUFFER)
+    }
+
+    fn add_indices(&mut self, indices: &[u32]) -> io::Result<usize> {
+        self.add(indices, json!({ "componentType": U32, "type": "SCALAR" }), ELEMENT_ARRAY_BUFFER)
+    }
+
     /// Adds a picture; returns the number of its texture.
     fn add_picture(&mut self, picture: &[u8], mime: &str, name: &str) -> io::Result<usize> {
         let offset = self.bytes.length();
@@ -144,7 +127,7 @@ impl GlbWriter {
                 self.add_picture(&picture.jpeg, "image/jpeg", &format!("photo {name}"))?;
             material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
             material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 1.0]);
-            attributes["TEXCOORD_0"] = json!(self.add(&Content::Places(&picture.places))?);
+            attributes["TEXCOORD_0"] = json!(self.add_vertices("VEC2", &picture.places)?);
         }
         if let Some(relief) = &tile.relief {
             let texture =
@@ -152,7 +135,7 @@ impl GlbWriter {
             let number = usize::from(tile.picture.is_some());
             material["normalTexture"] = json!({ "index": texture, "texCoord": number });
             attributes[format!("TEXCOORD_{number}")] =
-                json!(self.add(&Content::Places(&relief.places))?);
+                json!(self.add_vertices("VEC2", &relief.places)?);
             let tangents: Vec<[f32; 4]> = relief
                 .tangents
                 .iter()
@@ -161,7 +144,7 @@ impl GlbWriter {
                     [x, y, z, 1.0]
                 })
                 .collect();
-            attributes["TANGENT"] = json!(self.add(&Content::Tangents(&tangents))?);
+            attributes["TANGENT"] = json!(self.add_vertices("VEC4", &tangents)?);
         }
         self.materials.push(material);
         Ok((self.materials.len() - 1, attributes))
@@ -186,22 +169,6 @@ fn material(kind: SurfaceKind, colors: &ModelColors) -> Value {
     })
 }
 
-enum Content<'a> {
-    Vectors {
-        vectors: &'a [[f32; 3]],
-        has_range: bool,
-    },
-    /// Places on a picture.
-    Places(&'a [[f32; 2]]),
-    /// The tangents of a normal map.
-    Tangents(&'a [[f32; 4]]),
-    Indices(&'a [u32]),
-}
-
-fn bytes_of(numbers: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
-    numbers.flatten().collect()
-}
-
 impl MeshWriter for GlbWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
         let all = tile.corners.iter().map(|corner| corner.at_m);
@@ -214,14 +181,14 @@ impl MeshWriter for GlbWriter {
             tile.corners.iter().map(|corner| about_middle(&corner.at_m)).collect();
         let normals: Vec<[f32; 3]> =
             tile.corners.iter().map(|corner| UpAxis::Y.along_axes(corner.normal)).collect();
-        let positions = self.add(&Content::Vectors { vectors: &places, has_range: true })?;
-        let normals = self.add(&Content::Vectors { vectors: &normals, has_range: false })?;
+        let positions = self.add_positions(&places)?;
+        let normals = self.add_vertices("VEC3", &normals)?;
         let name = tile.id.to_string();
         let (material, pictured) = self.add_pictures(tile, &name)?;
         let mut primitives = Vec::new();
         // Ground, surfaces of roads and slabs have one list of vertices.
         for (kind, triangles) in tile.groups() {
-            let indices = self.add(&Content::Indices(triangles.as_flattened()))?;
+            let indices = self.add_indices(triangles.as_flattened())?;
             let mut primitive = json!({
                 "attributes": { "POSITION": positions, "NORMAL": normals },
                 "indices": indices, "material": self.material_of(kind), "mode": TRIANGLES,
@@ -249,8 +216,8 @@ impl MeshWriter for GlbWriter {
                 points.extend(road.points_m.iter().map(about_middle));
                 indices.extend((first + 1..points.len() as u32).flat_map(|end| [end - 1, end]));
             }
-            let positions = self.add(&Content::Vectors { vectors: &points, has_range: true })?;
-            let indices = self.add(&Content::Indices(&indices))?;
+            let positions = self.add_positions(&points)?;
+            let indices = self.add_indices(&indices)?;
             primitives.push(json!({
                 "attributes": { "POSITION": positions },
                 "indices": indices, "material": 1 + class.number(), "mode": LINES,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     cut::cut_at_bounds,
-    error::ExportError,
+    error::SurfaceError,
     piece::{Piece, Vertex},
     places::Places,
     read,
@@ -76,7 +76,7 @@ pub(crate) struct TileReading<'a> {
 
 impl TileReading<'_> {
     /// Reads a tile; `None` without ground in the bounds.
-    pub(crate) fn read(&self, id: TileId) -> Result<Option<TileMesh>, ExportError> {
+    pub(crate) fn read(&self, id: TileId) -> Result<Option<TileMesh>, SurfaceError> {
         let Self { package, request, places, local, lines } = self;
         let mut wanted = match request.roads {
             ModelRoads::Lines => Sections::TERRAIN | read::road_sections(),

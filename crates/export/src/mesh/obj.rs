@@ -10,9 +10,7 @@ use std::{
 use super::{
     mesh_request::{UpAxis, group_name},
     model::TileMesh,
-    spill::Spill,
-    weld::Welding,
-    writer::{About, MeshWriter},
+    writer::{About, MeshWriter, Spill, Welding},
 };
 use crate::{surfaces::SurfaceKind, vector::text_in_line};
 

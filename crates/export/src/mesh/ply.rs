@@ -11,9 +11,7 @@ use std::{
 use super::{
     mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    spill::Spill,
-    weld::Welding,
-    writer::{About, MeshWriter},
+    writer::{About, MeshWriter, Spill, Welding},
 };
 use crate::surfaces::SurfaceKind;
 

@@ -16,7 +16,7 @@ use super::{
     writer::{About, MeshWriter},
 };
 use crate::{
-    error::ExportError,
+    error::{MeshError, SelectionError},
     feature_request::Coordinates,
     places::Places,
     read,
@@ -52,18 +52,18 @@ pub fn export_mesh(
     request: &MeshRequest,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<MeshSummary, ExportError> {
+) -> Result<MeshSummary, MeshError> {
     if request.format == MeshFormat::Glb && request.up == UpAxis::Z {
-        return Err(ExportError::GlbAxis);
+        return Err(MeshError::GlbAxis);
     }
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
     let places = Places::new(manifest, Coordinates::Package)?;
     let ids = read::tiles(package, level, request.bounds.as_ref())?;
-    let nothing = || ExportError::NoGround { package: package.path().to_path_buf() };
+    let nothing = || SelectionError::no_ground(package);
     let ground = ground_of(manifest, &ids).ok_or_else(nothing)?;
     let local = LocalMetres::about(ground, manifest);
-    let failed = |source| ExportError::WriteModel { path: path.to_path_buf(), source };
+    let failed = |source| MeshError::Write { path: path.to_path_buf(), source };
     let mut writer: Box<dyn MeshWriter> = match request.format {
         MeshFormat::Glb => Box::new(GlbWriter::new(path, request.colors()).map_err(failed)?),
         MeshFormat::Ply => {
@@ -91,10 +91,10 @@ pub fn export_mesh(
             summary.lines += tile.roads.len() as u64;
             writer.tile(&tile).map_err(failed)?;
         }
-        Ok::<(), ExportError>(())
+        Ok::<(), MeshError>(())
     })?;
     if summary.tiles == 0 {
-        return Err(nothing());
+        return Err(nothing().into());
     }
     let mut facts = local.described(manifest);
     facts.push(("level", level.to_string()));

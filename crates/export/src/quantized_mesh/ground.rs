@@ -11,7 +11,7 @@ use super::{
     surfaces::{SurfaceTile, Surfaces},
     tiling::Nodes,
 };
-use crate::{error::ExportError, places::Places};
+use crate::{error::QuantizedMeshError, places::Places};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -46,7 +46,10 @@ impl<'a> Ground<'a> {
 
     /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
     /// place.
-    pub(crate) fn heights_m(&self, places_deg: &[[f64; 2]]) -> Result<Vec<f64>, ExportError> {
+    pub(crate) fn heights_m(
+        &self,
+        places_deg: &[[f64; 2]],
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
         let near: Vec<usize> =
             (0..places_deg.len()).filter(|&k| self.is_near(places_deg[k])).collect();
         let mut positions: Vec<[f64; 2]> = near.iter().map(|&k| places_deg[k]).collect();
@@ -75,7 +78,7 @@ impl<'a> Ground<'a> {
         &self,
         nodes: Nodes,
         [from, to]: [[i64; 2]; 2],
-    ) -> Result<Vec<f64>, ExportError> {
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
         self.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
     }
 
@@ -92,7 +95,7 @@ impl<'a> Ground<'a> {
         corners_deg: [[f64; 2]; 2],
         level: u8,
         point_of: impl Fn([f64; 3]) -> T,
-    ) -> Result<Bends<T>, ExportError> {
+    ) -> Result<Bends<T>, QuantizedMeshError> {
         const NEW: u32 = u32::MAX;
         let mut bends = Bends { points: Vec::new(), edges: Vec::new() };
         for part in self.near_parts(corners_deg) {
@@ -124,7 +127,7 @@ impl<'a> Ground<'a> {
         &self,
         [from_deg, to_deg]: [[f64; 2]; 2],
         level: u8,
-    ) -> Result<Vec<f64>, ExportError> {
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
         let manifest = self.package.manifest();
         let frame = &manifest.frame;
         // The axis along which the line goes, and the one along which it stays.
@@ -171,7 +174,7 @@ impl<'a> Ground<'a> {
         area_deg: Bounds,
         level: u8,
         mut each: impl FnMut(&SurfaceTile, Vec<[u32; 2]>),
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), QuantizedMeshError> {
         let manifest = self.package.manifest();
         let frame = &manifest.frame;
         let mut around = perimeter(area_deg);
@@ -232,7 +235,7 @@ impl<'a> Ground<'a> {
         positions: &[[f64; 2]],
         side: [i64; 2],
         heights_m: &mut [f64],
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), QuantizedMeshError> {
         let frame = &self.package.manifest().frame;
         let finest = frame.max_level();
         let tile_beside = |point: LatticePoint, [du, dv]: [i64; 2]| {
@@ -275,12 +278,12 @@ impl<'a> Ground<'a> {
         Ok(())
     }
 
-    fn tile(&self, id: TileId) -> Result<Arc<Option<SurfaceTile>>, ExportError> {
+    fn tile(&self, id: TileId) -> Result<Arc<Option<SurfaceTile>>, QuantizedMeshError> {
         let bytes = |tile: &Option<SurfaceTile>| tile.as_ref().map_or(0, SurfaceTile::bytes);
         self.surfaces.get(id, || self.read(id), bytes)
     }
 
-    fn read(&self, id: TileId) -> Result<Option<SurfaceTile>, ExportError> {
+    fn read(&self, id: TileId) -> Result<Option<SurfaceTile>, QuantizedMeshError> {
         let Manifest { frame, vertical, coordinates, .. } = self.package.manifest();
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let Some(terrain) = payload.and_then(|payload| payload.terrain) else { return Ok(None) };

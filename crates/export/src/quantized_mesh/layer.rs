@@ -6,8 +6,7 @@ use serde_json::{Value, json};
 use super::{
     available::{Block, beneath, to_json},
     encode::{METADATA_NAME, NORMALS_NAME},
-    quantized_mesh_request::{Availability, QuantizedMeshRequest},
-    summary::QuantizedMeshSummary,
+    quantized_mesh_request::{Availability, QuantizedMeshRequest, QuantizedMeshSummary},
     tiling::TerrainTile,
 };
 

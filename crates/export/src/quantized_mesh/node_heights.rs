@@ -3,7 +3,7 @@
 use corniche_work::Recent;
 
 use super::tiling::Nodes;
-use crate::error::ExportError;
+use crate::error::QuantizedMeshError;
 
 /// Nodes along each side of a block, which is sampled at once.
 const BLOCK: i64 = 16;
@@ -31,8 +31,8 @@ impl NodeHeights {
         nodes: Nodes,
         [west, south]: [i64; 2],
         [east, north]: [i64; 2],
-        sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, ExportError>,
-    ) -> Result<Vec<f64>, ExportError> {
+        sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, QuantizedMeshError>,
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
         let columns = (east - west + 1) as usize;
         let mut heights_m = vec![f64::NAN; columns * (north - south + 1) as usize];
         let blocks = |first: i64, last: i64| first.div_euclid(BLOCK)..=last.div_euclid(BLOCK);

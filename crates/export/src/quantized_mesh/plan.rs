@@ -6,12 +6,11 @@ use corniche_geom::{Bounds, Seam, TileId, wgs84::radii_m};
 use corniche_tileset::{FilePackage, Manifest};
 
 use super::{
-    planned_levels::{PlannedLevel, QuantizedMeshPlan},
-    quantized_mesh_request::QuantizedMeshRequest,
+    quantized_mesh_request::{PlannedLevel, QuantizedMeshPlan, QuantizedMeshRequest},
     tiling::{FINEST, TerrainTile, Tiling},
     write_tiles::{has_cells_of, is_wide, mean_bytes, side_and_cell_m, with_ancestors},
 };
-use crate::{bounds::DegreeBounds, error::ExportError, read};
+use crate::{bounds::DegreeBounds, error::QuantizedMeshError, read};
 
 /// The most tiles of the finest level. Some hundred bytes are kept for each.
 const MOST_TILES: u64 = 4_000_000;
@@ -27,7 +26,10 @@ impl QuantizedMeshPlan {
     ///
     /// # Errors
     /// When the package cannot be exported so, it is damaged, or there would be more files than the request allows.
-    pub fn new(package: &FilePackage, request: &QuantizedMeshRequest) -> Result<Self, ExportError> {
+    pub fn new(
+        package: &FilePackage,
+        request: &QuantizedMeshRequest,
+    ) -> Result<Self, QuantizedMeshError> {
         let manifest = package.manifest();
         within_grid(manifest, request.tiling)?;
         let finest = finest_level(manifest, request);
@@ -81,12 +83,12 @@ impl QuantizedMeshPlan {
 }
 
 /// Fails where the data reach beyond the grid's latitudes: a part would be left out.
-fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), ExportError> {
+fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), QuantizedMeshError> {
     let [south, north] = [0, 1].map(|row| tiling.lat_deg(0, row));
     let data = manifest.wgs84_bounds;
     let beyond = [data.min_y, data.max_y].into_iter().find(|lat| !(south..=north).contains(lat));
     match beyond {
-        Some(lat) => Err(ExportError::BeyondGrid { lat, north }),
+        Some(lat) => Err(QuantizedMeshError::BeyondGrid { lat, north }),
         None => Ok(()),
     }
 }
@@ -108,7 +110,7 @@ fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
 fn tiles_around_deg(
     package: &FilePackage,
     bounds: Option<&DegreeBounds>,
-) -> Result<Vec<Bounds>, ExportError> {
+) -> Result<Vec<Bounds>, QuantizedMeshError> {
     let manifest = package.manifest();
     let data = manifest.wgs84_bounds;
     // The rectangle around a turned or bent image is larger than the image, but never by so much.
@@ -123,7 +125,9 @@ fn tiles_around_deg(
     for id in read::tiles(package, manifest.frame.max_level(), bounds)? {
         let places = read::places_deg(manifest, id);
         if !(places.iter().copied().all(is_near) && is_as_large(manifest, id, &places)) {
-            return Err(ExportError::OtherCoordinates { package: package.path().to_path_buf() });
+            return Err(QuantizedMeshError::OtherCoordinates {
+                package: package.path().to_path_buf(),
+            });
         }
         let mut around = Bounds::EMPTY;
         for place in places {
@@ -182,7 +186,7 @@ fn refuse_too_many(
     around: &[Bounds],
     request: &QuantizedMeshRequest,
     finest: u8,
-) -> Result<(), ExportError> {
+) -> Result<(), QuantizedMeshError> {
     let of_level = |level: u8| -> u64 {
         let of_tile = |around: &Bounds| {
             let [columns, rows] = columns_and_rows(request.tiling, level, around);
@@ -202,13 +206,13 @@ fn refuse_too_many(
     };
     let level = || (0..finest).rev().find(|&level| files(level) <= request.max_files).unwrap_or(0);
     if of_level(finest) > MOST_TILES {
-        return Err(ExportError::TooManyTiles { finest, most: MOST_TILES, level: level() });
+        return Err(QuantizedMeshError::TooManyTiles { finest, most: MOST_TILES, level: level() });
     }
     let of_finest = files(finest);
     if of_finest <= request.max_files {
         return Ok(());
     }
-    Err(ExportError::TooManyFiles {
+    Err(QuantizedMeshError::TooManyFiles {
         finest,
         files: of_finest,
         most: request.max_files,

@@ -6,7 +6,7 @@ use super::{
     tiling::{LAST_STEP, Nodes, TerrainTile},
 };
 use crate::{
-    error::ExportError,
+    error::QuantizedMeshError,
     globe::{between, cross, dot, geocentric_m, unit, up_at},
 };
 
@@ -43,14 +43,14 @@ impl Window {
         from: [i64; 2],
         to: [i64; 2],
         ground: &Ground<'_>,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, QuantizedMeshError> {
         let [first, last] = around(from, to);
         let heights_m = ground.heights_m(&nodes.places_deg(first, last))?;
         Ok(Self { nodes, from, to, heights_m })
     }
 
     /// The nodes of the level above between which those of this window lie.
-    fn above(&self, ground: &Ground<'_>) -> Result<Option<Self>, ExportError> {
+    fn above(&self, ground: &Ground<'_>) -> Result<Option<Self>, QuantizedMeshError> {
         let Some(nodes) = self.nodes.above() else { return Ok(None) };
         let from = self.from.map(|index| index.div_euclid(2));
         let to = self.to.map(|index| (index + 1).div_euclid(2));
@@ -119,7 +119,7 @@ impl TileRaster {
         nodes: Nodes,
         tile: TerrainTile,
         ground: &Ground<'_>,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, QuantizedMeshError> {
         let n = nodes.per_tile;
         let [i, j] = [i64::from(tile.x) * n, i64::from(tile.y) * n];
         let (from, to) = ([i - 1, j - 1], [i + n + 1, j + n + 1]);
@@ -213,7 +213,7 @@ impl TileRaster {
         &self,
         uv: &[[f64; 2]],
         ground: &Ground<'_>,
-    ) -> Result<Vec<Option<[f64; 3]>>, ExportError> {
+    ) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError> {
         let nearest: Vec<[u16; 2]> = uv.iter().map(|&uv| nearest_steps(uv)).collect();
         let mut found = self.ground_at(&nearest, ground)?;
         let gaps: Vec<usize> = (0..found.len()).filter(|&k| found[k].is_none()).collect();
@@ -229,7 +229,7 @@ impl TileRaster {
         &self,
         steps: &[[u16; 2]],
         ground: &Ground<'_>,
-    ) -> Result<Vec<Option<[f64; 3]>>, ExportError> {
+    ) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError> {
         let places: Vec<[f64; 2]> =
             steps.iter().map(|&steps| self.nodes.place_deg(self.tile, steps)).collect();
         let heights_m = ground.heights_m(&places)?;
@@ -253,7 +253,7 @@ impl TileRaster {
         &self,
         level: Looked,
         ground: &Ground<'_>,
-    ) -> Result<Samples, ExportError> {
+    ) -> Result<Samples, QuantizedMeshError> {
         let last = self.side() - 1;
         let nodes_of =
             |side: usize| (0..side).flat_map(move |row| (0..side).map(move |c| [c, row]));
@@ -311,7 +311,7 @@ impl TileRaster {
         side: Side,
         level: Looked,
         ground: &Ground<'_>,
-    ) -> Result<Vec<u16>, ExportError> {
+    ) -> Result<Vec<u16>, QuantizedMeshError> {
         let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
         let ends = match side {
             Side::West => [[west, south], [west, north]],

@@ -23,14 +23,18 @@ use super::{
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
     node_heights::NodeHeights,
-    planned_levels::QuantizedMeshPlan,
-    quantized_mesh_request::QuantizedMeshRequest,
+    quantized_mesh_request::{
+        QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
+    },
     raster::{Looked, TileRaster},
-    summary::{QuantizedMeshLevel, QuantizedMeshSummary},
     surfaces::{KEPT_BYTES, Surfaces},
     tiling::{Nodes, TerrainTile, Tiling},
 };
-use crate::{error::ExportError, feature_request::Coordinates, places::Places};
+use crate::{
+    error::{CoordinatesError, QuantizedMeshError, SelectionError},
+    feature_request::Coordinates,
+    places::Places,
+};
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.
 const CELLS: [i64; 2] = [16, 64];
@@ -50,7 +54,7 @@ pub fn export_quantized_mesh(
     (request, plan): (&QuantizedMeshRequest, QuantizedMeshPlan),
     folder: &Path,
     observer: &dyn Observer,
-) -> Result<QuantizedMeshSummary, ExportError> {
+) -> Result<QuantizedMeshSummary, QuantizedMeshError> {
     let manifest = package.manifest();
     let (finest, candidates) = (plan.finest(), plan.candidates);
     let heights = heights_in_words(manifest, request.coordinates)?;
@@ -68,7 +72,7 @@ pub fn export_quantized_mesh(
         (made, tiles)
     };
     if made.is_empty() {
-        return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+        return Err(SelectionError::no_ground(package).into());
     }
     let tiles = with_ancestors(request.tiling, &finest_tiles);
     let above = tiles.difference(&finest_tiles).copied().collect();
@@ -95,12 +99,15 @@ pub fn export_quantized_mesh(
     }
     let summary = QuantizedMeshSummary { levels, heights };
     let text = serde_json::to_vec_pretty(&layer(manifest, request, &available, &summary))
-        .map_err(|error| ExportError::WriteTiles(error.into()))?;
-    fs::write(folder.join(LAYER), text).map_err(ExportError::WriteTiles)?;
+        .map_err(|error| QuantizedMeshError::Write { source: error.into() })?;
+    fs::write(folder.join(LAYER), text).map_err(not_written)?;
     Ok(summary)
 }
 
-fn heights_in_words(manifest: &Manifest, coordinates: Coordinates) -> Result<String, ExportError> {
+fn heights_in_words(
+    manifest: &Manifest,
+    coordinates: Coordinates,
+) -> Result<String, CoordinatesError> {
     let places = Places::new(manifest, coordinates)?;
     let datum = &manifest.vertical.datum;
     Ok(match coordinates {
@@ -179,7 +186,7 @@ impl Writer<'_> {
         tiles: &[TerrainTile],
         emptiness: Emptiness,
         available: &[Vec<Block>],
-    ) -> Result<Vec<(TerrainTile, Made)>, ExportError> {
+    ) -> Result<Vec<(TerrainTile, Made)>, QuantizedMeshError> {
         let (job, manifest) = (self.job, self.job.package.manifest());
         let wide = tiles.partition_point(|tile| !is_wide(manifest, job.request.tiling, tile.z));
         let mut made = Vec::with_capacity(tiles.len());
@@ -201,10 +208,10 @@ impl Writer<'_> {
         ground: &Ground<'_>,
         emptiness: Emptiness,
         available: &[Vec<Block>],
-    ) -> Result<Option<Made>, ExportError> {
+    ) -> Result<Option<Made>, QuantizedMeshError> {
         let encoded = self.job.tile(tile, ground, emptiness, available)?;
         let Some(Encoded { triangles, deviation, bytes }) = encoded else { return Ok(None) };
-        let bytes = self.write(tile, &bytes).map_err(ExportError::WriteTiles)?;
+        let bytes = self.write(tile, &bytes).map_err(not_written)?;
         Ok(Some(Made { triangles, bytes, deviation }))
     }
 
@@ -228,12 +235,16 @@ fn packed<'a>(request: &QuantizedMeshRequest, bytes: &'a [u8]) -> io::Result<Cow
     Ok(packed.finish()?.into())
 }
 
+fn not_written(source: io::Error) -> QuantizedMeshError {
+    QuantizedMeshError::Write { source }
+}
+
 /// The mean size of the files of some tiles of the finest level with ground, which are made for it; `None` where none of them has any.
 pub(crate) fn mean_bytes(
     package: &FilePackage,
     (request, finest): (&QuantizedMeshRequest, u8),
     tiles: &[TerrainTile],
-) -> Result<Option<f64>, ExportError> {
+) -> Result<Option<f64>, QuantizedMeshError> {
     let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
     let job = Job { package, stores: (&surfaces, &node_heights), request, finest };
     let ground = job.ground()?;
@@ -241,14 +252,14 @@ pub(crate) fn mean_bytes(
     for tile in tiles {
         if let Some(encoded) = job.tile(*tile, &ground, Emptiness::IsLeftOut, &[])? {
             files += 1;
-            bytes += packed(request, &encoded.bytes).map_err(ExportError::WriteTiles)?.len() as f64;
+            bytes += packed(request, &encoded.bytes).map_err(not_written)?.len() as f64;
         }
     }
     Ok((files > 0).then(|| bytes / f64::from(files)))
 }
 
 impl<'a> Job<'a> {
-    fn ground(&self) -> Result<Ground<'a>, ExportError> {
+    fn ground(&self) -> Result<Ground<'a>, QuantizedMeshError> {
         let places = Places::new(self.package.manifest(), self.request.coordinates)?;
         Ok(Ground::new(self.package, self.stores, places))
     }
@@ -270,7 +281,7 @@ impl<'a> Job<'a> {
         ground: &Ground<'_>,
         emptiness: Emptiness,
         available: &[Vec<Block>],
-    ) -> Result<Option<Encoded>, ExportError> {
+    ) -> Result<Option<Encoded>, QuantizedMeshError> {
         let tiling = self.request.tiling;
         let error_m = self.error_m(tile.z);
         let nodes = nodes(self.package.manifest(), tiling, tile.z);
@@ -284,7 +295,7 @@ impl<'a> Job<'a> {
         if emptiness == Emptiness::IsLeftOut && is_empty {
             return Ok(None);
         }
-        let failed = |source| ExportError::Triangulate { tile: tile.to_string(), source };
+        let failed = |source| QuantizedMeshError::Triangulate { tile: tile.to_string(), source };
         let tin = tin_of(&raster, error_m).map_err(failed)?;
         let inserted = |source| failed(TriangulateError::Insert(source));
         let mut mesh = Mesh::new(&raster, &tin).map_err(inserted)?;
@@ -332,9 +343,9 @@ fn follow(
     mesh: &mut Mesh,
     raster: &TileRaster,
     limit_m: f64,
-    inserted: impl Fn(InsertionError) -> ExportError,
-    at_steps: impl Fn(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, ExportError>,
-) -> Result<(), ExportError> {
+    inserted: impl Fn(InsertionError) -> QuantizedMeshError,
+    at_steps: impl Fn(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError>,
+) -> Result<(), QuantizedMeshError> {
     loop {
         // Points first: there are many, and only those of triangles that changed are looked at again.
         let points = comparison.far_points(limit_m);

@@ -8,7 +8,7 @@ use super::{
     road_list::MatchedRoad,
 };
 use crate::{
-    error::ExportError,
+    error::RouteError,
     profile::{Course, CourseLeg},
     road_query::{NamedWays, RoadQuery},
 };
@@ -75,7 +75,7 @@ struct Stretch {
 
 impl Finder<'_> {
     /// The shortest way between two places.
-    pub(crate) fn between(&self, ends_deg: [[f64; 2]; 2]) -> Result<Route, ExportError> {
+    pub(crate) fn between(&self, ends_deg: [[f64; 2]; 2]) -> Result<Route, RouteError> {
         let [from_deg, to_deg] = ends_deg;
         let (from, to) = (self.near(from_deg)?, self.near(to_deg)?);
         // A road beside the nearest one costs what it is farther away, twice: there and back.
@@ -129,22 +129,22 @@ impl Finder<'_> {
             }
         }
         let Some((_, stretches, off_m)) = best else {
-            return Err(ExportError::NotConnected { of: self.of_text(), ends: ends_deg });
+            return Err(RouteError::NotConnected { of: self.of_text(), ends: ends_deg });
         };
         let route = self.route(&stretches)?;
         if route.course.legs.is_empty() {
-            return Err(ExportError::OnePlace);
+            return Err(RouteError::OnePlace);
         }
         Ok(Route { off_m, ..route })
     }
 
     /// The way along the whole road that is named, from its western to its eastern end.
-    pub(crate) fn whole(&self) -> Result<Route, ExportError> {
+    pub(crate) fn whole(&self) -> Result<Route, RouteError> {
         let mut matched = self.matched();
         let all_m: f64 = matched.iter().map(|road| road.length_m).sum();
         let is_clear = |road: &MatchedRoad| road.length_m >= MOST_OF_THEM * all_m;
         if matched.is_empty() {
-            return Err(ExportError::NothingToFollow { of: self.of_text() });
+            return Err(RouteError::NothingToFollow { of: self.of_text() });
         }
         let others = matched.split_off(1);
         let same_name: Vec<String> = others.iter().map(|road| road.text(self.graph)).collect();
@@ -152,7 +152,7 @@ impl Finder<'_> {
         if !is_clear(road) {
             let query = self.road.map(RoadQuery::text).unwrap_or_default();
             let roads = std::iter::once(road.text(self.graph)).chain(same_name).collect();
-            return Err(ExportError::SeveralRoads { query, roads });
+            return Err(RouteError::SeveralRoads { query, roads });
         }
         let mut best: Option<(f64, Vec<Stretch>)> = None;
         for (from, tos) in self.end_pairs(road) {
@@ -165,7 +165,7 @@ impl Finder<'_> {
             }
         }
         let Some((_, stretches)) = best else {
-            return Err(ExportError::NothingToFollow { of: self.of_text() });
+            return Err(RouteError::NothingToFollow { of: self.of_text() });
         };
         let route = self.route(&stretches)?;
         Ok(Route { road_m: Some(road.length_m), same_name, ..route })
@@ -175,14 +175,14 @@ impl Finder<'_> {
         self.road.map_or_else(|| "roads".to_owned(), |road| format!("roads with {}", road.text()))
     }
 
-    fn near(&self, place_deg: [f64; 2]) -> Result<Vec<PlaceOnLink>, ExportError> {
+    fn near(&self, place_deg: [f64; 2]) -> Result<Vec<PlaceOnLink>, RouteError> {
         let near = self.graph.near(place_deg, HARDLY_FARTHER_M);
         let [lon, lat] = place_deg;
         let (of, covered) = (self.of_text(), self.graph.covered_text(place_deg));
         match near.first().map(|place| place.off_m) {
             Some(off_m) if off_m <= MOST_OFF_M => Ok(near),
-            Some(off_m) => Err(ExportError::FarFromRoads { of, lon, lat, off_m, covered }),
-            None => Err(ExportError::NoRoadNear { of, lon, lat, covered }),
+            Some(off_m) => Err(RouteError::FarFromRoads { of, lon, lat, off_m, covered }),
+            None => Err(RouteError::NoRoadNear { of, lon, lat, covered }),
         }
     }
 
@@ -305,7 +305,7 @@ impl Finder<'_> {
     }
 
     /// Stretches one after the other, as a course.
-    fn route(&self, stretches: &[Stretch]) -> Result<Route, ExportError> {
+    fn route(&self, stretches: &[Stretch]) -> Result<Route, RouteError> {
         let (mut legs, mut length_m, mut others_m, mut gap_m) = (Vec::new(), 0.0, 0.0, 0.0);
         for stretch in stretches {
             let edge = &self.graph.edges[stretch.edge];
@@ -323,7 +323,7 @@ impl Finder<'_> {
                 if gap_m > MOST_GAP_M {
                     let [lon, lat] = self.graph.places.wgs84(points[0].in_steps());
                     let query = self.road.map(RoadQuery::text).unwrap_or_default();
-                    return Err(ExportError::RoadInterrupted { query, lon, lat });
+                    return Err(RouteError::RoadInterrupted { query, lon, lat });
                 }
             }
             let way_id = self.graph.network.way_of(edge.link).way_id;

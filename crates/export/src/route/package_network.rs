@@ -8,7 +8,7 @@ use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
-use crate::{error::ExportError, join::lines, piece::Piece, read};
+use crate::{error::RouteError, join::lines, piece::Piece, read};
 
 /// The roads of a level as a network. Packages do not know nodes, but no simplification takes the points away at which roads join. Where ways on the
 /// ground, bridges and tunnels, or ways of several layers have a point in common within them all, they cross and do not join.
@@ -17,7 +17,7 @@ pub(crate) fn package_network(
     level: u8,
     classes: &[FunctionalRoadClass],
     observer: &dyn Observer,
-) -> Result<Network, ExportError> {
+) -> Result<Network, RouteError> {
     let mut by_way: BTreeMap<i64, Vec<Piece>> = BTreeMap::new();
     let tiles = read::tiles(package, level, None)?;
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
@@ -31,7 +31,7 @@ pub(crate) fn package_network(
             });
             by_way.entry(piece.key.way_id).or_default().push(piece);
         }
-        Ok::<(), ExportError>(())
+        Ok::<(), RouteError>(())
     })?;
     let mut roads = Vec::new();
     for pieces in by_way.into_values() {

@@ -12,7 +12,7 @@ use super::{
     ribbon::Ribbon,
     slab::{Slab, SlabLabels},
 };
-use crate::error::ExportError;
+use crate::error::SurfaceError;
 
 /// What a triangle is a surface of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,7 +43,7 @@ impl Divided {
         id: TileId,
         terrain: &Terrain,
         lines: Option<&TileLines<'_>>,
-    ) -> Result<Option<Self>, ExportError> {
+    ) -> Result<Option<Self>, SurfaceError> {
         let frame = &manifest.frame;
         let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
         let surface = Surface::new(&terrain.tin, placement);
@@ -64,7 +64,7 @@ impl Divided {
         let ribbons: Vec<Ribbon> = roads.iter().map(ribbon).collect();
         let begun = std::time::Instant::now();
         let mut mesh =
-            cut::cut(&ground, &ribbons).map_err(|source| ExportError::Cut { tile: id, source })?;
+            cut::cut(&ground, &ribbons).map_err(|source| SurfaceError::Cut { tile: id, source })?;
         let cut_s = begun.elapsed().as_secs_f64();
         let package_triangles = surface.triangles().len() as u64;
         let steps_per_m = manifest.point_scale / frame.lattice_step_m();

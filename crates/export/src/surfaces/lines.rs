@@ -13,7 +13,7 @@ use super::{
     ribbon::CenterLine,
     stretches::{Stretch, stretches},
 };
-use crate::{error::ExportError, read};
+use crate::{error::SurfaceError, read};
 
 /// The error that clients allow: Cesium's for ground, which the example asks for.
 const ALLOWED_ERROR_PX: f64 = 2.0;
@@ -110,7 +110,7 @@ impl<'a> TileLines<'a> {
         Self { package, look, details, recent: Recent::new(KEPT_BYTES) }
     }
 
-    fn of_tile(&self, id: TileId) -> Result<Arc<Vec<TileLine>>, ExportError> {
+    fn of_tile(&self, id: TileId) -> Result<Arc<Vec<TileLine>>, SurfaceError> {
         let detail = &self.details[usize::from(id.z())];
         let make = || {
             let mut lines = self.read(id, &detail.classes)?;
@@ -126,11 +126,11 @@ impl<'a> TileLines<'a> {
         &self,
         id: TileId,
         classes: &[FunctionalRoadClass],
-    ) -> Result<Vec<TileLine>, ExportError> {
+    ) -> Result<Vec<TileLine>, SurfaceError> {
         let runs = read::span_runs(self.package, id)?;
         let quantum_m = self.package.manifest().vertical.quantum_m;
         let work = Work::new(MOST_STEPS);
-        let failed = |source| ExportError::TooManyBridges { tile: id, source };
+        let failed = |source| SurfaceError::TooManyBridges { tile: id, source };
         let mut lines = Vec::new();
         for piece in read::pieces(self.package, id, classes)? {
             if piece.attributes.structure == Structure::Tunnel {
@@ -151,7 +151,7 @@ impl<'a> TileLines<'a> {
     }
 
     /// The roads in a tile and in those around it, and the slabs in the tile, the most important first. Lines that go on across a border know the point beyond it.
-    pub(crate) fn around(&self, id: TileId) -> Result<Vec<Road>, ExportError> {
+    pub(crate) fn around(&self, id: TileId) -> Result<Vec<Road>, SurfaceError> {
         let mut tiles = Vec::new();
         for dy in -1..=1 {
             for dx in -1..=1 {

@@ -14,7 +14,7 @@ use super::{
     tiles3d_request::{TileRoads, Tiles3dRequest},
 };
 use crate::{
-    error::ExportError,
+    error::Tiles3dError,
     gltf::linear,
     read,
     relief_map::ReliefMap,
@@ -76,7 +76,7 @@ pub(crate) fn make(
     lines: &TileLines<'_>,
     placing: &Placing<'_>,
     level: &LevelOfTiles,
-) -> Result<Option<MadeTile>, ExportError> {
+) -> Result<Option<MadeTile>, Tiles3dError> {
     let mut wanted = match request.roads {
         TileRoads::Line | TileRoads::Vector => Sections::TERRAIN | read::road_sections(),
         TileRoads::Cut | TileRoads::None => Sections::TERRAIN,
@@ -269,7 +269,7 @@ impl<'a> Builder<'a> {
         placing: &Placing<'_>,
         error_m: f64,
         kind: fn(FunctionalRoadClass) -> PrimitiveKind,
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), Tiles3dError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
         let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
         let mut by_class: BTreeMap<FunctionalRoadClass, (Primitive, Vec<i64>)> = BTreeMap::new();
@@ -341,8 +341,7 @@ fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile
 fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {
     let structure = match attributes.structure {
         Structure::Ground => "",
-        Structure::Bridge => "bridge",
-        Structure::Tunnel => "tunnel",
+        other => other.name(),
     };
     RoadRow {
         way_id,

@@ -10,8 +10,8 @@ use serde_json::{Map, Value, json};
 
 use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
 use crate::gltf::{
-    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, F32, LINE_STRIP, LINES, SLAB_COLOR,
-    TRIANGLES, U8, U16, U32, linear, range_of, sampler, write_container,
+    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES,
+    U8, U16, U32, floats, linear, positions, sampler, write_container,
 };
 
 /// A text of a row.
@@ -103,56 +103,22 @@ struct File {
 
 impl File {
     fn primitive(&mut self, kind: PrimitiveKind, part: &Primitive) -> io::Result<Value> {
-        let count = part.positions.len();
         let mut attributes = Map::new();
-        let [least, largest] = range_of(&part.positions);
-        let view = self.vertices(&part.positions)?;
-        attributes.insert(
-            "POSITION".to_owned(),
-            self.accessor(json!({
-                "bufferView": view, "componentType": F32, "type": "VEC3", "count": count,
-                "min": least, "max": largest,
-            })),
-        );
-        if !part.normals.is_empty() {
-            let view = self.vertices(&part.normals)?;
-            let accessor = json!({
-                "bufferView": view, "componentType": F32, "type": "VEC3", "count": count,
-            });
-            attributes.insert("NORMAL".to_owned(), self.accessor(accessor));
-        }
-        if !part.colors.is_empty() {
-            let view = self.vertices(&part.colors)?;
-            let accessor = json!({
-                "bufferView": view, "componentType": U8, "normalized": true, "type": "VEC4",
-                "count": count,
-            });
-            attributes.insert("COLOR_0".to_owned(), self.accessor(accessor));
-        }
-        if !part.tangents.is_empty() {
-            let view = self.vertices(&part.tangents)?;
-            let accessor = json!({
-                "bufferView": view, "componentType": F32, "type": "VEC4", "count": count,
-            });
-            attributes.insert("TANGENT".to_owned(), self.accessor(accessor));
-        }
+        let at = &mut attributes;
+        self.attribute(at, "POSITION", &part.positions, positions(&part.positions))?;
+        self.attribute(at, "NORMAL", &part.normals, floats("VEC3"))?;
+        let colors = json!({ "componentType": U8, "normalized": true, "type": "VEC4" });
+        self.attribute(at, "COLOR_0", &part.colors, colors)?;
+        self.attribute(at, "TANGENT", &part.tangents, floats("VEC4"))?;
         let places = [&part.picture_places, &part.relief_places];
         for (number, places) in places.into_iter().filter(|places| !places.is_empty()).enumerate() {
-            let view = self.vertices(places)?;
-            let accessor = json!({
-                "bufferView": view, "componentType": F32, "type": "VEC2", "count": count,
-            });
-            attributes.insert(format!("TEXCOORD_{number}"), self.accessor(accessor));
+            self.attribute(at, &format!("TEXCOORD_{number}"), places, floats("VEC2"))?;
         }
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
         if let Some(class) = kind.class() {
             // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
             let features: Vec<f32> = part.features.iter().map(|row| *row as f32).collect();
-            let view = self.vertices(&features)?;
-            let accessor = json!({
-                "bufferView": view, "componentType": F32, "type": "SCALAR", "count": count,
-            });
-            attributes.insert("_FEATURE_ID_0".to_owned(), self.accessor(accessor));
+            self.attribute(at, "_FEATURE_ID_0", &features, floats("SCALAR"))?;
             let mut rows = part.features.clone();
             rows.sort_unstable();
             rows.dedup();
@@ -170,8 +136,24 @@ impl File {
             | PrimitiveKind::BridgeSlabs(_) => {}
         }
         primitive["attributes"] = Value::Object(attributes);
-        primitive["indices"] = self.indices(&part.indices, count, kind)?;
+        primitive["indices"] = self.indices(&part.indices, part.positions.len(), kind)?;
         Ok(primitive)
+    }
+
+    /// Adds an attribute of vertices, if there are some. `accessor` says what they are.
+    fn attribute<T: bytemuck::Pod>(
+        &mut self,
+        attributes: &mut Map<String, Value>,
+        name: &str,
+        vertices: &[T],
+        mut accessor: Value,
+    ) -> io::Result<()> {
+        if !vertices.is_empty() {
+            accessor["bufferView"] = json!(self.vertices(vertices)?);
+            accessor["count"] = json!(vertices.len());
+            attributes.insert(name.to_owned(), self.accessor(accessor));
+        }
+        Ok(())
     }
 
     fn accessor(&mut self, accessor: Value) -> Value {

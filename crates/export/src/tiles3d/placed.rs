@@ -6,7 +6,7 @@ use corniche_geom::{LatticeBounds, TileId};
 use corniche_tileset::Manifest;
 
 use crate::{
-    error::ExportError,
+    error::CoordinatesError,
     globe::{RootFrame, cross, dot, unit},
     places::Places,
     relief_map::tangent,
@@ -65,7 +65,11 @@ pub(crate) struct Placing<'a> {
 impl Placing<'_> {
     /// Carries a tile's triangles to the globe, each vertex by itself. Vertices that come to the same place become one, those of slabs only with the same
     /// normal, and triangles without an inside are left out.
-    pub(crate) fn place(&self, id: TileId, mesh: &GroundMesh) -> Result<PlacedTile, ExportError> {
+    pub(crate) fn place(
+        &self,
+        id: TileId,
+        mesh: &GroundMesh,
+    ) -> Result<PlacedTile, CoordinatesError> {
         let frame = &self.manifest.frame;
         let bounds = frame.tile_lattice_bounds(id);
         let mut plan: Vec<[f64; 2]> = mesh
@@ -132,7 +136,7 @@ impl Placing<'_> {
         &self,
         places: &[([f64; 2], f64)],
         middle_m: [f64; 3],
-    ) -> Result<Vec<[f32; 3]>, ExportError> {
+    ) -> Result<Vec<[f32; 3]>, CoordinatesError> {
         let frame = &self.manifest.frame;
         let mut plan: Vec<[f64; 2]> =
             places.iter().map(|(at, _)| frame.position_of_fraction_m(*at)).collect();
@@ -150,7 +154,7 @@ impl Placing<'_> {
     }
 
     /// Grid east, grid north and up in the middle of a tile, from two places beside it.
-    fn axes(&self, mesh: &GroundMesh) -> Result<[[f64; 3]; 3], ExportError> {
+    fn axes(&self, mesh: &GroundMesh) -> Result<[[f64; 3]; 3], CoordinatesError> {
         let frame = &self.manifest.frame;
         let [x, y] = frame.position_m(mesh.middle);
         let beside = frame.cell().north_m;

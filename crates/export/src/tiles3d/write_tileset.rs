@@ -21,7 +21,7 @@ use super::{
     vector_style,
 };
 use crate::{
-    error::ExportError,
+    error::{SelectionError, Tiles3dError},
     globe::{RootFrame, dot, geocentric_m},
     places::Places,
     surfaces::{RoadLook, TileLines},
@@ -85,13 +85,13 @@ pub fn export_tiles3d(
     request: &Tiles3dRequest,
     folder: &Path,
     observer: &dyn Observer,
-) -> Result<Tiles3dSummary, ExportError> {
+) -> Result<Tiles3dSummary, Tiles3dError> {
     let manifest = package.manifest();
     let finest = crate::read::level(package, request.finest_level)?;
     let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
-    let failed = ExportError::WriteTiles;
+    let failed = |source| Tiles3dError::Write { source };
     let root =
         RootFrame::at(manifest.coordinates.wgs84_from_working(manifest.data_bounds.center()));
     // Of all tiles, so that a part has the same bytes as the whole.
@@ -132,7 +132,7 @@ pub fn export_tiles3d(
         level.error_m = level.error_m.max(facts.error_m);
     }
     if made.is_empty() {
-        return Err(ExportError::NoGround { package: package.path().to_path_buf() });
+        return Err(SelectionError::no_ground(package).into());
     }
     let mut documents = tree.write(folder, &job.root, &Contents::All).map_err(failed)?;
     if request.roads == TileRoads::Vector {
@@ -260,13 +260,13 @@ impl Job<'_> {
         &self,
         ids: &[TileId],
         observer: &dyn Observer,
-    ) -> Result<BTreeMap<TileId, Written>, ExportError> {
+    ) -> Result<BTreeMap<TileId, Written>, Tiles3dError> {
         observer.begin(Stage::ExportTiles, Some(ids.len() as u64));
         let made = make_all(
             (observer, Stage::ExportTiles),
             self.request.threads,
             ids,
-            || Places::new(self.package.manifest(), self.request.coordinates),
+            || Ok(Places::new(self.package.manifest(), self.request.coordinates)?),
             |places, id| self.tile(*id, places),
         )?;
         observer.end(Stage::ExportTiles);
@@ -274,7 +274,7 @@ impl Job<'_> {
         Ok(written.filter_map(|(id, written)| Some((*id, written?))).collect())
     }
 
-    fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, ExportError> {
+    fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, Tiles3dError> {
         let level = &self.levels[usize::from(id.z())];
         let placing = Placing {
             manifest: self.package.manifest(),
@@ -286,12 +286,12 @@ impl Job<'_> {
         let Some(made) = made else { return Ok(None) };
         let write = |folder: &Path, content: &TileContent| {
             write_content(&folder.join(content_name(id)), content, self.request.compress)
-                .map_err(ExportError::WriteTiles)
+                .map_err(|source| Tiles3dError::Write { source })
         };
         let mut bytes = write(self.folder, &made.content)?;
         if let Some(vector) = &made.vector {
             let folder = self.folder.join(VECTOR_FOLDER);
-            make_folders(&folder, &[id]).map_err(ExportError::WriteTiles)?;
+            make_folders(&folder, &[id]).map_err(|source| Tiles3dError::Write { source })?;
             bytes += write(&folder, vector)?;
         }
         Ok(Some(Written {

@@ -39,6 +39,17 @@ pub struct Field {
     pub meaning: &'static str,
 }
 
+impl Field {
+    pub(crate) const fn new(
+        name: &'static str,
+        kind: FieldKind,
+        unit: &'static str,
+        meaning: &'static str,
+    ) -> Self {
+        Self { name, kind, unit, meaning }
+    }
+}
+
 /// The value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {

@@ -13,9 +13,8 @@ use gdal::{
 };
 
 use crate::{
-    error::ExportError,
-    gdal_settings::GdalSettings,
-    plain_text::{plain_text, without_nul},
+    error::GdalFileError,
+    gdal_writing::{GdalSettings, plain_text, without_nul},
     vector::{
         cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
@@ -67,15 +66,15 @@ impl VectorFile {
         path: &Path,
         format: VectorFormat,
         layer: Layer,
-    ) -> Result<Self, ExportError> {
+    ) -> Result<Self, GdalFileError> {
         corniche_gis::quiet();
         corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let layer = layer.plain();
-        let no_driver = |_| ExportError::NoDriver { driver: format.driver() };
+        let no_driver = |_| GdalFileError::NoDriver { driver: format.driver() };
         let driver = DriverManager::get_driver_by_name(format.driver()).map_err(no_driver)?;
         let dataset = create(path, format, &layer, &driver)
-            .map_err(|error| ExportError::write(path, error))?;
+            .map_err(|error| GdalFileError::write(path, error))?;
         Ok(Self {
             path: path.to_path_buf(),
             format,
@@ -90,7 +89,7 @@ impl VectorFile {
     }
 
     /// Adds a feature.
-    pub(crate) fn push(&mut self, mut record: Record) -> Result<(), ExportError> {
+    pub(crate) fn push(&mut self, mut record: Record) -> Result<(), GdalFileError> {
         if self.format == VectorFormat::Csv {
             for value in &mut record.values {
                 if let Value::Text(text) = value {
@@ -109,7 +108,7 @@ impl VectorFile {
         self.heights = Some(sentence);
     }
 
-    fn write(&mut self) -> Result<(), ExportError> {
+    fn write(&mut self) -> Result<(), GdalFileError> {
         let records = std::mem::take(&mut self.waiting);
         self.written.features += records.len() as u64;
         self.written.vertices += std::mem::take(&mut self.waiting_vertices) as u64;
@@ -122,11 +121,11 @@ impl VectorFile {
             }),
             _ => self.dataset.layer(0).and_then(|layer| write_all(&layer, of, &records)),
         };
-        written.map_err(|error| ExportError::write(&self.path, error))
+        written.map_err(|error| GdalFileError::write(&self.path, error))
     }
 
     /// Ends the file and reads it again: GDAL does not report everything that fails when a file is closed.
-    pub(crate) fn finish(mut self) -> Result<(), ExportError> {
+    pub(crate) fn finish(mut self) -> Result<(), GdalFileError> {
         self.write()?;
         let Self { path, format, dataset, layer, heights, written, .. } = self;
         if format == VectorFormat::GeoPackage {
@@ -138,13 +137,13 @@ impl VectorFile {
                 None => Ok(()),
             };
             let styled = told.and_then(|()| geopackage::add_style(&dataset, layer.name));
-            styled.map_err(|error| ExportError::write(&path, error))?;
+            styled.map_err(|error| GdalFileError::write(&path, error))?;
         }
         // What fails while a file is closed comes back from no call before GDAL 3.7.
         corniche_gis::forget();
-        dataset.close().map_err(|error| ExportError::write(&path, error))?;
+        dataset.close().map_err(|error| GdalFileError::write(&path, error))?;
         if let Some(source) = corniche_gis::failure() {
-            return Err(ExportError::write(&path, source));
+            return Err(GdalFileError::write(&path, source));
         }
         whole::check(&path, format, written)
     }

@@ -13,7 +13,7 @@ use gdal::{
     vector::{Geometry, LayerAccess as _, sql::Dialect},
 };
 
-use crate::{error::ExportError, vector::format::VectorFormat};
+use crate::{error::GdalFileError, vector::format::VectorFormat};
 
 /// How GDAL begins the line of a feature.
 const FEATURE: &[u8] = b"{ \"type\": \"Feature\"";
@@ -33,8 +33,8 @@ pub(crate) fn check(
     path: &Path,
     format: VectorFormat,
     written: Contents,
-) -> Result<(), ExportError> {
-    let failed = |source| ExportError::ReadAgain { path: path.to_path_buf(), source };
+) -> Result<(), GdalFileError> {
+    let failed = |source| GdalFileError::ReadAgain { path: path.to_path_buf(), source };
     let found = match format {
         // A row that is cut off is a row for GDAL; and GDAL ends both with a line.
         VectorFormat::Csv | VectorFormat::GeoJson if !ends_a_line(path).map_err(failed)? => {
@@ -51,7 +51,7 @@ pub(crate) fn check(
     if found == written {
         return Ok(());
     }
-    Err(ExportError::NotWhole {
+    Err(GdalFileError::NotWhole {
         path: path.to_path_buf(),
         room: LackOfRoom::at(path),
         written: written.features,

@@ -9,8 +9,9 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ExportError, ExportSummary, FeatureRequest, Field, HeightSource, RoadFeatures,
-    RoadHeights, VectorFormat, WayGrowth, edge_fields, export_roads, growth_by_way, road_fields,
+    Coordinates, ErrorKind, ExportSummary, FeatureRequest, FeaturesError, Field, HeightSource,
+    RoadFeatures, RoadHeights, VectorFormat, WayGrowth, edge_fields, export_roads, growth_by_way,
+    road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
@@ -49,7 +50,7 @@ fn export_pieces(
     memory_bytes: u64,
     path: &Path,
     observer: &dyn Observer,
-) -> Result<ExportSummary, ExportError> {
+) -> Result<ExportSummary, FeaturesError> {
     let request = request(memory_bytes);
     let what = (&request, RoadFeatures::Pieces, None);
     export_roads(package, what, RoadHeights::default(), path, observer)
@@ -78,7 +79,7 @@ fn each_way_is_told_of_once_with_all_levels() {
         let mut ways: Vec<WayGrowth> = Vec::new();
         growth_by_way(&package, folder.path(), memory_bytes, &Silent, |way| {
             ways.push(way.clone());
-            Ok::<(), ExportError>(())
+            Ok::<(), FeaturesError>(())
         })
         .unwrap();
         ways
@@ -95,11 +96,11 @@ fn each_way_is_told_of_once_with_all_levels() {
     assert_eq!((0..by_level.len()).map(told).collect::<Vec<u64>>(), by_level);
     assert!(by_level.iter().all(|&vertices| vertices > 0), "{by_level:?}");
     let refused =
-        growth_by_way(&package, folder.path(), 500, &Silent, |_| Err(ExportError::Interrupted));
-    assert!(matches!(refused, Err(ExportError::Interrupted)), "what the receiver says ends it");
+        growth_by_way(&package, folder.path(), 500, &Silent, |_| Err(FeaturesError::Interrupted));
+    assert!(matches!(refused, Err(FeaturesError::Interrupted)), "what the receiver says ends it");
     let nowhere = folder.path().join("nowhere");
-    let refused = growth_by_way(&package, &nowhere, 500, &Silent, |_| Ok::<(), ExportError>(()));
-    assert!(matches!(refused, Err(ExportError::Sort { .. })), "{refused:?}");
+    let refused = growth_by_way(&package, &nowhere, 500, &Silent, |_| Ok::<(), FeaturesError>(()));
+    assert!(matches!(refused, Err(FeaturesError::Sort { .. })), "{refused:?}");
 }
 
 /// Asks a number of times whether to stop, then stops.
@@ -124,7 +125,7 @@ fn an_export_stops_when_it_is_asked_to() {
         let path = folder.path().join(format!("{asks}.csv"));
         let impatient = Impatient { asks: AtomicU32::new(asks) };
         match export_pieces(&package, 1 << 20, &path, &impatient) {
-            Err(ExportError::Interrupted) => stopped += 1,
+            Err(FeaturesError::Interrupted) => stopped += 1,
             Ok(_) => break,
             Err(error) => panic!("{error}"),
         }
@@ -149,7 +150,7 @@ fn a_damaged_tile_is_named() {
     let package = FilePackage::open(&path).unwrap();
     let target = folder.path().join("a.csv");
     let error = export_pieces(&package, 1 << 20, &target, &Silent).unwrap_err();
-    assert!(error.is_unusable_input() && error.to_string().contains("2/"), "{error}");
+    assert!(error.kind() == ErrorKind::Unusable && error.to_string().contains("2/"), "{error}");
 }
 
 /// The tables of fields in the documentation are those of the program.

@@ -4,7 +4,7 @@ use std::{cmp::Reverse, collections::BTreeMap};
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
-use corniche_roads::Structure;
+use corniche_roads::{LossReason, Structure};
 use corniche_spec::{
     Loss,
     artifacts::{self, Kind},
@@ -113,30 +113,18 @@ fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
     counts.into_iter().map(|(_, count)| count).collect()
 }
 
-/// Why roads, and ways with a `highway` tag, are not in a package: all reasons, in the words under which packages count them.
-pub fn reasons_left_out() -> impl Iterator<Item = &'static str> {
-    let of_ways = by_reason(&LeftOut::default()).map(|(reason, _)| reason);
-    of_ways.into_iter().chain(Loss::ALL.map(Loss::reason))
-}
-
 fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
-    by_reason(&extract.left_out)
-        .into_iter()
-        .filter(|&(_, ways)| ways > 0)
-        .map(|(reason, ways)| (reason.to_owned(), ways))
-        .collect()
-}
-
-fn by_reason(ways: &LeftOut) -> [(&'static str, u64); 6] {
-    let LeftOut { listed, class_off, unknown, area, duplicate, without_line } = *ways;
-    [
-        (LeftOutReason::Listed.text(), listed),
-        (LeftOutReason::ClassOff.text(), class_off),
-        (LeftOutReason::Unknown.text(), unknown),
-        (LeftOutReason::Area.text(), area),
-        ("id occurs twice", duplicate),
-        ("no line is left", without_line),
-    ]
+    let LeftOut { listed, class_off, unknown, area, duplicate, without_line } = extract.left_out;
+    let by_reason = [
+        (LossReason::Listed, listed),
+        (LossReason::ClassOff, class_off),
+        (LossReason::Unknown, unknown),
+        (LossReason::Area, area),
+        (LossReason::Duplicate, duplicate),
+        (LossReason::WithoutLine, without_line),
+    ];
+    let some = by_reason.into_iter().filter(|&(_, ways)| ways > 0);
+    some.map(|(reason, ways)| (reason.text().to_owned(), ways)).collect()
 }
 
 /// Keeps the lengths of roads, block by block, as they come in the order of their ordinals.

@@ -6,6 +6,7 @@ use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::inputs::{InputKind, InputRecord};
 use crate::manifest::levels::LevelRecord;
 use crate::manifest::relief_levels::ReliefLevels;
 use crate::manifest::sv_tails::SvTail;
@@ -100,6 +101,17 @@ pub struct ClipRecord {
 }
 
 impl Manifest {
+    /// The input files of a kind, in the order in which they were named.
+    pub fn inputs_of(&self, kind: InputKind) -> impl Iterator<Item = &InputRecord> {
+        self.inputs.iter().filter(move |input| kind.is_of(input))
+    }
+
+    /// Whether the package was built with an extract, and so may have roads.
+    #[must_use]
+    pub fn has_extract(&self) -> bool {
+        self.inputs_of(InputKind::Osm).next().is_some()
+    }
+
     /// The rectangle in degrees for which PROJ chooses its operations: that of all elevation files.
     #[must_use]
     pub fn area_deg(&self) -> Bounds {
@@ -405,19 +417,6 @@ pub struct PolygonRecord {
     /// File name without folders.
     pub name: String,
     /// SHA-256 of its coordinate system and corners, whatever the format of the file.
-    pub sha256: String,
-}
-
-/// An input file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct InputRecord {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "photo"; "photo-part", likewise; "polygon"; or "osm".
-    pub kind: String,
-    /// File name without folders.
-    pub name: String,
-    /// Size of the file; of a file inside an archive or on a server, of what GDAL delivers.
-    pub bytes: u64,
-    /// SHA-256 of as many bytes; empty for an elevation file outside the bounds of the package, of which no sample is used.
     pub sha256: String,
 }
 

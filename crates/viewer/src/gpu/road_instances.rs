@@ -136,9 +136,19 @@ pub(crate) struct RoadBuffers {
     pub(crate) ends: Vec<RoadEnd>,
 }
 
+/// A piece of a road or of a deck, which is one instance.
+pub(crate) trait RoadInstance {
+    /// The instance, as words.
+    type Words: bytemuck::Pod;
+    /// The words of this piece.
+    fn words(&self) -> Self::Words;
+}
+
 impl RoadBuffers {
-    /// Uploads a list whose pieces are these bytes.
-    pub(crate) fn new<T>(gpu: &Gpu, list: &RoadList<T>, bytes: &[u8]) -> Self {
+    /// Uploads a list.
+    pub(crate) fn new<T: RoadInstance>(gpu: &Gpu, list: &RoadList<T>) -> Self {
+        let instances: Vec<T::Words> = list.all().iter().map(T::words).collect();
+        let bytes: &[u8] = bytemuck::cast_slice(&instances);
         let mut class_ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
         for (class, range) in FunctionalRoadClass::all().zip(&mut class_ranges) {
             *range = list.range_of(class);
@@ -146,6 +156,11 @@ impl RoadBuffers {
         let instances =
             (!bytes.is_empty()).then(|| gpu.buffer("roads", bytes, BufferUsages::VERTEX));
         Self { instances, class_ranges, ends: list.ends().to_vec() }
+    }
+
+    /// Bytes of the buffer that a list takes.
+    pub(crate) fn bytes_of<T: RoadInstance>(list: &RoadList<T>) -> u64 {
+        (list.all().len() * size_of::<T::Words>()) as u64
     }
 
     /// Bytes of its buffer.

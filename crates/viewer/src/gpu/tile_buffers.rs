@@ -6,10 +6,7 @@ use glam::DVec3;
 use super::{
     Gpu,
     area_buffers::AreaBuffers,
-    drawables::{
-        areas::{AreaTile, Counting},
-        decks, geo_roads, sv_roads,
-    },
+    drawables::areas::{AreaTile, Counting},
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
     slope_chain::SlopeChain,
@@ -57,8 +54,8 @@ struct LayerBuffers {
 impl LayerBuffers {
     fn new(gpu: &Gpu, lines: &TileLayer) -> Self {
         Self {
-            segments: geo_roads::upload(gpu, &lines.segments),
-            volumes: sv_roads::upload(gpu, &lines.volumes),
+            segments: RoadBuffers::new(gpu, &lines.segments),
+            volumes: RoadBuffers::new(gpu, &lines.volumes),
         }
     }
 
@@ -82,14 +79,14 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
     GroundBuffers::bytes_of(&tile.ground)
         + TileTextures::bytes_of(tile)
         + AreaBuffers::bytes_of(&tile.areas)
-        + geo_roads::bytes_of(&tile.roads)
-        + sv_roads::bytes_of(&tile.volumes)
-        + decks::bytes_of(&tile.decks)
+        + RoadBuffers::bytes_of(&tile.roads)
+        + RoadBuffers::bytes_of(&tile.volumes)
+        + RoadBuffers::bytes_of(&tile.decks)
         + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.of(layer))).iter().sum::<u64>()
 }
 
 fn layer_bytes(lines: &TileLayer) -> u64 {
-    geo_roads::bytes_of(&lines.segments) + sv_roads::bytes_of(&lines.volumes)
+    RoadBuffers::bytes_of(&lines.segments) + RoadBuffers::bytes_of(&lines.volumes)
 }
 
 impl TileBuffers {
@@ -105,9 +102,9 @@ impl TileBuffers {
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
             drawn_areas: None,
-            segments: geo_roads::upload(gpu, &tile.roads),
-            volumes: sv_roads::upload(gpu, &tile.volumes),
-            decks: decks::upload(gpu, &tile.decks),
+            segments: RoadBuffers::new(gpu, &tile.roads),
+            volumes: RoadBuffers::new(gpu, &tile.volumes),
+            decks: RoadBuffers::new(gpu, &tile.decks),
             layers: LineLayer::ALL.map(|layer| LayerBuffers::new(gpu, tile.lines.of(layer))),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),

@@ -8,9 +8,9 @@ use corniche_tin::{Placement, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundLine, GroundMesh, InNet,
-    LayerLine, LineLayer, LineLayers, LineMethods, OffGround, PhotoImage, PlanLine, PlanScale,
-    RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
+    AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundMesh, InNet, LayerLine, LineLayer,
+    LineLayers, LineMethods, OffGround, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
+    ShadingSlopes, TileLines,
     line_layers::{TileGround, lay},
     relief::Relief,
 };
@@ -141,9 +141,8 @@ impl TileGeometry {
         let most_width_factor =
             sources.chain(segments).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
         let decks = OffGround::new(lines, bounds, work);
-        let (on_ground, net) = InNet::<GroundLine>::all_of(&lines.ground, &decks);
-        let (in_plan, net_in_plan) =
-            InNet::<PlanLine>::all_of(&lines.plan, &decks, lines.width_margin_m);
+        let (on_ground, net) = InNet::all_of(&lines.ground, &decks, 0.0);
+        let (in_plan, net_in_plan) = InNet::all_of(&lines.plan, &decks, lines.width_margin_m);
         let mut net = if lines.ground.is_empty() { net_in_plan } else { net };
         let in_tile = (bounds, reference_m);
         let (roads, volumes, decks) = match lines.mapping {

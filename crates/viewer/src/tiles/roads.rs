@@ -12,6 +12,7 @@ mod list;
 mod look;
 mod parts;
 mod records;
+mod road_line;
 mod segments;
 mod unmapped;
 mod volumes;

@@ -25,7 +25,7 @@ fn segments(lines: &[GroundLine]) -> RoadSegments {
     let work = Work::unlimited();
     let none = TileLines::default();
     let decks = OffGround::new(&none, TILE, &work);
-    let (lines, _) = InNet::<GroundLine>::all_of(lines, &decks);
+    let (lines, _) = InNet::all_of(lines, &decks, 0.0);
     RoadSegments::of_lines(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
         Bed::default()
     })
@@ -77,7 +77,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
     let work = Work::unlimited();
     let none = TileLines::default();
     let decks = OffGround::new(&none, TILE, &work);
-    let (lines, _) = InNet::<PlanLine>::all_of(&lines, &decks, 8.0);
+    let (lines, _) = InNet::all_of(&lines, &decks, 8.0);
     let roads = RoadVolumes::new(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
     assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);

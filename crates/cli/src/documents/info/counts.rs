@@ -1,14 +1,18 @@
 //! What came into a package and what became of it. Where the file has pairs, there are objects.
 
-use corniche_tileset::{Counts, LeftOutRecord};
+use corniche_tileset::{Counts, LeftOutRecord, RoadLoss, SampleCounts};
 use serde::Serialize;
+
+#[cfg(test)]
+use crate::documents::record_schemas::{LeftOutDocument, LossDocument, NodeCountsDocument};
 
 /// What came in, what was kept, what was lost and why.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CountsDocument {
     /// Nodes of the finest grid over the data's rectangle.
-    samples: NodeCountsDocument,
+    #[cfg_attr(test, schemars(with = "NodeCountsDocument"))]
+    samples: SampleCounts,
     /// Roads read from the extract: ways that the FRC table knows.
     roads_in: u64,
     /// Their true length in plan, micrometres.
@@ -18,7 +22,8 @@ pub(crate) struct CountsDocument {
     /// True length in plan kept at the finest level, micrometres.
     roads_kept_um: u64,
     /// The difference, by reason.
-    roads_lost: Vec<LossDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<LossDocument>"))]
+    roads_lost: Vec<RoadLoss>,
     /// Defects met in the extract.
     defects: Vec<NamedCount>,
     /// Ways by `highway` value that the FRC table does not know.
@@ -33,49 +38,10 @@ pub(crate) struct CountsDocument {
     highways_left_out: Vec<NamedCount>,
     /// Those that the FRC table leaves out, with their lengths; by reason, the longest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    left_out: Vec<LeftOutDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<LeftOutDocument>"))]
+    left_out: Vec<LeftOutRecord>,
     /// Roads read, by class.
     classes: Vec<ClassCount>,
-}
-
-/// Nodes of the finest grid.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct NodeCountsDocument {
-    /// All nodes of the rectangle.
-    nodes: u64,
-    /// With a height from the DEM.
-    with_data: u64,
-    /// Filled from their surroundings.
-    filled: u64,
-    /// Left void.
-    void: u64,
-}
-
-/// Roads lost for one reason.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct LossDocument {
-    /// Why, in words.
-    reason: String,
-    /// Roads lost altogether for this reason.
-    roads: u64,
-    /// True length in plan lost for this reason, micrometres.
-    length_um: u64,
-}
-
-/// Ways that the FRC table leaves out for one reason, with one `highway` value.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct LeftOutDocument {
-    /// Why, in words.
-    reason: String,
-    /// Value of `highway`.
-    highway: String,
-    /// How many ways.
-    ways: u64,
-    /// Their true length in plan, micrometres; of areas that of the outline.
-    length_um: u64,
 }
 
 /// How many there are of one kind.
@@ -108,45 +74,22 @@ struct ClassCount {
 
 impl From<Counts> for CountsDocument {
     fn from(counts: Counts) -> Self {
-        let samples = counts.samples;
         let named = |pairs: Vec<(String, u64)>| pairs.into_iter().map(Into::into).collect();
         let classes = counts.classes.iter().enumerate();
         Self {
-            samples: NodeCountsDocument {
-                nodes: samples.nodes,
-                with_data: samples.with_data,
-                filled: samples.filled,
-                void: samples.void,
-            },
+            samples: counts.samples,
             roads_in: counts.roads_in,
             roads_in_um: counts.roads_in_um,
             roads_kept: counts.roads_kept,
             roads_kept_um: counts.roads_kept_um,
-            roads_lost: counts
-                .roads_lost
-                .into_iter()
-                .map(|loss| LossDocument {
-                    reason: loss.reason,
-                    roads: loss.roads,
-                    length_um: loss.length_um,
-                })
-                .collect(),
+            roads_lost: counts.roads_lost,
             defects: named(counts.defects),
             unknown_highways: named(counts.unknown_highways),
             tags_taken_otherwise: named(counts.tags_taken_otherwise),
             blobs_passed_over: counts.blobs_passed_over,
             highways_in: counts.highways_in,
             highways_left_out: named(counts.highways_left_out),
-            left_out: counts
-                .left_out
-                .into_iter()
-                .map(|LeftOutRecord { reason, highway, ways, length_um }| LeftOutDocument {
-                    reason,
-                    highway,
-                    ways,
-                    length_um,
-                })
-                .collect(),
+            left_out: counts.left_out,
             classes: classes
                 .map(|(class, &(roads, length_um))| ClassCount { class, roads, length_um })
                 .collect(),

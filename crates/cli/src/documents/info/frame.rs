@@ -4,6 +4,9 @@ use corniche_geom::{Bounds, GridFrame, NodeIndex};
 use corniche_tileset::ClipRecord;
 use serde::Serialize;
 
+#[cfg(test)]
+use crate::documents::record_schemas::NodeDocument;
+
 /// The grid of a package.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -13,19 +16,10 @@ pub(crate) struct FrameDocument {
     /// Spacing of the finest nodes, east and north, working metres.
     cell_m: [f64; 2],
     /// North-west corner of the root tile.
-    root_corner: NodeDocument,
+    #[cfg_attr(test, schemars(with = "NodeDocument"))]
+    root_corner: NodeIndex,
     /// The finest level.
     max_level: u8,
-}
-
-/// A node of the grid.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct NodeDocument {
-    /// Nodes east of the origin.
-    i: i64,
-    /// Nodes north of the origin.
-    j: i64,
 }
 
 /// A rectangle.
@@ -48,7 +42,8 @@ pub(crate) struct BoundsDocument {
 pub(crate) struct ClipDocument {
     /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
     /// beyond the data.
-    nodes: [NodeDocument; 2],
+    #[cfg_attr(test, schemars(with = "[NodeDocument; 2]"))]
+    nodes: [NodeIndex; 2],
     /// Rectangle of the nodes of all elevation files, working metres.
     whole_data_bounds: BoundsDocument,
     /// The same in WGS84 degrees.
@@ -58,7 +53,7 @@ pub(crate) struct ClipDocument {
 impl From<ClipRecord> for ClipDocument {
     fn from(ClipRecord { nodes, whole_data_bounds, whole_wgs84_bounds }: ClipRecord) -> Self {
         Self {
-            nodes: nodes.map(|NodeIndex { i, j }| NodeDocument { i, j }),
+            nodes,
             whole_data_bounds: whole_data_bounds.into(),
             whole_wgs84_bounds: whole_wgs84_bounds.into(),
         }
@@ -81,11 +76,10 @@ pub(crate) struct CoordinatesSchema {
 
 impl From<&GridFrame> for FrameDocument {
     fn from(frame: &GridFrame) -> Self {
-        let NodeIndex { i, j } = frame.root_corner();
         Self {
             origin_m: frame.origin_m(),
             cell_m: frame.cell().to_array(),
-            root_corner: NodeDocument { i, j },
+            root_corner: frame.root_corner(),
             max_level: frame.max_level(),
         }
     }

@@ -1,9 +1,10 @@
 //! The levels of a package, in the document of `corniche info`.
 
-use corniche_tileset::LevelRecord;
+use corniche_tileset::{Distribution, LevelRecord, SampleErrorRecord};
 use serde::Serialize;
 
-use crate::documents::verify::{DistributionDocument, SamplesDocument};
+#[cfg(test)]
+use crate::documents::record_schemas::{DistributionDocument, SamplesDocument};
 
 /// What a level is, and how close it is to the data.
 #[derive(Debug, Serialize)]
@@ -18,11 +19,14 @@ pub(crate) struct LevelDocument {
     /// Largest stored geometric error of its tiles.
     geometric_error_m: f64,
     /// Stored geometric errors of its tiles; null on a level without tiles.
-    errors_m: Option<DistributionDocument>,
+    #[cfg_attr(test, schemars(with = "Option<DistributionDocument>"))]
+    errors_m: Option<Distribution>,
     /// How far its TINs are from the DEM's own samples.
-    sample_error: SamplesDocument,
+    #[cfg_attr(test, schemars(with = "SamplesDocument"))]
+    sample_error: SampleErrorRecord,
     /// Stored error over the largest true one, where that can be measured.
-    tightness: Option<DistributionDocument>,
+    #[cfg_attr(test, schemars(with = "Option<DistributionDocument>"))]
+    tightness: Option<Distribution>,
     /// Least important class shown on this level; null shows no road.
     least_class: Option<u8>,
     /// Tolerance of the simplification of roads; 0 keeps every point.
@@ -50,9 +54,9 @@ impl From<&LevelRecord> for LevelDocument {
             cell_m: level.cell_m.to_array(),
             max_error_m: level.max_error_m,
             geometric_error_m: level.geometric_error_m,
-            errors_m: level.errors_m.map(Into::into),
-            sample_error: level.sample_error.into(),
-            tightness: level.tightness.map(Into::into),
+            errors_m: level.errors_m,
+            sample_error: level.sample_error,
+            tightness: level.tightness,
             least_class: level.least_class,
             simplify_tolerance_m: level.simplify_tolerance_m,
             width_margin_m: level.width_margin_m,

@@ -13,18 +13,14 @@ use super::{
         bindings::{UNFILTERED, group, layout, texture, textures, uniform},
         passes::begin,
         pipeline::{PipelineRecipe, Shader, depth_test, shader},
-        road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
+        road_instances::{RoadBuffers, RoadInstance, RoadPipeline, RoadRecipe, own_width_value},
         shared_bindings::{SharedBindings, SharedLayouts},
         targets::{DeckTargets, LabelTargets, Targets},
     },
     composite::colors_of,
     label_blocks::{BLOCK_CORNERS, block_constant},
 };
-use crate::{
-    frame_view::FrameView,
-    options::ClassSet,
-    tiles::{DeckPiece, DeckPieces},
-};
+use crate::{frame_view::FrameView, options::ClassSet, tiles::DeckPiece};
 
 pub(crate) const SHADER: Shader =
     shader!("decks": "common", "tile", "drawn_decks", "deck_labels", "coverage", "boxes", "decks");
@@ -141,32 +137,24 @@ impl Decks {
     }
 }
 
-/// Uploads the decks of a tile.
-pub(crate) fn upload(gpu: &Gpu, decks: &DeckPieces) -> RoadBuffers {
-    let instances: Vec<Instance> = decks.all().iter().map(instance).collect();
-    RoadBuffers::new(gpu, decks, bytemuck::cast_slice(&instances))
-}
+impl RoadInstance for DeckPiece {
+    type Words = [u32; INSTANCE_BYTES as usize / 4];
 
-/// Bytes of the buffer that [`upload`] makes.
-pub(crate) fn bytes_of(decks: &DeckPieces) -> u64 {
-    decks.all().len() as u64 * INSTANCE_BYTES
-}
-
-/// An instance, as words.
-pub(crate) type Instance = [u32; INSTANCE_BYTES as usize / 4];
-
-/// The instance of a piece.
-pub(crate) fn instance(piece: &DeckPiece) -> Instance {
-    let [[a, b, c], [d, e, f]] =
-        [piece.start_in_tile, piece.end_in_tile].map(|at| at.map(f32::to_bits));
-    let [[g, h], [i, j]] = piece.mitres.map(|mitre| mitre.map(f32::to_bits));
-    let [slab, width] = [piece.slab_m, piece.width_factor].map(f32::to_bits);
-    let [start, end] = piece.lands.map(u32::from);
-    let is_ribbon = u32::from(piece.slab_m <= 0.0);
-    let flags = piece.look.number() << 4 | start << 7 | end << 8 | is_ribbon << 9;
-    let class = u32::from(piece.class.number()) | flags;
-    let own_width = own_width_value(piece.own_width).to_bits();
-    let [dash_start, dash_rate] = piece.dash.numbers().map(f32::to_bits);
-    let [part, deck] = [piece.part_m, piece.deck_m].map(f32::to_bits);
-    [a, b, c, d, e, f, g, h, i, j, slab, width, class, own_width, dash_start, dash_rate, part, deck]
+    fn words(&self) -> Self::Words {
+        let [[a, b, c], [d, e, f]] =
+            [self.start_in_tile, self.end_in_tile].map(|at| at.map(f32::to_bits));
+        let [[g, h], [i, j]] = self.mitres.map(|mitre| mitre.map(f32::to_bits));
+        let [slab, width] = [self.slab_m, self.width_factor].map(f32::to_bits);
+        let [start, end] = self.lands.map(u32::from);
+        let is_ribbon = u32::from(self.slab_m <= 0.0);
+        let flags = self.look.number() << 4 | start << 7 | end << 8 | is_ribbon << 9;
+        let class = u32::from(self.class.number()) | flags;
+        let own_width = own_width_value(self.own_width).to_bits();
+        let [dash_start, dash_rate] = self.dash.numbers().map(f32::to_bits);
+        let [part, deck] = [self.part_m, self.deck_m].map(f32::to_bits);
+        [
+            a, b, c, d, e, f, g, h, i, j, slab, width, class, own_width, dash_start, dash_rate,
+            part, deck,
+        ]
+    }
 }

@@ -5,12 +5,11 @@ use std::ops::Range;
 use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
-    Gpu,
     pipeline::{ENTRIES, Shader, shader},
-    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
+    road_instances::{RoadInstance, RoadPipeline, RoadRecipe, own_width_value},
     shared_bindings::SharedLayouts,
 };
-use crate::tiles::{Bed, RoadSegment, RoadSegments};
+use crate::tiles::{Bed, RoadSegment};
 
 pub(crate) const SHADER: Shader =
     shader!("roads": "common", "tile", "drawn_ground", "coverage", "roads");
@@ -42,43 +41,30 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
     RoadPipeline::new(device, layouts, &recipe)
 }
 
-/// Uploads the segments of a tile.
-pub(crate) fn upload(gpu: &Gpu, roads: &RoadSegments) -> RoadBuffers {
-    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances(roads.all())))
-}
+impl RoadInstance for RoadSegment {
+    type Words = [u32; INSTANCE_BYTES as usize / 4];
 
-/// Bytes of the buffer that [`upload`] makes.
-pub(crate) fn bytes_of(roads: &RoadSegments) -> u64 {
-    roads.all().len() as u64 * INSTANCE_BYTES
-}
-
-/// An instance, as words.
-type Instance = [u32; INSTANCE_BYTES as usize / 4];
-
-fn instances(segments: &[RoadSegment]) -> Vec<Instance> {
-    segments.iter().map(instance).collect()
-}
-
-fn instance(segment: &RoadSegment) -> Instance {
-    let Bed { slopes, rises, most_m: [cell, cells, margin], leaves_tile } = segment.bed;
-    let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
-    let [at_start, at_end] = segment.has_caps;
-    let flags = [at_start, at_end].into_iter().chain(leaves_tile);
-    let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
-    let [start, end] = segment.flat_ends.map(u32::from);
-    let flags = flags | segment.look.number() << 9 | start << 12 | end << 13;
-    let bounds = |pair: [f32; 2]| bytemuck::cast::<[u16; 2], u32>(pair.map(f16_above));
-    let [[a, b], [c, d], [e, f], [g, h]] =
-        [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes].map(numbers);
-    let [height, width] = numbers([segment.height_in_tile, segment.width_factor]);
-    let class = u32::from(segment.class.number()) | flags;
-    let [rises, cell, cells, margin] = [rises, cell, cells, margin].map(bounds);
-    let [dash_start, dash_rate] = numbers(segment.dash.numbers());
-    let [own_width, part] = numbers([own_width_value(segment.own_width), segment.part_m]);
-    [
-        a, b, c, d, e, f, g, h, height, width, class, rises, cell, cells, margin, own_width,
-        dash_start, dash_rate, part,
-    ]
+    fn words(&self) -> Self::Words {
+        let Bed { slopes, rises, most_m: [cell, cells, margin], leaves_tile } = self.bed;
+        let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
+        let [at_start, at_end] = self.has_caps;
+        let flags = [at_start, at_end].into_iter().chain(leaves_tile);
+        let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
+        let [start, end] = self.flat_ends.map(u32::from);
+        let flags = flags | self.look.number() << 9 | start << 12 | end << 13;
+        let bounds = |pair: [f32; 2]| bytemuck::cast::<[u16; 2], u32>(pair.map(f16_above));
+        let [[a, b], [c, d], [e, f], [g, h]] =
+            [self.start_in_tile, self.end_in_tile, self.shares, slopes].map(numbers);
+        let [height, width] = numbers([self.height_in_tile, self.width_factor]);
+        let class = u32::from(self.class.number()) | flags;
+        let [rises, cell, cells, margin] = [rises, cell, cells, margin].map(bounds);
+        let [dash_start, dash_rate] = numbers(self.dash.numbers());
+        let [own_width, part] = numbers([own_width_value(self.own_width), self.part_m]);
+        [
+            a, b, c, d, e, f, g, h, height, width, class, rises, cell, cells, margin, own_width,
+            dash_start, dash_rate, part,
+        ]
+    }
 }
 
 /// The bits of the smallest 16-bit float that is not below `value`. Below 2^-14 it may be larger than the smallest, and above

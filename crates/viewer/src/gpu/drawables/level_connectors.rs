@@ -7,8 +7,12 @@ use corniche_roads::slab_thickness_m;
 use wgpu::{BindGroup, Buffer, BufferUsages, RenderPass};
 
 use super::{
-    super::{Gpu, road_instances::RoadPipeline, shared_bindings::SharedBindings},
-    decks, sv_roads,
+    super::{
+        Gpu,
+        road_instances::{RoadInstance as _, RoadPipeline},
+        shared_bindings::SharedBindings,
+    },
+    sv_roads,
 };
 use crate::{
     options::ClassSet,
@@ -45,7 +49,7 @@ impl LevelConnectors {
         shown: &[ClassSet],
     ) -> Self {
         Self::new(gpu, tiles, shown, |connector| {
-            decks::instance(&piece(connector, reference_of(connector.fine)))
+            piece(connector, reference_of(connector.fine)).words()
         })
     }
 

@@ -5,12 +5,11 @@ use std::ops::Range;
 use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
-    Gpu,
     pipeline::{ENTRIES, Shader, shader},
-    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
+    road_instances::{RoadInstance, RoadPipeline, RoadRecipe, own_width_value},
     shared_bindings::SharedLayouts,
 };
-use crate::tiles::{RoadVolume, RoadVolumes};
+use crate::tiles::RoadVolume;
 
 pub(crate) const SHADER: Shader =
     shader!("volumes": "common", "tile", "drawn_ground", "coverage", "boxes", "volumes");
@@ -41,15 +40,12 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
     RoadPipeline::new(device, layouts, &recipe)
 }
 
-/// Uploads the volumes of a tile.
-pub(crate) fn upload(gpu: &Gpu, roads: &RoadVolumes) -> RoadBuffers {
-    let instances: Vec<Instance> = roads.all().iter().map(|volume| instance(volume, 0)).collect();
-    RoadBuffers::new(gpu, roads, bytemuck::cast_slice(&instances))
-}
+impl RoadInstance for RoadVolume {
+    type Words = Instance;
 
-/// Bytes of the buffer that [`upload`] makes.
-pub(crate) fn bytes_of(roads: &RoadVolumes) -> u64 {
-    roads.all().len() as u64 * INSTANCE_BYTES
+    fn words(&self) -> Instance {
+        instance(self, 0)
+    }
 }
 
 /// An instance, as words.

@@ -59,8 +59,8 @@ pub(crate) fn lay(
     let wide = relief.wide(&ground);
     let none = TileLines::default();
     let decks = OffGround::new(&none, bounds, work);
-    let (on_ground, _) = InNet::<GroundLine>::all_of(&ground, &decks);
-    let (in_plan, _) = InNet::<PlanLine>::all_of(&plan, &decks, on.width_margin_m);
+    let (on_ground, _) = InNet::all_of(&ground, &decks, 0.0);
+    let (in_plan, _) = InNet::all_of(&plan, &decks, on.width_margin_m);
     let segments = RoadSegments::of_lines(&on_ground, &decks, on.reference_m, on.scale, |piece| {
         relief.bed(piece, wide.as_ref())
     });

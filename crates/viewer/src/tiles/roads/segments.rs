@@ -1,5 +1,7 @@
 //! Straight pieces of roads on the ground, as the GEO method draws them.
 
+use std::borrow::Cow;
+
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
@@ -7,11 +9,11 @@ use super::{
     Bed, GroundLine, RoadList, RoadLook,
     cut::OffGround,
     dashes::{DashPlace, dash_starts},
-    decks::GroundNet,
     ends::ground_ends,
-    flat_ends::{LineEnds, flat_ends},
+    flat_ends::LineEnds,
     list::Classed,
-    parts::{InNet, KnownNet, NetLine, part_lengths_m},
+    parts::{InNet, NetLine},
+    road_line::RoadLine,
 };
 
 /// A straight piece of a road's centre-line on the ground.
@@ -107,18 +109,6 @@ impl Piece {
     }
 }
 
-/// The ends of a line, where it was not cut at the border or beside a void.
-fn line_ends(line: &GroundLine) -> LineEnds {
-    // Positions of the same point by two formulas.
-    let is_at =
-        |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| libm::hypot(to_x - x, to_y - y) < 1e-6;
-    let first = line.sources_m.first().zip(line.points_m.first());
-    let last = line.sources_m.last().zip(line.points_m.last());
-    let first = first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]);
-    let last = last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source);
-    LineEnds::of_road(line.class, line.look, [first, last])
-}
-
 /// The vertices of the source line, from the start of the first segment that has a piece to the end of the last one.
 fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
     let mut sources_m = line.sources_m.clone();
@@ -127,29 +117,33 @@ fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
     first.into_iter().chain(sources_m.iter().map(|source_m| source_m[1])).collect()
 }
 
-fn net_line(line: &GroundLine) -> NetLine {
-    NetLine { class: line.class, look: line.look, vertices_m: source_vertices(line) }
-}
-
-impl<'a> InNet<'a, GroundLine> {
-    /// What of the lines of a tile is on no deck. Parts of the network are those of whole lines: bridges join them.
-    pub(crate) fn all_of(lines: &'a [GroundLine], decks: &OffGround<'_>) -> (Vec<Self>, GroundNet) {
-        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
-        let parts_m = part_lengths_m(&net, KnownNet::within(decks.tile()));
-        let lines = lines.iter().zip(parts_m);
-        let parts_m = lines.clone().map(|(line, part_m)| (line.way_id, part_m)).collect();
-        let on_ground: Vec<Self> = lines
-            .flat_map(|(line, part_m)| {
-                decks.without_ground(line).into_iter().map(move |line| InNet { line, part_m })
-            })
-            .collect();
-        let ends = on_ground.iter().map(InNet::<GroundLine>::ends).collect();
-        (on_ground, GroundNet { ends, parts_m })
+impl RoadLine for GroundLine {
+    fn way_id(&self) -> i64 {
+        self.way_id
     }
 
-    /// The ends of the line, where it was not cut at the border or beside a void.
-    pub(crate) fn ends(&self) -> LineEnds {
-        line_ends(&self.line)
+    fn look(&self) -> RoadLook {
+        self.look
+    }
+
+    fn in_net(&self) -> NetLine {
+        NetLine { class: self.class, look: self.look, vertices_m: source_vertices(self) }
+    }
+
+    /// Where it was not cut at the border or beside a void.
+    fn ends(&self) -> LineEnds {
+        // Positions of the same point by two formulas.
+        let is_at =
+            |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| libm::hypot(to_x - x, to_y - y) < 1e-6;
+        let first = self.sources_m.first().zip(self.points_m.first());
+        let last = self.sources_m.last().zip(self.points_m.last());
+        let first = first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]);
+        let last = last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source);
+        LineEnds::of_road(self.class, self.look, [first, last])
+    }
+
+    fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
+        decks.without_ground(self)
     }
 }
 
@@ -169,15 +163,8 @@ impl RoadList<RoadSegment> {
         };
         let (place, bed) = (&place, &bed);
         let tile = decks.tile();
-        let ends: Vec<LineEnds> =
-            lines.iter().map(InNet::<GroundLine>::ends).chain(decks.ends()).collect();
-        let flat = flat_ends(&ends, tile).into_iter().zip(&ends);
-        let segments = lines.iter().zip(flat).flat_map(|(in_net, (flat, ends))| {
-            let InNet { line, part_m } = in_net;
-            let line = line.as_ref();
-            // A bore ends flat where it comes out of the ground, and its tick is there.
-            let [first_flat, last_flat] =
-                if line.look.is_bore() { decks.portals(ends) } else { flat };
+        let flat = InNet::with_flat_ends(lines, decks).into_iter();
+        let segments = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
             let sources = source_vertices(line);
             let segments = sources.len().saturating_sub(1);
             let dashes = match &line.dashes {
@@ -197,7 +184,7 @@ impl RoadList<RoadSegment> {
                     class: line.class,
                     own_width: line.own_width,
                     look: line.look,
-                    part_m: *part_m,
+                    part_m,
                     dash: dashes[piece.source_number],
                     flat_ends: [
                         piece.source_number == 0 && first_flat,

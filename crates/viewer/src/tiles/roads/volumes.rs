@@ -1,5 +1,7 @@
 //! Straight pieces of roads with a range of heights, as the SV method draws them.
 
+use std::borrow::Cow;
+
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
@@ -7,11 +9,11 @@ use super::{
     NearHeights, PlanLine, RoadList, RoadLook,
     cut::OffGround,
     dashes::{DashPlace, dash_starts},
-    decks::GroundNet,
     ends::plan_ends,
-    flat_ends::{LineEnds, flat_ends},
+    flat_ends::LineEnds,
     list::Classed,
-    parts::{InNet, KnownNet, NetLine, part_lengths_m},
+    parts::{InNet, NetLine},
+    road_line::RoadLine,
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
@@ -50,42 +52,30 @@ impl Classed for RoadVolume {
 /// All volumes of a tile.
 pub type RoadVolumes = RoadList<RoadVolume>;
 
-/// The ends of a line. Where it was cut, at the margin, that is outside the tile.
-fn line_ends(line: &PlanLine) -> LineEnds {
-    let pair =
-        |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
-    let first = pair(line.points_m.get(..2)).map(|[a, b]| [b, a]);
-    let last = pair(line.points_m.get(line.points_m.len().saturating_sub(2)..));
-    LineEnds::of_road(line.class, line.look, [first, last])
-}
-
-fn net_line(line: &PlanLine) -> NetLine {
-    NetLine { class: line.class, look: line.look, vertices_m: line.points_m.clone() }
-}
-
-impl<'a> InNet<'a, PlanLine> {
-    /// What of the lines of a tile and of a margin around it is on no deck. Parts of the network are those of whole lines: bridges join them.
-    pub(crate) fn all_of(
-        lines: &'a [PlanLine],
-        decks: &OffGround<'_>,
-        margin_m: f64,
-    ) -> (Vec<Self>, GroundNet) {
-        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
-        let known = KnownNet { margin_m, ..KnownNet::within(decks.tile()) };
-        let lines = lines.iter().zip(part_lengths_m(&net, known));
-        let parts_m = lines.clone().map(|(line, part_m)| (line.way_id, part_m)).collect();
-        let on_ground: Vec<Self> = lines
-            .flat_map(|(line, part_m)| {
-                decks.without_plan(line).into_iter().map(move |line| InNet { line, part_m })
-            })
-            .collect();
-        let ends = on_ground.iter().map(InNet::<PlanLine>::ends).collect();
-        (on_ground, GroundNet { ends, parts_m })
+impl RoadLine for PlanLine {
+    fn way_id(&self) -> i64 {
+        self.way_id
     }
 
-    /// The ends of the line. Where it was cut, at the margin, that is outside the tile.
-    pub(crate) fn ends(&self) -> LineEnds {
-        line_ends(&self.line)
+    fn look(&self) -> RoadLook {
+        self.look
+    }
+
+    fn in_net(&self) -> NetLine {
+        NetLine { class: self.class, look: self.look, vertices_m: self.points_m.clone() }
+    }
+
+    /// Where it was cut, at the margin, that is outside the tile.
+    fn ends(&self) -> LineEnds {
+        let pair =
+            |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
+        let first = pair(self.points_m.get(..2)).map(|[a, b]| [b, a]);
+        let last = pair(self.points_m.get(self.points_m.len().saturating_sub(2)..));
+        LineEnds::of_road(self.class, self.look, [first, last])
+    }
+
+    fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
+        decks.without_plan(self)
     }
 }
 
@@ -110,16 +100,9 @@ impl RoadList<RoadVolume> {
             [x, y]
         };
         let tile = decks.tile();
-        let ends: Vec<LineEnds> =
-            lines.iter().map(InNet::<PlanLine>::ends).chain(decks.ends()).collect();
-        let flat = flat_ends(&ends, tile).into_iter().zip(&ends);
         let (place, near) = (&place, &near);
-        let volumes = lines.iter().zip(flat).flat_map(|(in_net, (flat, ends))| {
-            let InNet { line, part_m } = in_net;
-            let line = line.as_ref();
-            // A bore ends flat where it comes out of the ground, and its tick is there.
-            let [first_flat, last_flat] =
-                if line.look.is_bore() { decks.portals(ends) } else { flat };
+        let flat = InNet::with_flat_ends(lines, decks).into_iter();
+        let volumes = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
             let last = line.points_m.len().saturating_sub(2);
             let dashes = match &line.dashes {
                 Some(given) => given.clone(),
@@ -142,7 +125,7 @@ impl RoadList<RoadVolume> {
                     class: line.class,
                     own_width: line.own_width,
                     look: line.look,
-                    part_m: *part_m,
+                    part_m,
                     dash,
                     flat_ends: [number == 0 && first_flat, number == last && last_flat],
                 }

@@ -8,15 +8,10 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_export::ExportError;
 use corniche_store::UnfinishedFolder;
 
-use crate::{
-    exit::ExitCode,
-    failure::Failure,
-    leftovers,
-    output::{Existing, claim, not_begun, not_placed},
-};
+use super::{Existing, claim, leftovers, not_begun, not_placed};
+use crate::failure::Failure;
 
 /// A file that a library is to write at [`NamedOutput::path`].
 #[derive(Debug)]
@@ -51,11 +46,4 @@ impl NamedOutput {
         let placed = self.folder.place_file(&self.name, self.existing);
         placed.map_err(|error| not_placed(&target, &error))
     }
-}
-
-/// What could not be written is known to people by the name of the target, not of the file that becomes it.
-pub(crate) fn named(error: ExportError, target: &Path) -> Failure {
-    let is_unwritten = !error.is_unusable_input();
-    let failure = Failure::from(error);
-    if is_unwritten && failure.code() == ExitCode::Failed { failure.about(target) } else { failure }
 }

@@ -2,11 +2,8 @@
 
 use std::path::Path;
 
-use crate::{
-    failure::Failure,
-    names::Format,
-    output::{Complete, Existing, Output},
-};
+use super::{Complete, Existing, Output};
+use crate::{failure::Failure, names::Format};
 
 /// The files that are wanted, begun but not written.
 pub(crate) struct ReportFiles {

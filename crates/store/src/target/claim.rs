@@ -17,13 +17,13 @@ use std::{
 
 use tempfile::{NamedTempFile, TempPath};
 
+use super::own_files::{
+    folder_of, in_the_way, is_there, open_own, sync_folder,
+    system::{create_private_folder, is_at},
+};
 use crate::{
     OpenMode,
     ids::{Marked, marked, random_digits},
-    own_files::{
-        folder_of, in_the_way, is_there, open_own, sync_folder,
-        system::{create_private_folder, is_at},
-    },
 };
 
 /// How often it is tried again when another program ends at the same moment, and removes its claim.

@@ -18,11 +18,8 @@ use corniche_store::{
     Claim, OpenMode, UnfinishedFolder, folder_of, is_same_file, open_own, sync_folder, sync_tree,
 };
 
-use crate::{
-    failure::Failure,
-    interrupt, leftovers,
-    output::{Existing, exists, failed, not_begun, unusable},
-};
+use super::{Existing, exists, failed, leftovers, not_begun, unusable};
+use crate::{failure::Failure, interrupt};
 
 /// The marker of a folder that an export wrote.
 pub(crate) const MARKER: &str = "corniche-export.txt";
@@ -176,5 +173,5 @@ fn put_back(target: &Path, replaced: &Path) -> io::Result<()> {
 }
 
 #[cfg(test)]
-#[path = "folder_output_tests.rs"]
+#[path = "folder_tests.rs"]
 mod tests;

@@ -1,12 +1,36 @@
-//! The table of offsets by region, for people.
+//! The report of offsets: which of them an image shows, the table by region for people, and a line
+//! for each way (CSV).
 
 use std::fmt::Write as _;
 
-use corniche_matching::{MatchReport, Offset};
+use corniche_matching::{MatchReport, MatchedRoad, Offset};
 use corniche_tileset::Manifest;
 
-use super::sure::{LEAST_CONFIDENCE, LEAST_PLACES, is_sure, sure_across};
-use crate::table::{Digits, Table};
+use crate::{
+    defects::quoted,
+    table::{Digits, Table},
+};
+
+/// Below this, or with fewer places, a best shift is one that chance may give.
+const LEAST_CONFIDENCE: f64 = 6.0;
+const LEAST_PLACES: u64 = 200;
+/// The same for a single road.
+const LEAST_PLACES_OF_A_ROAD: u64 = 24;
+
+/// Whether an offset is one that the image shows.
+pub(crate) fn is_sure(offset: &Offset, places: u64) -> bool {
+    offset.confidence >= LEAST_CONFIDENCE && places >= LEAST_PLACES && !offset.is_at_edge
+}
+
+/// The offset across a road in metres, if the image shows it.
+pub(crate) fn sure_across(road: &MatchedRoad) -> Option<f64> {
+    let sure = road.across_offset.filter(|across| {
+        across.confidence >= LEAST_CONFIDENCE
+            && road.samples >= LEAST_PLACES_OF_A_ROAD
+            && !across.is_at_edge
+    });
+    sure.map(|across| across.metres)
+}
 
 pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits) -> String {
     let mut text = format!(
@@ -63,5 +87,37 @@ pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits)
         "\nEast and north: what must be added to the roads. Shown: the confidence is {LEAST_CONFIDENCE} or more, of at least {LEAST_PLACES} places, and the best shift is not the \
          farthest one. Roads are not moved: those of a package are those of the extract.\n"
     );
+    text
+}
+
+const HEADINGS: &str = "way_id,class,name,ref,length_m,samples,east_m,north_m,confidence,across_m,across_confidence,bends,sure\n";
+
+/// Ways by their ids; offsets are empty where the image shows nothing.
+pub(crate) fn to_csv(report: &MatchReport) -> String {
+    let mut text = HEADINGS.to_owned();
+    for road in &report.roads {
+        let attributes = &road.attributes;
+        let number =
+            |value: Option<f64>| value.map(|value| format!("{value:.2}")).unwrap_or_default();
+        let (offset, across) = (road.offset.as_ref(), road.across_offset);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{:.1},{},{},{},{},{},{},{:.3},{}",
+            road.way_id,
+            road.class.number(),
+            quoted(&attributes.name),
+            quoted(&attributes.reference),
+            road.length_m,
+            road.samples,
+            number(offset.map(|offset| offset.east_m)),
+            number(offset.map(|offset| offset.north_m)),
+            number(offset.map(|offset| offset.confidence)),
+            number(across.map(|across| across.metres)),
+            number(across.map(|across| across.confidence)),
+            road.bends,
+            u8::from(sure_across(road).is_some()),
+        );
+    }
     text
 }
