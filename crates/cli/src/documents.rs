@@ -41,3 +41,6 @@ pub(crate) fn write_line_to(out: impl Write, document: &impl Serialize) -> io::R
 #[cfg(test)]
 #[path = "documents/schema_tests.rs"]
 mod schema_tests;
+#[cfg(test)]
+#[path = "documents/settings_schema_tests.rs"]
+mod settings_schema_tests;
