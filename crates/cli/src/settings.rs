@@ -36,14 +36,8 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
     let Some(path) = &args.config else { return Ok(OutputFiles::default()) };
     let folder = path.parent().unwrap_or(Path::new(""));
     let config = presets::read_config(path)?.in_folder(folder);
-    let given = InputFiles {
-        dem: mem::take(&mut args.dem),
-        terrain: args.terrain_of.take(),
-        osm: mem::take(&mut args.osm),
-        polygon: args.polygon.take(),
-        photo: mem::take(&mut args.photo),
-    };
-    let InputFiles { dem, terrain, osm, polygon, photo } = given.or(config.inputs);
+    args.inputs = mem::take(&mut args.inputs).or(config.inputs);
+    let InputFiles { dem, terrain, .. } = &args.inputs;
     let place = path.display();
     if dem.is_empty() && terrain.is_none() {
         return Err(Failure::unusable(format!(
@@ -55,8 +49,6 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
             "{place} has dem and terrain under [inputs]; terrain comes from one of them, so leave the other out"
         )));
     }
-    (args.dem, args.terrain_of, args.osm, args.polygon) = (dem, terrain, osm, polygon);
-    args.photo = photo;
     args.photos = mem::take(&mut args.photos).or(config.photo);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
     args.roads = mem::take(&mut args.roads).or(config.roads);
@@ -68,34 +60,34 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
 /// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
 /// over the defaults; [`complete`] has put both together.
 pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
-    let WorkArgs { terrain, roads, resources, .. } = args;
+    let WorkArgs { inputs, terrain, roads, resources, .. } = args;
     // What is not given is as it was when the package was made whose terrain is taken, else the usual.
-    let base = match &args.terrain_of {
+    let base = match &inputs.terrain {
         Some(package) => TerrainRecord::of_package(package)?,
         None => TerrainRecord { terrain: TerrainSettings::usual(), attribution: Vec::new() },
     };
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let mut attribution = attribution.unwrap_or(base.attribution);
-    let photo = photo_choice(&args.photo, &args.photos)?;
+    let photo = photo_choice(&inputs.photo, &args.photos)?;
     if let PhotoChoice::Files(_) = photo {
         // The package whose terrain is taken may have the same photos.
         let credit = args.photos.attribution.filter(|credit| !attribution.contains(credit));
         attribution.extend(credit);
     }
     credits::check(&attribution)?;
-    let osm = corniche_pipeline::extract_names(&args.osm)?;
+    let osm = corniche_pipeline::extract_names(&inputs.osm)?;
     let areas = area_table(&args.areas, &osm)?;
     let lines = lines(&args.areas, &osm)?;
     let bounds = terrain.bounds.map(|bounds| in_degrees(bounds, &osm)).transpose()?;
-    let polygon = args.polygon.map(polygon).transpose()?;
-    let dem = corniche_pipeline::elevation_names(&args.dem)?;
+    let polygon = inputs.polygon.map(polygon).transpose()?;
+    let dem = corniche_pipeline::elevation_names(&inputs.dem)?;
     let mut terrain = terrain_settings(TerrainOptions { bounds, ..terrain }, base.terrain)?;
     terrain.plan.polygon = polygon;
     terrain.allow_fine_cell = args.force;
     let plan = PlanSettings {
         dem,
-        terrain_of: args.terrain_of,
+        terrain_of: inputs.terrain,
         osm,
         areas,
         lines,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, de::Error};
 use crate::{
     BoundsChoice, Classes, PresetError,
     error::bounded,
-    files::{InputFiles, OutputFiles},
+    files::{OutputFiles, one_or_many_names},
     values::{
         check_cells, check_height_range, check_max_error, check_nodata, check_simplify, either,
         parse_cell, parse_range, relief_parser,
@@ -101,7 +101,7 @@ macro_rules! options {
     (
         ()
         $(
-            $section:ident($options:ident, $heading:literal) {
+            $section:ident($options:ident $(, $heading:literal)?) {
                 $(
                     $(#[$($attr:tt)*])*
                     $name:ident: $type:ty
@@ -113,7 +113,7 @@ macro_rules! options {
         $(
             #[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
             #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
-            #[command(next_help_heading = $heading)]
+            $(#[command(next_help_heading = $heading)])?
             #[expect(missing_docs, reason = "clap would take it for the description of the command")]
             pub struct $options {
                 $($(#[$($attr)*])* pub $name: $type,)*

@@ -22,10 +22,11 @@ pub use class_cells::class_filter;
 pub use class_labels::class_labels;
 pub use classes::Classes;
 pub use config::{
-    AreaOptions, Config, Given, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
+    AreaOptions, Config, Given, InputFiles, PhotoOptions, ResourceOptions, RoadOptions,
+    TerrainOptions,
 };
 pub use error::PresetError;
-pub use files::{InputFiles, OutputFiles};
+pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use photo::is_photo_off;
 pub use values::{parse_bytes, parse_memory};
