@@ -13,8 +13,8 @@ use corniche_pipeline::{
     TerrainSettings,
 };
 use corniche_presets::{
-    AreaOptions, BoundsChoice, Given as _, InputFiles, OutputFiles, PhotoOptions, RoadOptions,
-    TerrainOptions, class_filter, is_photo_off, parse_memory,
+    AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
+    class_filter, is_photo_off, parse_memory,
 };
 use corniche_roads::ClassFilter;
 
@@ -134,6 +134,30 @@ fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, Fai
         BoundsChoice::Osm => Err(Failure::unusable(
             "--bounds osm takes the bounds of the extract; give one with --osm",
         )),
+    }
+}
+
+/// An option that may be left out.
+trait Given {
+    /// What it has if it is given.
+    type Value;
+
+    fn given(self) -> Option<Self::Value>;
+}
+
+impl<T> Given for Option<T> {
+    type Value = T;
+
+    fn given(self) -> Self {
+        self
+    }
+}
+
+impl<T> Given for Vec<T> {
+    type Value = Self;
+
+    fn given(self) -> Option<Self> {
+        (!self.is_empty()).then_some(self)
     }
 }
 

@@ -49,52 +49,9 @@ impl Config {
     }
 }
 
-/// The value of an option as it was given, if it was.
-pub trait Given {
-    /// What is given.
-    type Value;
-
-    /// Whether anything is given.
-    fn is_given(&self) -> bool;
-
-    /// What is given.
-    fn given(self) -> Option<Self::Value>;
-}
-
-impl<T> Given for Option<T> {
-    type Value = T;
-
-    fn is_given(&self) -> bool {
-        self.is_some()
-    }
-
-    fn given(self) -> Self {
-        self
-    }
-}
-
-impl<T> Given for Vec<T> {
-    type Value = Self;
-
-    fn is_given(&self) -> bool {
-        !self.is_empty()
-    }
-
-    fn given(self) -> Option<Self> {
-        self.is_given().then_some(self)
-    }
-}
-
-impl Given for bool {
-    type Value = Self;
-
-    fn is_given(&self) -> bool {
-        *self
-    }
-
-    fn given(self) -> Option<Self> {
-        self.then_some(self)
-    }
+/// Whether an option is given.
+fn is_given<T: Default + PartialEq>(option: &T) -> bool {
+    *option != T::default()
 }
 
 macro_rules! options {
@@ -125,7 +82,7 @@ macro_rules! options {
                 pub fn or(mut self, other: Self) -> Self {
                     let own = self.clone();
                     $(
-                        if !(own.$name.is_given() $(|| own.$rival.is_given())?) {
+                        if !(is_given(&own.$name) $(|| is_given(&own.$rival))?) {
                             self.$name = other.$name;
                         }
                     )*

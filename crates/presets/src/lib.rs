@@ -22,8 +22,7 @@ pub use class_cells::class_filter;
 pub use class_labels::class_labels;
 pub use classes::Classes;
 pub use config::{
-    AreaOptions, Config, Given, InputFiles, PhotoOptions, ResourceOptions, RoadOptions,
-    TerrainOptions,
+    AreaOptions, Config, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
 };
 pub use error::PresetError;
 pub use files::OutputFiles;

@@ -123,7 +123,7 @@ crate::recorded! { [record] }
 
 /// Where a key comes in the manifest.
 fn place(key: &str) -> usize {
-    KEYS_IN_ORDER.iter().position(|known| *known == key).unwrap_or(KEYS_IN_ORDER.len())
+    KEYS_IN_ORDER.split(' ').position(|known| known == key).unwrap_or(usize::MAX)
 }
 
 /// Whether a value is that of packages without its key.

@@ -9,7 +9,7 @@
 /// #[arg(…)] #[serde(…)]                     as clap and serde read it, in `presets`
 /// name: Type                                the option
 ///     , check function                      of `presets`, which refuses values
-///     , rival name                          another way to give the same thing: if one is given, neither is taken from elsewhere
+///     , rival name                          another way to give it: if one is given, neither is taken from elsewhere
 ///     => { RECORD };                        if it determines bytes
 /// ```
 ///
@@ -32,17 +32,17 @@ macro_rules! settings {
 
 Inputs(InputFiles) {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence. Also
-    /// folders, patterns such as 'a/*.tif', @LIST (a text file with a name on each line), .gz, .zip,
-    /// and https:// and s3:// addresses
+    /// folders, patterns such as 'a/*.tif', @LIST (a text file with a name on each line), .gz,
+    /// .zip, and https:// and s3:// addresses
     #[arg(
         long, value_name = "FILE", num_args = 1..,
         required_unless_present_any = ["terrain_of", "config"]
     )]
     #[serde(deserialize_with = "one_or_many_names")]
     dem: Vec<PathBuf>, rival terrain;
-    /// Take the terrain of this package, made by the same program with the same terrain settings, in
-    /// place of elevation rasters; the result is the same, sooner. Terrain settings and credits that
-    /// are not given are the package's
+    /// Take the terrain of this package, made by the same program with the same terrain settings,
+    /// in place of elevation rasters; the result is the same, sooner. Terrain settings and credits
+    /// that are not given are the package's
     #[arg(id = "terrain_of", long = "terrain", value_name = "PACKAGE", conflicts_with = "dem")]
     terrain: Option<PathBuf>, rival dem;
     /// OpenStreetMap extract (.osm.pbf), or several: what is in two of them counts once. Also
@@ -126,9 +126,7 @@ Terrain(TerrainOptions, "Terrain") {
     /// Heights that samples may have, in metres, before --vertical-shift; every value in this range
     /// counts as a height [default: -12000,9000, and neither a usual value for "no data" nor a
     /// repeated one 1000 m beyond all others]
-    #[arg(
-        long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     height_range: Option<[f64; 2]>, check check_height_range => {
         /// `--height-range`, if given.
         ["--height-range"] height_range_m: Option<[f64; 2]>,
@@ -151,8 +149,7 @@ Terrain(TerrainOptions, "Terrain") {
     #[serde(deserialize_with = "one_or_two")]
     cell: Option<Cell>, check check_cells, rival cell_every => {
         /// `--cell`, if given, east and north.
-        ["--cell"] cell_m: Option<Cell>,
-        within f64::MIN_POSITIVE..=MAX_MEASURE_M, at plan.cell
+        ["--cell"] cell_m: Option<Cell>, within f64::MIN_POSITIVE..=MAX_MEASURE_M, at plan.cell
     };
     /// Take every K-th sample of the DEM along both axes as a node of the finest level, without
     /// interpolation
@@ -174,9 +171,9 @@ Terrain(TerrainOptions, "Terrain") {
         /// `--fill-voids`.
         ["--fill-voids"] fill_voids: u32, at plan.fill_voids, usual 32
     };
-    /// Levels that store their rasters, compressed for shading: off, finest or full, which is all of
-    /// them. The triangles stay within --max-error of heights; the relief shows what lies between
-    /// them [default: full]
+    /// Levels that store their rasters, compressed for shading: off, finest or full, which is all
+    /// of them. The triangles stay within --max-error of heights; the relief shows what lies
+    /// between them [default: full]
     #[arg(
         long, value_name = "off|finest|full", hide_possible_values = true,
         value_parser = relief_parser()
@@ -209,8 +206,8 @@ Terrain(TerrainOptions, "Terrain") {
     }
 }
 Roads(RoadOptions, "Roads") {
-    /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file
-    /// [default: default]
+    /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file [default:
+    /// default]
     #[arg(long, value_name = "PRESET|FILE")]
     frc_table: Option<String> => {
         /// Name of the FRC table.
@@ -246,10 +243,10 @@ Roads(RoadOptions, "Roads") {
     #[serde(rename = "structures", deserialize_with = "ground_or_spans")]
     spans: Option<bool> => {
         /// Whether bridges and tunnels leave the ground; left out without.
-        ["--structures" as structures_text] spans: bool,
-        left_out "is_default", at spans, usual true
+        ["--structures" as structures_text] spans: bool, left_out "is_default", at spans, usual true
     };
-    /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
+    /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every
+    /// level.
     #[arg(skip)]
     class_max_cell: Option<BTreeMap<String, f64>> => {
         /// Coarsest cell, metres, at which each class is still shown, class 0 first; null: on every level.
@@ -293,8 +290,8 @@ Photo(PhotoOptions, "Photos") {
     /// Quality of the photos' JPEG coding, 1 to 100 [default: 80]
     #[arg(id = "photo_quality", long = "photo-quality", value_name = "Q")]
     quality: Option<u8>;
-    /// Credit of the photos, shown wherever the package is shown, beside those that their files have
-    /// (GeoTIFF's tag Copyright)
+    /// Credit of the photos, shown wherever the package is shown, beside those that their files
+    /// have (GeoTIFF's tag Copyright)
     #[arg(id = "photo_attribution", long = "photo-attribution", value_name = "TEXT")]
     attribution: Option<String>;
 } and {
@@ -312,8 +309,8 @@ Resources(ResourceOptions, "Resources") {
     /// machine's, at most 4G]
     #[arg(long, value_name = "BYTES")]
     memory: Option<String>;
-    /// Folder for intermediate results, which take far more space than the package [default: that of
-    /// the package]
+    /// Folder for intermediate results, which take far more space than the package [default: that
+    /// of the package]
     #[arg(long, value_name = "FOLDER")]
     tmp: Option<PathBuf>;
 } and {}
@@ -322,35 +319,10 @@ Resources(ResourceOptions, "Resources") {
 
 /// The manifest's keys in the order in which packages have had them from the beginning: hashes depend on it. New ones
 /// come behind them, in the order of the table.
-pub(crate) const KEYS_IN_ORDER: [&str; 27] = [
-    "max_error_m",
-    "fill_voids",
-    "nodata",
-    "height_range_m",
-    "dem_band",
-    "dem_crs",
-    "dem_vertical_crs",
-    "vertical_crs",
-    "vertical_shift_m",
-    "vertical_unit",
-    "crs",
-    "cell_m",
-    "cell_every",
-    "scale_latitude_deg",
-    "bounds_deg",
-    "polygon",
-    "relief",
-    "frc_table",
-    "frc_table_sha256",
-    "class_labels",
-    "classes",
-    "class_max_cell_m",
-    "simplify_cells",
-    "photo",
-    "areas",
-    "boundaries",
-    "spans",
-];
+pub(crate) const KEYS_IN_ORDER: &str = "max_error_m fill_voids nodata height_range_m dem_band dem_crs dem_vertical_crs vertical_crs \
+    vertical_shift_m vertical_unit crs cell_m cell_every scale_latitude_deg bounds_deg polygon \
+    relief frc_table frc_table_sha256 class_labels classes class_max_cell_m simplify_cells photo \
+    areas boundaries spans";
 
 /// Gives the records of all settings that determine bytes to the macro `then`: `recorded! { [then] }`, each as
 /// `Section { RECORD }`.
