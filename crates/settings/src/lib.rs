@@ -20,7 +20,8 @@ pub use relief_levels::ReliefLevels;
 pub use value::SettingValue;
 pub use value_records::{AreaTableRecord, PhotoRecord, PolygonRecord};
 
-/// No length, height or coordinate of a package is larger: far beyond every planet, and its square still fits an f32.
+/// No length, height or coordinate of a package is larger: far beyond every planet, and its square
+/// still fits an f32.
 pub const MAX_MEASURE_M: f64 = 1e18;
 /// More values that mean "no data" than any set of files has.
 pub const MAX_NODATA: usize = 64;

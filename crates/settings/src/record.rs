@@ -97,8 +97,8 @@ macro_rules! record {
                 keys
             }
 
-            /// Writes the settings with all keys in their order, but for those that are left out where they have their default. The
-            /// keys in `always` are there in any case.
+            /// Writes the settings with all keys in their order, but for those that are left out
+            /// where they have their default. The keys in `always` are there in any case.
             fn write<S: Serializer>(&self, to: S, always: &[&str]) -> Result<S::Ok, S::Error> {
                 let keys = Self::keys();
                 let mut state = to.serialize_struct("SettingsRecord", keys.len())?;
@@ -138,7 +138,8 @@ impl Serialize for SettingsRecord {
 }
 
 impl SettingsRecord {
-    /// Writes the settings as `corniche info --json` has them: with their levels of relief also where there are none.
+    /// Writes the settings as `corniche info --json` has them: with their levels of relief also
+    /// where there are none.
     ///
     /// # Errors
     /// When the serializer fails.

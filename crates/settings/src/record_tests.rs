@@ -65,7 +65,8 @@ fn keys_come_in_the_order_of_the_first_packages_and_new_ones_are_left_out() {
     assert!(serde_json::from_str::<SettingsRecord>(&without).is_err());
 }
 
-/// Each key but the hash of the table, whose entries are compared one by one, has a fact, which changes with the value.
+/// Each key but the hash of the table, whose entries are compared one by one, has a fact, which
+/// changes with the value.
 #[test]
 fn every_key_has_a_fact() {
     let facts = whole().facts();

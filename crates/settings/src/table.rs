@@ -6,26 +6,27 @@
 ///
 /// ```text
 /// /// Help, with [default: …].
-/// #[arg(…)] #[serde(…)]                     as clap and serde read it, in `presets`
-/// name: Type                                the option
-///     , check function                      of `presets`, which refuses values
-///     , rival name                          another way to give it: if one is given, neither is taken from elsewhere
-///     => { RECORD };                        if it determines bytes
+/// #[arg(…)] #[serde(…)]           as clap and serde read it, in `presets`
+/// name: Type                      the option
+///     , check function            of `presets`, which refuses values
+///     , rival name                gives the same thing: of the two, none is taken from elsewhere
+///     => { RECORD };              if it determines bytes
 /// ```
 ///
 /// and the record of what determines bytes is
 ///
 /// ```text
 /// /// What the JSON schema says.
-/// ["--flag"]                                names in comparisons; `as function` gives other words than its value's text
-/// key: Type                                 in the manifest
-///     , left_out "is_default"               new keys are left out where they have their default, so that hashes hold
-///     , within LOW..=HIGH                   numbers that may be read
-///     , at path.of.field, usual VALUE       in the checked settings of `pipeline`, and its default there if that is not the type's
+/// ["--flag"]                      names in comparisons; `as function` makes a text of its own
+/// key: Type                       in the manifest
+///     , left_out "is_default"     new keys are left out at their default, so that hashes hold
+///     , within LOW..=HIGH         numbers that may be read
+///     , at path.of.field          in the checked settings of `pipeline`
+///     , usual VALUE               the default there, if it is not that of the type
 /// ```
 ///
-/// Below `and` is recorded what is no option. A new record needs a line in FORMAT.md, and a new option one in
-/// `config/build.toml`.
+/// Below `and` is recorded what is no option. A new record needs a line in FORMAT.md, and a new
+/// option one in `config/build.toml`.
 #[macro_export]
 macro_rules! settings {
     ([$($then:tt)+] $args:tt) => { $($then)+! { $args
@@ -317,15 +318,16 @@ Resources(ResourceOptions, "Resources") {
 } };
 }
 
-/// The manifest's keys in the order in which packages have had them from the beginning: hashes depend on it. New ones
-/// come behind them, in the order of the table.
-pub(crate) const KEYS_IN_ORDER: &str = "max_error_m fill_voids nodata height_range_m dem_band dem_crs dem_vertical_crs vertical_crs \
+/// The manifest's keys in the order in which packages have always had them: hashes depend on it. New
+/// ones come behind them, in the order of the table.
+pub(crate) const KEYS_IN_ORDER: &str = "max_error_m fill_voids nodata height_range_m dem_band dem_crs \
+    dem_vertical_crs vertical_crs \
     vertical_shift_m vertical_unit crs cell_m cell_every scale_latitude_deg bounds_deg polygon \
     relief frc_table frc_table_sha256 class_labels classes class_max_cell_m simplify_cells photo \
     areas boundaries spans";
 
-/// Gives the records of all settings that determine bytes to the macro `then`: `recorded! { [then] }`, each as
-/// `Section { RECORD }`.
+/// Gives the records of all settings that determine bytes to the macro `then`, each as
+/// `Section { RECORD }`: `recorded! { [then] }`.
 #[macro_export]
 macro_rules! recorded {
     ([$($then:tt)+]) => {
@@ -337,7 +339,8 @@ macro_rules! recorded {
             $section:ident $head:tt {
                 $(
                     $(#[$($attr:tt)*])*
-                    $name:ident: $type:ty $(, check $check:ident)? $(, rival $rival:ident)? $(=> $record:tt)?;
+                    $name:ident: $type:ty $(, check $check:ident)? $(, rival $rival:ident)?
+                    $(=> $record:tt)?;
                 )*
             } and { $($other:tt)* }
         )*
@@ -346,7 +349,7 @@ macro_rules! recorded {
     };
 }
 
-/// Gives each setting of a section that has a place in the checked settings to the macro `then`, one after the other:
+/// Gives each setting of a section that has a place in the checked settings to the macro `then`:
 /// `placed! { Section [then] args }` calls `then! { args name key [path.of.field] [usual value] }`.
 #[macro_export]
 macro_rules! placed {

@@ -23,15 +23,17 @@ pub struct AreaTableRecord {
 /// How the photos of a package were made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoRecord {
-    /// A cell of the finest level has 2^levels texels along each side: `--photo-levels`, or what follows from the photos.
+    /// A cell of the finest level has 2^levels texels along each side: `--photo-levels`, or what
+    /// follows from the photos.
     pub levels: u8,
     /// `--photo-quality`: JPEG's, from 1 to 100.
     pub quality: u8,
 }
 
 impl PhotoRecord {
-    /// A cell of a level has 2 to this power texels along each side. A coarse tile is drawn while its cells look like some pixels, so
-    /// its texels are half a cell, unless the photos have no such detail.
+    /// A cell of a level has 2 to this power texels along each side. A coarse tile is drawn while
+    /// its cells look like some pixels, so its texels are half a cell, unless the photos have no
+    /// such detail.
     #[must_use]
     pub fn levels_on(self, level: u8, finest_level: u8) -> u8 {
         if level == finest_level { self.levels } else { self.levels.min(1) }

@@ -24,8 +24,8 @@ pub(crate) fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
     said
 }
 
-/// How the settings for the ground differ from those that a package records, in words; those for roads do not count, and photos are taken
-/// with the terrain.
+/// How the settings for the ground differ from those that a package records, in words; those for
+/// roads do not count, and photos are taken with the terrain.
 pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     let mut theirs = package.clone();
     // A polygon is the same under another name.
