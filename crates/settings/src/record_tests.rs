@@ -25,9 +25,9 @@ fn whole() -> SettingsRecord {
 
 #[test]
 fn keys_come_in_the_order_of_the_first_packages_and_new_ones_are_left_out() {
-    let text = |record| serde_json::to_string::<SettingsRecord>(record).unwrap();
-    assert_eq!(text(&whole()), EVERY_KEY.replace('\n', ""));
-    assert_eq!(text(&SettingsRecord::default()), DEFAULT.replace('\n', ""));
+    let text = |record: SettingsRecord| serde_json::to_string(&record).unwrap();
+    assert_eq!(text(whole()), EVERY_KEY.replace('\n', ""));
+    assert_eq!(text(SettingsRecord::default()), DEFAULT.replace('\n', ""));
     assert_eq!(serde_json::from_str::<SettingsRecord>(DEFAULT).unwrap(), SettingsRecord::default());
     let without = DEFAULT.replace("\"fill_voids\":0,", "");
     assert!(serde_json::from_str::<SettingsRecord>(&without).is_err());
