@@ -28,7 +28,7 @@ pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     };
     output::writable_package(&output)?;
     let defects = args.defects.take().or(written.defects);
-    if defects.is_some() && args.work.osm.is_empty() {
+    if defects.is_some() && args.work.inputs.osm.is_empty() {
         return Err(Failure::unusable(
             "--defects lists what is wrong with an extract; give it with --osm",
         ));

@@ -43,3 +43,6 @@ mod record_schemas;
 #[cfg(test)]
 #[path = "documents/schema_tests.rs"]
 mod schema_tests;
+#[cfg(test)]
+#[path = "documents/settings_schema_tests.rs"]
+mod settings_schema_tests;

@@ -6,9 +6,13 @@ use super::*;
 
 #[test]
 fn lengths_must_be_lengths() {
-    assert!(positive("--max-error", Some(0.0)).is_err());
-    assert!(positive("--max-error", Some(f64::NAN)).is_err());
-    assert_eq!(positive("--max-error", Some(2.5)).unwrap(), Some(2.5));
+    let checked = |max_error_m| {
+        let options = TerrainOptions { max_error: Some(max_error_m), ..TerrainOptions::default() };
+        Ok::<_, Failure>(terrain_settings(options, TerrainSettings::usual())?.max_error_m)
+    };
+    assert!(checked(0.0).is_err());
+    assert!(checked(f64::NAN).is_err());
+    assert_eq!(checked(2.5).unwrap(), Some(2.5));
 }
 
 #[test]
@@ -41,9 +45,8 @@ fn is_key(line: &str) -> bool {
 /// What a settings file says, as settings; without its inputs, outputs and what depends on the machine.
 fn settings_of(text: &str) -> String {
     let Config { terrain, roads, areas, photo, .. } = Config::parse(text).unwrap();
-    let cut = Cut { bounds_deg: None, polygon: None };
     let credits = (terrain.attribution.clone(), photo.attribution.clone(), terrain.bounds);
-    let terrain = terrain_settings(terrain, usual_terrain().terrain, cut, false).unwrap();
+    let terrain = terrain_settings(terrain, TerrainSettings::usual()).unwrap();
     let photo = photo_choice(&[PathBuf::from("a.tif")], &photo).unwrap();
     let areas = (area_table(&areas, &[]).unwrap(), lines(&areas, &[]).unwrap());
     format!("{credits:?} {terrain:?} {:?} {areas:?} {photo:?}", road_settings(roads).unwrap())

@@ -1,10 +1,11 @@
 //! In what two plans differ, in the words of the command line.
 
-use corniche_spec::manifest_texts;
+use corniche_settings::SettingValue as _;
+use corniche_spec::{inputs::PlannedInput, manifest_texts};
 
 use super::{
     BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel,
-    facts::{Fact, different, different_facts, fact, given, list, pair, setting_facts},
+    facts::{Fact, different, different_facts, fact, setting_facts},
 };
 
 impl BuildPlan {
@@ -42,7 +43,7 @@ impl BuildPlan {
         said.extend(different_facts(&setting_facts(settings), &setting_facts(&store.settings)));
         said.extend(frc_table.difference(&store.frc_table));
         if attribution != &store.attribution {
-            let (ours, theirs) = (list(attribution), list(&store.attribution));
+            let (ours, theirs) = (attribution.text(), store.attribution.text());
             said.push(different("--attribution", &ours, &theirs));
         }
         if said.is_empty() {
@@ -56,12 +57,12 @@ impl BuildPlan {
     }
 
     fn input_differences(&self, store: &Self) -> Vec<String> {
-        let key =
-            |input: &corniche_spec::inputs::PlannedInput| (input.kind.clone(), input.path.clone());
+        let key = |input: &PlannedInput| (input.kind.clone(), input.path.clone());
         let paths = |plan: &Self| plan.inputs.iter().map(key).collect::<Vec<_>>();
         if paths(self) != paths(store) {
             let files = |plan: &Self| {
-                list(plan.inputs.iter().map(|input| format!("{} ({})", input.path, input.kind)))
+                let name = |input: &PlannedInput| format!("{} ({})", input.path, input.kind);
+                plan.inputs.iter().map(name).collect::<Vec<_>>().text()
             };
             return vec![different("the list of input files", &files(self), &files(store))];
         }
@@ -133,20 +134,20 @@ fn grid_facts(grid: &PlannedGrid) -> Vec<Fact> {
     vec![
         fact("the working CRS", crs),
         fact("the working CRS's WKT", crs_wkt),
-        fact("the number of metres per unit of the CRS", &pair(*metres_per_unit)),
+        fact("the number of metres per unit of the CRS", metres_per_unit),
         fact("the scale at the centre", point_scale),
         fact("the grid", &format!("{frame:?}")),
         fact("the south-western node", &format!("{}, {}", south_west.i, south_west.j)),
         fact("the north-eastern node", &format!("{}, {}", north_east.i, north_east.j)),
         fact("the data's rectangle", &format!("{data_bounds:?}")),
         fact("the data's rectangle in degrees", &format!("{wgs84_bounds:?}")),
-        fact("\"nodes are samples\"", nodes_are_samples),
+        fact("\"nodes are samples\"", &nodes_are_samples.to_string()),
         fact("how nodes relate to samples", resampling),
         fact("the vertical datum", vertical_datum),
         fact("the treatment of heights", vertical_treatment),
         fact(
             "PROJ's operation between datums",
-            &list(datum_operations.iter().map(manifest_texts::operation_words)),
+            &datum_operations.iter().map(manifest_texts::operation_words).collect::<Vec<_>>(),
         ),
         fact("the step of heights in metres", quantum_m),
     ]
@@ -164,8 +165,8 @@ fn level_facts(levels: &[PlannedLevel]) -> Vec<Fact> {
         } = planned;
         let values = format!(
             "cell {}, max error {max_error_m}, least class {}, simplification {simplify_tolerance_m}, margin {width_margin_m}",
-            pair(cell_m.to_array()),
-            given(least_class.as_ref()),
+            cell_m.text(),
+            least_class.text(),
         );
         fact(&format!("level {level}"), &values)
     };

@@ -58,6 +58,16 @@ impl BoundsChoice {
     }
 }
 
+impl From<BoundsChoice> for Option<[f64; 4]> {
+    /// The degrees; `None` where the extract has yet to tell them.
+    fn from(choice: BoundsChoice) -> Self {
+        match choice {
+            BoundsChoice::Degrees(bounds_deg) => Some(bounds_deg),
+            BoundsChoice::Osm => None,
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for BoundsChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]

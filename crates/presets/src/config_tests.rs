@@ -33,7 +33,7 @@ fn one_value_for_no_data_is_said_as_shortly_as_before() {
 fn a_cell_is_a_square_or_a_rectangle() {
     let cell = |text: &str| {
         let config = Config::parse(&format!("[terrain]\ncell = {text}\n"));
-        config.map(|config| config.terrain.cell)
+        config.map(|config| config.terrain.cell.map(Cell::to_array))
     };
     assert_eq!(cell("30").unwrap(), Some([30.0, 30.0]));
     assert_eq!(cell("2.5").unwrap(), Some([2.5, 2.5]));
@@ -73,7 +73,7 @@ fn what_the_first_leaves_out_is_taken_from_the_second() {
     assert_eq!(resources.threads, NonZeroUsize::new(2));
     assert_eq!(resources.memory.as_deref(), Some("64M"));
     let terrain = TerrainOptions::default().or(second.terrain);
-    assert_eq!((terrain.cell, terrain.cell_every), (Some([30.0; 2]), None));
+    assert_eq!((terrain.cell, terrain.cell_every), (Some(Cell::from(30.0)), None));
 }
 
 /// Options with a different value in each field for each `n`. Every field is named, so that a new one cannot be forgotten.
@@ -91,11 +91,11 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         nodata: vec![number],
         height_range: Some([0.0, number]),
         scale_latitude: Some(number),
-        cell: Some([number; 2]),
+        cell: Some(Cell::from(number)),
         cell_every: Some(n.into()),
         max_error: Some(number),
         fill_voids: Some(n.into()),
-        relief: Some(if n == 1 { ReliefChoice::Off } else { ReliefChoice::Full }),
+        relief: Some(if n == 1 { ReliefLevels::Off } else { ReliefLevels::Full }),
         bounds: Some(BoundsChoice::Osm),
         attribution: vec![text("attribution")],
     };
@@ -104,10 +104,10 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         classes: Some(Classes::parse(&n.to_string()).unwrap()),
         all_classes: true,
         simplify: Some(number),
-        structures: Some(text("spans")),
+        spans: Some(n == 1),
         class_max_cell: Some(BTreeMap::from([(text("class"), number)])),
     };
-    let areas = AreaOptions { table: Some(text("areas")), boundaries: Some(text("on")) };
+    let areas = AreaOptions { table: Some(text("areas")), boundaries: Some(n == 1) };
     let resources = ResourceOptions {
         threads: NonZeroUsize::new(n.into()),
         memory: Some(text("memory")),

@@ -14,7 +14,6 @@ mod files;
 mod folder;
 mod frc;
 mod photo;
-mod relief;
 mod values;
 
 pub use areas::{area_preset, area_preset_names, parse_area_table};
@@ -22,10 +21,11 @@ pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
 pub use class_labels::class_labels;
 pub use classes::Classes;
-pub use config::{AreaOptions, Config, ResourceOptions, RoadOptions, TerrainOptions};
+pub use config::{
+    AreaOptions, Config, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
+};
 pub use error::PresetError;
-pub use files::{InputFiles, OutputFiles};
+pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
-pub use photo::{PhotoOptions, is_photo_off};
-pub use relief::ReliefChoice;
-pub use values::{check_cell, is_range, parse_bytes, parse_memory};
+pub use photo::is_photo_off;
+pub use values::{parse_bytes, parse_memory};

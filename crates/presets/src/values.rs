@@ -1,6 +1,9 @@
 //! Single values in settings files and on the command line, such as amounts of memory and cells.
 
 use bytesize::ByteSize;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use corniche_geom::Cell;
+use corniche_settings::{MAX_NODATA, ReliefLevels};
 
 /// A number of bytes: alone, or with a unit, whole or with a decimal point. As in GNU's tools `K`, `M`, `G`, `T`, like `KiB`, `MiB`,
 /// `GiB`, `TiB`, are powers of 1024; `kB`, `MB`, `GB`, `TB` are powers of 1000. Large and small letters are the same.
@@ -45,35 +48,97 @@ pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
 }
 
 /// Whether the first of two ends lies below the second, and both are finite and not farther apart than a number can say.
-#[must_use]
-pub fn is_range([low, high]: [f64; 2]) -> bool {
+fn is_range([low, high]: [f64; 2]) -> bool {
     low < high && (high - low).is_finite()
 }
 
-/// A cell, east and north: one number is a square.
-pub(crate) fn parse_cell(text: &str) -> Result<[f64; 2], String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok();
-    let sides_m = match text.split_once(',') {
-        Some((east, north)) => {
-            side(east).zip(side(north)).map(|(east_m, north_m)| [east_m, north_m])
-        }
-        None => side(text).map(|side_m| [side_m; 2]),
-    };
-    match sides_m {
-        Some(sides_m) => check_cell(sides_m),
-        None => Err("write metres like 30, or east,north like 20,30".to_owned()),
+/// Refuses heights that are no range.
+pub(crate) fn check_height_range(given: &[[f64; 2]]) -> Result<(), String> {
+    match given.iter().find(|ends| !is_range(**ends)) {
+        Some([low, high]) => Err(format!(
+            "height-range must be the lowest and the highest height, in this order, not {low}, {high}; write it like [-500, 9000]"
+        )),
+        None => Ok(()),
     }
 }
 
-/// Sides that can be those of a cell, east and north.
-///
-/// # Errors
-/// When a side is no positive number.
-pub fn check_cell(sides_m: [f64; 2]) -> Result<[f64; 2], String> {
-    match sides_m.iter().find(|side_m| !(**side_m > 0.0 && side_m.is_finite())) {
+/// A cell, east and north: one number is a square.
+pub(crate) fn parse_cell(text: &str) -> Result<Cell, String> {
+    let side = |text: &str| text.trim().parse::<f64>().ok();
+    let cell = match text.split_once(',') {
+        Some((east, north)) => {
+            side(east).zip(side(north)).map(|(east_m, north_m)| Cell { east_m, north_m })
+        }
+        None => side(text).map(Cell::from),
+    };
+    let cell = cell.ok_or("write metres like 30, or east,north like 20,30")?;
+    check_cell(cell)?;
+    Ok(cell)
+}
+
+/// Refuses sides that are no positive numbers.
+fn check_cell(cell: Cell) -> Result<(), String> {
+    match cell.to_array().iter().find(|side_m| !(**side_m > 0.0 && side_m.is_finite())) {
         Some(side_m) => Err(format!("a side must be a positive number of metres, not {side_m}")),
-        None => Ok(sides_m),
+        None => Ok(()),
     }
+}
+
+/// Refuses cells with sides that are no positive numbers.
+pub(crate) fn check_cells(given: &[Cell]) -> Result<(), String> {
+    let check = |&cell| check_cell(cell).map_err(|error| format!("cell: {error}"));
+    given.iter().try_for_each(check)
+}
+
+/// Refuses an error that is no positive number.
+pub(crate) fn check_max_error(given: &[f64]) -> Result<(), String> {
+    match given.iter().find(|metres| !(**metres > 0.0 && metres.is_finite())) {
+        Some(metres) => {
+            Err(format!("--max-error must be a positive number of metres, not {metres}"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses a tolerance that is negative, or so large that nothing remains of a road.
+pub(crate) fn check_simplify(given: &[f64]) -> Result<(), String> {
+    match given.iter().find(|cells| !(0.0..=64.0).contains(*cells)) {
+        Some(cells) => Err(format!("--simplify must be between 0 and 64 cells, not {cells}")),
+        None => Ok(()),
+    }
+}
+
+/// Values that mean "no data" are numbers, and not too many.
+pub(crate) fn check_nodata(given: &[f64]) -> Result<(), String> {
+    if let Some(value) = given.iter().find(|value| !value.is_finite()) {
+        return Err(format!(
+            "--nodata {value} is not needed: a value that is not a finite number is never taken for a height; leave it out"
+        ));
+    }
+    if given.len() > MAX_NODATA {
+        return Err(format!(
+            "--nodata is given {} times, more than {MAX_NODATA}; convert the files so that they say themselves what \
+             means \"no data\" (gdal_translate -a_nodata)",
+            given.len()
+        ));
+    }
+    Ok(())
+}
+
+/// Reads one of two words, of which the second means yes.
+pub(crate) fn either(words: [&'static str; 2]) -> impl TypedValueParser<Value = bool> {
+    PossibleValuesParser::new(words).map(move |word| word == words[1])
+}
+
+/// Reads the name of levels with relief.
+pub(crate) fn relief_parser() -> impl TypedValueParser<Value = ReliefLevels> {
+    let helps = ["None", "The finest level alone", "All levels"];
+    let values = ReliefLevels::ALL.into_iter().zip(helps);
+    let values = values.map(|(levels, help)| PossibleValue::new(levels.name()).help(help));
+    PossibleValuesParser::new(values).map(|name| {
+        let is_named = |levels: &ReliefLevels| levels.name() == name;
+        ReliefLevels::ALL.into_iter().find(is_named).unwrap_or_default()
+    })
 }
 
 #[cfg(test)]

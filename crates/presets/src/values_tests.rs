@@ -58,8 +58,8 @@ fn ranges_have_two_ends_in_order() {
 
 #[test]
 fn cells_are_squares_or_rectangles() {
-    assert_eq!(parse_cell("30"), Ok([30.0, 30.0]));
-    assert_eq!(parse_cell("20.5, 30"), Ok([20.5, 30.0]));
+    assert_eq!(parse_cell("30"), Ok(Cell::from(30.0)));
+    assert_eq!(parse_cell("20.5, 30"), Ok(Cell::from([20.5, 30.0])));
     for bad in ["", "30 m", "20x30", "20,", "20,30,40"] {
         assert!(parse_cell(bad).unwrap_err().contains("20,30"), "{bad}");
     }

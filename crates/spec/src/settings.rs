@@ -9,6 +9,14 @@ use corniche_roads::{ClassFilter, FrcTable};
 use corniche_store::Existing;
 use corniche_tileset::ReliefLevels;
 
+/// Sets one setting to its default, where that is not the default of its type.
+macro_rules! set_usual {
+    ($settings:ident $name:ident $key:ident $path:tt []) => {};
+    ($settings:ident $name:ident $key:ident [$($path:tt)+] [$usual:expr]) => {
+        $settings.$($path)+ = $usual;
+    };
+}
+
 /// What to build, from what, and how: checked, ready to run.
 #[derive(Debug, Clone)]
 pub struct BuildSettings {
@@ -146,6 +154,27 @@ pub struct RoadSettings {
     pub simplify_cells: f64,
     /// Whether bridges and tunnels leave the ground: tiles then tell how high they are.
     pub spans: bool,
+}
+
+impl RoadSettings {
+    /// The usual settings for roads with these classes.
+    #[must_use]
+    pub fn of(table: FrcTable) -> Self {
+        let filter = ClassFilter::usual();
+        let mut usual = Self { table, filter, simplify_cells: 0.0, spans: false };
+        corniche_settings::placed! { Roads [set_usual] usual }
+        usual
+    }
+}
+
+impl TerrainSettings {
+    /// The settings of whoever gives no option.
+    #[must_use]
+    pub fn usual() -> Self {
+        let mut usual = Self::default();
+        corniche_settings::placed! { Terrain [set_usual] usual }
+        usual
+    }
 }
 
 /// What a run may use. It changes no byte of a package.

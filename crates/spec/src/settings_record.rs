@@ -6,13 +6,22 @@
 //! and the extract as the build did.
 
 use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_gis::Polygon;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
+
+/// Takes one setting from the checked settings into a record, or from there.
+macro_rules! take {
+    (($record:ident from $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
+        $record.$key.clone_from(&$settings.$($path)+);
+    };
+    (($record:ident into $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
+        $settings.$($path)+.clone_from(&$record.$key);
+    };
+}
 
 /// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell; the levels of `photo`
 /// are given or derived from the photos.
@@ -23,57 +32,23 @@ pub fn of(
     photo: Option<PhotoRecord>,
     (areas, lines): (Option<&AreaTable>, &[ClassedLayer]),
 ) -> SettingsRecord {
-    // Every field is named, so that a new one cannot be forgotten here.
-    let TerrainSettings {
-        open,
-        plan,
-        height_range_m,
-        allow_fine_cell: _,
-        allow_ballpark: _,
-        max_error_m: _,
-        relief,
-    } = terrain;
-    let OpenOptions {
-        band,
-        dem_crs,
-        vertical_unit,
-        nodata,
-        dem_vertical_crs,
-        vertical_crs,
-        vertical_shift_m,
-    } = open;
-    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
-        plan;
-    let RoadSettings { table, filter, simplify_cells, spans } = roads;
-    SettingsRecord {
+    let RoadSettings { table, filter, .. } = roads;
+    let mut record = SettingsRecord {
         max_error_m,
-        fill_voids: *fill_voids,
-        nodata: nodata.clone(),
-        height_range_m: *height_range_m,
-        dem_band: *band,
-        dem_crs: dem_crs.clone(),
-        dem_vertical_crs: dem_vertical_crs.clone(),
-        vertical_crs: vertical_crs.clone(),
-        vertical_shift_m: *vertical_shift_m,
-        vertical_unit: vertical_unit.clone(),
-        crs: crs.clone(),
-        cell_m: *cell,
-        cell_every: *cell_every,
-        scale_latitude_deg: *scale_latitude_deg,
-        bounds_deg: *bounds_deg,
-        polygon: polygon.as_ref().map(polygon_record),
-        relief: *relief,
+        polygon: terrain.plan.polygon.as_ref().map(polygon_record),
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
         class_labels: table.recorded_labels().map(Vec::from),
         classes: table.chosen_classes(),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
-        simplify_cells: *simplify_cells,
         photo,
         areas: areas.map(area_table_record),
         boundaries: lines.contains(&ClassedLayer::Boundaries),
-        spans: *spans,
-    }
+        ..SettingsRecord::default()
+    };
+    corniche_settings::placed! { Terrain [take] (record from terrain) }
+    corniche_settings::placed! { Roads [take] (record from roads) }
+    record
 }
 
 /// What is recorded of a table of areas.
@@ -99,39 +74,23 @@ pub fn polygon_sha256(polygon: &Polygon) -> String {
 /// file.
 #[must_use]
 pub fn terrain(record: &SettingsRecord) -> TerrainSettings {
-    TerrainSettings {
-        open: OpenOptions {
-            band: record.dem_band,
-            dem_crs: record.dem_crs.clone(),
-            vertical_unit: record.vertical_unit.clone(),
-            nodata: record.nodata.clone(),
-            dem_vertical_crs: record.dem_vertical_crs.clone(),
-            vertical_crs: record.vertical_crs.clone(),
-            vertical_shift_m: record.vertical_shift_m,
-        },
-        plan: PlanOptions {
-            crs: record.crs.clone(),
-            cell: record.cell_m,
-            cell_every: record.cell_every,
-            scale_latitude_deg: record.scale_latitude_deg,
-            fill_voids: record.fill_voids,
-            bounds_deg: record.bounds_deg,
-            polygon: None,
-        },
-        height_range_m: record.height_range_m,
+    let mut terrain = TerrainSettings {
         // The build has begun already.
         allow_fine_cell: true,
         allow_ballpark: true,
         max_error_m: Some(record.max_error_m),
-        relief: record.relief,
-    }
+        ..TerrainSettings::default()
+    };
+    corniche_settings::placed! { Terrain [take] (record into terrain) }
+    terrain
 }
 
 /// The settings for roads that a package records, with its table of classes; `None` where the record makes no filter.
 #[must_use]
 pub fn roads(record: &SettingsRecord, table: FrcTable) -> Option<RoadSettings> {
-    let &SettingsRecord { simplify_cells, spans, .. } = record;
-    Some(RoadSettings { table, filter: filter(record)?, simplify_cells, spans })
+    let mut roads = RoadSettings { filter: filter(record)?, ..RoadSettings::of(table) };
+    corniche_settings::placed! { Roads [take] (record into roads) }
+    Some(roads)
 }
 
 /// Which levels show which class; `None` where the record makes no filter.

@@ -1,5 +1,6 @@
 //! Each setting that decides bytes changes the record and its hash.
 
+use corniche_dem::PlanOptions;
 use corniche_geom::Cell;
 use corniche_tileset::ReliefLevels;
 

@@ -5,22 +5,22 @@ mod counts;
 mod credits;
 mod inputs;
 mod levels;
-mod relief_levels;
 mod sample_sums;
 mod sv_tails;
 
 pub(crate) mod check;
 
 pub use contents::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    DatumOperationRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest,
-    OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord, SettingsRecord,
-    SpanCounts, SpansRecord, VerticalRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreasRecord, ClipRecord, DatumOperationRecord,
+    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, OuterGround,
+    PhotoLevelRecord, ScaleRecord, SpanCounts, SpansRecord, VerticalRecord,
+};
+pub use corniche_settings::{
+    AreaTableRecord, PhotoRecord, PolygonRecord, ReliefLevels, SettingsRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use credits::{CreditError, check_credit, to_credit};
 pub use inputs::{InputKind, InputRecord};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
-pub use relief_levels::ReliefLevels;
 pub use sample_sums::SampleSums;
 pub use sv_tails::{SvTail, SvTails};

@@ -17,13 +17,12 @@ const SINGLE: [&str; 11] = [
 ];
 
 /// Doc comments that become help and schemas, which people read beside the option or field.
-const TOLD_TO_USERS: [&str; 6] = [
+const TOLD_TO_USERS: [&str; 5] = [
     "crates/cli/src/args",
     "crates/cli/src/documents",
     "crates/presets/src/config.rs",
     "crates/presets/src/files.rs",
-    "crates/presets/src/photo.rs",
-    "crates/presets/src/relief.rs",
+    "crates/settings/src/table.rs",
 ];
 
 /// Files of products, without their tests and without what is told to users.

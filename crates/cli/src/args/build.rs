@@ -7,33 +7,15 @@ use std::{
 
 use clap::Args;
 use corniche_presets::{
-    AreaOptions, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions, is_photo_off,
+    AreaOptions, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
+    is_photo_off,
 };
 
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
-    /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence. Also folders, patterns such as 'a/*.tif', @LIST (a
-    /// text file with a name on each line), .gz, .zip, and https:// and s3:// addresses
-    #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present_any = ["terrain_of", "config"])]
-    pub(crate) dem: Vec<PathBuf>,
-    /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters;
-    /// the result is the same, sooner. Terrain settings and credits that are not given are the package's
-    #[arg(long = "terrain", value_name = "PACKAGE", conflicts_with = "dem")]
-    pub(crate) terrain_of: Option<PathBuf>,
-    /// OpenStreetMap extract (.osm.pbf), or several: what is in two of them counts once. Also folders, patterns and @LIST. Without it the package
-    /// is terrain alone
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) osm: Vec<PathBuf>,
-    /// Convert only what lies under the polygons of this vector file (any format GDAL reads; all of its polygons together). Ground reaches
-    /// less than a cell beyond them, roads end at them; the grid is that of the whole DEM. With --bounds, both hold
-    #[arg(long, value_name = "FILE")]
-    pub(crate) polygon: Option<PathBuf>,
-    /// Photos of the ground from above (orthophotos) to lay on it: 8-bit colours, grey or palette, any format and CRS that GDAL reads; where they
-    /// overlap, the first lies on top. Also folders, patterns, @LIST, archives and addresses, as for --dem. off: none [default: those of
-    /// --terrain, else none]
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) photo: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) inputs: InputFiles,
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
@@ -59,9 +41,10 @@ pub(crate) struct WorkArgs {
 impl WorkArgs {
     /// All files that are read.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm);
-        let photo = if is_photo_off(&self.photo) { &[] } else { &self.photo[..] };
-        files.chain(&self.polygon).chain(photo).chain(&self.config).map(PathBuf::as_path)
+        let InputFiles { dem, terrain, osm, polygon, photo } = &self.inputs;
+        let photo = if is_photo_off(photo) { &[] } else { &photo[..] };
+        let files = dem.iter().chain(terrain).chain(osm).chain(polygon).chain(photo);
+        files.chain(&self.config).map(PathBuf::as_path)
     }
 }
 

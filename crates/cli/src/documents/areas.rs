@@ -2,21 +2,11 @@
 
 use corniche_areas::AreaClass;
 use corniche_geom::GridFrame;
-use corniche_tileset::{AreaLevelRecord, AreaRecord, AreaTableRecord, AreasRecord};
+use corniche_tileset::{AreaLevelRecord, AreaRecord, AreasRecord};
 use serde::Serialize;
 
 #[cfg(test)]
 use crate::documents::record_schemas::AreaLevelDocument;
-
-/// The table of classes of areas.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct AreaTableDocument {
-    /// Its name.
-    table: String,
-    /// SHA-256 of its text.
-    sha256: String,
-}
 
 /// The areas of a package.
 #[derive(Debug, Serialize)]
@@ -92,12 +82,6 @@ impl TileAreaDocument {
                 .map(|polygon| polygon.rings.into_iter().map(ring).collect())
                 .collect(),
         }
-    }
-}
-
-impl From<AreaTableRecord> for AreaTableDocument {
-    fn from(AreaTableRecord { table, sha256 }: AreaTableRecord) -> Self {
-        Self { table, sha256 }
     }
 }
 

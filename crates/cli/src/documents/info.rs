@@ -7,8 +7,8 @@ mod levels;
 use corniche_areas::ClassedLayer;
 use corniche_geom::CoordinateTable;
 use corniche_tileset::{
-    DatumOperationRecord, InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord,
-    ScaleRecord, SettingsRecord, VerticalRecord,
+    DatumOperationRecord, InputRecord, Manifest, PhotoLevelRecord, ScaleRecord, SettingsRecord,
+    VerticalRecord,
 };
 use serde::Serialize;
 
@@ -18,10 +18,7 @@ use self::{
     levels::LevelDocument,
 };
 use super::{
-    areas::{AreaTableDocument, AreasDocument},
-    growth::RowDocument,
-    lines::LinesDocument,
-    spans::SpansDocument,
+    areas::AreasDocument, growth::RowDocument, lines::LinesDocument, spans::SpansDocument,
 };
 
 /// What a package holds.
@@ -81,7 +78,9 @@ pub(crate) struct ManifestDocument {
     /// One for each level, root first.
     levels: Vec<LevelDocument>,
     /// Settings that determine the bytes.
-    settings: SettingsDocument,
+    #[serde(serialize_with = "SettingsRecord::serialize_document")]
+    #[cfg_attr(test, schemars(with = "super::settings_schema_tests::SettingsDocument"))]
+    settings: SettingsRecord,
     /// SHA-256 of the settings.
     settings_sha256: String,
     /// What was read.
@@ -157,86 +156,6 @@ struct DatumOperationDocument {
     ballpark: bool,
 }
 
-/// Settings that determine the bytes of a package.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct SettingsDocument {
-    /// `--max-error`.
-    max_error_m: f64,
-    /// `--fill-voids`.
-    fill_voids: u32,
-    /// Each `--nodata`, in their order.
-    nodata: Vec<f64>,
-    /// `--height-range`, if given.
-    height_range_m: Option<[f64; 2]>,
-    /// `--dem-band`, if given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    dem_band: Option<u32>,
-    /// `--dem-crs`, if given.
-    dem_crs: Option<String>,
-    /// `--dem-vertical-crs`, if given.
-    dem_vertical_crs: Option<String>,
-    /// `--vertical-crs`, if given.
-    vertical_crs: Option<String>,
-    /// `--vertical-shift`; 0 when not given.
-    vertical_shift_m: f64,
-    /// `--vertical-unit`, if given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    vertical_unit: Option<String>,
-    /// `--crs`, if given.
-    crs: Option<String>,
-    /// `--cell`, if given, east and north.
-    cell_m: Option<[f64; 2]>,
-    /// `--cell-every`, if given.
-    cell_every: Option<u32>,
-    /// `--scale-latitude`, if given.
-    scale_latitude_deg: Option<f64>,
-    /// `--bounds`: west, south, east and north in WGS84 degrees; left out where not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bounds_deg: Option<[f64; 4]>,
-    /// `--polygon`; left out where not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    polygon: Option<PolygonDocument>,
-    /// `--relief`: off, finest or full.
-    relief: &'static str,
-    /// Name of the FRC table.
-    frc_table: String,
-    /// SHA-256 of the FRC table's text.
-    frc_table_sha256: String,
-    /// What the roads of each class are called, class 0 first; left out for FRC tables that come with the program.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    class_labels: Option<Vec<String>>,
-    /// `--classes`: the classes that become roads; left out where the table decides.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    classes: Option<Vec<u8>>,
-    /// Coarsest cell, metres, at which each class is still shown, class 0 first; null: on every level.
-    class_max_cell_m: Vec<Option<f64>>,
-    /// Simplification tolerance in cells of the level; 0 is off.
-    simplify_cells: f64,
-    /// How photos were made; left out without any.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    photo: Option<PhotoDocument>,
-    /// Which objects are areas; left out without any.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    areas: Option<AreaTableDocument>,
-    /// Whether there are boundaries; left out without any.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    boundaries: bool,
-    /// Whether bridges and tunnels leave the ground; left out without.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    spans: bool,
-}
-
-/// How the photos of a package were made.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct PhotoDocument {
-    /// A cell of the finest level has 2^levels texels along each side.
-    levels: u8,
-    /// JPEG's quality, from 1 to 100.
-    quality: u8,
-}
-
 /// The photos of a level.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -247,16 +166,6 @@ struct PhotoLevelDocument {
     tiles: u64,
     /// Stored bytes of their photos.
     bytes: u64,
-}
-
-/// The polygon that the package was cut with.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct PolygonDocument {
-    /// File name without folders.
-    name: String,
-    /// SHA-256 of its coordinate system and corners, whatever the format of the file.
-    sha256: String,
 }
 
 /// An input file.
@@ -310,7 +219,7 @@ impl From<&Manifest> for ManifestDocument {
             datum_operations: manifest.datum_operations.into_iter().map(Into::into).collect(),
             coordinates: manifest.coordinates,
             levels: manifest.levels.iter().map(Into::into).collect(),
-            settings: manifest.settings.into(),
+            settings: manifest.settings,
             settings_sha256: manifest.settings_sha256,
             inputs: manifest.inputs.into_iter().map(input).collect(),
             attribution: manifest.attribution,
@@ -335,47 +244,5 @@ impl From<DatumOperationRecord> for DatumOperationDocument {
     fn from(record: DatumOperationRecord) -> Self {
         let DatumOperationRecord { from, to, operation, accuracy_m, ballpark } = record;
         Self { from, to, operation, accuracy_m, ballpark }
-    }
-}
-
-impl From<PolygonRecord> for PolygonDocument {
-    fn from(PolygonRecord { name, sha256 }: PolygonRecord) -> Self {
-        Self { name, sha256 }
-    }
-}
-
-impl From<SettingsRecord> for SettingsDocument {
-    fn from(settings: SettingsRecord) -> Self {
-        Self {
-            max_error_m: settings.max_error_m,
-            fill_voids: settings.fill_voids,
-            nodata: settings.nodata,
-            height_range_m: settings.height_range_m,
-            dem_band: settings.dem_band,
-            dem_crs: settings.dem_crs,
-            dem_vertical_crs: settings.dem_vertical_crs,
-            vertical_crs: settings.vertical_crs,
-            vertical_shift_m: settings.vertical_shift_m,
-            vertical_unit: settings.vertical_unit,
-            crs: settings.crs,
-            cell_m: settings.cell_m.map(corniche_geom::Cell::to_array),
-            cell_every: settings.cell_every,
-            scale_latitude_deg: settings.scale_latitude_deg,
-            bounds_deg: settings.bounds_deg,
-            polygon: settings.polygon.map(PolygonDocument::from),
-            relief: settings.relief.name(),
-            frc_table: settings.frc_table,
-            frc_table_sha256: settings.frc_table_sha256,
-            class_labels: settings.class_labels,
-            classes: settings.classes,
-            class_max_cell_m: settings.class_max_cell_m,
-            simplify_cells: settings.simplify_cells,
-            photo: settings
-                .photo
-                .map(|PhotoRecord { levels, quality }| PhotoDocument { levels, quality }),
-            areas: settings.areas.map(Into::into),
-            boundaries: settings.boundaries,
-            spans: settings.spans,
-        }
     }
 }

@@ -2,10 +2,7 @@
 
 use std::fmt::Write as _;
 
-use corniche_tileset::{
-    DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, PolygonRecord,
-    SettingsRecord,
-};
+use corniche_tileset::{DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, SettingsRecord};
 
 use super::{
     document::document,
@@ -81,82 +78,76 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
     first.iter().enumerate().filter_map(difference).collect()
 }
 
+/// Settings that are not compared, or in words of their own.
+const NOT_AS_THEY_ARE: [&str; 16] = [
+    // These are what is studied.
+    "max_error_m",
+    "cell_m",
+    "cell_every",
+    // What was made of it is the package's CRS.
+    "crs",
+    // They change no road.
+    "relief",
+    "photo",
+    "areas",
+    "boundaries",
+    "spans",
+    // They follow from the table.
+    "class_labels",
+    // These have words of their own.
+    "height_range_m",
+    "scale_latitude_deg",
+    "frc_table",
+    "classes",
+    "class_max_cell_m",
+    "simplify_cells",
+];
+
 /// Everything that growth depends on, but for cell and error bound, which are what is studied.
-fn properties(manifest: &Manifest) -> [Property; 19] {
-    // All fields by name, so that a new setting cannot be forgotten here.
-    let SettingsRecord {
-        max_error_m: _,
-        cell_m: _,
-        cell_every: _,
-        // What was made of it is the package's CRS.
-        crs: _,
-        fill_voids,
-        nodata,
-        height_range_m,
-        dem_band,
-        dem_crs,
-        dem_vertical_crs,
-        vertical_crs,
-        vertical_shift_m,
-        vertical_unit,
-        scale_latitude_deg,
-        bounds_deg,
-        polygon,
-        // Roads do not depend on it.
-        relief: _,
-        frc_table,
-        frc_table_sha256,
-        // They follow from the table.
-        class_labels: _,
-        classes: chosen,
-        class_max_cell_m,
-        simplify_cells,
-        // Photos change no road.
-        photo: _,
-        areas: _,
-        boundaries: _,
-        spans: _,
-    } = &manifest.settings;
-    [
+fn properties(manifest: &Manifest) -> Vec<Property> {
+    let settings = &manifest.settings;
+    let mut facts = settings.facts();
+    facts.retain(|fact| !NOT_AS_THEY_ARE.contains(&fact.key));
+    // The value of a setting in one line, else what holds without it.
+    let mut take = |key: &str, without: &str| {
+        let place = facts.iter().position(|fact| fact.key == key);
+        let value = place.map(|place| facts.remove(place).value);
+        match value.as_deref() {
+            None | Some("not given" | "none") => without.to_owned(),
+            Some(value) => in_line(value).into_owned(),
+        }
+    };
+    let mut properties = vec![
         ("extract", inputs(manifest, &[InputKind::Osm])),
         ("elevation data", inputs(manifest, &InputKind::OF_TERRAIN)),
-        (
-            "band of the elevation data",
-            dem_band.map_or_else(|| "the only one".to_owned(), |n| n.to_string()),
-        ),
+        ("band of the elevation data", take("dem_band", "the only one")),
         ("operations between datums", datum_operations(&manifest.datum_operations)),
-        ("CRS of the elevation data", given(dem_crs.as_deref(), "as in its files")),
-        ("its vertical CRS", given(dem_vertical_crs.as_deref(), "as in its files")),
-        ("vertical CRS", given(vertical_crs.as_deref(), "that of the elevation data")),
-        ("vertical shift", format!("{vertical_shift_m} m")),
-        ("vertical unit", given(vertical_unit.as_deref(), "that of the elevation data")),
-        ("values without data", no_data(nodata)),
-        ("height range", height_range(*height_range_m)),
-        ("voids filled", format!("with data within {fill_voids} cells")),
-        ("classes", classes([frc_table, frc_table_sha256], chosen.as_deref())),
-        ("classes by level", classes_by_level(class_max_cell_m)),
-        ("simplification", simplification(*simplify_cells)),
+        ("CRS of the elevation data", take("dem_crs", "as in its files")),
+        ("its vertical CRS", take("dem_vertical_crs", "as in its files")),
+        ("vertical CRS", take("vertical_crs", "that of the elevation data")),
+        ("vertical shift", take("vertical_shift_m", "") + " m"),
+        ("vertical unit", take("vertical_unit", "that of the elevation data")),
+        ("values without data", take("nodata", "as in the files")),
+        ("height range", height_range(settings.height_range_m)),
+        ("voids filled", format!("with data within {} cells", take("fill_voids", ""))),
+        ("classes", classes(settings)),
+        ("classes by level", classes_by_level(&settings.class_max_cell_m)),
+        ("simplification", simplification(settings.simplify_cells)),
         ("CRS", in_line(&manifest.crs).into_owned()),
-        ("scale latitude", scale_latitude(*scale_latitude_deg)),
-        ("bounds", bounds(*bounds_deg)),
-        ("polygon", polygon.as_ref().map_or_else(|| "none".to_owned(), polygon_text)),
-    ]
-}
-
-/// What was given, else what holds without it.
-fn given(value: Option<&str>, without: &str) -> String {
-    value.map_or_else(|| without.to_owned(), |text| in_line(text).into_owned())
+        ("scale latitude", scale_latitude(settings.scale_latitude_deg)),
+        ("bounds", take("bounds_deg", "all of the elevation data")),
+        ("polygon", take("polygon", "none")),
+    ];
+    // New settings need no words of their own.
+    let others = facts.into_iter().map(|fact| (fact.name, in_line(&fact.value).into_owned()));
+    properties.extend(others);
+    properties
 }
 
 /// How positions came from one datum to another.
 fn datum_operations(found: &[DatumOperationRecord]) -> String {
     let texts: Vec<String> = found.iter().map(datum_operation).collect();
     if texts.is_empty() { "none".to_owned() } else { texts.join("; ") }
-}
-
-/// Values that mean "no data".
-fn no_data(values: &[f64]) -> String {
-    if values.is_empty() { "as in the files".to_owned() } else { list(values.iter()) }
 }
 
 /// Heights that samples may have.
@@ -174,20 +165,6 @@ fn scale_latitude(latitude_deg: Option<f64>) -> String {
     latitude_deg.map_or_else(|| "the default".to_owned(), |latitude| format!("{latitude}°"))
 }
 
-/// The rectangle that was asked for, as `--bounds` takes it.
-fn bounds(bounds_deg: Option<[f64; 4]>) -> String {
-    bounds_deg.map_or_else(
-        || "all of the elevation data".to_owned(),
-        |[west, south, east, north]| format!("{west},{south},{east},{north}"),
-    )
-}
-
-/// A polygon by name and hash.
-fn polygon_text(polygon: &PolygonRecord) -> String {
-    let hash = polygon.sha256.get(..12).unwrap_or_default();
-    format!("{} ({}…)", in_line(&polygon.name), in_line(hash))
-}
-
 /// The inputs of some kinds by name and hash.
 fn inputs(manifest: &Manifest, kinds: &[InputKind]) -> String {
     let of_kind = |input: &&InputRecord| kinds.iter().any(|kind| kind.is_of(input));
@@ -199,13 +176,14 @@ fn inputs(manifest: &Manifest, kinds: &[InputKind]) -> String {
 }
 
 /// Which classes are roads at all: the table by name and hash, and the classes that were chosen.
-fn classes([table, sha256]: [&str; 2], chosen: Option<&[u8]>) -> String {
-    let hash = sha256.get(..12).unwrap_or_default();
-    let chosen = chosen.map_or_else(
+fn classes(settings: &SettingsRecord) -> String {
+    let SettingsRecord { frc_table, frc_table_sha256, classes, .. } = settings;
+    let hash = frc_table_sha256.get(..12).unwrap_or_default();
+    let chosen = classes.as_ref().map_or_else(
         || "its classes".to_owned(),
         |classes| format!("classes {}", list(classes.iter())),
     );
-    format!("table {} ({}…), {chosen}", in_line(table), in_line(hash))
+    format!("table {} ({}…), {chosen}", in_line(frc_table), in_line(hash))
 }
 
 /// Which classes coarse levels show.

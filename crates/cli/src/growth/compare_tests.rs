@@ -1,5 +1,7 @@
 //! A comparison of packages names everything in which they are not alike.
 
+use corniche_tileset::PolygonRecord;
+
 use super::*;
 
 #[test]

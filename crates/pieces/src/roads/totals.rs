@@ -6,7 +6,6 @@ use corniche_geom::LatticePoint;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
 use corniche_spec::{
-    Loss,
     artifacts::{self, Kind},
 };
 use corniche_store::Artifacts;

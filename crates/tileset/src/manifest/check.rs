@@ -6,6 +6,7 @@
 use corniche_areas::{AreaClass, ClassedLayer};
 use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex, TileId};
 use corniche_roads::FrcTable;
+use corniche_settings::{MAX_MEASURE_M, MAX_NODATA};
 
 use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest, SpansRecord};
@@ -15,8 +16,6 @@ use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
 use crate::tile_order::pmtiles_order;
 
-/// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
-pub(crate) const MAX_MEASURE_M: f64 = 1e18;
 /// How far beyond a tile its roads reach at most: so many cells of its level and so many metres more. Writers take eight cells, or 40 true metres
 /// at a scale of 1000 at most where that is more, rounded up to whole finest cells.
 const MARGIN: (f64, f64) = (9.0, 4e4);
@@ -31,8 +30,6 @@ const MAX_COUNT: u64 = 1 << 61;
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// Working metres to a unit of the CRS, without its sign: a millimetre to a radian, and far beyond both.
 const FACTORS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
-/// More values that mean "no data" than any set of files has.
-const MAX_NODATA: usize = 64;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
@@ -220,9 +217,9 @@ impl Manifest {
 
     fn check_settings(&self) -> Result<(), String> {
         let settings = &self.settings;
-        measure("settings.max_error_m", settings.max_error_m)?;
-        measure("settings.simplify_cells", settings.simplify_cells)?;
-        all_positive("settings.cell_m", settings.cell_m.map_or([1.0; 2], Cell::to_array))?;
+        if let Some((key, wrong)) = settings.wrong_number() {
+            return that(false, &format!("settings.{key}"), wrong);
+        }
         if let Some(labels) = &settings.class_labels {
             let is_label = |label: &String| {
                 (1..=FrcTable::LONGEST_LABEL).contains(&label.chars().count())
@@ -231,30 +228,14 @@ impl Manifest {
             let is_right = labels.len() == CLASSES && labels.iter().all(is_label);
             that(is_right, "settings.class_labels", labels.join("; "))?;
         }
-        all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
-        that(
-            settings.nodata.len() <= MAX_NODATA,
-            "the number of settings.nodata",
-            settings.nodata.len(),
-        )?;
-        that(
-            settings.nodata.iter().all(|value| value.is_finite()),
-            "settings.nodata",
-            &settings.nodata,
-        )?;
-        if let Some([low_m, high_m]) = settings.height_range_m {
-            all_measures("settings.height_range_m", &[low_m, high_m])?;
-            that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])?;
+        for (name, count, most) in [
+            ("settings.nodata", settings.nodata.len(), MAX_NODATA),
+            ("settings.class_max_cell_m", settings.class_max_cell_m.len(), CLASSES),
+        ] {
+            that(count <= most, &format!("the number of {name}"), count)?;
         }
-        if let Some(bounds_deg) = settings.bounds_deg {
-            let are_degrees = bounds_deg.iter().all(|deg| deg.abs() <= 360.0);
-            that(are_degrees, "settings.bounds_deg", bounds_deg)?;
-        }
-        let cells = &settings.class_max_cell_m;
-        that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;
-        cells
-            .iter()
-            .try_for_each(|cell_m| measure("settings.class_max_cell_m", cell_m.unwrap_or(0.0)))
+        let [low_m, high_m] = settings.height_range_m.unwrap_or_default();
+        that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])
     }
 }
 

@@ -1,14 +1,13 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame, LatticePoint, NodeIndex};
-use corniche_roads::FunctionalRoadClass;
+use corniche_geom::{Bounds, CoordinateTable, GridFrame, LatticePoint, NodeIndex};
+use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::inputs::{InputKind, InputRecord};
 use crate::manifest::levels::LevelRecord;
-use crate::manifest::relief_levels::ReliefLevels;
 use crate::manifest::sv_tails::SvTail;
 
 /// The table of contents of a package: its JSON metadata.
@@ -240,102 +239,6 @@ impl VerticalRecord {
     }
 }
 
-/// Settings that determine the bytes of a package.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SettingsRecord {
-    /// `--max-error`.
-    pub max_error_m: f64,
-    /// `--fill-voids`.
-    pub fill_voids: u32,
-    /// Each `--nodata`, in their order.
-    pub nodata: Vec<f64>,
-    /// `--height-range`, if given.
-    pub height_range_m: Option<[f64; 2]>,
-    /// `--dem-band`, if given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dem_band: Option<u32>,
-    /// `--dem-crs`, if given.
-    pub dem_crs: Option<String>,
-    /// `--dem-vertical-crs`, if given.
-    pub dem_vertical_crs: Option<String>,
-    /// `--vertical-crs`, if given.
-    pub vertical_crs: Option<String>,
-    /// `--vertical-shift`; 0 when not given.
-    pub vertical_shift_m: f64,
-    /// `--vertical-unit`, if given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub vertical_unit: Option<String>,
-    /// `--crs`, if given.
-    pub crs: Option<String>,
-    /// `--cell`, if given.
-    pub cell_m: Option<Cell>,
-    /// `--cell-every`, if given.
-    pub cell_every: Option<u32>,
-    /// `--scale-latitude`, if given.
-    pub scale_latitude_deg: Option<f64>,
-    /// `--bounds`, if given: west, south, east and north in WGS84 degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bounds_deg: Option<[f64; 4]>,
-    /// `--polygon`, if given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub polygon: Option<PolygonRecord>,
-    /// `--relief`, given or by default.
-    #[serde(default, skip_serializing_if = "ReliefLevels::is_off")]
-    pub relief: ReliefLevels,
-    /// Name of the FRC table.
-    pub frc_table: String,
-    /// SHA-256 of the FRC table's text.
-    pub frc_table_sha256: String,
-    /// What the roads of each class are called, 0 first, where the FRC table does not come with the program.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub class_labels: Option<Vec<String>>,
-    /// Classes that are on, where `--classes` says other ones than the table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub classes: Option<Vec<u8>>,
-    /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None`: on every level.
-    pub class_max_cell_m: Vec<Option<f64>>,
-    /// Simplification tolerance in cells of the level; 0 is off.
-    pub simplify_cells: f64,
-    /// How photos were made (`--photo`); left out without any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub photo: Option<PhotoRecord>,
-    /// Which objects are areas (`--areas`); left out without any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub areas: Option<AreaTableRecord>,
-    /// Whether there are boundaries (`--boundaries`); left out without any.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub boundaries: bool,
-    /// Whether bridges and tunnels leave the ground (all but `--structures ground`); left out without.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub spans: bool,
-}
-
-impl SettingsRecord {
-    /// The layers of lines that there are.
-    #[must_use]
-    pub fn lines(&self) -> Vec<ClassedLayer> {
-        let has = |layer: &ClassedLayer| match layer {
-            ClassedLayer::Boundaries => self.boundaries,
-        };
-        ClassedLayer::ALL.into_iter().filter(has).collect()
-    }
-
-    /// What the roads of each class are called, 0 first, where it is recorded.
-    #[must_use]
-    pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
-        self.class_labels.clone()?.try_into().ok()
-    }
-}
-
-/// The table of classes of areas.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AreaTableRecord {
-    /// Its name.
-    pub table: String,
-    /// SHA-256 of its text.
-    pub sha256: String,
-}
-
 /// The areas of a package.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AreasRecord {
@@ -382,24 +285,6 @@ pub struct AreaLevelRecord {
     pub bytes: u64,
 }
 
-/// How the photos of a package were made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PhotoRecord {
-    /// A cell of the finest level has 2^levels texels along each side: `--photo-levels`, or what follows from the photos.
-    pub levels: u8,
-    /// `--photo-quality`: JPEG's, from 1 to 100.
-    pub quality: u8,
-}
-
-impl PhotoRecord {
-    /// A cell of a level has 2 to this power texels along each side. A coarse tile is drawn while its cells look like some pixels, so
-    /// its texels are half a cell, unless the photos have no such detail.
-    #[must_use]
-    pub fn levels_on(self, level: u8, finest_level: u8) -> u8 {
-        if level == finest_level { self.levels } else { self.levels.min(1) }
-    }
-}
-
 /// The photos of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoLevelRecord {
@@ -409,15 +294,6 @@ pub struct PhotoLevelRecord {
     pub tiles: u64,
     /// Stored bytes of their photo sections.
     pub bytes: u64,
-}
-
-/// The polygon that a package was cut with.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PolygonRecord {
-    /// File name without folders.
-    pub name: String,
-    /// SHA-256 of its coordinate system and corners, whatever the format of the file.
-    pub sha256: String,
 }
 
 /// The bridges and tunnels of a package, whose heights are estimates.

@@ -5,9 +5,9 @@ use corniche_geom::Cell;
 use corniche_varints::push_varint;
 
 use crate::limits::MAX_TRIANGLES;
-use crate::manifest::check::MAX_MEASURE_M;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
+use corniche_settings::MAX_MEASURE_M;
 
 /// The fixed part of the section.
 pub(crate) struct Record {

@@ -38,10 +38,4 @@ impl ReliefLevels {
             Self::Full => true,
         }
     }
-
-    /// Whether this is [`ReliefLevels::Off`], for serde.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-    pub(crate) fn is_off(&self) -> bool {
-        *self == Self::Off
-    }
 }
