@@ -1,7 +1,8 @@
 //! What heights of a package are: the elevation files that it was made from, what they are measured
 //! from, and how far heights may be from them, in words.
 
-use corniche_dem::{Dem, GridPlan, RecordedHeights};
+use corniche_dem::{Dem, GridPlan};
+use corniche_gis::RecordedHeights;
 use corniche_tileset::{FilePackage, Manifest, VerticalRecord};
 
 use crate::error::DatumError;

@@ -20,11 +20,11 @@ use corniche_gis::DatumOperation;
 use corniche_ground::terrain::ground::GroundSource;
 use corniche_plan::{BuildPlan, Opened, check_room, network_differences};
 use corniche_spec::{
-    BuildSettings, Observer, PlanSettings, TerrainSettings, inputs::InputKind,
-    memory_shares::MemoryShares, settings_record,
+    BuildSettings, Observer, PlanSettings, TerrainSettings, memory_shares::MemoryShares,
+    settings_record,
 };
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
-use corniche_tileset::Manifest;
+use corniche_tileset::{InputKind, Manifest};
 
 use self::destination::Destination;
 use crate::{

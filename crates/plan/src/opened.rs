@@ -9,11 +9,11 @@ use corniche_ground::terrain::{ground::GroundSource, recorded::RecordedTerrain};
 use corniche_ground::{TerrainError, photos::source::PhotoSource};
 use corniche_spec::{
     PlanSettings, TerrainSettings,
-    inputs::{InputKind, Inputs, OtherInputs, PlannedInput},
+    inputs::{Inputs, OtherInputs, PlannedInput},
     levels::{Levels, most_scale},
     settings_record, usual_max_error_m,
 };
-use corniche_tileset::ReliefLevels;
+use corniche_tileset::{InputKind, ReliefLevels};
 
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::PlanError;

@@ -4,12 +4,9 @@ use std::path::PathBuf;
 
 use corniche_dem::{Dem, GridPlan, OpenDemError, OpenOptions};
 use corniche_spec::{
-    Observer,
-    data_outline::data_outline,
-    inputs::{InputKind, Inputs},
-    manifest_texts, settings_record,
+    Observer, data_outline::data_outline, inputs::Inputs, manifest_texts, settings_record,
 };
-use corniche_tileset::{InputRecord, Manifest};
+use corniche_tileset::{InputKind, InputRecord, Manifest};
 
 use super::{
     checks::{Check, CheckId, as_json},

@@ -1,7 +1,7 @@
 //! Parts of the manifest that follow from other parts: levels from the settings, and texts that are always the same.
 
-use corniche_spec::{Loss, inputs::InputKind, levels::Levels, manifest_texts, settings_record};
-use corniche_tileset::Manifest;
+use corniche_spec::{Loss, levels::Levels, manifest_texts, settings_record};
+use corniche_tileset::{InputKind, Manifest};
 
 use super::checks::{CheckId, Findings, or_none};
 

@@ -21,13 +21,13 @@ use corniche_roads::FrcTable;
 use corniche_spec::{
     Observer,
     data_tiles::DataTiles,
-    inputs::{InputKind, Inputs},
+    inputs::Inputs,
     levels::{Levels, most_scale},
     settings_record,
     true_lengths::TrueLengths,
 };
 use corniche_store::Artifacts;
-use corniche_tileset::{InputRecord, Manifest, pmtiles_order};
+use corniche_tileset::{InputKind, InputRecord, Manifest, pmtiles_order};
 use corniche_work::{Silent, Stage, workers};
 
 use super::{

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 use corniche_geom::TileId;
 use corniche_ground::{photos::rasters, terrain::recorded_grid};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, Texels};
-use corniche_spec::{Observer, data_tiles::DataTiles, inputs::InputKind};
-use corniche_tileset::{FilePackage, InputRecord, Manifest, PHOTO_BORDER, PhotoRecord};
+use corniche_spec::{Observer, data_tiles::DataTiles};
+use corniche_tileset::{FilePackage, InputKind, InputRecord, Manifest, PHOTO_BORDER, PhotoRecord};
 use corniche_work::{Stage, workers};
 
 use super::{

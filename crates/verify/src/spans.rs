@@ -8,10 +8,10 @@ use std::{
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
-use corniche_spec::{Observer, inputs::InputKind};
+use corniche_spec::Observer;
 use corniche_tileset::{
-    Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode, decode_spans,
-    payload_sizes,
+    InputKind, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode,
+    decode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
 

@@ -3,11 +3,13 @@
 #![expect(dead_code, reason = "only their schemas are wanted")]
 
 use corniche_geom::NodeIndex;
-use corniche_pipeline::{ErrorFigures, Estimate, GapFigures, Job, MemoryEstimate, Rates};
+use corniche_pipeline::Job;
+use corniche_plan::{Estimate, MemoryEstimate, Rates};
 use corniche_tileset::{
     AreaLevelRecord, Distribution, LeftOutRecord, LineLevelRecord, RoadLoss, SampleCounts,
     SampleErrorRecord,
 };
+use corniche_verify::{ErrorFigures, GapFigures};
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::{Value, json, to_value};

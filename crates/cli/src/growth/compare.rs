@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use corniche_tileset::{DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, SettingsRecord};
+use corniche_tileset::{
+    DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, SettingsRecord,
+};
 
 use super::{
     document::document,

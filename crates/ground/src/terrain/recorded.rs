@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
 use corniche_gis::{CrsError, DemProjection, RecordedCrs};
-use corniche_spec::{TerrainSettings, inputs::InputKind, open_package, settings_record};
+use corniche_spec::{TerrainSettings, open_package, settings_record};
 use corniche_tileset::{
-    FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
+    FilePackage, InputKind, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
 };
 
 use super::recorded_grid;

@@ -5,9 +5,7 @@ use std::{cmp::Reverse, collections::BTreeMap};
 use corniche_geom::LatticePoint;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
-use corniche_spec::{
-    artifacts::{self, Kind},
-};
+use corniche_spec::artifacts::{self, Kind};
 use corniche_store::Artifacts;
 use serde::{Deserialize, Serialize};
 

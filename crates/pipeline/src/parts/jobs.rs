@@ -21,10 +21,10 @@ use corniche_spec::{
     PlanSettings, Resources,
     artifacts::{self, Kind},
     data_tiles::DataTiles,
-    inputs::InputKind,
     memory_shares::MemoryShares,
 };
 use corniche_store::Artifacts as _;
+use corniche_tileset::InputKind;
 
 use grounds::Grounds;
 pub use list::Job;

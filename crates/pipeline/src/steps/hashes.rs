@@ -4,9 +4,9 @@ use corniche_ground::photos::source::PhotoSource;
 use corniche_pieces::spans::totals::SpanTotals;
 use corniche_spec::{
     artifacts::{self, ArtifactError, Kind},
-    inputs::{InputKind, Inputs},
+    inputs::Inputs,
 };
-use corniche_tileset::InputRecord;
+use corniche_tileset::{InputKind, InputRecord};
 
 use crate::{BuildError, context::Context};
 
