@@ -1,44 +1,59 @@
 //! A map that a person moves, without a window, a page or a clock.
 //!
 //! ```text
-//!  inputs ──► controls ──► camera ──► tiles ──► changes for the graphics card
+//!  inputs ──► controls ──► camera ──► tiles ──► MapCanvas: pictures on the graphics card
 //!                 ▲                     │
 //!                 └── ground, heights ──┘◄── TileLoader: threads, or the workers of a page
 //! ```
 //!
-//! The window and the page in a browser are made of it. [`controls`] move the camera, [`Tiles`] chooses what is loaded, kept and drawn, and
-//! is the ground under the cursor; [`Recorder`] records the camera's way. Times are arguments.
+//! The window and the page in a browser are two faces of one [`Session`]: it has the state of the map and does what people ask of it.
+//! [`controls`] move its camera, [`Tiles`] chooses what is loaded, kept and drawn, and is the ground under the cursor; a [`MapCanvas`] is
+//! what it has on the graphics card. Times are arguments.
 //!
-//! This crate never draws, never opens a file and knows neither window system nor browser.
+//! This crate never draws but through `corniche-viewer`, never opens a file and knows neither window system nor browser.
 
 mod camera_control;
-mod camera_limits;
 mod clicks;
+mod commands;
 pub mod controls;
-mod first_view;
+mod drawing;
+mod first_tiles;
+mod flights;
+pub mod formatting;
+mod frame_pace;
 mod ground_probe;
+mod keys;
 #[cfg(not(target_arch = "wasm32"))]
 mod loader_threads;
-mod map_scene;
+mod map_canvas;
+mod notices;
+mod picked_road;
 #[doc(hidden)]
 pub mod polled_loader;
-mod recorder;
-mod request_of_view;
+mod session;
+mod settings;
+mod style_list;
 mod tile_loader;
 mod tiles;
-mod typed_place;
+mod views;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use loader_threads::LoaderThreads;
 pub use {
     camera_control::CameraControl,
-    camera_limits::{MAX_PITCH_DEG, limits},
-    first_view::first_view,
+    commands::{Command, DrawingCommand, Shot},
+    drawing::{ClockS, Drawing, DrawingContent, DrawingHandle, DrawnLine, SaveDrawing},
+    first_tiles::{FirstLook, KnownTiles, foreseen, sighted_ground},
+    flights::Flights,
+    frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
-    map_scene::MapScene,
-    recorder::Recorder,
-    request_of_view::{camera_request, request_of_view},
+    map_canvas::{Counts, MapCanvas, MapScene, PixelReading, Timing},
+    notices::{NotSaved, Notice, Notices},
+    picked_road::{PickPlace, PickedRoad},
+    session::{HURRY_S, Session, SessionStart, SessionStep},
+    settings::{Compare, MapSettings, Refinement, Visibility, range},
+    style_list::{NamedStyle, Reload, StyleList},
     tile_loader::{Loaded, TileLoader},
-    tiles::{Changes, ShownGround, Tiles},
-    typed_place::place_in_world,
+    tiles::{ShownGround, Tiles},
+    views::{MAX_PITCH_DEG, first_view},
 };

@@ -9,7 +9,10 @@ use futures_channel::oneshot;
 use js_sys::{Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
 
-use crate::{host::Host, problem::thrown, report::json};
+use crate::{
+    host::Host,
+    problem::{json, object, thrown},
+};
 
 /// Jobs that workers have.
 #[derive(Default)]
@@ -164,14 +167,4 @@ pub fn worker_failed(host: &Host, worker: u32, why: &str) {
     for job in failed {
         let _ = job.answer.send(Err(format!("a worker failed: {why}")));
     }
-}
-
-/// An object with these fields.
-pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
-    let object = Object::new();
-    for (name, value) in fields {
-        // Setting a field of an object of one's own cannot fail.
-        let _ = Reflect::set(&object, &(*name).into(), value);
-    }
-    object.into()
 }

@@ -8,7 +8,7 @@ use std::{
 };
 
 use corniche_geom::TileId;
-use corniche_live::{Loaded, TileLoader};
+use corniche_live::{Loaded, TileLoader, formatting::with_causes};
 use corniche_tileset::{OpenError, ReadError};
 use corniche_viewer::tiles::{LoadTileError, PackageTiles, TileGeometry};
 use futures_util::future::{AbortHandle, abortable};
@@ -17,7 +17,7 @@ use wasm_bindgen_futures::spawn_local;
 use crate::{
     decoders::{Decoders, Reading},
     host::Host,
-    problem::{Problem, with_causes},
+    problem::Problem,
     source::WebSource,
     timer::pause,
 };

@@ -1,37 +1,38 @@
 //! What a page can change of a map, as JSON.
 
+use corniche_live::{Compare, MapSettings, NamedStyle, StyleList, Visibility, controls::Inertia};
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_viewer::{ClassSet, Outline, RoadMethod, RoadOptions, Wireframe, range};
-use serde::{Deserialize, Deserializer, Serialize};
+use corniche_viewer::{ClassSet, OutOfRange, Outline, RoadMethod, RoadOptions, range};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::tables;
 
+/// Settings to change; those that are left out stay as they are.
+pub(crate) type Changes = Map<String, Value>;
+
+/// Settings for which `null` is a value. For others it says nothing.
+const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
+
 /// How roads are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Roads {
-    Geo,
-    Sv,
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "RoadMethod")]
+enum RoadMethodName {
+    #[serde(rename = "geo")]
+    Geometry,
+    #[serde(rename = "sv")]
+    ShadowVolumes,
+    #[serde(rename = "none")]
     None,
 }
 
-/// Whether one method is shown, or both are compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Compare {
-    Off,
-    /// GEO to the left of a divider, SV to the right.
-    Split,
-    /// Where GEO and SV show different classes.
-    Difference,
-}
-
 /// The edge around roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Edge {
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Outline")]
+enum OutlineName {
     #[serde(rename = "style")]
-    Style,
+    OfStyle,
     #[serde(rename = "none")]
     None,
     #[serde(rename = "3")]
@@ -47,8 +48,9 @@ pub(crate) enum Edge {
     clippy::struct_excessive_bools,
     reason = "they are boxes to tick, independent of each other"
 )]
-pub(crate) struct Settings {
-    pub(crate) roads: Roads,
+pub(crate) struct PageSettings {
+    #[serde(with = "RoadMethodName")]
+    pub(crate) roads: RoadMethod,
     pub(crate) compare: Compare,
     /// Position of the divider, as a share of the canvas's width.
     pub(crate) divider: f32,
@@ -56,7 +58,8 @@ pub(crate) struct Settings {
     pub(crate) classes: [bool; FunctionalRoadClass::COUNT],
     /// Factors on the style's widths, class 0 first.
     pub(crate) widths: [f32; FunctionalRoadClass::COUNT],
-    pub(crate) outline: Edge,
+    #[serde(with = "OutlineName")]
+    pub(crate) outline: Outline,
     /// The name of a style that comes with the program, or the address of an own one that the page keeps.
     pub(crate) style: String,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
@@ -75,49 +78,16 @@ pub(crate) struct Settings {
     pub(crate) inertia: bool,
 }
 
-/// Settings to change; those that are left out stay as they are.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-#[expect(clippy::option_option, reason = "JSON has a field with a value, one with null, and none")]
-pub(crate) struct Changes {
-    roads: Option<Roads>,
-    compare: Option<Compare>,
-    divider: Option<f32>,
-    classes: Option<[bool; FunctionalRoadClass::COUNT]>,
-    widths: Option<[f32; FunctionalRoadClass::COUNT]>,
-    outline: Option<Edge>,
-    style: Option<String>,
-    #[serde(deserialize_with = "said")]
-    photo: Option<Option<f32>>,
-    areas: Option<bool>,
-    boundaries: Option<bool>,
-    exaggeration: Option<f64>,
-    error_px: Option<f64>,
-    #[serde(deserialize_with = "said")]
-    cell_px: Option<Option<f64>>,
-    samples: Option<u32>,
-    wireframe: Option<bool>,
-    inertia: Option<bool>,
-}
-
-/// A value that is there, `null` among them.
-#[expect(clippy::option_option, reason = "as the fields that it reads")]
-fn said<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
-    deserializer: D,
-) -> Result<Option<Option<T>>, D::Error> {
-    Option::<T>::deserialize(deserializer).map(Some)
-}
-
-impl Default for Settings {
+impl Default for PageSettings {
     /// The settings with which `corniche render` draws without options.
     fn default() -> Self {
         Self {
-            roads: Roads::Geo,
+            roads: RoadMethod::Geometry,
             compare: Compare::Off,
             divider: 0.5,
             classes: [true; FunctionalRoadClass::COUNT],
             widths: [1.0; FunctionalRoadClass::COUNT],
-            outline: Edge::Style,
+            outline: Outline::OfStyle,
             style: "road-atlas".to_owned(),
             photo: None,
             areas: true,
@@ -132,128 +102,97 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl PageSettings {
     /// These settings with some of them changed: a JSON object with the fields to change.
     ///
     /// # Errors
     /// In words, when the text is no such object or a value is out of its range.
     pub(crate) fn changed_by(&self, changes: &str) -> Result<Self, String> {
-        let changes: Changes = serde_json::from_slice(changes.as_bytes())
-            .map_err(|error| format!("settings: {error}"))?;
-        self.changed(&changes)
+        let changes = serde_json::from_slice(changes.as_bytes());
+        self.changed(changes.map_err(|error| format!("settings: {error}"))?)
     }
 
     /// The same of changes that were read already.
     ///
     /// # Errors
-    /// In words, when a value is out of its range.
-    pub(crate) fn changed(&self, changes: &Changes) -> Result<Self, String> {
-        let changed = self.with(changes);
+    /// In words, when there is no such setting or a value is out of its range.
+    pub(crate) fn changed(&self, mut changes: Changes) -> Result<Self, String> {
+        let told = |error: serde_json::Error| format!("settings: {error}");
+        changes.retain(|name, value| !value.is_null() || WITH_NULL.contains(&name.as_str()));
+        let mut all = serde_json::to_value(self).map_err(told)?;
+        if let Value::Object(all) = &mut all {
+            all.extend(changes);
+        }
+        let changed: Self = serde_json::from_value(all).map_err(told)?;
         changed.check()?;
         Ok(changed)
     }
 
-    /// These settings with some of them changed, unchecked.
-    fn with(&self, changes: &Changes) -> Self {
-        Self {
-            roads: changes.roads.unwrap_or(self.roads),
-            compare: changes.compare.unwrap_or(self.compare),
-            divider: changes.divider.unwrap_or(self.divider),
-            classes: changes.classes.unwrap_or(self.classes),
-            widths: changes.widths.unwrap_or(self.widths),
-            outline: changes.outline.unwrap_or(self.outline),
-            style: changes.style.clone().unwrap_or_else(|| self.style.clone()),
-            photo: changes.photo.unwrap_or(self.photo),
-            areas: changes.areas.unwrap_or(self.areas),
-            boundaries: changes.boundaries.unwrap_or(self.boundaries),
-            exaggeration: changes.exaggeration.unwrap_or(self.exaggeration),
-            error_px: changes.error_px.unwrap_or(self.error_px),
-            cell_px: changes.cell_px.unwrap_or(self.cell_px),
-            samples: changes.samples.unwrap_or(self.samples),
-            wireframe: changes.wireframe.unwrap_or(self.wireframe),
-            inertia: changes.inertia.unwrap_or(self.inertia),
-        }
-    }
-
     fn check(&self) -> Result<(), String> {
-        let told = |error: corniche_viewer::OutOfRange| error.to_string();
+        let told = |error: OutOfRange| error.to_string();
         let cell_px = self.cell_px.unwrap_or(f64::INFINITY);
         range::check_ground(self.error_px, cell_px, self.exaggeration).map_err(told)?;
         range::check_supersampling(self.samples).map_err(told)?;
-        range::within("a divider", self.divider.into(), 0.0..=1.0, "0 to 1").map_err(told)?;
-        range::within("a photo", self.photo.unwrap_or(0.0).into(), 0.0..=1.0, "0 to 1")
-            .map_err(told)?;
+        let photo = self.photo.unwrap_or(0.0);
+        for (name, share) in [("a divider", self.divider), ("a photo", photo)] {
+            range::within(name, share.into(), 0.0..=1.0, "0 to 1").map_err(told)?;
+        }
         for factor in self.widths {
             range::within("a width factor", factor.into(), 0.01..=100.0, "0.01 to 100")
                 .map_err(told)?;
         }
-        self.look().map(|_| ())
+        self.style().map(|_| ())
     }
 
-    /// The style as it is drawn.
+    /// The style that is named, without what the other settings make of it.
     ///
     /// # Errors
     /// In words, when there is no such style.
-    pub(crate) fn look(&self) -> Result<Style, String> {
-        let mut style = tables::style(&self.style).ok_or_else(|| {
+    pub(crate) fn style(&self) -> Result<Style, String> {
+        tables::style(&self.style).ok_or_else(|| {
             let names = tables::style_names().join(", ");
             format!("there is no style {:?}; there are {names}", self.style)
-        })?;
-        style.photo = self.photo.unwrap_or(style.photo);
-        if !self.areas {
-            style = style.without_areas();
-        }
-        if !self.boundaries {
-            style = style.without_boundaries();
-        }
-        for (road, factor) in style.roads.iter_mut().zip(self.widths) {
-            *road = road.widened(factor);
-        }
-        Ok(style)
+        })
     }
 
-    /// The method, if one is shown.
-    fn method(&self) -> RoadMethod {
-        match self.roads {
-            Roads::Geo => RoadMethod::Geometry,
-            Roads::Sv => RoadMethod::ShadowVolumes,
-            Roads::None => RoadMethod::None,
-        }
+    /// The style as the one that a session can choose.
+    ///
+    /// # Errors
+    /// In words, when there is no such style.
+    pub(crate) fn style_list(&self) -> Result<StyleList, String> {
+        let named = NamedStyle { name: self.style.clone(), style: self.style()? };
+        Ok(StyleList::new(vec![named], None))
     }
 
-    /// How roads are drawn, by the method that is shown.
-    pub(crate) fn road_options(&self) -> RoadOptions {
+    /// Whether movements slow down gradually, in the words of the controls.
+    pub(crate) fn inertia(&self) -> Inertia {
+        if self.inertia { Inertia::On } else { Inertia::Off }
+    }
+
+    /// The same settings for a session.
+    pub(crate) fn of_session(&self) -> MapSettings {
+        let visibility = |is_shown| if is_shown { Visibility::Shown } else { Visibility::Hidden };
         let all = FunctionalRoadClass::all().zip(self.classes);
-        RoadOptions {
-            classes: all
-                .filter_map(|(class, is_shown)| is_shown.then_some(class))
-                .collect::<ClassSet>(),
-            outline: match self.outline {
-                Edge::Style => Outline::OfStyle,
-                Edge::None => Outline::None,
-                Edge::Kernel3 => Outline::Kernel3,
-                Edge::Kernel5 => Outline::Kernel5,
-            },
-            ..RoadOptions::of(self.method())
+        let shown = all.filter_map(|(class, is_shown)| is_shown.then_some(class));
+        let roads = RoadOptions {
+            classes: shown.collect::<ClassSet>(),
+            outline: self.outline,
+            ..RoadOptions::of(self.roads)
+        };
+        MapSettings {
+            compare: self.compare,
+            divider_share: self.divider,
+            width_factors: self.widths,
+            photo: self.photo,
+            areas: visibility(self.areas),
+            boundaries: visibility(self.boundaries),
+            exaggeration: self.exaggeration,
+            screen_space_error_px: self.error_px,
+            cell_px: self.cell_px.unwrap_or(f64::INFINITY),
+            samples_per_side: self.samples,
+            is_wireframe: self.wireframe,
+            ..MapSettings::usual(roads)
         }
-    }
-
-    /// The options of the roads for each picture: one picture, or GEO and SV.
-    pub(crate) fn pictures(&self) -> Vec<RoadOptions> {
-        let roads = self.road_options();
-        match self.compare {
-            Compare::Off => vec![roads],
-            Compare::Split | Compare::Difference => {
-                [RoadMethod::Geometry, RoadMethod::ShadowVolumes]
-                    .map(|method| RoadOptions { method, ..roads })
-                    .into()
-            }
-        }
-    }
-
-    /// Whether the edges of triangles are drawn, in the viewer's words.
-    pub(crate) fn edges(&self) -> Wireframe {
-        if self.wireframe { Wireframe::Shown } else { Wireframe::Hidden }
     }
 }
 

@@ -1,19 +1,28 @@
 //! Settings of the page change what they name and nothing else.
 
+use corniche_viewer::Wireframe;
+
 use super::*;
 
 #[test]
 fn what_is_not_named_stays_and_what_is_named_changes() {
-    let usual = Settings::default();
+    let usual = PageSettings::default();
     let changed = usual.changed_by(r#"{"roads": "sv", "cell_px": null, "photo": 0.5}"#).unwrap();
     assert_eq!(
         changed,
-        Settings { roads: Roads::Sv, cell_px: None, photo: Some(0.5), ..usual.clone() }
+        PageSettings {
+            roads: RoadMethod::ShadowVolumes,
+            cell_px: None,
+            photo: Some(0.5),
+            ..usual.clone()
+        }
     );
-    assert_eq!(changed.road_options().method, RoadMethod::ShadowVolumes);
-    assert_eq!(changed.edges(), Wireframe::Hidden);
+    assert_eq!(changed.of_session().roads.method, RoadMethod::ShadowVolumes);
+    assert_eq!(changed.of_session().wireframe(), Wireframe::Hidden);
     let edges = usual.changed_by(r#"{"wireframe": true}"#).unwrap();
-    assert_eq!(edges.edges(), Wireframe::Shown);
+    assert_eq!(edges.of_session().wireframe(), Wireframe::Shown);
+    let nothing = usual.changed_by(r#"{"roads": null, "divider": null}"#).unwrap();
+    assert_eq!(nothing, usual);
     let text = serde_json::to_string(&changed).unwrap();
     assert_eq!(usual.changed_by(&text).unwrap(), changed);
     let both = usual
@@ -21,10 +30,12 @@ fn what_is_not_named_stays_and_what_is_named_changes() {
             r#"{"compare": "split", "classes": [true,false,true,true,true,true,true,true,true]}"#,
         )
         .unwrap();
-    let methods: Vec<RoadMethod> = both.pictures().iter().map(|roads| roads.method).collect();
+    let MapSettings { roads, compare, .. } = both.of_session();
+    let both = compare.pictures(roads);
+    let methods: Vec<RoadMethod> = both.iter().map(|roads| roads.method).collect();
     assert_eq!(methods, [RoadMethod::Geometry, RoadMethod::ShadowVolumes]);
     let hidden = FunctionalRoadClass::new(1).unwrap();
-    assert!(both.pictures().iter().all(|roads| !roads.classes.contains(hidden)));
+    assert!(both.iter().all(|roads| !roads.classes.contains(hidden)));
 }
 
 #[test]
@@ -39,18 +50,20 @@ fn what_cannot_be_is_told_in_words() {
         (r#"{"divider": 2}"#, "0 to 1"),
         (r#"{"style": "neon"}"#, "there is no style \"neon\"; there are road-atlas"),
     ] {
-        let why = Settings::default().changed_by(changes).unwrap_err();
+        let why = PageSettings::default().changed_by(changes).unwrap_err();
         assert!(why.contains(told), "{changes}: {why}");
     }
 }
 
 #[test]
 fn widths_and_layers_change_the_style() {
-    let usual = Settings::default().look().unwrap();
-    let changed = Settings::default()
+    let look =
+        |settings: &PageSettings| settings.of_session().applied_to(&settings.style().unwrap());
+    let usual = look(&PageSettings::default());
+    let changed = PageSettings::default()
         .changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "areas": false, "boundaries": false}"#)
         .unwrap();
-    let style = changed.look().unwrap();
+    let style = look(&changed);
     assert!((style.roads[0].width_m / usual.roads[0].width_m - 2.0).abs() < 1e-6);
     assert!(!style.has_areas() && !style.has_boundaries() && usual.has_areas());
 }

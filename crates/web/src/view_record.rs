@@ -1,12 +1,6 @@
 //! Where a map looks, as JSON.
 
-use corniche_live::controls::View;
-use corniche_tileset::Manifest;
-use corniche_viewer::{
-    CameraRequest, OffGround, SightedGround,
-    camera::{Camera, Orientation},
-};
-use glam::DVec3;
+use corniche_viewer::{CameraRequest, camera::Orientation};
 use serde::{Deserialize, Serialize};
 
 /// Where a map looks: at a place, from a distance in a direction, or straight from above with parallel rays.
@@ -88,39 +82,4 @@ impl ViewRecord {
         let distance_m = self.distance.unwrap_or(USUAL_DISTANCE_M);
         CameraRequest::LookAt { lon_deg, lat_deg, height_m: self.height, distance_m, orientation }
     }
-}
-
-/// The view that a request asks for, over this ground. World heights are `vertical_scale` times true ones.
-///
-/// # Errors
-/// When the place has no ground, and no height is given.
-pub(crate) fn view_on(
-    request: CameraRequest,
-    manifest: &Manifest,
-    ground: SightedGround,
-    vertical_scale: f64,
-    size_px: [u32; 2],
-) -> Result<View, OffGround> {
-    let camera = request.camera(manifest, ground, vertical_scale, size_px)?;
-    let heights = ground.heights_m.map(|height_m| height_m * vertical_scale);
-    Ok(view_of(request, &camera, manifest, heights))
-}
-
-/// The view of a request from above, or of the camera that a request gave.
-fn view_of(
-    request: CameraRequest,
-    camera: &Camera,
-    manifest: &Manifest,
-    heights: [f64; 2],
-) -> View {
-    let orientation = request.orientation();
-    let view = View::of(camera, orientation);
-    let CameraRequest::FromAbove { pixel_m, .. } = request else { return view };
-    let target = camera.target_in_world();
-    let at_one_m =
-        Camera::look_at(DVec3::ZERO, 1.0, orientation, camera.size_px()).pixel_at_unit_depth_m();
-    let focus_m = pixel_m * manifest.point_scale / at_one_m;
-    let middle = heights[0].midpoint(heights[1]);
-    let eye_in_world = DVec3::new(target.x, target.y, middle + focus_m);
-    View { eye_in_world, focus_m, from_above: Some(heights), ..view }
 }

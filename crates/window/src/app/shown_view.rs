@@ -1,23 +1,21 @@
 //! The view as a request that `render` understands.
 
-use corniche_live::request_of_view;
+use corniche_live::Compare;
 use corniche_viewer::ClassSet;
 
-use super::{App, ground};
-use crate::{ShownView, settings::Compare};
+use super::App;
+use crate::ShownView;
 
 impl App {
     /// What is shown, and in words what no command can tell of it. `None` where the style has no name.
     pub(crate) fn shown_view(&self) -> Option<(ShownView, String)> {
-        let ground = ground(&self.tiles, &self.settings, &self.package);
-        let (view, size_px) = (self.camera.view(), self.camera.size_px());
-        let settings = &self.settings;
-        let scale = self.package.vertical_scale(settings.exaggeration);
+        let session = &self.session;
+        let settings = &session.settings;
         let shown = ShownView {
-            camera: request_of_view(&view, &ground, scale, self.package.manifest(), size_px),
-            size_px,
+            camera: session.request(),
+            size_px: session.camera.size_px(),
             roads: settings.roads,
-            style: self.styles.names().get(settings.style)?.clone(),
+            style: session.styles.names().get(settings.style)?.clone(),
             photo: settings.photo,
             areas: settings.areas,
             boundaries: settings.boundaries,

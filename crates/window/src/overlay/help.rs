@@ -1,12 +1,9 @@
 //! The page of keys and mouse.
 
-use egui::{CornerRadius, Grid, Rect, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2};
+use corniche_live::Command;
+use egui::{Grid, Rect, RichText, ScrollArea, Ui, UiBuilder, vec2};
 
-use super::{
-    answer::OverlayAnswer,
-    palette::{CHALK, MARGIN, SLATE},
-};
-use crate::command::Command;
+use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE, framed};
 
 /// The page is no larger than this, points.
 const MOST: [f32; 2] = [470.0, 630.0];
@@ -44,8 +41,7 @@ pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut OverlayAnswer) {
     let room = room.shrink(MARGIN);
     let size = vec2(MOST[0].min(room.width()), MOST[1].min(room.height()));
     let plate = Rect::from_center_size(room.center(), size);
-    let stroke = Stroke::new(1.0, CHALK.gamma_multiply(0.5));
-    ui.painter().rect(plate, CornerRadius::same(4), SLATE, stroke, egui::StrokeKind::Inside);
+    framed(ui.painter(), plate, SLATE, CHALK.gamma_multiply(0.5));
     answer.occupied.push(plate);
     let inner = plate.shrink(10.0);
     let mut page = ui.new_child(UiBuilder::new().max_rect(inner));

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use corniche_live::LoaderThreads;
+use corniche_live::{ClockS, LoaderThreads, NotSaved, Redraw};
 use winit::{
     event::WindowEvent,
     event_loop::{ActiveEventLoop, EventLoopProxy},
@@ -11,15 +11,15 @@ use winit::{
 
 use super::{
     event_loop::{News, new_window},
-    files::FileWriter,
     first_tiles::OpenedPackage,
     inputs::{self, EndKey, Inputs},
     screen::{Acquired, Screen},
 };
 use crate::{
-    ClockS, NotSaved, WindowError, WindowRequest,
-    app::{App, AppPlatform, FrameInput, Redraw},
+    WindowError, WindowRequest,
+    app::{App, AppPlatform, FrameInput},
     canvas::Canvas,
+    files::FileWriter,
 };
 
 /// A device that is lost again this soon is taken to be lost for ever.
@@ -62,7 +62,7 @@ impl OpenWindow {
         let size_px = screen.size_px().map(|side| side.max(1));
         let ui = new_ui(None);
         let pixels_per_point = egui_winit::pixels_per_point(&ui, &window);
-        let files = Box::new(FileWriter::new(request.folder.clone(), Arc::clone(&wake)));
+        let files = FileWriter::new(request.folder.clone(), Arc::clone(&wake));
         let threads = LoaderThreads::usual_number();
         let room = request.budget.tiles_in_flight;
         let loader = LoaderThreads::new(&package.tiles, threads, room, &wake)
@@ -70,16 +70,9 @@ impl OpenWindow {
         let begun = std::time::Instant::now();
         let clock_s: ClockS = Box::new(move || begun.elapsed().as_secs_f64());
         let platform = AppPlatform { loader: Box::new(loader), files, clock_s };
-        let place_height_m = package.place_height_m(request.camera)?;
-        let app = App::new(
-            request,
-            package.shown,
-            place_height_m,
-            &canvas,
-            platform,
-            size_px,
-            pixels_per_point,
-        )?;
+        let ground = package.ground(&request)?;
+        let screen_size = (size_px, pixels_per_point);
+        let app = App::new(request, package.tiles, ground, canvas.gpu(), platform, screen_size)?;
         let ui_state = new_ui_state(&ui, &window, &canvas);
         window.request_redraw();
         Ok(Self {
@@ -213,7 +206,7 @@ impl OpenWindow {
         // The panel's textures were on the card too; a new context uploads them again.
         self.ui = new_ui(Some(&self.ui));
         self.ui_state = new_ui_state(&self.ui, &self.window, &self.canvas);
-        self.app.begin_again(&self.canvas);
+        self.app.begin_again();
         self.window.request_redraw();
         Ok(())
     }

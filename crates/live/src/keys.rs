@@ -1,0 +1,104 @@
+//! What keys mean, by the names that browsers and window systems give them.
+
+use crate::{
+    commands::{Command, DrawingCommand, Shot},
+    controls::{Key, Modifiers},
+};
+
+impl Key {
+    /// The key with this code, as the W3C names the places of keys: arrows and the keys of fly mode.
+    #[must_use]
+    pub fn of_code(code: &str) -> Option<Self> {
+        Some(match code {
+            "ArrowLeft" => Self::Left,
+            "ArrowRight" => Self::Right,
+            "ArrowUp" => Self::Up,
+            "ArrowDown" => Self::Down,
+            "KeyW" => Self::Ahead,
+            "KeyS" => Self::Back,
+            "KeyA" => Self::StrafeLeft,
+            "KeyD" => Self::StrafeRight,
+            "KeyE" => Self::Rise,
+            "KeyQ" => Self::Sink,
+            _ => return None,
+        })
+    }
+
+    /// The key by what is printed on it, and else by its code: arrows, + and − are told by their signs, the keys of fly mode by their position
+    /// on the keyboard.
+    #[must_use]
+    pub fn of(sign: &str, code: &str) -> Option<Self> {
+        match sign {
+            "+" | "=" => Some(Self::ZoomIn),
+            "-" | "_" => Some(Self::ZoomOut),
+            arrow if arrow.starts_with("Arrow") => Self::of_code(arrow),
+            _ => Self::of_code(code).filter(|key| key.is_for_flying()),
+        }
+    }
+
+    /// Whether it means something in fly mode alone.
+    #[must_use]
+    pub fn is_for_flying(self) -> bool {
+        matches!(
+            self,
+            Self::Ahead
+                | Self::Back
+                | Self::StrafeLeft
+                | Self::StrafeRight
+                | Self::Rise
+                | Self::Sink
+        )
+    }
+}
+
+impl DrawingCommand {
+    /// What a key does to drawn lines, by what is printed on it. With Control, keys of fly mode are these.
+    #[must_use]
+    pub fn of_key(sign: &str, modifiers: Modifiers, is_drawing: bool) -> Option<Self> {
+        let Modifiers { shift, control } = modifiers;
+        match sign.to_lowercase().as_str() {
+            "l" if !control => Some(Self::Toggle),
+            "z" if control && !shift => Some(Self::Undo),
+            "z" | "y" if control => Some(Self::Redo),
+            "s" if control => Some(Self::Save),
+            "g" if !control && is_drawing => Some(Self::Turn),
+            "m" if !control && is_drawing => Some(Self::Smooth),
+            "enter" if is_drawing => Some(Self::EndLine),
+            "delete" | "backspace" if is_drawing => {
+                Some(if shift { Self::RemoveLine } else { Self::RemovePoint })
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a key that is held down does it only once.
+    #[must_use]
+    pub fn is_once(self) -> bool {
+        matches!(self, Self::Toggle | Self::Turn | Self::Smooth | Self::Save)
+    }
+}
+
+impl Command {
+    /// What a key asks for, by what is printed on it.
+    #[must_use]
+    pub fn of_key(sign: &str, modifiers: Modifiers) -> Option<Self> {
+        Some(match sign.to_lowercase().as_str() {
+            "n" => Self::NorthUp,
+            "r" | "home" => Self::Reset,
+            "f" => Self::ToggleFly,
+            "t" => Self::ToggleAbove,
+            "c" => Self::ToggleRecording,
+            "v" => Self::CopyView,
+            "tab" => Self::TogglePanel,
+            "?" => Self::ToggleHelp,
+            "escape" => Self::CloseHelp,
+            "p" if modifiers.shift => Self::Take(Shot::Window),
+            "p" => Self::Take(Shot::Map),
+            _ => return None,
+        })
+    }
+}
+
+#[cfg(test)]
+#[path = "keys_tests.rs"]
+mod tests;
