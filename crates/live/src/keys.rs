@@ -5,6 +5,34 @@ use crate::{
     controls::{Key, Modifiers},
 };
 
+/// What to do with mouse and keys in a window, and what it does.
+pub const KEY_HELP: [(&str, &str); 24] = [
+    ("left drag", "move the map; in fly mode look around"),
+    ("right drag, Ctrl + left drag", "turn and tilt around the middle"),
+    ("middle drag", "turn and tilt around the cursor"),
+    ("wheel", "zoom at the cursor; in fly mode speed"),
+    ("double click", "zoom in; with Shift out"),
+    ("arrows", "move; with Shift turn and tilt"),
+    ("+  −", "zoom by a level; with Shift by two"),
+    ("R, Home", "back to the first view"),
+    ("N", "north up"),
+    ("F", "fly mode, and back"),
+    ("T", "straight from above, and back"),
+    ("W A S D, Q E", "in fly mode: fly, sink, rise"),
+    ("Shift", "in fly mode: faster"),
+    ("V", "copy this view as a command"),
+    ("P, Shift P", "picture of the map, of the window"),
+    ("C", "record the camera's way, and stop"),
+    ("L, then click, Shift click", "draw lines: a point at the end, inside"),
+    ("Enter, Del, Shift Del", "end the line, remove the point, the line"),
+    ("G, M", "line or area, round its corners"),
+    ("Ctrl Z, Ctrl Y, Ctrl S", "take back, make again, save"),
+    ("Tab", "show and hide the panel"),
+    ("?", "show and hide this page"),
+    ("Esc", "close this page; end the line"),
+    ("Ctrl Q", "close the window"),
+];
+
 impl Key {
     /// The key with this code, as the W3C names the places of keys: arrows and the keys of fly mode.
     #[must_use]

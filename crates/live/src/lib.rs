@@ -16,6 +16,7 @@ mod camera_control;
 mod clicks;
 mod commands;
 pub mod controls;
+mod desk;
 mod drawing;
 mod first_tiles;
 mod flights;
@@ -32,9 +33,13 @@ mod picked_road;
 pub mod polled_loader;
 mod session;
 mod settings;
+mod settings_record;
+mod shown_view;
 mod style_list;
 mod tile_loader;
 mod tiles;
+mod trace;
+mod view_record;
 mod views;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -42,18 +47,24 @@ pub use loader_threads::LoaderThreads;
 pub use {
     camera_control::CameraControl,
     commands::{Command, DrawingCommand, Shot},
+    desk::{Errand, MapDesk},
     drawing::{ClockS, Drawing, DrawingContent, DrawingHandle, DrawnLine, SaveDrawing},
     first_tiles::{FirstLook, KnownTiles, foreseen, sighted_ground},
     flights::Flights,
     frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
+    keys::KEY_HELP,
     map_canvas::{Counts, MapCanvas, MapScene, PixelReading, Timing},
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
     session::{HURRY_S, Session, SessionStart, SessionStep},
     settings::{Compare, MapSettings, Refinement, Visibility, range},
+    settings_record::{SettingChanges, SettingsRecord},
+    shown_view::{CommandOf, ShownView},
     style_list::{NamedStyle, Reload, StyleList},
     tile_loader::{Loaded, TileLoader},
     tiles::{ShownGround, Tiles},
+    trace::{Trace, TraceLine},
+    view_record::ViewRecord,
     views::{MAX_PITCH_DEG, first_view},
 };

@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use corniche_geom::TileId;
-use corniche_styles::Style;
+use corniche_styles::{Rgb, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     CameraRequest, OffGround, SightedGround,
@@ -173,6 +173,12 @@ impl Session {
     #[must_use]
     pub fn style(&self) -> &Style {
         self.styles.at(self.settings.style)
+    }
+
+    /// Colours of the lines of so many files, in the style that was chosen.
+    #[must_use]
+    pub fn overlay_colors(&self, overlays: usize) -> Vec<Rgb> {
+        self.style().overlays.iter().take(overlays).map(|line| line.color).collect()
     }
 
     /// How the map looks: the style with all settings.

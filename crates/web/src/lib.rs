@@ -15,8 +15,6 @@
 #[cfg(any(test, target_arch = "wasm32"))]
 mod merging;
 #[cfg(any(test, target_arch = "wasm32"))]
-mod settings;
-#[cfg(any(test, target_arch = "wasm32"))]
 mod tables;
 
 #[cfg(target_arch = "wasm32")]
@@ -41,8 +39,6 @@ mod source;
 mod timer;
 #[cfg(target_arch = "wasm32")]
 pub mod view;
-#[cfg(target_arch = "wasm32")]
-mod view_record;
 #[cfg(target_arch = "wasm32")]
 pub mod worker;
 

@@ -2,7 +2,10 @@
 
 use std::rc::Rc;
 
-use corniche_live::{Compare, MapScene, MapSettings, Session, TileLoader as _, controls::Mode};
+use corniche_live::{
+    Compare, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
+    TileLoader as _, ViewRecord, controls::Mode,
+};
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{Rgb, Style};
 use corniche_tileset::FORMAT_VERSION;
@@ -19,9 +22,7 @@ use crate::{
     decoders::Reading,
     loader::{PageLoader, Tileset},
     problem::Problem,
-    settings::PageSettings,
     tables,
-    view_record::ViewRecord,
 };
 
 /// While tiles are loaded anew, what was shown stays, but no longer than this.
@@ -34,7 +35,7 @@ pub(crate) struct Map {
     pub(crate) tileset: Rc<Tileset>,
     pub(crate) loader: PageLoader,
     pub(crate) session: Session,
-    pub(crate) settings: PageSettings,
+    pub(crate) settings: SettingsRecord,
     pub(crate) labels: [String; FunctionalRoadClass::COUNT],
     pub(crate) size_px: [u32; 2],
     pub(crate) pixels_per_point: f64,
@@ -67,12 +68,11 @@ impl Map {
 
     /// Changes settings: JSON with those to change.
     pub(crate) fn change(&mut self, changes: &str) -> Result<(), String> {
-        let changed = self.settings.changed_by(changes)?;
-        let styles = changed.style_list()?;
+        let (changed, style) = changed(&self.settings, changes)?;
         let shown = changed.of_session();
-        let reading = reading_of(&shown, styles.at(0));
+        let reading = reading_of(&shown, &style);
         self.session.change(shown);
-        self.session.styles = styles;
+        self.session.styles = style_list(&changed.style, style);
         self.session.camera.set_inertia(changed.inertia());
         if self.loader.read_otherwise(reading) {
             self.session.begin_again();
@@ -265,6 +265,24 @@ impl Map {
         }
         report
     }
+}
+
+/// Settings with some of them changed, as JSON says, and their style.
+///
+/// # Errors
+/// In words, when a value cannot be, or there is no such style.
+pub(crate) fn changed(
+    settings: &SettingsRecord,
+    changes: &str,
+) -> Result<(SettingsRecord, Style), String> {
+    let changed = settings.changed_by(changes)?;
+    let style = tables::style(&changed.style)?;
+    Ok((changed, style))
+}
+
+/// A style as the one that a session can choose.
+pub(crate) fn style_list(name: &str, style: Style) -> StyleList {
+    StyleList::new(vec![NamedStyle { name: name.to_owned(), style }], None)
 }
 
 /// What is read of tiles for these settings.

@@ -4,8 +4,10 @@ use std::{collections::BTreeMap, rc::Rc, sync::Arc};
 
 use corniche_geom::TileId;
 use corniche_live::{
-    FirstLook, KnownTiles, Session, SessionStart, controls::View, first_view, foreseen,
+    FirstLook, KnownTiles, Session, SessionStart, SettingChanges, SettingsRecord, ViewRecord,
+    controls::View, first_view, foreseen,
 };
+use corniche_styles::Style;
 use corniche_tileset::{Manifest, OpenError, Package};
 use corniche_viewer::{
     CameraRequest, OffGround, SightedGround, range,
@@ -20,12 +22,10 @@ use crate::{
     decoders::{Decoders, Reading},
     host::Host,
     loader::{PageLoader, Tileset},
-    map::{Map, clamped, reading_of},
+    map::{Map, clamped, reading_of, style_list},
     problem::Problem,
-    settings::{Changes, PageSettings},
     source::WebSource,
     tables,
-    view_record::ViewRecord,
 };
 
 /// What may be done in a frame and kept, unless the page says otherwise.
@@ -37,7 +37,7 @@ const BUDGET: StreamBudget =
 #[serde(default, deny_unknown_fields)]
 struct Options {
     /// The settings that are not the usual ones.
-    settings: Changes,
+    settings: SettingChanges,
     /// Where to look; without it, where the roads are.
     view: Option<ViewRecord>,
     /// Pixels at the right that are covered by a panel.
@@ -60,7 +60,8 @@ fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
 
 /// What is asked of the first view.
 struct FirstViewRequest<'a> {
-    settings: &'a PageSettings,
+    settings: &'a SettingsRecord,
+    style: &'a Style,
     request: CameraRequest,
     /// Pixels at the right that are covered by a panel.
     covered_px: u32,
@@ -119,13 +120,12 @@ impl Opened {
         let manifest = package.manifest();
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
-        let style = first.settings.style().map_err(wrong)?;
-        let settings = first.settings.of_session();
-        let reading = reading_of(&settings, &style);
+        let (style, settings) = (first.style, first.settings.of_session());
+        let reading = reading_of(&settings, style);
         let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
         let home = first.view(manifest, ground, size_px)?;
         let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, ready);
-        let (camera, quality) = (home.camera(size_px), settings.quality(manifest, &style));
+        let (camera, quality) = (home.camera(size_px), settings.quality(manifest, style));
         loader.foresee(&foreseen(package.as_ref(), ground.heights_m, &camera, quality));
         Ok(Self { tileset, loader, ground, home })
     }
@@ -179,12 +179,17 @@ pub(crate) async fn open(
     let options: Options =
         serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
             .map_err(|error| wrong(format!("options: {error}")))?;
-    let settings = PageSettings::default().changed(options.settings).map_err(wrong)?;
+    let settings = SettingsRecord::default().changed(options.settings).map_err(wrong)?;
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
-    let styles = settings.style_list().map_err(wrong)?;
+    let style = tables::style(&settings.style).map_err(wrong)?;
     let asked_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
-    let first = FirstViewRequest { settings: &settings, request, covered_px: options.covered_px };
+    let first = FirstViewRequest {
+        settings: &settings,
+        style: &style,
+        request,
+        covered_px: options.covered_px,
+    };
     // The device is waited for while the package is read.
     let opened = Box::pin(Opened::new(&address, &host, &first, asked_px));
     let (canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
@@ -203,7 +208,7 @@ pub(crate) async fn open(
         height_range_m: ground.heights_m,
         home,
         settings: settings.of_session(),
-        styles,
+        styles: style_list(&settings.style, style),
         loader: Box::new(loader.clone()),
         budget: StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET },
         size_px,

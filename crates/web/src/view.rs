@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use corniche_live::{
-    PickPlace,
+    PickPlace, SettingsRecord,
     controls::{Button, Input, Key, KeyState, Mode, Modifiers},
 };
 use corniche_viewer::{gpu::ReadBackError, tiles::MapPackage as _};
@@ -16,10 +16,9 @@ use web_sys::HtmlCanvasElement;
 
 use crate::{
     host::Host,
-    map::{Map, clamped},
+    map::{Map, changed, clamped},
     open::open,
     problem::{Problem, json},
-    settings::PageSettings,
     tables,
     timer::pause,
 };
@@ -46,13 +45,13 @@ impl MapView {
     /// The usual settings, as JSON.
     #[must_use]
     pub fn usual_settings() -> String {
-        json(&PageSettings::default())
+        json(&SettingsRecord::default())
     }
 
     /// Whether the usual settings could be changed so: JSON as for `set`. Returns an empty text, or why not.
     #[must_use]
     pub fn fault_of(settings: &str) -> String {
-        PageSettings::default().changed_by(settings).err().unwrap_or_default()
+        changed(&SettingsRecord::default(), settings).err().unwrap_or_default()
     }
 
     /// Keeps an own style for all maps of the page, under the address of its file; `table` is from the module for own styles. Returns an empty

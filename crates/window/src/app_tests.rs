@@ -9,6 +9,7 @@ use std::{
 use corniche_geom::TileId;
 use corniche_live::{
     LoaderThreads, NamedStyle, Redraw, Visibility,
+    controls::Inertia,
     polled_loader::{PolledLoader, late_package, polled},
 };
 use corniche_styles::Style;
@@ -20,7 +21,7 @@ use corniche_viewer::{
 };
 
 use super::*;
-use crate::{Inertia, canvas::tests::canvas};
+use crate::canvas::tests::canvas;
 
 const SIZE_PX: [u32; 2] = [640, 480];
 
@@ -90,7 +91,7 @@ fn drawn_at_rest(
         };
         let frame = app.frame(canvas, &ui, input).unwrap();
         canvas.free_textures(&frame.unused_textures);
-        let tiles = &app.session.tiles;
+        let tiles = &app.desk.session.tiles;
         let (missing, loading) = (tiles.missing(), tiles.loading());
         if frame.redraw != Redraw::Now && missing == 0 && loading == 0 {
             let drawn = tiles.drawn().to_vec();

@@ -21,13 +21,13 @@ mod files;
 mod overlay;
 mod panel;
 mod platform;
-mod trace;
 mod window_content;
 mod window_request;
 
 pub use corniche_live::{
-    ClockS, DrawnLine, NamedStyle, NotSaved, Reload, SaveDrawing, Visibility, controls::Inertia,
+    ClockS, CommandOf, DrawnLine, NamedStyle, NotSaved, Reload, SaveDrawing, ShownView, Visibility,
+    controls::Inertia,
 };
 pub use error::{Closed, End, WindowError};
 pub use platform::{Watched, run, watch};
-pub use window_request::{BeginTrace, CommandOf, ShownView, WindowRequest};
+pub use window_request::{BeginTrace, WindowRequest};

@@ -1,51 +1,14 @@
 //! What a caller asks of a window: package, styles, layers, and how files are written.
 
-use std::{collections::BTreeSet, io, path::PathBuf};
+use std::{io, path::PathBuf};
 
-use corniche_live::{DrawnLine, MAX_PITCH_DEG, NamedStyle, Reload, SaveDrawing, Visibility};
-use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Rgb;
-use corniche_viewer::{
-    CameraRequest, RoadMethod, RoadOptions, Wireframe, range, stream::StreamBudget,
+use corniche_live::{
+    CommandOf, DrawnLine, MAX_PITCH_DEG, NamedStyle, Reload, SaveDrawing, Visibility,
 };
+use corniche_roads::FunctionalRoadClass;
+use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, range, stream::StreamBudget};
 
 use crate::{Inertia, WindowError};
-
-/// What a window shows, as far as a picture of the same view needs it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShownView {
-    /// Where it looks from; never the overview.
-    pub camera: CameraRequest,
-    /// Width and height of the map, pixels.
-    pub size_px: [u32; 2],
-    /// How roads are drawn.
-    pub roads: RoadOptions,
-    /// The name of the style.
-    pub style: String,
-    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
-    pub photo: Option<f32>,
-    /// Whether areas are drawn as the style says, or not at all.
-    pub areas: Visibility,
-    /// Whether boundaries are drawn as the style says, or not at all.
-    pub boundaries: Visibility,
-    /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
-    pub hidden_overlays: BTreeSet<usize>,
-    /// Colours of the lines of all files, in the style that is shown.
-    pub overlay_colors: Vec<Rgb>,
-    /// Factor on heights.
-    pub exaggeration: f64,
-    /// A tile is refined while its error looks larger than this, pixels.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Samples per pixel along each side.
-    pub samples_per_side: u32,
-    /// Whether edges of triangles are drawn.
-    pub wireframe: Wireframe,
-}
-
-/// The command line that draws a view as a picture.
-pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
 
 /// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
 /// meanwhile.

@@ -3,14 +3,9 @@
 //! In this order: tiles that have arrived, time, choice of tiles, map, panel. A change made in the panel is seen in the next
 //! frame, which the panel asks for.
 
-use corniche_live::{
-    HURRY_S, MapScene, MapSettings, Redraw, Session, SessionStep, formatting::with_causes,
-};
+use corniche_live::{HURRY_S, MapSettings, Redraw, TraceLine, formatting::with_causes};
 use corniche_styles::Rgb;
-use corniche_viewer::{
-    BoundaryLines,
-    flight::{Pose, WorkingCrs},
-};
+use corniche_viewer::{BoundaryLines, flight::WorkingCrs};
 use egui_wgpu::ScreenDescriptor;
 
 use super::App;
@@ -18,7 +13,6 @@ use crate::{
     WindowError,
     canvas::{Canvas, Drew},
     panel::{self, Answer},
-    trace::TraceLine,
     window_content::{Has, WindowContent},
 };
 
@@ -63,16 +57,17 @@ impl App {
         let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
         self.frame += 1;
         self.take_news(now_s);
-        let step = self.session.step(&mut canvas.map, size_px, pixels_per_point, now_s);
-        self.follow_tiles(canvas, &step);
-        let pose = self.session.pose();
-        let drew = self.draw(canvas, size_px, now_s)?;
-        self.session.look_at_ground(&step.camera, drew.is_new);
+        let desk = &mut self.desk;
+        let step = desk.step(&mut canvas.map, size_px, pixels_per_point, now_s);
+        // A picture that is to be saved is drawn in full.
+        let scene = desk.scene(&canvas.map, size_px, self.captures.is_wanted(), now_s);
+        let drew = canvas.draw(&scene)?;
+        desk.session.look_at_ground(&step.camera, drew.is_new);
         self.take_times(canvas)?;
 
-        let before = self.session.settings.clone();
+        let before = self.desk.session.settings.clone();
         let mut output = self.show_panel(canvas, ui, raw, drew, now_s);
-        let is_changed = self.session.settings != before;
+        let is_changed = self.desk.session.settings != before;
 
         let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point };
         let to_copy = self.to_copy.take().map(egui::OutputCommand::CopyText);
@@ -80,9 +75,12 @@ impl App {
         let unused_textures = canvas.take_textures(std::mem::take(&mut output.textures_delta));
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.capture(canvas, &primitives, &screen)?;
-        self.write_trace(pose, size_px)?;
+        if let Some(trace) = &mut self.trace {
+            let line = TraceLine::of(&self.desk.session, self.frame, size_px);
+            trace.write(line).map_err(|source| WindowError::Trace { source })?;
+        }
 
-        let camera = &self.session.camera;
+        let camera = &self.desk.session.camera;
         let is_busy = camera.is_moving() || step.is_under_way || self.captures.is_wanted();
         let is_one_of_many = drew.is_new && (is_busy || camera.is_dragging());
         self.pace.note(now_s, is_one_of_many, is_busy);
@@ -109,71 +107,23 @@ impl App {
         if is_at_once || wish_s <= 0.0 {
             return Redraw::Now;
         }
-        let hurry_s = self.session.is_hurrying(&canvas.map, now_s).then_some(HURRY_S);
+        let hurry_s = self.desk.session.is_hurrying(&canvas.map, now_s).then_some(HURRY_S);
         // By then the graphics card can tell how long this frame took.
         let clock_s = canvas.map.is_timing().then_some(CLOCK_S);
         let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
         let picture_s = self.captures.is_developing().then_some(PICTURE_S);
-        let second_s = self.session.flights.recording_s(now_s).map(|s| s.floor() + 1.0 - s);
-        let notice_s = self.notices.next_end_s().map(|until_s| (until_s - now_s).max(0.0));
+        let second_s = self.desk.session.flights.recording_s(now_s).map(|s| s.floor() + 1.0 - s);
+        let notice_s = self.desk.notices.next_end_s().map(|until_s| (until_s - now_s).max(0.0));
         Redraw::after(now_s, [hurry_s, clock_s, picture_s, wish_s, second_s, notice_s])
     }
 
     fn take_news(&mut self, now_s: f64) {
-        self.notices.expire(now_s);
-        let defects = self.session.tiles.take_arrivals().into_iter();
-        self.notices
-            .warn_all(defects.map(|defect| format!("{defect}; it is shown without its ground")));
         for saved in self.captures.files.news() {
             match saved {
-                Ok(path) => self.notices.tell(format!("saved {}", path.display()), now_s),
-                Err(lost) => self.notices.warn(with_causes(&lost)),
+                Ok(path) => self.desk.notices.tell(format!("saved {}", path.display()), now_s),
+                Err(lost) => self.desk.notices.warn(with_causes(&lost)),
             }
         }
-    }
-
-    /// Drawn lines are laid on the tiles that have come; a view that needs more than fits is told.
-    fn follow_tiles(&mut self, canvas: &mut Canvas, step: &SessionStep) {
-        let changes = (&step.evicted[..], step.has_new_tiles);
-        self.drawing.follow_tiles(changes, &self.session, &mut canvas.map, &mut self.notices);
-        if self.session.tiles.take_first_time_full() {
-            self.notices.warn(
-                "the graphics memory allowed is full: this view is drawn more coarsely than asked; allow more with \
-                 --gpu-memory"
-                    .to_owned(),
-            );
-        }
-    }
-
-    /// Draws the map. Where the picture is too large for the adapter with so many samples, it is drawn with fewer; with
-    /// one it always fits, for the window is no larger than that.
-    fn draw(
-        &mut self,
-        canvas: &mut Canvas,
-        window_px: [u32; 2],
-        now_s: f64,
-    ) -> Result<Drew, WindowError> {
-        // A picture that is to be saved is drawn in full.
-        let is_coarse = self.session.is_hurrying(&canvas.map, now_s) && !self.captures.is_wanted();
-        let (size_px, samples) = if is_coarse {
-            (window_px.map(|side| side.div_ceil(2)), 1)
-        } else {
-            let wanted = self.session.settings.samples_per_side;
-            let drawn = wanted.min(canvas.map.most_samples(window_px));
-            if drawn < wanted {
-                self.notices.warn(format!(
-                    "{wanted} × {wanted} samples a pixel are more than the adapter can draw in a window of this size; there \
-                     are {drawn} × {drawn} now"
-                ));
-                self.session.settings.samples_per_side = drawn;
-            }
-            (window_px, drawn)
-        };
-        Ok(canvas.draw(&MapScene {
-            shown_px: window_px,
-            revision: self.drawing.revision(),
-            ..self.session.scene(size_px, samples)
-        })?)
     }
 
     /// Takes the times that the graphics card has finished.
@@ -186,7 +136,7 @@ impl App {
             Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
             Err(error) => {
                 self.passes.clear();
-                self.notices.warn(format!("no pass was timed: {error}"));
+                self.desk.notices.warn(format!("no pass was timed: {error}"));
             }
         }
         Ok(())
@@ -202,8 +152,8 @@ impl App {
         now_s: f64,
     ) -> egui::FullOutput {
         let mut answer = Answer::default();
-        let mut settings: MapSettings = self.session.settings.clone();
-        let roads = self.session.style().roads.iter();
+        let mut settings: MapSettings = self.desk.session.settings.clone();
+        let roads = self.desk.session.style().roads.iter();
         let road_colors: Vec<Rgb> = roads.map(|road| road.bands.main_color()).collect();
         let content = self.content(canvas, ui, &road_colors, now_s);
         let output = ui.run_ui(raw, |ui| {
@@ -212,18 +162,12 @@ impl App {
             answer.commands.extend(shown.commands);
             answer.occupied = shown.occupied;
         });
-        self.session.change(settings);
+        self.desk.session.change(settings);
         for command in answer.commands {
             self.command(command, now_s);
         }
         self.occupied = answer.occupied;
         output
-    }
-
-    /// Colours of the lines of all files, in the style that is shown.
-    pub(crate) fn overlay_colors(&self) -> Vec<Rgb> {
-        let lines = &self.session.style().overlays;
-        lines.iter().take(self.overlays.len()).map(|line| line.color).collect()
     }
 
     fn content<'a>(
@@ -233,7 +177,7 @@ impl App {
         road_colors: &'a [Rgb],
         now_s: f64,
     ) -> WindowContent<'a> {
-        let session = &self.session;
+        let session = &self.desk.session;
         let (manifest, style, tiles) = (session.manifest(), session.style(), &session.tiles);
         let is_over_map = session.cursor_px.is_some_and(|at_px| self.is_map(ui, at_px));
         let counts = canvas.map.counts();
@@ -249,8 +193,8 @@ impl App {
             mode: session.camera.mode(),
             style_names: session.styles.names(),
             has: Has { areas: manifest.areas.is_some(), boundaries: manifest.boundaries.is_some() },
-            overlays: &self.overlays,
-            overlay_colors: self.overlay_colors(),
+            overlays: &self.desk.overlays,
+            overlay_colors: session.overlay_colors(self.desk.overlays.len()),
             photo: manifest.settings.photo.map(|_| style.photo),
             boundary_lines: BoundaryLines::of(manifest, style),
             road_colors,
@@ -264,9 +208,9 @@ impl App {
             gpu_bytes: tiles.bytes_of_budget(),
             passes: &self.passes,
             frame_times: self.pace.times(),
-            drawing: self.drawing.content(session),
+            drawing: self.desk.drawing.content(session),
             recording_s: session.flights.recording_s(now_s),
-            notices: self.notices.all(),
+            notices: self.desk.notices.all(),
         }
     }
 
@@ -276,29 +220,11 @@ impl App {
         primitives: &[egui::ClippedPrimitive],
         screen: &ScreenDescriptor,
     ) -> Result<(), WindowError> {
-        let share = self.session.settings.divider_share;
-        let credits = &self.session.manifest().attribution;
+        let share = self.desk.session.settings.divider_share;
+        let credits = &self.desk.session.manifest().attribution;
         let mut lost = Vec::new();
         let taken = self.captures.take(canvas, (primitives, screen), share, credits, &mut lost);
-        self.tell_lost(lost);
+        self.desk.tell_lost(lost);
         taken
-    }
-
-    fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {
-        let Some(trace) = &mut self.trace else { return Ok(()) };
-        let Session { probe, camera, tiles, cursor_px, .. } = &self.session;
-        let line = TraceLine {
-            frame: self.frame,
-            cursor_px: *cursor_px,
-            ground_m: probe.cursor().map(|point| point.at_m),
-            pixel_m: probe.cursor_pixel_m(),
-            pose,
-            tiles: tiles.drawn().len(),
-            missing: tiles.missing(),
-            loading: tiles.loading(),
-            is_moving: camera.is_moving(),
-            size_px,
-        };
-        trace.write(line).map_err(|source| WindowError::Trace { source })
     }
 }

@@ -72,7 +72,7 @@ impl Inputs {
     /// event is handed on.
     pub(crate) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
-            app.input(&Input::Move { at_px }, moved_s);
+            app.desk.input(&Input::Move { at_px }, moved_s);
         }
     }
 
@@ -92,17 +92,17 @@ impl Inputs {
         match event {
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.modifiers = held(modifiers.state());
-                app.input(&Input::Modify { modifiers: self.modifiers }, now_s);
+                app.desk.input(&Input::Modify { modifiers: self.modifiers }, now_s);
                 false
             }
             WindowEvent::CursorMoved { position, .. } => {
                 self.cursor_px = DVec2::new(position.x, position.y);
                 self.moved = Some((self.cursor_px, now_s));
-                app.point_at(Some(self.cursor_px));
+                app.desk.session.cursor_px = Some(self.cursor_px);
                 true
             }
             WindowEvent::CursorLeft { .. } => {
-                app.point_at(None);
+                app.desk.session.cursor_px = None;
                 true
             }
             WindowEvent::MouseInput { state, button, .. } => {
@@ -110,7 +110,7 @@ impl Inputs {
             }
             WindowEvent::MouseWheel { delta, .. } => self.wheel(*delta, app, ui, now_s),
             WindowEvent::Focused(false) => {
-                app.input(&Input::LetGo, now_s);
+                app.desk.input(&Input::LetGo, now_s);
                 true
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
@@ -141,7 +141,7 @@ impl Inputs {
         };
         let is_maps = app.is_map(ui, self.cursor_px);
         if is_maps {
-            app.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
+            app.desk.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
         }
         is_maps
     }
@@ -162,10 +162,10 @@ impl Inputs {
         };
         match state {
             ElementState::Pressed if app.is_map(ui, self.cursor_px) => {
-                app.press(button, self.cursor_px, self.modifiers, now_s);
+                app.desk.press(button, self.cursor_px, self.modifiers, now_s);
             }
             ElementState::Pressed => return false,
-            ElementState::Released => app.input(&Input::Release { button }, now_s),
+            ElementState::Released => app.desk.input(&Input::Release { button }, now_s),
         }
         true
     }
@@ -178,7 +178,8 @@ impl Inputs {
         let (sign, code) = names(&event.logical_key, event.physical_key);
         // A release is always the camera's: the key may have been pressed before Control was.
         if state == KeyState::Pressed
-            && let Some(command) = DrawingCommand::of_key(&sign, self.modifiers, app.is_drawing())
+            && let Some(command) =
+                DrawingCommand::of_key(&sign, self.modifiers, app.desk.drawing.is_on())
         {
             if !(event.repeat && command.is_once()) {
                 app.command(Command::Draw(command), now_s);
@@ -186,7 +187,7 @@ impl Inputs {
             return true;
         }
         if let Some(key) = Key::of(&sign, &code) {
-            app.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
+            app.desk.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
             return true;
         }
         if state == KeyState::Released || event.repeat {

@@ -108,11 +108,14 @@ impl OpenWindow {
 
     /// Does what is due at this time; returns when something is due next without any event.
     pub(crate) fn wake(&mut self, now_s: f64) -> Option<f64> {
-        if self.app.reload(now_s) || self.due_s.is_some_and(|due_s| due_s <= now_s) {
+        if self.app.desk.reload(now_s) || self.due_s.is_some_and(|due_s| due_s <= now_s) {
             self.due_s = None;
             self.window.request_redraw();
         }
-        [self.due_s, self.app.reload_due_s()].into_iter().flatten().reduce(f64::min)
+        [self.due_s, self.app.desk.session.styles.reload_due_s()]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min)
     }
 
     /// The window closes: saves what is still to be saved.
@@ -184,7 +187,8 @@ impl OpenWindow {
         };
         self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {
-            self.app.fault(&what);
+            let told = format!("the graphics device could not do its work: {what}");
+            self.app.desk.notices.warn(told);
         }
         self.due_s = None;
         match redraw {

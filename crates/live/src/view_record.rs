@@ -6,29 +6,29 @@ use serde::{Deserialize, Serialize};
 /// Where a map looks: at a place, from a distance in a direction, or straight from above with parallel rays.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ViewRecord {
+pub struct ViewRecord {
     /// Longitude, degrees.
-    pub(crate) lon: f64,
+    pub lon: f64,
     /// Latitude, degrees.
-    pub(crate) lat: f64,
+    pub lat: f64,
     /// True height of the place, metres; `None`: that of the ground.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) height: Option<f64>,
+    pub height: Option<f64>,
     /// True metres from the eye to the place; not from above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) distance: Option<f64>,
+    pub distance: Option<f64>,
     /// Clockwise from north, degrees.
     #[serde(default)]
-    pub(crate) heading: f64,
+    pub heading: f64,
     /// 0 looks straight down, degrees.
     #[serde(default)]
-    pub(crate) pitch: f64,
+    pub pitch: f64,
     /// Whether rays are parallel.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub(crate) above: bool,
+    pub above: bool,
     /// True metres in a pixel; only from above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) pixel_m: Option<f64>,
+    pub pixel_m: Option<f64>,
 }
 
 /// The distance from which a place is looked at if nothing else is said, metres.
@@ -38,7 +38,8 @@ const USUAL_PIXEL_M: f64 = 5.0;
 
 impl ViewRecord {
     /// The place of a request that is no overview.
-    pub(crate) fn of(request: CameraRequest) -> Option<Self> {
+    #[must_use]
+    pub fn of(request: CameraRequest) -> Option<Self> {
         match request {
             CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
                 Some(Self {
@@ -67,7 +68,8 @@ impl ViewRecord {
     }
 
     /// The request that shows it.
-    pub(crate) fn request(&self) -> CameraRequest {
+    #[must_use]
+    pub fn request(&self) -> CameraRequest {
         let (lon_deg, lat_deg) = (self.lon, self.lat);
         if self.above {
             let pixel_m = self.pixel_m.unwrap_or(USUAL_PIXEL_M);

@@ -1,16 +1,17 @@
-//! What a page can change of a map, as JSON.
+//! Settings of a map as JSON: what a page can change.
 
-use corniche_live::{Compare, MapSettings, NamedStyle, StyleList, Visibility, controls::Inertia};
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Style;
 use corniche_viewer::{ClassSet, OutOfRange, Outline, RoadMethod, RoadOptions, range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::tables;
+use crate::{
+    controls::Inertia,
+    settings::{Compare, MapSettings, Visibility},
+};
 
 /// Settings to change; those that are left out stay as they are.
-pub(crate) type Changes = Map<String, Value>;
+pub type SettingChanges = Map<String, Value>;
 
 /// Settings for which `null` is a value. For others it says nothing.
 const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
@@ -48,37 +49,44 @@ enum OutlineName {
     clippy::struct_excessive_bools,
     reason = "they are boxes to tick, independent of each other"
 )]
-pub(crate) struct PageSettings {
+pub struct SettingsRecord {
+    /// How roads are drawn, if one method is shown.
     #[serde(with = "RoadMethodName")]
-    pub(crate) roads: RoadMethod,
-    pub(crate) compare: Compare,
+    pub roads: RoadMethod,
+    /// Whether one method is shown, or both are compared.
+    pub compare: Compare,
     /// Position of the divider, as a share of the canvas's width.
-    pub(crate) divider: f32,
+    pub divider: f32,
     /// Which classes are drawn, 0 first.
-    pub(crate) classes: [bool; FunctionalRoadClass::COUNT],
+    pub classes: [bool; FunctionalRoadClass::COUNT],
     /// Factors on the style's widths, class 0 first.
-    pub(crate) widths: [f32; FunctionalRoadClass::COUNT],
+    pub widths: [f32; FunctionalRoadClass::COUNT],
+    /// The edge around roads.
     #[serde(with = "OutlineName")]
-    pub(crate) outline: Outline,
+    pub outline: Outline,
     /// The name of a style that comes with the program, or the address of an own one that the page keeps.
-    pub(crate) style: String,
+    pub style: String,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
-    pub(crate) photo: Option<f32>,
-    pub(crate) areas: bool,
-    pub(crate) boundaries: bool,
-    pub(crate) exaggeration: f64,
+    pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says.
+    pub areas: bool,
+    /// Whether boundaries are drawn as the style says.
+    pub boundaries: bool,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
-    pub(crate) error_px: f64,
+    pub error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels; `None`: cells do not count.
-    pub(crate) cell_px: Option<f64>,
+    pub cell_px: Option<f64>,
     /// Samples per pixel along each side.
-    pub(crate) samples: u32,
-    pub(crate) wireframe: bool,
+    pub samples: u32,
+    /// Whether the edges of triangles are drawn.
+    pub wireframe: bool,
     /// Whether movements slow down gradually.
-    pub(crate) inertia: bool,
+    pub inertia: bool,
 }
 
-impl Default for PageSettings {
+impl Default for SettingsRecord {
     /// The settings with which `corniche render` draws without options.
     fn default() -> Self {
         Self {
@@ -102,12 +110,12 @@ impl Default for PageSettings {
     }
 }
 
-impl PageSettings {
+impl SettingsRecord {
     /// These settings with some of them changed: a JSON object with the fields to change.
     ///
     /// # Errors
     /// In words, when the text is no such object or a value is out of its range.
-    pub(crate) fn changed_by(&self, changes: &str) -> Result<Self, String> {
+    pub fn changed_by(&self, changes: &str) -> Result<Self, String> {
         let changes = serde_json::from_slice(changes.as_bytes());
         self.changed(changes.map_err(|error| format!("settings: {error}"))?)
     }
@@ -116,7 +124,7 @@ impl PageSettings {
     ///
     /// # Errors
     /// In words, when there is no such setting or a value is out of its range.
-    pub(crate) fn changed(&self, mut changes: Changes) -> Result<Self, String> {
+    pub fn changed(&self, mut changes: SettingChanges) -> Result<Self, String> {
         let told = |error: serde_json::Error| format!("settings: {error}");
         changes.retain(|name, value| !value.is_null() || WITH_NULL.contains(&name.as_str()));
         let mut all = serde_json::to_value(self).map_err(told)?;
@@ -141,36 +149,18 @@ impl PageSettings {
             range::within("a width factor", factor.into(), 0.01..=100.0, "0.01 to 100")
                 .map_err(told)?;
         }
-        self.style().map(|_| ())
-    }
-
-    /// The style that is named, without what the other settings make of it.
-    ///
-    /// # Errors
-    /// In words, when there is no such style.
-    pub(crate) fn style(&self) -> Result<Style, String> {
-        tables::style(&self.style).ok_or_else(|| {
-            let names = tables::style_names().join(", ");
-            format!("there is no style {:?}; there are {names}", self.style)
-        })
-    }
-
-    /// The style as the one that a session can choose.
-    ///
-    /// # Errors
-    /// In words, when there is no such style.
-    pub(crate) fn style_list(&self) -> Result<StyleList, String> {
-        let named = NamedStyle { name: self.style.clone(), style: self.style()? };
-        Ok(StyleList::new(vec![named], None))
+        Ok(())
     }
 
     /// Whether movements slow down gradually, in the words of the controls.
-    pub(crate) fn inertia(&self) -> Inertia {
+    #[must_use]
+    pub fn inertia(&self) -> Inertia {
         if self.inertia { Inertia::On } else { Inertia::Off }
     }
 
     /// The same settings for a session.
-    pub(crate) fn of_session(&self) -> MapSettings {
+    #[must_use]
+    pub fn of_session(&self) -> MapSettings {
         let visibility = |is_shown| if is_shown { Visibility::Shown } else { Visibility::Hidden };
         let all = FunctionalRoadClass::all().zip(self.classes);
         let shown = all.filter_map(|(class, is_shown)| is_shown.then_some(class));
@@ -197,5 +187,5 @@ impl PageSettings {
 }
 
 #[cfg(test)]
-#[path = "settings_tests.rs"]
+#[path = "settings_record_tests.rs"]
 mod tests;

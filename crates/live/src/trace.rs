@@ -6,29 +6,31 @@ use std::io;
 use corniche_viewer::flight::Pose;
 use glam::DVec2;
 
+use crate::session::Session;
+
 /// What the trace says of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TraceLine {
+pub struct TraceLine {
     /// Number of the frame, 1 first.
-    pub(crate) frame: u64,
+    pub frame: u64,
     /// The cursor, pixels of the window; `None` outside.
-    pub(crate) cursor_px: Option<DVec2>,
+    pub cursor_px: Option<DVec2>,
     /// The ground under it: x and y in the working CRS, true height; `None` over sky and voids.
-    pub(crate) ground_m: Option<[f64; 3]>,
+    pub ground_m: Option<[f64; 3]>,
     /// Side of a pixel there, metres of the working CRS.
-    pub(crate) pixel_m: Option<f64>,
+    pub pixel_m: Option<f64>,
     /// The camera.
-    pub(crate) pose: Pose,
+    pub pose: Pose,
     /// Tiles drawn.
-    pub(crate) tiles: usize,
+    pub tiles: usize,
     /// Tiles that the view needs and that are not on the graphics card.
-    pub(crate) missing: usize,
+    pub missing: usize,
     /// Tiles being loaded.
-    pub(crate) loading: usize,
+    pub loading: usize,
     /// Whether the camera moves without input.
-    pub(crate) is_moving: bool,
+    pub is_moving: bool,
     /// Width and height of the window, pixels.
-    pub(crate) size_px: [u32; 2],
+    pub size_px: [u32; 2],
 }
 
 /// The names of the columns.
@@ -36,6 +38,24 @@ const HEAD: &str = "frame,cursor_x_px,cursor_y_px,ground_x_m,ground_y_m,ground_h
                     eye_height_m,heading_deg,pitch_deg,tiles,missing,loading,moving,width_px,height_px\n";
 
 impl TraceLine {
+    /// What there is to say of a session after the frame of this number, in a window of this size.
+    #[must_use]
+    pub fn of(session: &Session, frame: u64, size_px: [u32; 2]) -> Self {
+        let Session { probe, camera, tiles, cursor_px, .. } = session;
+        Self {
+            frame,
+            cursor_px: *cursor_px,
+            ground_m: probe.cursor().map(|point| point.at_m),
+            pixel_m: probe.cursor_pixel_m(),
+            pose: session.pose(),
+            tiles: tiles.drawn().len(),
+            missing: tiles.missing(),
+            loading: tiles.loading(),
+            is_moving: camera.is_moving(),
+            size_px,
+        }
+    }
+
     fn to_text(self) -> String {
         let some = |value: Option<f64>, digits: usize| {
             value.map(|value| format!("{value:.digits$}")).unwrap_or_default()
@@ -67,7 +87,7 @@ impl TraceLine {
 }
 
 /// Where the lines go.
-pub(crate) struct Trace {
+pub struct Trace {
     out: Box<dyn io::Write>,
 }
 
@@ -76,7 +96,7 @@ impl Trace {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn begin(mut out: Box<dyn io::Write>) -> io::Result<Self> {
+    pub fn begin(mut out: Box<dyn io::Write>) -> io::Result<Self> {
         out.write_all(HEAD.as_bytes())?;
         Ok(Self { out })
     }
@@ -85,7 +105,7 @@ impl Trace {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn write(&mut self, line: TraceLine) -> io::Result<()> {
+    pub fn write(&mut self, line: TraceLine) -> io::Result<()> {
         self.out.write_all(format!("{}\n", line.to_text()).as_bytes())
     }
 }

@@ -1,16 +1,17 @@
 //! Settings of the page change what they name and nothing else.
 
+use corniche_styles::Style;
 use corniche_viewer::Wireframe;
 
 use super::*;
 
 #[test]
 fn what_is_not_named_stays_and_what_is_named_changes() {
-    let usual = PageSettings::default();
+    let usual = SettingsRecord::default();
     let changed = usual.changed_by(r#"{"roads": "sv", "cell_px": null, "photo": 0.5}"#).unwrap();
     assert_eq!(
         changed,
-        PageSettings {
+        SettingsRecord {
             roads: RoadMethod::ShadowVolumes,
             cell_px: None,
             photo: Some(0.5),
@@ -48,19 +49,17 @@ fn what_cannot_be_is_told_in_words() {
         (r#"{"exaggeration": 0}"#, "0.01 to 100"),
         (r#"{"widths": [1,1,1,1,1,1,1,1,-1]}"#, "0.01 to 100"),
         (r#"{"divider": 2}"#, "0 to 1"),
-        (r#"{"style": "neon"}"#, "there is no style \"neon\"; there are road-atlas"),
     ] {
-        let why = PageSettings::default().changed_by(changes).unwrap_err();
+        let why = SettingsRecord::default().changed_by(changes).unwrap_err();
         assert!(why.contains(told), "{changes}: {why}");
     }
 }
 
 #[test]
 fn widths_and_layers_change_the_style() {
-    let look =
-        |settings: &PageSettings| settings.of_session().applied_to(&settings.style().unwrap());
-    let usual = look(&PageSettings::default());
-    let changed = PageSettings::default()
+    let look = |settings: &SettingsRecord| settings.of_session().applied_to(&Style::road_atlas());
+    let usual = look(&SettingsRecord::default());
+    let changed = SettingsRecord::default()
         .changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "areas": false, "boundaries": false}"#)
         .unwrap();
     let style = look(&changed);
