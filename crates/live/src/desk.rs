@@ -1,6 +1,10 @@
 //! A session with what a person has at hand beside its map: commands, lines to draw, notices.
 
-use corniche_viewer::flight::WorkingCrs;
+use corniche_viewer::{
+    RoadMethod,
+    flight::WorkingCrs,
+    gpu::{PassTimes, ReadBackError},
+};
 use glam::DVec2;
 
 use crate::{
@@ -8,12 +12,15 @@ use crate::{
     controls::{Button, Input, Modifiers},
     drawing::Drawing,
     formatting::with_causes,
+    frame_pace::{FramePace, Redraw},
     map_canvas::{MapCanvas, MapScene},
     notices::{NotSaved, Notices},
-    session::{Session, SessionStep},
+    session::{HURRY_S, Session, SessionStep},
     shown_view::{CommandOf, ShownView},
 };
 
+/// The times of a frame's passes are asked for this long after it, if no other frame comes before.
+const CLOCK_S: f64 = 0.1;
 /// Flights are in perspective.
 const NO_FLIGHT_FROM_ABOVE: &str = "flights are recorded in perspective: not from above";
 /// The beginning of the notice that a style's file cannot be used.
@@ -33,6 +40,10 @@ pub struct MapDesk {
     pub overlays: Vec<String>,
     /// Tells the command that draws a view.
     pub command_of: CommandOf,
+    /// How long frames take.
+    pub pace: FramePace,
+    /// Times of the passes of the last frame that the graphics card has finished, picture by picture.
+    pub passes: Vec<(RoadMethod, PassTimes)>,
 }
 
 /// What whoever shows the map has to do for a command.
@@ -158,6 +169,7 @@ impl MapDesk {
     pub fn begin_again(&mut self) {
         self.session.begin_again();
         self.drawing.clear_tiles();
+        self.passes.clear();
         self.notices.warn("the graphics device was lost; everything was loaded again".to_owned());
     }
 
@@ -211,5 +223,38 @@ impl MapDesk {
         };
         let revision = self.drawing.revision();
         MapScene { shown_px: window_px, revision, ..self.session.scene(size_px, samples) }
+    }
+
+    /// Takes the times that the graphics card has finished.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn take_times(&mut self, canvas: &mut MapCanvas) -> Result<(), ReadBackError> {
+        match canvas.times() {
+            Ok(times) => self.passes = times,
+            Err(error) if canvas.gpu().is_lost() => return Err(error),
+            Err(error) => {
+                self.passes.clear();
+                self.notices.warn(format!("no pass was timed: {error}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// When the next frame is due that the desk itself asks for, or whoever shows it: after the shortest of these times.
+    #[must_use]
+    pub fn next_redraw(
+        &self,
+        canvas: &MapCanvas,
+        wishes_s: [Option<f64>; 2],
+        now_s: f64,
+    ) -> Redraw {
+        let [first_s, second_s] = wishes_s;
+        let hurry_s = self.session.is_hurrying(canvas, now_s).then_some(HURRY_S);
+        // By then the graphics card can tell how long this frame took.
+        let clock_s = canvas.is_timing().then_some(CLOCK_S);
+        let recording_s = self.session.flights.recording_s(now_s).map(|s| s.floor() + 1.0 - s);
+        let notice_s = self.notices.next_end_s().map(|until_s| (until_s - now_s).max(0.0));
+        Redraw::after(now_s, [hurry_s, clock_s, first_s, second_s, recording_s, notice_s])
     }
 }

@@ -26,7 +26,6 @@ use self::{
 use crate::{
     commands::DrawingCommand,
     controls::{Button, Input, KnownGround as _, Modifiers},
-    formatting::with_causes,
     map_canvas::MapCanvas,
     notices::{NotSaved, Notices},
     session::Session,
@@ -232,8 +231,7 @@ impl Drawing {
             DrawingCommand::Undo => document.undo(),
             DrawingCommand::Redo => document.redo(),
             DrawingCommand::Save => match self.save() {
-                Some(Ok(path)) => notices.tell(format!("saved {}", path.display()), now_s),
-                Some(Err(lost)) => notices.warn(with_causes(&lost)),
+                Some(saved) => notices.tell_saved(saved, now_s),
                 None => notices.tell("no line has changed".to_owned(), now_s),
             },
         }

@@ -12,6 +12,7 @@
 //!
 //! This crate never draws but through `corniche-viewer`, never opens a file and knows neither window system nor browser.
 
+mod byte_ranges;
 mod camera_control;
 mod clicks;
 mod commands;
@@ -32,6 +33,7 @@ mod picked_road;
 #[doc(hidden)]
 pub mod polled_loader;
 mod session;
+mod session_record;
 mod settings;
 mod settings_record;
 mod shown_view;
@@ -45,6 +47,7 @@ mod views;
 #[cfg(not(target_arch = "wasm32"))]
 pub use loader_threads::LoaderThreads;
 pub use {
+    byte_ranges::{RangeCache, merged_ranges},
     camera_control::CameraControl,
     commands::{Command, DrawingCommand, Shot},
     desk::{Errand, MapDesk},
@@ -58,6 +61,7 @@ pub use {
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
     session::{HURRY_S, Session, SessionStart, SessionStep},
+    session_record::FrameRest,
     settings::{Compare, MapSettings, Refinement, Visibility, range},
     settings_record::{SettingChanges, SettingsRecord},
     shown_view::{CommandOf, ShownView},

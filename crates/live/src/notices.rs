@@ -2,7 +2,13 @@
 
 use std::{io, path::PathBuf};
 
-use corniche_viewer::{flight::FlightError, gpu::ReadBackError};
+use corniche_viewer::{
+    RoadMethod,
+    flight::FlightError,
+    gpu::{Gpu, ReadBackError},
+};
+
+use crate::formatting::with_causes;
 
 /// Most messages that are kept.
 const MOST: usize = 6;
@@ -53,6 +59,29 @@ impl Notices {
     /// Adds a message that disappears after a few seconds.
     pub fn tell(&mut self, words: String, now_s: f64) {
         self.add(words, Some(now_s + NEWS_S));
+    }
+
+    /// Warns where the processor draws. `roads` is how roads are drawn, `asked` how they would be drawn by a graphics card.
+    pub fn warn_of_software(&mut self, gpu: &Gpu, roads: RoadMethod, asked: RoadMethod) {
+        if gpu.is_software() {
+            let adapter = gpu.adapter_name();
+            let roads = if roads == asked {
+                ""
+            } else {
+                ", and roads as geometry (GEO), which takes less time"
+            };
+            self.warn(format!(
+                "no graphics card was found: the processor draws ({adapter}), more coarsely while the camera moves{roads}"
+            ));
+        }
+    }
+
+    /// Tells what became of a file that was to be saved.
+    pub fn tell_saved(&mut self, saved: Result<PathBuf, NotSaved>, now_s: f64) {
+        match saved {
+            Ok(path) => self.tell(format!("saved {}", path.display()), now_s),
+            Err(lost) => self.warn(with_causes(&lost)),
+        }
     }
 
     /// Adds a message. Where there are too many, the oldest that is no warning is removed, or else the oldest warning.

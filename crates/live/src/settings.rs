@@ -8,6 +8,7 @@ use corniche_tileset::Manifest;
 use corniche_viewer::{
     RoadMethod, RoadOptions, Wireframe,
     lod::{Fineness, Quality},
+    tiles::TileDecoder,
 };
 use serde::{Deserialize, Serialize};
 
@@ -168,6 +169,16 @@ impl MapSettings {
         let Self { screen_space_error_px, cell_px, .. } = *self;
         let fineness = Fineness { screen_space_error_px, cell_px };
         Quality::of_package(manifest, fineness, style, self.roads, self.exaggeration)
+    }
+
+    /// What is read of tiles to show them in this style.
+    #[must_use]
+    pub fn decoder(&self, style: &Style) -> TileDecoder {
+        let look = self.applied_to(style);
+        match self.compare {
+            Compare::Off => TileDecoder::default().for_look(self.roads.method, &look),
+            Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(&look),
+        }
     }
 
     /// Whether the edges of triangles are drawn, in the viewer's words.

@@ -13,8 +13,6 @@
 //! This crate never computes geometry, and has no controls of its own but what a page can say: the map is a session of `corniche-live`.
 
 #[cfg(any(test, target_arch = "wasm32"))]
-mod merging;
-#[cfg(any(test, target_arch = "wasm32"))]
 mod tables;
 
 #[cfg(target_arch = "wasm32")]

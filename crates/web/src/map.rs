@@ -3,17 +3,14 @@
 use std::rc::Rc;
 
 use corniche_live::{
-    Compare, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
-    TileLoader as _, ViewRecord, controls::Mode,
+    FrameRest, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
+    TileLoader as _, ViewRecord,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Rgb, Style};
-use corniche_tileset::FORMAT_VERSION;
+use corniche_styles::Style;
 use corniche_viewer::{
-    BoundaryLines,
     flight::{Flight, FlightRecord, WorkingCrs},
     range,
-    tiles::TileDecoder,
 };
 use serde_json::{Value, json};
 
@@ -70,7 +67,7 @@ impl Map {
     pub(crate) fn change(&mut self, changes: &str) -> Result<(), String> {
         let (changed, style) = changed(&self.settings, changes)?;
         let shown = changed.of_session();
-        let reading = reading_of(&shown, &style);
+        let reading = Reading::of(&shown.decoder(&style));
         self.session.change(shown);
         self.session.styles = style_list(&changed.style, style);
         self.session.camera.set_inertia(changed.inertia());
@@ -118,34 +115,11 @@ impl Map {
 
     /// What is known of the map before anything is drawn.
     pub(crate) fn about(&self) -> Value {
-        let (manifest, look) = (self.session.manifest(), self.session.look());
-        let gpu = self.canvas.gpu();
-        let entry = |label: &str, color| json!({ "label": label, "color": css(color) });
-        let roads = self.labels.iter().zip(&look.roads);
-        let roads = roads.map(|(label, road)| entry(label, road.bands.main_color()));
-        let boundaries = BoundaryLines::of(manifest, &look).into_iter();
-        let boundaries = boundaries.map(|lines| entry(&lines.label, lines.style.color));
-        json!({
-            "src": self.address,
-            "attribution": manifest.attribution,
-            "bounds": manifest.wgs84_bounds.to_array(),
-            "heights": self.session.height_range_m(),
-            "tiles": manifest.levels.iter().map(|level| level.tiles).sum::<u64>(),
-            "levels": manifest.levels.len(),
-            "styles": tables::style_names(),
-            "classes": roads.collect::<Vec<Value>>(),
-            "boundaries": boundaries.collect::<Vec<Value>>(),
-            "has": {
-                "photo": manifest.settings.photo.is_some(),
-                "areas": manifest.areas.is_some(),
-                "boundaries": manifest.boundaries.is_some(),
-            },
-            "adapter": gpu.adapter_name(),
-            "is_software": gpu.is_software(),
-            "max_side_px": gpu.max_side_px(),
-            "format_version": FORMAT_VERSION,
-            "bytes": self.tileset.package.package().source().file_bytes(),
-        })
+        let mut about = self.session.about(&self.labels, self.canvas.gpu());
+        about["src"] = json!(self.address);
+        about["styles"] = json!(tables::style_names());
+        about["bytes"] = json!(self.tileset.package.package().source().file_bytes());
+        about
     }
 
     /// Does all of a frame. Returns what the page is told.
@@ -215,50 +189,19 @@ impl Map {
         self.canvas.draw(&MapScene { revision, ..scene }, divider_share)
     }
 
-    /// What came of the frame.
+    /// What the page is told of the frame.
     fn report(&mut self, is_under_way: bool, now_s: f64) -> Value {
-        let Session { tiles, camera, flights, probe, .. } = &self.session;
-        let (drawn, missing) = (tiles.drawn().len(), tiles.missing());
-        let (loading, is_full) = (tiles.loading(), tiles.is_full());
-        let cursor = probe.cursor().map(|point| {
-            let ([lon, lat], [.., height]) = (point.lon_lat_deg, point.at_m);
-            json!({ "lon": lon, "lat": lat, "height": height })
-        });
-        let point_scale = self.session.manifest().point_scale;
-        let metres_per_pixel = probe.middle_pixel_m().map(|pixel_m| pixel_m / point_scale);
+        // A picture that was drawn in a hurry is drawn again at rest.
+        let is_busy = is_under_way || self.is_hurried || self.anew_s.is_some();
         // Nothing is to be waited for from a server that gives no tiles.
-        let troubled = self.loader.troubled();
-        let is_playing = flights.is_playing();
-        // A recording needs frames only while something moves; a picture that was drawn in a hurry is drawn again at rest.
-        let is_busy = camera.is_moving()
-            || is_playing
-            || is_under_way
-            || self.is_hurried
-            || self.anew_s.is_some();
-        let traffic = self.tileset.package.package().source().traffic();
+        let rest = FrameRest { is_busy, troubled: self.loader.troubled() };
         let counts = self.canvas.map.counts();
-        let is_settled =
-            !is_busy && (missing == 0 || is_full || troubled > 0) && loading == troubled;
-        let share_there = drawn as f64 / (drawn + missing).max(1) as f64;
-        let report = json!({
-            "next": if is_busy { "now" } else { "asked" },
-            "is_settled": is_settled,
-            "view": ViewRecord::of(self.session.request()),
-            "cursor": cursor,
-            "metres_per_pixel": metres_per_pixel,
-            "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * self.pixels_per_point),
-            "mode": if camera.mode() == Mode::Fly { "fly" } else { "map" },
-            "tiles": { "drawn": drawn, "missing": missing, "loading": loading, "full": is_full },
-            "triangles": counts.triangles,
-            "segments": counts.segments,
-            "gpu_bytes": tiles.bytes_of_budget(),
-            "requests": traffic.requests,
-            "bytes": traffic.bytes,
-            "progress": if is_full { 1.0 } else { share_there },
-            "recording_s": flights.recording_s(now_s),
-            "is_playing": is_playing,
-            "notices": std::mem::take(&mut self.notices),
-        });
+        let (mut report, is_settled) =
+            self.session.report(counts, rest, self.pixels_per_point, now_s);
+        let traffic = self.tileset.package.package().source().traffic();
+        report["requests"] = json!(traffic.requests);
+        report["bytes"] = json!(traffic.bytes);
+        report["notices"] = Value::Array(std::mem::take(&mut self.notices));
         if is_settled {
             self.session.settle();
             self.loader.end_foresight();
@@ -285,22 +228,7 @@ pub(crate) fn style_list(name: &str, style: Style) -> StyleList {
     StyleList::new(vec![NamedStyle { name: name.to_owned(), style }], None)
 }
 
-/// What is read of tiles for these settings.
-pub(crate) fn reading_of(settings: &MapSettings, style: &Style) -> Reading {
-    let look = settings.applied_to(style);
-    Reading::of(&match settings.compare {
-        Compare::Off => TileDecoder::default().for_look(settings.roads.method, &look),
-        Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(&look),
-    })
-}
-
 /// A size that the adapter can draw with one sample a pixel.
 pub(crate) fn clamped(size_px: [u32; 2], most_px: u32) -> [u32; 2] {
     size_px.map(|side| side.clamp(1, most_px))
-}
-
-/// A colour as in CSS: `#rrggbb`.
-fn css(color: Rgb) -> String {
-    let [r, g, b] = color.map(|part| (part * 255.0).round() as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -22,7 +22,7 @@ use crate::{
     decoders::{Decoders, Reading},
     host::Host,
     loader::{PageLoader, Tileset},
-    map::{Map, clamped, reading_of, style_list},
+    map::{Map, clamped, style_list},
     problem::Problem,
     source::WebSource,
     tables,
@@ -121,7 +121,7 @@ impl Opened {
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
         let (style, settings) = (first.style, first.settings.of_session());
-        let reading = reading_of(&settings, style);
+        let reading = Reading::of(&settings.decoder(style));
         let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
         let home = first.view(manifest, ground, size_px)?;
         let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, ready);

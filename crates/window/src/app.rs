@@ -11,11 +11,7 @@ use corniche_live::{
     SessionStart, StyleList, TileLoader, Trace, first_view,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{
-    RoadMethod, RoadOptions, SightedGround,
-    gpu::{Gpu, PassTimes},
-    tiles::MapPackage,
-};
+use corniche_viewer::{RoadOptions, SightedGround, gpu::Gpu, tiles::MapPackage};
 use egui::{Rect, pos2};
 use glam::DVec2;
 
@@ -26,11 +22,8 @@ use crate::{WindowError, WindowRequest, canvas::Canvas, files::FileWriter, panel
 /// The window's state.
 pub(crate) struct App {
     pub(crate) desk: MapDesk,
-    pace: FramePace,
     captures: Captures,
     trace: Option<Trace>,
-    /// Times of the passes of the last frame that the graphics card has finished, picture by picture.
-    passes: Vec<(RoadMethod, PassTimes)>,
     class_labels: [String; FunctionalRoadClass::COUNT],
     /// What the next frame puts on the clipboard.
     to_copy: Option<String>,
@@ -75,17 +68,7 @@ impl App {
             .transpose()
             .map_err(|source| WindowError::Trace { source })?;
         let mut notices = Notices::default();
-        if gpu.is_software() {
-            let roads = if settings.roads.method == request.roads.method {
-                ""
-            } else {
-                ", and roads as geometry (GEO), which takes less time"
-            };
-            notices.warn(format!(
-                "no graphics card was found: the processor draws ({}), more coarsely while the camera moves{roads}",
-                gpu.adapter_name()
-            ));
-        }
+        notices.warn_of_software(gpu, settings.roads.method, request.roads.method);
         let ways = (request.save_drawing, platform.clock_s);
         let drawing = Drawing::new(&request.drawn_lines, ways, manifest, &mut notices);
         let session = Session::new(SessionStart {
@@ -100,13 +83,19 @@ impl App {
             pixels_per_point,
             inertia: request.inertia,
         });
-        let (overlays, command_of) = (request.overlays, request.command_of);
-        Ok(Self {
-            desk: MapDesk { session, drawing, notices, overlays, command_of },
+        let desk = MapDesk {
+            session,
+            drawing,
+            notices,
+            overlays: request.overlays,
+            command_of: request.command_of,
             pace: FramePace::default(),
+            passes: Vec::new(),
+        };
+        Ok(Self {
+            desk,
             captures: Captures::new(platform.files),
             trace,
-            passes: Vec::new(),
             class_labels: request.class_labels,
             to_copy: None,
             frame: 0,
@@ -136,7 +125,6 @@ impl App {
 
     /// The graphics device is lost and another one has taken its place: everything is loaded and drawn again.
     pub(crate) fn begin_again(&mut self) {
-        self.passes.clear();
         self.desk.tell_lost(self.captures.lose_device());
         self.desk.begin_again();
     }

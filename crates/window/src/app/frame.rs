@@ -3,7 +3,7 @@
 //! In this order: tiles that have arrived, time, choice of tiles, map, panel. A change made in the panel is seen in the next
 //! frame, which the panel asks for.
 
-use corniche_live::{HURRY_S, MapSettings, Redraw, TraceLine, formatting::with_causes};
+use corniche_live::{MapSettings, Redraw, TraceLine};
 use corniche_styles::Rgb;
 use corniche_viewer::{BoundaryLines, flight::WorkingCrs};
 use egui_wgpu::ScreenDescriptor;
@@ -16,8 +16,6 @@ use crate::{
     window_content::{Has, WindowContent},
 };
 
-/// The times of a frame's passes are asked for this long after it, if no other frame comes before.
-const CLOCK_S: f64 = 0.1;
 /// Time between two questions whether the pixels of a picture have come back.
 const PICTURE_S: f64 = 0.02;
 /// The panel's toolkit asks for a repaint after a very long time when it means never; this is the longest that counts.
@@ -56,14 +54,17 @@ impl App {
     ) -> Result<FrameOutput, WindowError> {
         let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
         self.frame += 1;
-        self.take_news(now_s);
         let desk = &mut self.desk;
+        for saved in self.captures.files.news() {
+            desk.notices.tell_saved(saved, now_s);
+        }
         let step = desk.step(&mut canvas.map, size_px, pixels_per_point, now_s);
         // A picture that is to be saved is drawn in full.
         let scene = desk.scene(&canvas.map, size_px, self.captures.is_wanted(), now_s);
         let drew = canvas.draw(&scene)?;
         desk.session.look_at_ground(&step.camera, drew.is_new);
-        self.take_times(canvas)?;
+        desk.take_times(&mut canvas.map)?;
+        let line = self.trace.as_ref().map(|_| TraceLine::of(&desk.session, self.frame, size_px));
 
         let before = self.desk.session.settings.clone();
         let mut output = self.show_panel(canvas, ui, raw, drew, now_s);
@@ -75,15 +76,14 @@ impl App {
         let unused_textures = canvas.take_textures(std::mem::take(&mut output.textures_delta));
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.capture(canvas, &primitives, &screen)?;
-        if let Some(trace) = &mut self.trace {
-            let line = TraceLine::of(&self.desk.session, self.frame, size_px);
+        if let (Some(trace), Some(line)) = (&mut self.trace, line) {
             trace.write(line).map_err(|source| WindowError::Trace { source })?;
         }
 
         let camera = &self.desk.session.camera;
         let is_busy = camera.is_moving() || step.is_under_way || self.captures.is_wanted();
         let is_one_of_many = drew.is_new && (is_busy || camera.is_dragging());
-        self.pace.note(now_s, is_one_of_many, is_busy);
+        self.desk.pace.note(now_s, is_one_of_many, is_busy);
         let redraw = self.next_redraw(canvas, now_s, is_busy || is_changed, &output);
         Ok(FrameOutput {
             primitives,
@@ -107,39 +107,9 @@ impl App {
         if is_at_once || wish_s <= 0.0 {
             return Redraw::Now;
         }
-        let hurry_s = self.desk.session.is_hurrying(&canvas.map, now_s).then_some(HURRY_S);
-        // By then the graphics card can tell how long this frame took.
-        let clock_s = canvas.map.is_timing().then_some(CLOCK_S);
         let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
         let picture_s = self.captures.is_developing().then_some(PICTURE_S);
-        let second_s = self.desk.session.flights.recording_s(now_s).map(|s| s.floor() + 1.0 - s);
-        let notice_s = self.desk.notices.next_end_s().map(|until_s| (until_s - now_s).max(0.0));
-        Redraw::after(now_s, [hurry_s, clock_s, picture_s, wish_s, second_s, notice_s])
-    }
-
-    fn take_news(&mut self, now_s: f64) {
-        for saved in self.captures.files.news() {
-            match saved {
-                Ok(path) => self.desk.notices.tell(format!("saved {}", path.display()), now_s),
-                Err(lost) => self.desk.notices.warn(with_causes(&lost)),
-            }
-        }
-    }
-
-    /// Takes the times that the graphics card has finished.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    fn take_times(&mut self, canvas: &mut Canvas) -> Result<(), WindowError> {
-        match canvas.map.times() {
-            Ok(times) => self.passes = times,
-            Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
-            Err(error) => {
-                self.passes.clear();
-                self.desk.notices.warn(format!("no pass was timed: {error}"));
-            }
-        }
-        Ok(())
+        self.desk.next_redraw(&canvas.map, [picture_s, wish_s], now_s)
     }
 
     /// Lays out the window and does what was clicked in it.
@@ -206,8 +176,8 @@ impl App {
             triangles: counts.triangles,
             segments: counts.segments,
             gpu_bytes: tiles.bytes_of_budget(),
-            passes: &self.passes,
-            frame_times: self.pace.times(),
+            passes: &self.desk.passes,
+            frame_times: self.desk.pace.times(),
             drawing: self.desk.drawing.content(session),
             recording_s: session.flights.recording_s(now_s),
             notices: self.desk.notices.all(),

@@ -13,7 +13,7 @@ use super::{
     event_loop::{News, new_window},
     first_tiles::OpenedPackage,
     inputs::{self, EndKey, Inputs},
-    screen::{Acquired, Screen},
+    screen::{Painted, Screen},
 };
 use crate::{
     WindowError, WindowRequest,
@@ -170,20 +170,13 @@ impl OpenWindow {
         };
         let frame = self.app.frame(&mut self.canvas, &self.ui, input)?;
         self.ui_state.handle_platform_output(&self.window, frame.platform);
-        let redraw = match self.screen.acquire(&self.canvas, &self.window)? {
-            Acquired::Texture(texture) => {
-                let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                self.canvas.paint(&frame.primitives, &frame.screen, &view);
-                self.window.pre_present_notify();
-                self.canvas.gpu().queue().present(texture);
-                frame.redraw
-            }
-            Acquired::Later => Redraw::Now,
+        let shown = (&frame.primitives[..], &frame.screen);
+        let redraw = match (self.screen.paint(&mut self.canvas, &self.window, shown)?, frame.redraw)
+        {
+            (Painted::Later, _) => Redraw::Now,
             // A frame that is due at some time stays due.
-            Acquired::Hidden => match frame.redraw {
-                Redraw::Now => Redraw::Asked,
-                later => later,
-            },
+            (Painted::Hidden, Redraw::Now) => Redraw::Asked,
+            (_, redraw) => redraw,
         };
         self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {
